@@ -1,0 +1,33 @@
+// Exceptions, by who has to act. Everything else that is thrown is a defect of the program.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace salbench {
+
+// An item's data cannot be used: the message names file and line, or the item, and what to do.
+// The item (or one stage of it) fails; the others go on.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Arguments or configuration cannot be used (exit status 2).
+struct ConfigError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// One option has a value it cannot have; who read the option adds where it stands.
+struct OptionError : ConfigError {
+  OptionError(std::string option_key, const std::string& what_is_wrong)
+      : ConfigError(option_key + " " + what_is_wrong), key(std::move(option_key)) {}
+  std::string key;  // the field's name within its options, "radius"
+};
+
+// The cache or output folder cannot be used (exit status 3).
+struct StorageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace salbench

@@ -1,0 +1,28 @@
+// Scalar fields over the points of a shape.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. [tasse2016]
+ScalarField min_max_normalized(std::span<const double> field);
+
+bool is_constant(std::span<const double> field);  // also true of an empty field
+
+// Density histogram over the field's own range [min, max]: bin i holds count_i / (n * width_i), the last bin
+// closed on the right. Of a constant field the range is [value - 0.5, value + 0.5], as NumPy has it.
+struct BinnedDensity {
+  Histogram density;
+  std::array<double, kHistogramBins + 1> edges;
+};
+BinnedDensity binned_density(std::span<const double> field);
+
+// The points that at least one participant picked: ascending, each once.
+std::vector<std::int32_t> picked_points(const GroundTruth& truth);
+
+}  // namespace salbench

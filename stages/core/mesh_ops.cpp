@@ -1,0 +1,126 @@
+#include "stages/core/mesh_ops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+namespace salbench {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
+
+}  // namespace
+
+Vec3 centroid(std::span<const Vec3> points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+double bounding_radius(std::span<const Vec3> points) {
+  const Vec3 center = centroid(points);
+  double largest = 0;
+  for (const Vec3& p : points) largest = std::max(largest, (p - center).squaredNorm());
+  return std::sqrt(largest);
+}
+
+Vec3 face_area_vector(const Mesh& mesh, const Triangle& face) {
+  const Vec3& a = at(mesh.vertices, face[0]);
+  return (at(mesh.vertices, face[1]) - a).cross(at(mesh.vertices, face[2]) - a);
+}
+
+double surface_area(const Mesh& mesh) {
+  double doubled = 0;
+  for (const Triangle& face : mesh.faces) doubled += face_area_vector(mesh, face).norm();
+  return doubled / 2;
+}
+
+Vec3 area_centroid(const Mesh& mesh) {
+  Vec3 sum = Vec3::Zero();
+  double weights = 0;
+  for (const Triangle& face : mesh.faces) {
+    const double weight = face_area_vector(mesh, face).norm();
+    sum += weight * (at(mesh.vertices, face[0]) + at(mesh.vertices, face[1]) + at(mesh.vertices, face[2]));
+    weights += weight;
+  }
+  return sum / (3 * weights);
+}
+
+Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  edges.reserve(faces.size() * 6);
+  for (const Triangle& face : faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges.emplace_back(face[k], face[(k + 1) % 3]);
+      edges.emplace_back(face[(k + 1) % 3], face[k]);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::erase_if(edges, [](const auto& edge) { return edge.first == edge.second; });  // degenerate faces
+
+  Adjacency adjacency{std::vector<std::int32_t>(n_points + 1, 0), {}};
+  adjacency.neighbors.reserve(edges.size());
+  for (const auto& [from, to] : edges) {
+    ++adjacency.offsets[static_cast<std::size_t>(from) + 1];
+    adjacency.neighbors.push_back(to);
+  }
+  for (std::size_t i = 0; i < n_points; ++i) adjacency.offsets[i + 1] += adjacency.offsets[i];
+  return adjacency;
+}
+
+std::vector<std::int32_t> connected_components(const Adjacency& adjacency) {
+  std::vector<std::int32_t> label(adjacency.size(), -1);
+  std::vector<std::size_t> open;
+  std::int32_t next = 0;
+  for (std::size_t start = 0; start < label.size(); ++start) {
+    if (label[start] >= 0) continue;
+    label[start] = next;
+    open.assign(1, start);
+    while (!open.empty()) {
+      const std::size_t i = open.back();
+      open.pop_back();
+      for (const std::int32_t j : adjacency.of(i)) {
+        const auto neighbor = static_cast<std::size_t>(j);
+        if (label[neighbor] >= 0) continue;
+        label[neighbor] = next;
+        open.push_back(neighbor);
+      }
+    }
+    ++next;
+  }
+  return label;
+}
+
+EdgeDistances::EdgeDistances(std::span<const Vec3> points, const Adjacency& adjacency)
+    : points_(points), adjacency_(adjacency), distance_(points.size(), kFar) {}
+
+std::span<const Reached> EdgeDistances::from(std::int32_t source, double reach) {
+  for (const Reached& r : reached_) distance_[static_cast<std::size_t>(r.index)] = kFar;
+  reached_.clear();
+
+  // Dijkstra with lazy deletion; the pair order settles equal distances by index.
+  using Entry = std::pair<double, std::int32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  distance_[static_cast<std::size_t>(source)] = 0;
+  open.emplace(0.0, source);
+  while (!open.empty()) {
+    const auto [d, i] = open.top();
+    open.pop();
+    if (d > distance_[static_cast<std::size_t>(i)]) continue;
+    reached_.push_back({i, d});
+    for (const std::int32_t j : adjacency_.of(static_cast<std::size_t>(i))) {
+      const double through = d + (at(points_, i) - at(points_, j)).norm();
+      double& best = distance_[static_cast<std::size_t>(j)];
+      if (through > reach || through >= best) continue;
+      best = through;
+      open.emplace(through, j);
+    }
+  }
+  return reached_;
+}
+
+}  // namespace salbench

@@ -1,0 +1,60 @@
+// Measures of a shape that several stages share.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+Vec3 centroid(std::span<const Vec3> points);  // mean of the points; n > 0
+
+// R of the benchmark: the largest distance of a point to the centroid. [tasse2016]
+double bounding_radius(std::span<const Vec3> points);
+
+// (b - a) x (c - a): twice the area, along the face's normal.
+Vec3 face_area_vector(const Mesh& mesh, const Triangle& face);
+
+double surface_area(const Mesh& mesh);
+Vec3 area_centroid(const Mesh& mesh);  // area-weighted mean of the face centres; the surface area is > 0
+
+// Compressed rows: the sorted, distinct neighbours of i along edges are
+// neighbors[offsets[i]] .. neighbors[offsets[i + 1] - 1].
+struct Adjacency {
+  std::vector<std::int32_t> offsets;  // n + 1
+  std::vector<std::int32_t> neighbors;
+
+  std::size_t size() const { return offsets.size() - 1; }
+  std::span<const std::int32_t> of(std::size_t i) const {
+    return {neighbors.data() + offsets[i], neighbors.data() + offsets[i + 1]};
+  }
+};
+
+Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces);
+
+// Label 0..c-1 of the connected component of each point, numbered by its lowest point.
+std::vector<std::int32_t> connected_components(const Adjacency& adjacency);
+
+struct Reached {
+  std::int32_t index;
+  double distance;
+};
+
+// Shortest paths along edges from one source, the source included, cut at distance <= reach. The workspace
+// is reused between calls on the same mesh, so a small reach costs only what it reaches.
+class EdgeDistances {
+ public:
+  EdgeDistances(std::span<const Vec3> points, const Adjacency& adjacency);
+  // Ordered by (distance, index); valid until the next call.
+  std::span<const Reached> from(std::int32_t source, double reach);
+
+ private:
+  std::span<const Vec3> points_;
+  const Adjacency& adjacency_;
+  std::vector<double> distance_;  // infinity where not reached
+  std::vector<Reached> reached_;
+};
+
+}  // namespace salbench

@@ -1,0 +1,121 @@
+// nanoflann keeps the first of equally distant candidates that it meets. To be independent of the tree's
+// layout, a k-search also takes candidates at exactly the k-th distance and lets the index decide.
+#include "stages/core/neighbors.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <nanoflann.hpp>
+
+#include "stages/core/check.h"
+
+namespace salbench {
+namespace {
+
+struct Adaptor {
+  std::span<const Vec3> points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<Eigen::Index>(axis)];
+  }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>, Adaptor, 3,
+                                                 std::uint32_t>;
+
+bool closer(const Neighbor& a, const Neighbor& b) {
+  return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared
+                                                  : a.index < b.index;
+}
+
+// Above the limit by more than rounding, also where the limit is 0.
+double widened(double limit) { return limit * (1 + 1e-12) + std::numeric_limits<double>::min(); }
+
+// Result set of nanoflann: keeps the k best by (distance, index) in a sorted array.
+class NearestSet {
+ public:
+  NearestSet(std::vector<Neighbor>& best, std::size_t k) : best_(best), k_(k) { best_.clear(); }
+  bool full() const { return best_.size() == k_; }
+  std::size_t size() const { return best_.size(); }
+  double worstDist() const {
+    // A little more than the k-th distance: candidates exactly there are still offered, so that the index
+    // can decide between them, whatever the tree's own bounds have lost to rounding.
+    return full() ? widened(best_.back().distance_squared) : std::numeric_limits<double>::max();
+  }
+  bool addPoint(double distance_squared, std::uint32_t index) {
+    const Neighbor candidate{static_cast<std::int32_t>(index), distance_squared};
+    if (full()) {
+      if (!closer(candidate, best_.back())) return true;
+      best_.pop_back();
+    }
+    best_.insert(std::upper_bound(best_.begin(), best_.end(), candidate, closer), candidate);
+    return true;
+  }
+
+ private:
+  std::vector<Neighbor>& best_;
+  std::size_t k_;
+};
+
+class WithinSet {
+ public:
+  WithinSet(std::vector<Neighbor>& found, double radius_squared)
+      : found_(found), radius_squared_(radius_squared) {
+    found_.clear();
+  }
+  bool full() const { return true; }
+  std::size_t size() const { return found_.size(); }
+  double worstDist() const { return widened(radius_squared_); }
+  bool addPoint(double distance_squared, std::uint32_t index) {
+    if (distance_squared <= radius_squared_)
+      found_.push_back({static_cast<std::int32_t>(index), distance_squared});
+    return true;
+  }
+
+ private:
+  std::vector<Neighbor>& found_;
+  double radius_squared_;
+};
+
+}  // namespace
+
+struct KdTree::Impl {
+  Adaptor adaptor;
+  Tree tree;
+  explicit Impl(std::span<const Vec3> points)
+      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
+};
+
+KdTree::KdTree(std::span<const Vec3> points) : impl_(std::make_unique<Impl>(points)) {}
+KdTree::KdTree(KdTree&&) noexcept = default;
+KdTree& KdTree::operator=(KdTree&&) noexcept = default;
+KdTree::~KdTree() = default;
+
+std::size_t KdTree::size() const { return impl_->adaptor.points.size(); }
+
+void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found) const {
+  NearestSet set(found, std::min(k, size()));
+  if (k == 0 || size() == 0) return;
+  impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+}
+
+std::int32_t KdTree::nearest(const Vec3& query) const {
+  CHECK_GT(size(), 0U);
+  std::vector<Neighbor> found;
+  found.reserve(1);
+  nearest(query, 1, found);
+  return found.front().index;
+}
+
+void KdTree::within(const Vec3& query, double radius, std::vector<Neighbor>& found) const {
+  WithinSet set(found, radius * radius);
+  if (size() == 0) return;
+  impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+  std::sort(found.begin(), found.end(), closer);
+}
+
+}  // namespace salbench

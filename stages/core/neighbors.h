@@ -1,0 +1,42 @@
+// Exact nearest-neighbour search over a fixed point set. [blanco2014]
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct Neighbor {
+  std::int32_t index;
+  double distance_squared;
+};
+
+// The points must outlive the tree. Results are ordered by (distance, index), so ties never depend on the
+// tree's layout. Searches are const and may run on several threads.
+class KdTree {
+ public:
+  explicit KdTree(std::span<const Vec3> points);
+  KdTree(KdTree&&) noexcept;
+  KdTree& operator=(KdTree&&) noexcept;
+  ~KdTree();
+
+  // The min(k, n) nearest points, the query's own point included if it is one of them.
+  void nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found) const;
+  std::int32_t nearest(const Vec3& query) const;  // index of the nearest point; n > 0
+
+  // All points with distance <= radius.
+  void within(const Vec3& query, double radius, std::vector<Neighbor>& found) const;
+
+  std::size_t size() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace salbench

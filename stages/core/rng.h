@@ -1,0 +1,24 @@
+// Random numbers that depend on (seed, stage, item) alone: the same bytes on any machine and thread count.
+// The standard distributions differ between libraries, so the few that are needed are written here.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace salbench {
+
+// xoshiro256**, seeded by SplitMix64 from a hash of the three names. [blackman2021]
+class Rng {
+ public:
+  Rng(std::uint64_t seed, std::string_view stage, std::string_view item);
+
+  std::uint64_t next();                      // uniform over 64 bits
+  double uniform();                          // uniform over [0, 1), 53 bits
+  std::uint64_t below(std::uint64_t bound);  // uniform over 0..bound-1, unbiased; bound > 0
+  double normal();                           // mean 0, standard deviation 1
+
+ private:
+  std::uint64_t state_[4];
+};
+
+}  // namespace salbench

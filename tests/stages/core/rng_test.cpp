@@ -1,0 +1,61 @@
+#include "stages/core/rng.h"
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace salbench {
+namespace {
+
+TEST(Rng, SameNamesGiveTheSameStream) {
+  Rng a(7, "RS", "52"), b(7, "RS", "52");
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(a.next(), b.next());
+}
+
+TEST(Rng, AnyPartOfTheSeedChangesTheStream) {
+  std::set<std::uint64_t> first;
+  for (const char* item : {"52", "52_0", "5", "2"})
+    for (const char* stage : {"RS", "scores.RS"})
+      for (const std::uint64_t seed : {0U, 1U, 2016U}) first.insert(Rng(seed, stage, item).next());
+  EXPECT_EQ(first.size(), 24U);
+  EXPECT_NE(Rng(1, "ab", "c").next(), Rng(1, "a", "bc").next());
+}
+
+TEST(Rng, UniformHasTheMomentsOfTheUnitInterval) {
+  Rng rng(1, "test", "moments");
+  const int n = 200000;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < n; ++i) {
+    const double u = rng.uniform();
+    ASSERT_GE(u, 0);
+    ASSERT_LT(u, 1);
+    sum += u;
+    squares += u * u;
+  }
+  EXPECT_NEAR(sum / n, 0.5, 4 * std::sqrt(1.0 / 12 / n));
+  EXPECT_NEAR(squares / n, 1.0 / 3, 0.003);
+}
+
+TEST(Rng, BelowCoversItsRangeEvenly) {
+  Rng rng(1, "test", "below");
+  std::array<int, 7> count{};
+  for (int i = 0; i < 70000; ++i) ++count[rng.below(7)];
+  for (const int c : count) EXPECT_NEAR(c, 10000, 450);
+}
+
+TEST(Rng, NormalHasUnitVariance) {
+  Rng rng(1, "test", "normal");
+  const int n = 100000;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < n; ++i) {
+    const double x = rng.normal();
+    sum += x;
+    squares += x * x;
+  }
+  EXPECT_NEAR(sum / n, 0, 0.015);
+  EXPECT_NEAR(squares / n, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace salbench
