@@ -1,0 +1,43 @@
+#include "stages/core/support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+
+namespace salbench {
+
+double mean_neighbor_count(std::span<const Vec3> points, const KdTree& tree, double radius) {
+  CHECK_EQ(points.size(), tree.size());
+  CHECK_GT(points.size(), 0U);
+  std::vector<Neighbor> found;
+  std::size_t others = 0;
+  for (const Vec3& p : points) {
+    tree.within(p, radius, found);
+    others += found.size() - 1;
+  }
+  return static_cast<double>(others) / static_cast<double>(points.size());
+}
+
+SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor) {
+  CHECK_GT(factor, 0.0);
+  if (points.empty()) throw InputError("the shape has no points");
+  SupportRadius support{factor * bounding_radius(points), 0};
+  if (!std::isfinite(support.radius)) throw InputError("the shape has a coordinate that is not finite");
+  // Terminates: at 2 R every point is within reach of every other.
+  const auto enough = static_cast<std::int32_t>(std::min<std::size_t>(kFewestNeighbors, points.size() - 1));
+  while (true) {
+    support.neighbours = static_cast<std::int32_t>(mean_neighbor_count(points, tree, support.radius));
+    if (support.neighbours >= enough) return support;
+    support.radius *= 1.1;
+  }
+}
+
+SupportRadius grown_support_radius(std::span<const Vec3> points, double factor) {
+  return grown_support_radius(points, KdTree(points), factor);
+}
+
+}  // namespace salbench

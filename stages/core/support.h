@@ -1,0 +1,28 @@
+// The support radius of descriptors, grown until it holds enough points to describe a neighbourhood.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "stages/core/neighbors.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+inline constexpr std::int32_t kFewestNeighbors = 6;  // on average, the point itself excluded
+
+// Mean over the points of how many others lie at distance <= radius; n > 0, `tree` is over `points`.
+double mean_neighbor_count(std::span<const Vec3> points, const KdTree& tree, double radius);
+
+struct SupportRadius {
+  double radius = 0;            // in the shape's unit
+  std::int32_t neighbours = 0;  // mean number of others within it, truncated
+};
+
+// factor * R, times 1.1 until the truncated mean number of neighbours is at least 6. A shape of fewer than
+// seven points can have no more than n - 1: the radius then grows until it holds them all. Of coincident
+// points it is 0. Throws InputError where there is no point or R is not finite; factor > 0. [tasse2016]
+SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor);
+SupportRadius grown_support_radius(std::span<const Vec3> points, double factor);  // builds the tree
+
+}  // namespace salbench
