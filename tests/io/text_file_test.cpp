@@ -1,0 +1,53 @@
+#include "io/text_file.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "tests/io/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(TextFile, ReturnsTheBytesThatWereWritten) {
+  const TemporaryFolder folder;
+  const std::string bytes("a\r\nb\0\xff\n", 7);
+  write_text_file(folder / "x.csv", bytes);
+  EXPECT_EQ(read_file(folder / "x.csv"), bytes);
+  write_text_file(folder / "x.csv", "");
+  EXPECT_EQ(read_file(folder / "x.csv"), "");
+}
+
+TEST(TextFile, LeavesNoTemporaryFileBehind) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "x.csv", "old");
+  write_text_file(folder / "x.csv", "new");
+  std::filesystem::create_directory(folder / "taken");
+  EXPECT_THROW(write_text_file(folder / "taken", "text"), StorageError);
+  using Entries = std::filesystem::directory_iterator;
+  EXPECT_EQ(std::distance(Entries(folder.path()), Entries()), 2);
+}
+
+TEST(TextFile, SaysWhyAFileCannotBeWritten) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(
+      [&] { write_text_file(folder / "no_such_folder" / "x.csv", "text"); },
+      ThrowsMessage<StorageError>(HasSubstr("no_such_folder/x.csv: cannot be written: No such file")));
+}
+
+TEST(TextFile, SaysWhyAFileCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_THAT([&] { read_file(folder / "absent.off"); },
+              ThrowsMessage<InputError>(HasSubstr("absent.off: cannot be read: No such file")));
+  EXPECT_THAT([&] { read_file(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("is a folder")));
+  EXPECT_THAT([] { read_file("/dev/null"); }, ThrowsMessage<InputError>(HasSubstr("not a regular file")));
+}
+
+}  // namespace
+}  // namespace salbench
