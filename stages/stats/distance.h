@@ -1,0 +1,12 @@
+// Distance of distributions.
+#pragma once
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// Kolmogorov-Smirnov distance at the bin edges: the largest difference of the normalised cumulative sums, in
+// [0, 1]. NaN where a histogram is empty. Densities and counts give the same.
+double kolmogorov_smirnov(const Histogram& a, const Histogram& b);
+
+}  // namespace salbench

@@ -1,0 +1,70 @@
+#include "stages/stats/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <boost/math/distributions/students_t.hpp>
+
+#include "stages/core/check.h"
+
+namespace salbench {
+namespace {
+
+std::vector<double> defined(std::span<const double> values) {
+  std::vector<double> result(values.begin(), values.end());
+  std::erase_if(result, [](double value) { return std::isnan(value); });
+  return result;
+}
+
+// Summed from the first value on: the mean of equal values is that value, without rounding.
+double mean_of(std::span<const double> values) {
+  double sum = 0;
+  for (const double value : values) sum += value - values.front();
+  return values.front() + sum / static_cast<double>(values.size());
+}
+
+double sample_deviation(std::span<const double> values, double mean) {
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double student_quantile(double degrees_of_freedom) {
+  const boost::math::students_t distribution(degrees_of_freedom);
+  return boost::math::quantile(boost::math::complement(distribution, (1 - kConfidence) / 2));
+}
+
+}  // namespace
+
+Summary summarize(std::span<const double> values) {
+  const std::vector<double> sample = defined(values);
+  Summary summary;
+  summary.n = static_cast<std::int64_t>(sample.size());
+  summary.n_undefined = static_cast<std::int64_t>(values.size() - sample.size());
+  if (sample.empty()) return summary;
+  summary.mean = mean_of(sample);
+  if (sample.size() < 2) return summary;
+  summary.sd = sample_deviation(sample, summary.mean);
+  const auto n = static_cast<double>(sample.size());
+  const double half_width = student_quantile(n - 1) * summary.sd / std::sqrt(n);
+  summary.ci_low = summary.mean - half_width;
+  summary.ci_high = summary.mean + half_width;
+  return summary;
+}
+
+double quantile(std::span<const double> values, double q) {
+  CHECK_LE(0.0, q);
+  CHECK_LE(q, 1.0);
+  std::vector<double> sample = defined(values);
+  if (sample.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(sample.begin(), sample.end());
+  const double position = q * static_cast<double>(sample.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sample.size() - 1);
+  return std::lerp(sample[below], sample[above], position - std::floor(position));
+}
+
+double median(std::span<const double> values) { return quantile(values, 0.5); }
+
+}  // namespace salbench

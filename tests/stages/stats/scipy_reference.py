@@ -1,0 +1,65 @@
+"""Reference values for scipy_test.cpp.
+
+Reads lines "operation | sample | sample ..." (blank-separated numbers) and writes one line of numbers for each.
+"""
+
+import sys
+
+import numpy as np
+from scipy import special, stats
+
+
+def summary(x):
+    # Student's quantile by the incomplete beta function: stats.t.ppf has only nine digits in SciPy 1.10.
+    freedom = len(x) - 1
+    beta = special.betaincinv(freedom / 2, 0.5, 1 - 0.95)
+    half_width = np.sqrt(freedom * (1 - beta) / beta) * stats.sem(x)
+    return np.mean(x), np.std(x, ddof=1), np.mean(x) - half_width, np.mean(x) + half_width
+
+
+def signed_rank(x, y):
+    difference = x - y
+    sizes = np.abs(difference)
+    # SciPy before 1.11 takes the exact distribution for tied differences too, where it does not hold.
+    exact = len(x) <= 50 and len(np.unique(sizes)) == len(sizes) and sizes.min() > 0
+    result = stats.wilcoxon(x, y, zero_method="wilcox", correction=False, method="exact" if exact else "approx")
+    return (*result, float(exact))
+
+
+def holm(p):
+    """By definition: every hypothesis with a p-value up to one's own, times the number that are not smaller."""
+    steps = np.array([min(1.0, np.sum(p >= q) * q) for q in p])
+    return [steps[p <= q].max() for q in p]
+
+
+def kolmogorov_smirnov(a, b):
+    bins = np.arange(len(a))
+    samples = (np.repeat(bins, counts.astype(int)) for counts in (a, b))
+    return [stats.ks_2samp(*samples, method="asymp").statistic]
+
+
+OPERATIONS = {
+    "summary": summary,
+    "quantile": lambda x, q: np.quantile(x, q),
+    "rank_sum": lambda x, y: tuple(stats.ranksums(x, y)),
+    "rank_sum_corrected": lambda x, y: tuple(
+        stats.mannwhitneyu(x, y, use_continuity=False, alternative="two-sided", method="asymptotic")
+    ),
+    "signed_rank": signed_rank,
+    "holm": holm,
+    "pearson": lambda x, y: [stats.pearsonr(x, y)[0]],
+    "spearman": lambda x, y: [stats.spearmanr(x, y)[0]],
+    "kolmogorov_smirnov": kolmogorov_smirnov,
+}
+
+
+def main(cases, results):
+    with open(cases) as source, open(results, "w") as target:
+        for line in source:
+            operation, *samples = line.split("|")
+            values = OPERATIONS[operation.strip()](*(np.array(s.split(), dtype=float) for s in samples))
+            print(*(repr(float(v)) for v in values), file=target)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
