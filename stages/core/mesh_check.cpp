@@ -1,0 +1,146 @@
+#include "stages/core/mesh_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string_view>
+#include <utility>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+
+namespace salbench {
+namespace {
+
+const Vec3& corner(const Mesh& mesh, const Triangle& face, std::size_t i) {
+  return mesh.vertices[static_cast<std::size_t>(face[i])];
+}
+
+void check_coordinates(const Mesh& mesh) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (!mesh.vertices[i].allFinite())
+      throw InputError("vertex " + std::to_string(i) + " has a coordinate that is not a finite number");
+}
+
+void check_indices(const Mesh& mesh) {
+  const auto n = static_cast<std::int64_t>(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+    for (const std::int32_t v : mesh.faces[i])
+      if (v < 0 || v >= n)
+        throw InputError("face " + std::to_string(i) + " names vertex " + std::to_string(v) + " of " +
+                         std::to_string(n) + " (counted from 0)");
+}
+
+// Coordinates carry a rounding of half a unit in the last place, and a height over the longest edge that is
+// no larger says nothing: collinear vertices rarely come out at exactly zero. Lengths are taken relative to
+// that edge, so the test is the same at any scale.
+bool is_degenerate(const Mesh& mesh, const Triangle& face) {
+  if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) return true;
+  double longest = 0, largest_coordinate = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    longest = std::max(longest, (corner(mesh, face, (i + 1) % 3) - corner(mesh, face, i)).stableNorm());
+    largest_coordinate = std::max(largest_coordinate, corner(mesh, face, i).cwiseAbs().maxCoeff());
+  }
+  if (longest == 0) return true;
+  const Vec3 a = (corner(mesh, face, 1) - corner(mesh, face, 0)) / longest;
+  const Vec3 b = (corner(mesh, face, 2) - corner(mesh, face, 0)) / longest;
+  const double relative_height = a.cross(b).norm();
+  return !(relative_height > 4 * std::numeric_limits<double>::epsilon() * (largest_coordinate / longest));
+}
+
+std::int64_t drop_degenerate_faces(Mesh& mesh) {
+  return static_cast<std::int64_t>(
+      std::erase_if(mesh.faces, [&](const Triangle& face) { return is_degenerate(mesh, face); }));
+}
+
+// Of the faces over the same vertices the first stays.
+std::int64_t drop_duplicate_faces(std::vector<Triangle>& faces) {
+  std::vector<std::pair<Triangle, std::size_t>> by_vertices(faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    by_vertices[i] = {faces[i], i};
+    std::sort(by_vertices[i].first.begin(), by_vertices[i].first.end());
+  }
+  std::sort(by_vertices.begin(), by_vertices.end());
+  std::vector<bool> is_duplicate(faces.size(), false);
+  for (std::size_t i = 1; i < by_vertices.size(); ++i)
+    is_duplicate[by_vertices[i].second] = by_vertices[i].first == by_vertices[i - 1].first;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (!is_duplicate[i]) faces[kept++] = faces[i];
+  faces.resize(kept);
+  return static_cast<std::int64_t>(by_vertices.size() - kept);
+}
+
+void count_parts(const Mesh& mesh, MeshReport& report) {
+  const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
+  for (std::size_t i = 0; i < adjacency.size(); ++i) report.isolated_vertices += adjacency.of(i).empty();
+  const std::vector<std::int32_t> labels = connected_components(adjacency);
+  // Each isolated vertex is a component of its own to the labelling.
+  const std::int64_t all = 1 + *std::max_element(labels.begin(), labels.end());
+  report.components = static_cast<std::int32_t>(all - report.isolated_vertices);
+}
+
+struct EdgeSide {
+  std::int32_t low, high;
+  bool upwards;  // the face passes the edge from its lower to its higher vertex
+};
+
+void count_edges(std::span<const Triangle> faces, MeshReport& report) {
+  std::vector<EdgeSide> sides;
+  sides.reserve(faces.size() * 3);
+  for (const Triangle& face : faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(face[i], face[(i + 1) % 3]);
+      sides.push_back({low, high, face[i] == low});
+    }
+  }
+  const auto edge = [](const EdgeSide& side) { return std::pair(side.low, side.high); };
+  std::sort(sides.begin(), sides.end(),
+            [&](const EdgeSide& a, const EdgeSide& b) { return edge(a) < edge(b); });
+  for (auto first = sides.begin(); first != sides.end();) {
+    const auto last =
+        std::find_if(first, sides.end(), [&](const EdgeSide& side) { return edge(side) != edge(*first); });
+    const auto n_faces = last - first;
+    report.boundary_edges += n_faces == 1;
+    report.nonmanifold_edges += n_faces > 2;
+    report.misoriented_edges += n_faces == 2 && first->upwards == std::next(first)->upwards;
+    first = last;
+  }
+}
+
+}  // namespace
+
+CheckedMesh check_mesh(Mesh mesh) {
+  if (mesh.vertices.empty()) throw InputError("the mesh has no vertices");
+  if (mesh.faces.empty()) throw InputError("the mesh has no faces: point clouds cannot be used");
+  check_coordinates(mesh);
+  check_indices(mesh);
+  MeshReport report;
+  report.degenerate_faces = drop_degenerate_faces(mesh);
+  if (mesh.faces.empty()) throw InputError("none of the mesh's faces has an area");
+  if (!std::isnormal(surface_area(mesh)))
+    throw InputError("the mesh's surface area is beyond floating point: scale its coordinates");
+  report.duplicate_faces = drop_duplicate_faces(mesh.faces);
+  count_parts(mesh, report);
+  count_edges(mesh.faces, report);
+  return {std::move(mesh), report};
+}
+
+std::vector<std::string> warnings(const MeshReport& report) {
+  std::vector<std::string> lines;
+  const auto warn_of = [&](std::int64_t count, std::string_view what) {
+    if (count > 0) lines.push_back(std::to_string(count) + " " + std::string(what));
+  };
+  warn_of(report.degenerate_faces, "degenerate faces (repeated vertex or no area) dropped");
+  warn_of(report.duplicate_faces, "duplicate faces dropped");
+  warn_of(report.isolated_vertices, "isolated vertices kept: no face uses them");
+  warn_of(report.components > 1 ? report.components : 0, "connected components: the surface is in pieces");
+  warn_of(report.boundary_edges, "boundary edges: the surface is not closed");
+  warn_of(report.nonmanifold_edges, "edges in more than two faces: the surface is not a manifold");
+  warn_of(report.misoriented_edges,
+          "edges between faces of opposite orientation: normals may be wrong there");
+  return lines;
+}
+
+}  // namespace salbench

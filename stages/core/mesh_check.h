@@ -1,0 +1,36 @@
+// What a mesh must be before anything is computed from it, and what is odd about it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct MeshReport {
+  std::int64_t degenerate_faces = 0;   // dropped: a repeated vertex, or no area
+  std::int64_t duplicate_faces = 0;    // dropped: the same three vertices as an earlier face, in any order
+  std::int64_t isolated_vertices = 0;  // kept: in none of the faces left
+  std::int32_t components = 0;         // connected parts of the surface; isolated vertices are none
+  std::int64_t boundary_edges = 0;     // in one face only
+  std::int64_t nonmanifold_edges = 0;  // in three faces or more
+  std::int64_t misoriented_edges = 0;  // in two faces that pass it in the same direction
+};
+
+struct CheckedMesh {
+  Mesh mesh;  // the vertices of the input in their order, since ground truth is per vertex
+  MeshReport report;
+};
+
+// Drops the faces that cannot be used, and counts what is odd but can be. A face has no area if its height is
+// within the rounding of its coordinates. Throws InputError for a mesh without a usable face, a face that
+// names a vertex which does not exist, a coordinate that is not finite, or a size that floating point cannot
+// square.
+CheckedMesh check_mesh(Mesh mesh);
+
+// One line for each thing that is odd.
+std::vector<std::string> warnings(const MeshReport& report);
+
+}  // namespace salbench
