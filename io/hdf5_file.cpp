@@ -68,7 +68,6 @@ Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose, "H5Screate"}; }
 Handle core_access() {
   Handle access = property_list(H5P_FILE_ACCESS);
   must(H5Pset_fapl_core(access, 1U << 16U, 0), "H5Pset_fapl_core");
-  must(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), "H5Pset_libver_bounds");
   return access;
 }
 

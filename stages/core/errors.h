@@ -20,9 +20,10 @@ struct ConfigError : std::runtime_error {
 
 // One option has a value it cannot have; who read the option adds where it stands.
 struct OptionError : ConfigError {
-  OptionError(std::string option_key, const std::string& what_is_wrong)
-      : ConfigError(option_key + " " + what_is_wrong), key(std::move(option_key)) {}
-  std::string key;  // the field's name within its options, "radius"
+  OptionError(std::string option_key, std::string wrong)
+      : ConfigError(option_key + " " + wrong), key(std::move(option_key)), what_is_wrong(std::move(wrong)) {}
+  std::string key;            // the field's name within its options, "radius"
+  std::string what_is_wrong;  // "must be > 0, not -1"
 };
 
 // The cache or output folder cannot be used (exit status 3).

@@ -1,0 +1,88 @@
+#include "cache/digest.h"
+
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+
+std::string Digest::hex() const { return fmt::format("{:016x}{:016x}", high, low); }
+
+std::optional<Digest> digest_from_hex(std::string_view hex) {
+  if (hex.size() != 32) return {};
+  Digest digest;
+  for (auto [part, into] :
+       {std::pair(hex.substr(0, 16), &digest.high), std::pair(hex.substr(16), &digest.low)}) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + 16, *into, 16);
+    if (error != std::errc() || end != part.data() + 16) return {};
+  }
+  return digest;
+}
+
+struct Hasher::State {
+  XXH3_state_t* xxh = XXH3_createState();
+  ~State() { XXH3_freeState(xxh); }
+};
+
+Hasher::Hasher() : state_(std::make_unique<State>()) { XXH3_128bits_reset(state_->xxh); }
+Hasher::~Hasher() = default;
+
+void Hasher::add(std::uint64_t number) {
+  XXH3_128bits_update(state_->xxh, &number, sizeof number);  // x86-64: little-endian
+}
+
+void Hasher::add(std::span<const std::byte> bytes) {
+  add(std::uint64_t{bytes.size()});
+  XXH3_128bits_update(state_->xxh, bytes.data(), bytes.size());
+}
+
+void Hasher::add(std::string_view text) { add(std::as_bytes(std::span(text))); }
+
+void Hasher::add(const Digest& digest) {
+  add(digest.high);
+  add(digest.low);
+}
+
+Digest Hasher::digest() const {
+  const XXH128_hash_t hash = XXH3_128bits_digest(state_->xxh);
+  return {hash.high64, hash.low64};
+}
+
+Digest content_digest(const Arrays& arrays) {
+  std::map<std::string_view, const Array*> by_name;  // files list their arrays by name, stages as they please
+  for (const Array& array : arrays) by_name.emplace(array.name, &array);
+  Hasher hasher;
+  for (const auto& [name, array] : by_name) {
+    hasher.add(name);
+    hasher.add(std::uint64_t{array->shape.size()});
+    for (const std::size_t extent : array->shape) hasher.add(std::uint64_t{extent});
+    hasher.add(std::uint64_t{array->values.index()});
+    std::visit([&](const auto& values) { hasher.add(std::as_bytes(std::span(values))); }, array->values);
+  }
+  return hasher.digest();
+}
+
+Digest file_digest(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path))
+    throw InputError(
+        fmt::format("{}: cannot be read; check that it exists and its permissions", path.string()));
+  Hasher hasher;
+  std::vector<char> block(1U << 20U);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hasher.add(std::string_view(block.data(), static_cast<std::size_t>(file.gcount())));
+  }
+  if (file.bad()) throw InputError(fmt::format("{}: reading failed half-way", path.string()));
+  return hasher.digest();
+}
+
+std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+
+}  // namespace salbench

@@ -1,0 +1,57 @@
+// 128-bit content digests (XXH3): of files, of arrays, of keys.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "io/arrays.h"
+
+namespace salbench {
+
+struct Digest {
+  std::uint64_t high = 0;
+  std::uint64_t low = 0;
+
+  auto operator<=>(const Digest&) const = default;
+  std::string hex() const;  // 32 digits
+};
+
+std::optional<Digest> digest_from_hex(std::string_view hex);
+
+// Absorbs fields one after the other; every field carries its length, so that no two sequences of fields run
+// into each other.
+class Hasher {
+ public:
+  Hasher();
+  Hasher(const Hasher&) = delete;
+  Hasher& operator=(const Hasher&) = delete;
+  ~Hasher();
+
+  void add(std::string_view text);
+  void add(std::span<const std::byte> bytes);
+  void add(std::uint64_t number);
+  void add(const Digest& digest);
+  Digest digest() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+Digest content_digest(const Arrays& arrays);            // names, types, shapes and values; no units, no prose
+Digest file_digest(const std::filesystem::path& path);  // of the bytes; throws InputError if unreadable
+std::uint64_t checksum(std::span<const std::byte> bytes);  // 64 bits, of a whole file image
+
+}  // namespace salbench
+
+template <>
+struct std::hash<salbench::Digest> {
+  std::size_t operator()(const salbench::Digest& digest) const noexcept { return digest.low; }
+};

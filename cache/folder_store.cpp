@@ -1,0 +1,240 @@
+#include "cache/folder_store.h"
+
+#include <map>
+#include <mutex>
+#include <set>
+#include <shared_mutex>
+#include <unordered_map>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cache/artefact_name.h"
+#include "cache/files.h"
+#include "io/hdf5_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFormat = 1;  // raised when the layout of the folder or of its names changes
+constexpr std::string_view kTagName = "CACHEDIR.TAG";  // backup programs skip folders that hold it
+constexpr std::string_view kTagSignature = "Signature: 8a477f597d28d172789f06886806bc55";
+constexpr std::string_view kFormatLine = "# salbench cache, format ";
+constexpr std::string_view kScratch = "tmp";
+constexpr std::string_view kDamaged = "damaged";
+
+struct Entry {
+  std::string item;
+  Digest content;
+  std::uint64_t checksum;
+  std::uint64_t size;
+};
+
+struct StageEntries {
+  std::unordered_map<Digest, Entry> by_key;
+  std::set<std::string, std::less<>> items;
+};
+
+std::string as_text(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void check_format(const fs::path& folder) {
+  const auto tag = read_bytes(folder / kTagName);
+  if (!tag) return;
+  const std::string text = as_text(*tag);
+  const std::size_t line = text.find(kFormatLine);
+  const int format = line == std::string::npos ? 0 : std::atoi(text.c_str() + line + kFormatLine.size());
+  if (format > kFormat)
+    throw StorageError(
+        fmt::format("{}: written by a newer salbench (cache format {}, this one knows {}); "
+                    "use that version, or another folder with --cache",
+                    folder.string(), format, kFormat));
+}
+
+void prepare(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder / kScratch, error);
+  if (error)
+    throw StorageError(
+        fmt::format("{}: the cache folder cannot be created or written to: {}; choose another with --cache",
+                    folder.string(), error.message()));
+  remove_orphans(folder / kScratch);
+  // Writing the tag each time is the probe for a full or read-only folder, before any work is done.
+  const std::string tag = fmt::format("{}\n{}{}\n", kTagSignature, kFormatLine, kFormat);
+  write_bytes_atomically(folder / kScratch, folder / kTagName, std::as_bytes(std::span(tag)));
+}
+
+std::string attribute_inputs(const Recipe& recipe) {
+  std::string text;
+  for (const auto& [name, digest] : recipe.inputs) text += fmt::format("{}: {}\n", name, digest.hex());
+  return text;
+}
+
+Attributes describe(const Recipe& recipe, std::string_view kind, const Digest& key, const Digest& content,
+                    const ArtefactNote& note) {
+  Attributes attributes = {{"program", fmt::format("salbench {}", SALBENCH_VERSION)},
+                           {"item", note.item},
+                           {"kind", std::string(kind)},
+                           {"stage", recipe.stage},
+                           {"stage_version", std::int64_t{recipe.stage_version}},
+                           {"options", recipe.options},
+                           {"seed", recipe.seed},
+                           {"inputs", attribute_inputs(recipe)},
+                           {"key", key.hex()},
+                           {"content", content.hex()},
+                           {"seconds", note.seconds}};
+  attributes.insert(attributes.end(), note.attributes.begin(), note.attributes.end());
+  return attributes;
+}
+
+}  // namespace
+
+struct FolderStore::Impl {
+  fs::path folder;
+  mutable std::shared_mutex mutex;  // of stages
+  std::map<std::string, StageEntries, std::less<>> stages;
+
+  fs::path shard(std::string_view stage, const Digest& key) const {
+    return folder / stage / key.hex().substr(0, 2);
+  }
+  fs::path path(std::string_view stage, const Digest& key, const Entry& entry) const {
+    return shard(stage, key) /
+           ArtefactName{entry.item, key, entry.content, entry.checksum, entry.size}.text();
+  }
+
+  const Entry* entry(std::string_view stage, const Digest& key) const {
+    const auto entries = stages.find(stage);
+    if (entries == stages.end()) return nullptr;
+    const auto found = entries->second.by_key.find(key);
+    return found == entries->second.by_key.end() ? nullptr : &found->second;
+  }
+
+  // A file whose size is not the one in its name was cut short outside of our control: not listed, so a miss.
+  void list_shard(const std::string& stage, const fs::path& shard_folder) {
+    std::error_code error;
+    for (const auto& file : fs::directory_iterator(shard_folder, error)) {
+      const auto name = parse_artefact_name(file.path().filename().string());
+      if (!name) continue;
+      if (file.file_size(error) != name->size || error) {
+        spdlog::warn("{}: cut short; it will be computed again", file.path().string());
+        continue;
+      }
+      insert(stage, *name);
+    }
+  }
+
+  void insert(const std::string& stage, const ArtefactName& name) {
+    StageEntries& entries = stages[stage];
+    const auto [entry, fresh] =
+        entries.by_key.try_emplace(name.key, Entry{name.item, name.content, name.checksum, name.size});
+    // Two contents under one key: some stage is not deterministic. The smaller one counts, on every machine.
+    if (!fresh && name.content < entry->second.content)
+      entry->second = {name.item, name.content, name.checksum, name.size};
+    entries.items.insert(name.item);
+  }
+
+  void list_all() {
+    std::error_code error;
+    for (const auto& stage : fs::directory_iterator(folder, error)) {
+      const std::string name = stage.path().filename().string();
+      if (!stage.is_directory() || name == kScratch || name == kDamaged) continue;
+      for (const auto& shard_folder : fs::directory_iterator(stage.path(), error))
+        list_shard(name, shard_folder.path());
+    }
+    if (error && error != std::errc::no_such_file_or_directory)
+      throw StorageError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  }
+
+  void move_aside(std::string_view stage, const Digest& key, const fs::path& file, std::string_view why) {
+    std::error_code error;
+    fs::create_directories(folder / kDamaged, error);
+    fs::rename(file, folder / kDamaged / file.filename(), error);
+    spdlog::warn("{}: {}; moved to {}/ and computed again", file.string(), why, (folder / kDamaged).string());
+    const std::unique_lock lock(mutex);
+    stages.find(stage)->second.by_key.erase(key);
+  }
+};
+
+FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_unique<Impl>()) {
+  impl_->folder = std::move(folder);
+  std::error_code error;
+  if (fs::exists(impl_->folder, error) && !fs::is_directory(impl_->folder, error))
+    throw StorageError(
+        fmt::format("{}: is not a folder; choose another with --cache", impl_->folder.string()));
+  check_format(impl_->folder);
+  if (access == Access::read_write) prepare(impl_->folder);
+  impl_->list_all();
+}
+
+FolderStore::~FolderStore() = default;
+
+std::optional<Digest> FolderStore::find(std::string_view stage, const Digest& key) const {
+  const std::shared_lock lock(impl_->mutex);
+  const Entry* entry = impl_->entry(stage, key);
+  return entry == nullptr ? std::nullopt : std::optional(entry->content);
+}
+
+bool FolderStore::has_item(std::string_view stage, std::string_view item) const {
+  const std::shared_lock lock(impl_->mutex);
+  const auto entries = impl_->stages.find(stage);
+  return entries != impl_->stages.end() && entries->second.items.contains(item_label(item));
+}
+
+std::optional<Digest> FolderStore::find_now(std::string_view stage, const Digest& key) {
+  if (const auto content = find(stage, key)) return content;
+  const std::unique_lock lock(impl_->mutex);
+  impl_->list_shard(std::string(stage), impl_->shard(stage, key));
+  const Entry* entry = impl_->entry(stage, key);
+  return entry == nullptr ? std::nullopt : std::optional(entry->content);
+}
+
+std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& key) {
+  std::optional<Entry> entry;
+  {
+    const std::shared_lock lock(impl_->mutex);
+    if (const Entry* found = impl_->entry(stage, key)) entry = *found;
+  }
+  if (!entry) return {};
+  const fs::path path = impl_->path(stage, key, *entry);
+  const auto bytes = read_bytes(path);
+  if (!bytes || bytes->size() != entry->size || checksum(*bytes) != entry->checksum) {
+    impl_->move_aside(stage, key, path, bytes ? "its checksum does not fit" : "gone or unreadable");
+    return {};
+  }
+  return hdf5_content(*bytes, path.string()).arrays;
+}
+
+Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
+                         const ArtefactNote& note) {
+  const Digest key = key_of(recipe);
+  const Digest content = content_digest(arrays);
+  const Bytes image = hdf5_image({arrays, describe(recipe, kind, key, content, note)});
+  const ArtefactName name{item_label(note.item), key, content, checksum(image), image.size()};
+  const fs::path shard = impl_->shard(recipe.stage, key);
+  std::error_code error;
+  fs::create_directories(shard, error);
+  if (error) throw StorageError(fmt::format("{}: cannot be created: {}", shard.string(), error.message()));
+  write_bytes_atomically(impl_->folder / kScratch, shard / name.text(), image);
+  const std::unique_lock lock(impl_->mutex);
+  impl_->insert(recipe.stage, name);
+  return content;
+}
+
+std::vector<FolderStore::Usage> FolderStore::usage() const {
+  const std::shared_lock lock(impl_->mutex);
+  std::vector<Usage> result;
+  for (const auto& [stage, entries] : impl_->stages) {
+    Usage usage{stage, entries.by_key.size(), 0};
+    for (const auto& [key, entry] : entries.by_key) usage.bytes += entry.size;
+    result.push_back(usage);
+  }
+  return result;
+}
+
+}  // namespace salbench

@@ -1,0 +1,45 @@
+// The artefacts of a folder:
+//   <folder>/<stage>/<2 digits>/<item>.<key>.<content>.<checksum>.<size>.h5
+// The names carry everything that planning needs, so the index is one listing of the folder and there is no
+// data base to corrupt, to lock or to bring up to date: an artefact exists when its name does, by rename.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cache/store.h"
+
+namespace salbench {
+
+enum class Access { read_only, read_write };
+
+class FolderStore final : public Store {
+ public:
+  // Lists the folder. read_write creates it, probes that it can be written to and removes what killed
+  // processes left; read_only takes a missing folder as empty. Throws StorageError: not a folder, not
+  // writable, or written by a newer program.
+  FolderStore(std::filesystem::path folder, Access access);
+  ~FolderStore() override;
+
+  std::optional<Digest> find(std::string_view stage, const Digest& key) const override;
+  bool has_item(std::string_view stage, std::string_view item) const override;
+  std::optional<Digest> find_now(std::string_view stage, const Digest& key) override;
+  std::optional<Arrays> load(std::string_view stage, const Digest& key) override;
+  Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
+              const ArtefactNote& note) override;
+
+  struct Usage {
+    std::string stage;
+    std::size_t artefacts = 0;
+    std::uint64_t bytes = 0;
+  };
+  std::vector<Usage> usage() const;  // by stage name
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace salbench

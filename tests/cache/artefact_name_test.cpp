@@ -1,0 +1,32 @@
+#include "cache/artefact_name.h"
+
+#include <gtest/gtest.h>
+
+namespace salbench {
+namespace {
+
+TEST(ArtefactName, ReadsBack) {
+  const ArtefactName name{"52_3", {1, 2}, {3, 4}, 5, 0x1234};
+  const auto back = parse_artefact_name(name.text());
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->item, "52_3");
+  EXPECT_EQ(back->key, name.key);
+  EXPECT_EQ(back->content, name.content);
+  EXPECT_EQ(back->checksum, 5U);
+  EXPECT_EQ(back->size, 0x1234U);
+}
+
+TEST(ArtefactName, OtherFilesAreNoArtefacts) {
+  const std::string good = ArtefactName{"52", {1, 2}, {3, 4}, 5, 6}.text();
+  for (const std::string& bad : {std::string("README"), std::string(".h5"), good + ".part", good.substr(3),
+                                 good.substr(0, good.size() - 5) + "zz.h5", std::string("a.b.c.d.e.h5")})
+    EXPECT_FALSE(parse_artefact_name(bad)) << bad;
+}
+
+TEST(ArtefactName, LabelsHoldNothingThatAFileSystemMinds) {
+  EXPECT_EQ(item_label("my mesh/v1.2 ü"), "my_mesh_v1_2___");
+  EXPECT_EQ(item_label(std::string(200, 'x')).size(), 60U);
+}
+
+}  // namespace
+}  // namespace salbench

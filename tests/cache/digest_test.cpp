@@ -1,0 +1,56 @@
+#include "cache/digest.h"
+
+#include <gtest/gtest.h>
+
+#include "cache/key.h"
+
+namespace salbench {
+namespace {
+
+TEST(Digest, HexReadsBack) {
+  const Digest digest{0x0123456789abcdefULL, 42};
+  EXPECT_EQ(digest.hex(), "0123456789abcdef000000000000002a");
+  EXPECT_EQ(digest_from_hex(digest.hex()), digest);
+  EXPECT_FALSE(digest_from_hex("0123"));
+  EXPECT_FALSE(digest_from_hex("0123456789abcdef00000000000000zz"));
+}
+
+TEST(ContentDigest, SeesNamesShapesTypesAndValuesButNoProse) {
+  const Arrays base = {{"a", {2, 1}, std::vector<double>{1, 2}, "m", "text"}};
+  const Digest digest = content_digest(base);
+  auto changed = [&](auto change) {
+    Arrays copy = base;
+    change(copy[0]);
+    return content_digest(copy);
+  };
+  EXPECT_EQ(digest, changed([](Array& a) { a.description = "other"; }));
+  EXPECT_NE(digest, changed([](Array& a) { a.name = "b"; }));
+  EXPECT_NE(digest, changed([](Array& a) { a.shape = {1, 2}; }));
+  EXPECT_NE(digest, changed([](Array& a) { a.values = std::vector<double>{1, 3}; }));
+  EXPECT_NE(digest, changed([](Array& a) { a.values = std::vector<std::int64_t>{1, 2}; }));
+}
+
+TEST(ContentDigest, DoesNotDependOnTheOrderOfArrays) {
+  const Array a{"a", {1}, std::vector<double>{1}, "1", ""}, b{"b", {1}, std::vector<double>{2}, "1", ""};
+  EXPECT_EQ(content_digest({a, b}), content_digest({b, a}));
+}
+
+TEST(Key, EveryComponentCounts) {
+  const Recipe base{"fpfh", 1, "radius: 1\n", "7/52", {{"mesh", {1, 2}}}};
+  std::vector<Recipe> others(6, base);
+  others[0].stage = "map.PS";
+  others[1].stage_version = 2;
+  others[2].options = "radius: 2\n";
+  others[3].seed = "8/52";
+  others[4].inputs[0].first = "scan";
+  others[5].inputs[0].second = {1, 3};
+  for (const Recipe& other : others) EXPECT_NE(key_of(other), key_of(base));
+  EXPECT_EQ(key_of(Recipe(base)), key_of(base));
+}
+
+TEST(Key, FieldsDoNotRunIntoEachOther) {
+  EXPECT_NE(key_of({"ab", 1, "c", "", {}}), key_of({"a", 1, "bc", "", {}}));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,195 @@
+#include "cache/folder_store.h"
+
+#include <csignal>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "cache/files.h"
+#include "io/hdf5_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FolderStoreTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "salbench-store-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  FolderStore open() const { return {folder_, Access::read_write}; }
+
+  static Recipe recipe(const std::string& options = "k: 1\n") {
+    return {"fpfh", 1, options, "", {{"mesh", {1, 2}}}};
+  }
+  static Arrays arrays(double value = 1) {
+    return {{"saliency", {3}, std::vector<double>{value, 2, 3}, "1", "three values"}};
+  }
+  Digest save(FolderStore& store, const Recipe& what = recipe(), double value = 1) const {
+    return store.save(what, "field", arrays(value), {.item = "52", .seconds = 0.5, .attributes = {}});
+  }
+  fs::path only_artefact() const {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (entry.path().extension() == ".h5" && entry.path().string().find("damaged") == std::string::npos)
+        found.push_back(entry.path());
+    EXPECT_EQ(found.size(), 1U);
+    return found.front();
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(FolderStoreTest, FindsWhatItSavedAlsoWhenOpenedAgain) {
+  FolderStore store = open();
+  EXPECT_FALSE(store.find("fpfh", key_of(recipe())));
+  const Digest content = save(store);
+  EXPECT_EQ(store.find("fpfh", key_of(recipe())), content);
+  FolderStore again(folder_, Access::read_only);
+  EXPECT_EQ(again.find("fpfh", key_of(recipe())), content);
+  EXPECT_TRUE(again.has_item("fpfh", "52"));
+  EXPECT_FALSE(again.has_item("fpfh", "53"));
+  EXPECT_FALSE(again.find("map.PS", key_of(recipe())));
+  ASSERT_TRUE(again.load("fpfh", key_of(recipe())));
+  EXPECT_EQ(again.load("fpfh", key_of(recipe()))->at(0).values, arrays()[0].values);
+}
+
+TEST_F(FolderStoreTest, SeesWhatAnotherProcessStored) {
+  FolderStore mine = open(), theirs = open();
+  const Digest content = save(theirs);
+  EXPECT_FALSE(mine.find("fpfh", key_of(recipe())));
+  EXPECT_EQ(mine.find_now("fpfh", key_of(recipe())), content);
+}
+
+TEST_F(FolderStoreTest, ArtefactsExplainThemselves) {
+  FolderStore store = open();
+  save(store);
+  const auto bytes = read_bytes(only_artefact());
+  const Attributes attributes = hdf5_content(*bytes, "artefact").attributes;
+  EXPECT_EQ(std::get<std::string>(*find_attribute(attributes, "stage")), "fpfh");
+  EXPECT_EQ(std::get<std::string>(*find_attribute(attributes, "options")), "k: 1\n");
+  EXPECT_EQ(std::get<std::string>(*find_attribute(attributes, "inputs")),
+            ("mesh: " + Digest{1, 2}.hex() + "\n"));
+  EXPECT_EQ(std::get<std::int64_t>(*find_attribute(attributes, "stage_version")), 1);
+  EXPECT_EQ(std::get<double>(*find_attribute(attributes, "seconds")), 0.5);
+}
+
+TEST_F(FolderStoreTest, TruncationAtEveryLengthIsAMiss) {
+  {
+    FolderStore store = open();
+    save(store);
+  }
+  const fs::path path = only_artefact();
+  const auto bytes = *read_bytes(path);
+  for (std::size_t length = 0; length < bytes.size(); length += 7) {
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(length));
+    EXPECT_FALSE(FolderStore(folder_, Access::read_only).find("fpfh", key_of(recipe()))) << length;
+  }
+}
+
+TEST_F(FolderStoreTest, AFlippedByteAnywhereIsAMissAndTheFileIsMovedAside) {
+  FolderStore first = open();
+  save(first);
+  const fs::path path = only_artefact();
+  const auto bytes = *read_bytes(path);
+  for (std::size_t i = 0; i < bytes.size(); i += 11) {
+    Bytes flipped = bytes;
+    flipped[i] ^= std::byte{0x10};
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(flipped.data()), static_cast<std::streamsize>(flipped.size()));
+    FolderStore store = open();
+    EXPECT_TRUE(store.find("fpfh", key_of(recipe())));
+    testing::internal::CaptureStdout();
+    EXPECT_FALSE(store.load("fpfh", key_of(recipe()))) << i;
+    EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr(path.filename().string()));
+    EXPECT_FALSE(store.find("fpfh", key_of(recipe())));
+    EXPECT_FALSE(fs::exists(path));
+    EXPECT_TRUE(fs::exists(folder_ / "damaged" / path.filename()));
+  }
+}
+
+TEST_F(FolderStoreTest, SavingAgainAfterDamageWorks) {
+  FolderStore store = open();
+  const Digest content = save(store);
+  fs::resize_file(only_artefact(), 10);
+  EXPECT_FALSE(store.load("fpfh", key_of(recipe())));
+  EXPECT_EQ(save(store), content);
+  EXPECT_TRUE(store.load("fpfh", key_of(recipe())));
+}
+
+TEST_F(FolderStoreTest, ReadOnlyAccessChangesNothing) {
+  const fs::path missing = folder_ / "not-there";
+  EXPECT_FALSE(FolderStore(missing, Access::read_only).find("fpfh", {}));
+  EXPECT_FALSE(fs::exists(missing));
+}
+
+TEST_F(FolderStoreTest, OrphansOfDeadProcessesAreRemovedAndOfLiveOnesKept) {
+  { FolderStore store = open(); }
+  char host[256] = {};
+  ::gethostname(host, sizeof host - 1);
+  const fs::path dead = folder_ / "tmp" / (std::string(host) + ".4194304.0.part");  // above any pid
+  const fs::path alive =
+      folder_ / "tmp" / (std::string(host) + "." + std::to_string(::getpid()) + ".99.part");
+  const fs::path elsewhere = folder_ / "tmp" / "another-host.1.0.part";
+  for (const fs::path& path : {dead, alive, elsewhere}) std::ofstream(path) << "x";
+  { FolderStore store = open(); }
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(alive));
+  EXPECT_TRUE(fs::exists(elsewhere));
+}
+
+TEST_F(FolderStoreTest, UnusableFoldersAreToldApart) {
+  const fs::path file = folder_ / "file";
+  std::ofstream(file) << "x";
+  EXPECT_THROW(FolderStore(file, Access::read_write), StorageError);
+  EXPECT_THROW(FolderStore(file / "below", Access::read_write), StorageError);
+  EXPECT_THROW(FolderStore("/proc/salbench", Access::read_write), StorageError);  // read-only, also for root
+}
+
+TEST_F(FolderStoreTest, ANewerCacheFormatIsRefused) {
+  { FolderStore store = open(); }
+  std::ofstream(folder_ / "CACHEDIR.TAG") << "# salbench cache, format 999\n";
+  try {
+    open();
+    FAIL() << "a newer format was accepted";
+  } catch (const StorageError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("newer"));
+  }
+}
+
+// A limit on the size of files stands in for a full disk: write() fails in the same place.
+TEST_F(FolderStoreTest, AFullDiskIsAnErrorAndLeavesNoArtefact) {
+  FolderStore store = open();
+  rlimit unlimited{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  const rlimit tiny{100, unlimited.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tiny), 0);
+  EXPECT_THROW(save(store), StorageError);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  EXPECT_FALSE(store.find("fpfh", key_of(recipe())));
+  EXPECT_TRUE(fs::is_empty(folder_ / "tmp"));
+  save(store);
+  EXPECT_TRUE(store.load("fpfh", key_of(recipe())));
+}
+
+TEST_F(FolderStoreTest, TwoContentsUnderOneKeyAreSettledTheSameWayEverywhere) {
+  FolderStore store = open();
+  const Digest a = save(store, recipe(), 1), b = save(store, recipe(), 2);
+  ASSERT_NE(a, b);
+  EXPECT_EQ(store.find("fpfh", key_of(recipe())), std::min(a, b));
+  EXPECT_EQ(open().find("fpfh", key_of(recipe())), std::min(a, b));
+}
+
+}  // namespace
+}  // namespace salbench

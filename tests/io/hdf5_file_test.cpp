@@ -1,0 +1,81 @@
+#include "io/hdf5_file.h"
+
+#include <limits>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/rng.h"
+
+namespace salbench {
+namespace {
+
+Hdf5Content sample() {
+  std::vector<float> descriptors(5000 * 33, 0.0F);
+  Rng rng(1, "hdf5", "");
+  for (std::size_t i = 0; i < descriptors.size(); i += 3) descriptors[i] = static_cast<float>(rng.uniform());
+  return {
+      {{"a", {2, 3}, std::vector<double>{1, 2, 3, 4, 5, std::numeric_limits<double>::infinity()}, "m", "six"},
+       {"deep/er", {2}, std::vector<std::int32_t>{-1, 7}, "1", ""},
+       {"empty", {0, 3}, std::vector<double>{}, "m", "no rows"},
+       {"fpfh", {5000, 33}, descriptors, "1", "compressed"},
+       {"one", {}, std::vector<std::int64_t>{1LL << 40}, "1", "a scalar"}},
+      {{"empty", std::string()}, {"item", std::string("ü 52")}, {"n", std::int64_t{-3}}, {"seconds", 0.25}}};
+}
+
+void expect_equal(const Hdf5Content& a, const Hdf5Content& b) {
+  ASSERT_EQ(a.arrays.size(), b.arrays.size());
+  for (std::size_t i = 0; i < a.arrays.size(); ++i) {
+    EXPECT_EQ(a.arrays[i].name, b.arrays[i].name);
+    EXPECT_EQ(a.arrays[i].shape, b.arrays[i].shape);
+    EXPECT_EQ(a.arrays[i].values, b.arrays[i].values);
+    EXPECT_EQ(a.arrays[i].unit, b.arrays[i].unit);
+    EXPECT_EQ(a.arrays[i].description, b.arrays[i].description);
+  }
+  EXPECT_EQ(a.attributes, b.attributes);
+}
+
+TEST(Hdf5File, ReadsBackWhatWasWritten) {
+  const Hdf5Content content = sample();
+  expect_equal(hdf5_content(hdf5_image(content), "image"), content);
+}
+
+TEST(Hdf5File, EqualContentGivesEqualBytes) { EXPECT_EQ(hdf5_image(sample()), hdf5_image(sample())); }
+
+TEST(Hdf5File, CompressesDescriptors) { EXPECT_LT(hdf5_image(sample()).size(), 5000U * 33 * 4 * 6 / 10); }
+
+TEST(Hdf5File, TruncatedImagesAreErrorsNamingTheFile) {
+  Bytes image = hdf5_image({{{"a", {4}, std::vector<double>{1, 2, 3, 4}, "1", ""}}, {}});
+  image.resize(image.size() / 2);
+  try {
+    hdf5_content(image, "cache/fpfh/x.h5");
+    FAIL() << "half a file was read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("cache/fpfh/x.h5"));
+  }
+  EXPECT_THROW(hdf5_content({}, "empty"), InputError);
+}
+
+TEST(Hdf5File, ShapeAndValuesMustFit) {
+  EXPECT_THROW(hdf5_image({{{"a", {3}, std::vector<double>{1}, "1", ""}}, {}}), std::logic_error);
+}
+
+TEST(Hdf5File, SeveralThreadsAtOnce) {
+  const Bytes expected = hdf5_image(sample());
+  std::vector<std::thread> threads;
+  std::atomic<int> equal = 0;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 5; ++i) {
+        const Bytes image = hdf5_image(sample());
+        equal += image == expected && hdf5_content(image, "x").arrays.size() == 5 ? 1 : 0;
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(equal, 20);
+}
+
+}  // namespace
+}  // namespace salbench

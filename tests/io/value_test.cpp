@@ -1,0 +1,81 @@
+#include "io/value.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/hdf5_file.h"
+#include "stages/core/errors.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+// Through arrays and through a file image: the value must come back to the bit.
+template <class T>
+T round_trip(const T& value) {
+  const Arrays arrays = hdf5_content(hdf5_image({arrays_from(value), {}}), "image").arrays;
+  return std::get<T>(value_from(kind_of(value), arrays));
+}
+
+TEST(Value, MeshComesBackToTheBit) {
+  const Mesh mesh = shapes::bumpy_sphere(2);
+  const Mesh back = round_trip(mesh);
+  EXPECT_EQ(back.vertices, mesh.vertices);
+  EXPECT_EQ(back.faces, mesh.faces);
+}
+
+TEST(Value, ScanKeepsItsCamera) {
+  const Scan back = round_trip(Scan{shapes::random_cloud(10, 1), {1, 2, 3}});
+  EXPECT_EQ(back.points, shapes::random_cloud(10, 1));
+  EXPECT_EQ(back.camera, Vec3(1, 2, 3));
+}
+
+TEST(Value, DescriptorsKeepTheirSupport) {
+  const Descriptors back = round_trip(Descriptors{std::vector<float>(66, 0.5F), 0.25, 9});
+  EXPECT_EQ(back.size(), 2U);
+  EXPECT_EQ(back.radius, 0.25);
+  EXPECT_EQ(back.neighbours, 9);
+}
+
+TEST(Value, GroundTruthKeepsParticipantsWithoutPicks) {
+  const GroundTruth truth{{0.5, 1.0}, {{1, 0}, {}, {1}}, true};
+  const GroundTruth back = round_trip(truth);
+  EXPECT_EQ(back.saliency, truth.saliency);
+  EXPECT_EQ(back.picks, truth.picks);
+  EXPECT_TRUE(back.simulated);
+  EXPECT_TRUE(round_trip(GroundTruth{}).picks.empty());
+}
+
+TEST(Value, ScoresKeepUndefinedMetrics) {
+  const Scores back = round_trip(Scores{std::nan(""), 0.5, -1, 0.25, 0.25, 100, 0});
+  EXPECT_TRUE(std::isnan(back.auc));
+  EXPECT_EQ(back.nss, -1);
+  EXPECT_EQ(back.n_points, 100);
+}
+
+TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
+  EXPECT_EQ(round_trip(ScalarField{1, 2, 3}), (ScalarField{1, 2, 3}));
+  EXPECT_EQ(round_trip(Normals{{0, 0, 1}}), (Normals{{0, 0, 1}}));
+  EXPECT_EQ(round_trip(Faces{{0, 1, 2}}), (Faces{{0, 1, 2}}));
+  EXPECT_EQ(round_trip(Faces{}), Faces{});
+  Histogram histogram{};
+  histogram[99] = 3;
+  EXPECT_EQ(round_trip(histogram), histogram);
+}
+
+TEST(Value, MissingOrStrangeArraysAreNamed) {
+  Arrays arrays = arrays_from(Value(shapes::tetrahedron()));
+  EXPECT_THROW(value_from("no such kind", arrays), InputError);
+  arrays.pop_back();
+  try {
+    value_from("mesh", arrays);
+    FAIL() << "a mesh without faces was read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("faces"));
+  }
+}
+
+}  // namespace
+}  // namespace salbench
