@@ -1,7 +1,6 @@
 #include "stages/core/support.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "stages/core/check.h"
@@ -26,8 +25,9 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw InputError("the shape has no points");
   SupportRadius support{factor * bounding_radius(points), 0};
-  if (!std::isfinite(support.radius)) throw InputError("the shape has a coordinate that is not finite");
-  // Terminates: at 2 R every point is within reach of every other.
+  // Ends for finite coordinates alone: at 2 R every point is within reach of every other.
+  if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
+    throw InputError("the shape has a coordinate that is not finite");
   const auto enough = static_cast<std::int32_t>(std::min<std::size_t>(kFewestNeighbors, points.size() - 1));
   while (true) {
     support.neighbours = static_cast<std::int32_t>(mean_neighbor_count(points, tree, support.radius));

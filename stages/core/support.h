@@ -21,7 +21,7 @@ struct SupportRadius {
 
 // factor * R, times 1.1 until the truncated mean number of neighbours is at least 6. A shape of fewer than
 // seven points can have no more than n - 1: the radius then grows until it holds them all. Of coincident
-// points it is 0. Throws InputError where there is no point or R is not finite; factor > 0. [tasse2016]
+// points it is 0. Throws InputError where there is no point or one is not finite; factor > 0. [tasse2016]
 SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor);
 SupportRadius grown_support_radius(std::span<const Vec3> points, double factor);  // builds the tree
 

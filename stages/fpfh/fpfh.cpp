@@ -1,0 +1,38 @@
+#include "stages/fpfh/fpfh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/support.h"
+
+namespace salbench {
+namespace {
+
+Support support_of(std::span<const Vec3> points, const KdTree& tree, const FpfhOptions& options) {
+  if (options.neighbourhood == FpfhNeighborhood::nearest) return {options.neighbours, 0};
+  if (options.grow) return {0, grown_support_radius(points, tree, options.radius).radius};
+  return {0, options.radius * bounding_radius(points)};
+}
+
+}  // namespace
+
+void check(const FpfhOptions& options) {
+  if (options.neighbours < 2)
+    throw OptionError("neighbours", "must be at least 2, not " + std::to_string(options.neighbours));
+  if (!(options.radius > 0) || !std::isfinite(options.radius))
+    throw OptionError("radius", "must be a number above 0, not " + std::to_string(options.radius));
+}
+
+Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const FpfhOptions& options) {
+  check(options);
+  if (points.empty()) throw InputError("the shape has no points");
+  if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
+    throw InputError("the shape has a coordinate that is not finite");
+  const KdTree tree(points);
+  return fpfh(points, normals, tree, support_of(points, tree, options), options.weighting);
+}
+
+}  // namespace salbench

@@ -1,0 +1,44 @@
+// The descriptors of a shape that several models share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "stages/core/fpfh.h"
+#include "stages/core/options.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+enum class FpfhNeighborhood { nearest, radius };
+template <>
+struct EnumNames<FpfhNeighborhood> {
+  static constexpr std::array<std::string_view, 2> names{"nearest", "radius"};
+};
+
+struct FpfhOptions {
+  FpfhNeighborhood neighbourhood = FpfhNeighborhood::nearest;
+  std::int32_t neighbours = 9;
+  double radius = 0.01;
+  bool grow = true;
+  FpfhWeighting weighting = FpfhWeighting::published;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("neighbourhood", self.neighbourhood, "take so many nearest points, or all within a radius");
+    visit("neighbours", self.neighbours, "nearest points, the point itself included");
+    visit("radius", self.radius, "support radius in units of R, the largest distance to the centroid");
+    visit("grow", self.grow, "enlarge the radius until it holds 6 other points on average");
+    visit("weighting", self.weighting, "how the neighbours' histograms are combined");
+  }
+};
+void check(const FpfhOptions& options);  // throws OptionError
+
+// n x 33; points and normals n x 3, normals of unit length. The support that was used is stored with the
+// histograms. Throws InputError for a shape without points or with a coordinate that is not finite.
+// [rusu2009] [tasse2016]
+Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const FpfhOptions& options);
+
+}  // namespace salbench

@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/fpfh.h"
+#include "stages/core/mesh_ops.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using Row = std::array<double, kFpfhBins>;
+
+constexpr Support kNine{9, 0};
+
+// The twin, written from the formula: every distance, every pair again, one bin at a time.
+struct Twin {
+  const std::vector<Vec3>& points;
+  const std::vector<Vec3>& normals;
+  Support support;
+  FpfhWeighting weighting;
+
+  std::vector<std::pair<double, std::size_t>> neighbors_of(std::size_t i) const {
+    std::vector<std::pair<double, std::size_t>> all;
+    for (std::size_t j = 0; j < points.size(); ++j) all.emplace_back((points[j] - points[i]).norm(), j);
+    std::sort(all.begin(), all.end());
+    if (support.neighbours > 0)
+      all.resize(std::min(all.size(), static_cast<std::size_t>(support.neighbours)));
+    else
+      std::erase_if(all, [&](const auto& entry) { return entry.first > support.radius; });
+    return all;
+  }
+
+  Row spfh(std::size_t i) const {
+    Row row{};
+    const auto neighbors = neighbors_of(i);
+    for (const auto& [distance, j] : neighbors) {
+      if (distance == 0) continue;
+      Vec3 line = (points[j] - points[i]) / distance, u = normals[i], n = normals[j];
+      if (weighting == FpfhWeighting::published &&
+          std::acos(std::abs(u.dot(line))) > std::acos(std::abs(n.dot(line)))) {
+        std::swap(u, n);
+        line *= -1;
+      }
+      const Vec3 v = u.cross(line).normalized(), w = u.cross(v);
+      const double features[] = {std::abs(std::atan2(w.dot(n), u.dot(n))) / std::numbers::pi,
+                                 std::abs(v.dot(n)), std::abs(u.dot(line))};
+      for (std::size_t f = 0; f < 3; ++f)
+        row[11 * f + static_cast<std::size_t>(std::min(std::floor(11 * (features[f] + 1) / 2), 10.0))] +=
+            1 / (static_cast<double>(neighbors.size()) - 1);
+    }
+    return row;
+  }
+
+  Row fpfh(std::size_t i) const {
+    const bool text = weighting == FpfhWeighting::text;
+    const double radius = bounding_radius(points);
+    const auto neighbors = neighbors_of(i);
+    Row sum = text ? spfh(i) : Row{};
+    for (const auto& [distance, j] : neighbors) {
+      if (distance == 0) continue;
+      const Row row = spfh(j);
+      const double weight =
+          text ? radius / distance / (static_cast<double>(neighbors.size()) - 1) : 1 / (distance * distance);
+      for (std::size_t b = 0; b < row.size(); ++b) sum[b] += weight * row[b];
+    }
+    if (text) return sum;
+    for (std::size_t block = 0; block < 33; block += 11) {
+      const double total = std::accumulate(&sum[block], &sum[block] + 11, 0.0);
+      for (std::size_t b = block; b < block + 11 && total > 0; ++b) sum[b] *= 100 / total;
+    }
+    return sum;
+  }
+};
+
+void expect_near(const Descriptors& actual, const Descriptors& expected, double tolerance) {
+  ASSERT_EQ(actual.values.size(), expected.values.size());
+  for (std::size_t i = 0; i < actual.values.size(); ++i)
+    ASSERT_NEAR(actual.values[i], expected.values[i], tolerance) << "point " << i / 33 << ", bin " << i % 33;
+}
+
+TEST(FpfhHistogram, EqualsTheFormula) {
+  const auto points = shapes::random_cloud(120, 21);
+  const auto normals = shapes::random_normals(120, 22);
+  for (const Support& support : {kNine, Support{30, 0}, Support{0, 0.3}}) {
+    for (const auto weighting : {FpfhWeighting::published, FpfhWeighting::text}) {
+      const Descriptors fast = fpfh(points, normals, KdTree(points), support, weighting);
+      const Twin twin{points, normals, support, weighting};
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Row expected = twin.fpfh(i);
+        for (std::size_t b = 0; b < expected.size(); ++b)
+          ASSERT_NEAR(fast.row(i)[b], expected[b], 1e-5 * std::max(1.0, expected[b]))
+              << name_of(weighting) << ", point " << i << ", bin " << b;
+      }
+    }
+  }
+}
+
+TEST(FpfhHistogram, OfASubsetAreTheRowsOfTheWhole) {
+  const auto points = shapes::random_cloud(500, 23);
+  const auto normals = shapes::random_normals(500, 24);
+  const KdTree tree(points);
+  const std::vector<std::int32_t> subset = {499, 0, 17, 250};
+  for (const Support& support : {kNine, Support{0, 0.15}}) {
+    for (const auto weighting : {FpfhWeighting::published, FpfhWeighting::text}) {
+      const Descriptors whole = fpfh(points, normals, tree, support, weighting);
+      const Descriptors part = fpfh(points, normals, tree, support, weighting, subset);
+      ASSERT_EQ(part.size(), subset.size());
+      for (std::size_t i = 0; i < subset.size(); ++i)
+        EXPECT_TRUE(std::ranges::equal(part.row(i), whole.row(static_cast<std::size_t>(subset[i]))));
+    }
+  }
+}
+
+TEST(FpfhHistogram, FlatPatchFallsInOneBinOfEachBlock) {
+  const Mesh flat = shapes::grid(6);
+  const Normals up(flat.vertices.size(), Vec3::UnitZ());
+  const Descriptors d = fpfh(flat.vertices, up, KdTree(flat.vertices), kNine, FpfhWeighting::published);
+  for (std::size_t i = 0; i < d.size(); ++i)
+    for (std::size_t b = 0; b < kFpfhBins; ++b)
+      EXPECT_FLOAT_EQ(d.row(i)[b], b == 5 || b == 16 || b == 27 ? 100.0F : 0.0F) << "bin " << b;
+}
+
+TEST(FpfhHistogram, DoesNotDependOnPoseSizeOrTheSideOfTheNormals) {
+  const auto points = shapes::random_cloud(300, 25);
+  const auto normals = shapes::random_normals(300, 26);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+  std::vector<Vec3> moved, turned, flipped;
+  for (const Vec3& p : points) moved.emplace_back(7.5 * (turn * p) + Vec3(3, -40, 11));
+  for (const Vec3& n : normals) turned.emplace_back(turn * n);
+  for (const Vec3& n : normals) flipped.emplace_back(-n);
+  for (const auto weighting : {FpfhWeighting::published, FpfhWeighting::text}) {
+    const Descriptors still = fpfh(points, normals, KdTree(points), kNine, weighting);
+    expect_near(fpfh(moved, turned, KdTree(moved), kNine, weighting), still, 1e-4);
+    expect_near(fpfh(points, flipped, KdTree(points), kNine, weighting), still, 1e-4);
+  }
+}
+
+TEST(FpfhHistogram, PublishedBlocksSumToAHundredAndOnlyUpperBinsFill) {
+  const auto points = shapes::random_cloud(200, 27);
+  const Descriptors d =
+      fpfh(points, shapes::random_normals(200, 28), KdTree(points), {0, 0.4}, FpfhWeighting::published);
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    for (std::size_t block = 0; block < 33; block += 11) {
+      const auto bins = d.row(i).subspan(block, 11);
+      EXPECT_EQ(std::accumulate(bins.begin(), bins.begin() + 5, 0.0F), 0);
+      EXPECT_NEAR(std::accumulate(bins.begin() + 5, bins.end(), 0.0F), 100, 1e-4);
+    }
+  }
+}
+
+TEST(FpfhHistogram, CoincidentPointsDoNotVote) {
+  // The doubles take places among the 9 nearest, but no pair of them has features or a weight.
+  auto points = shapes::random_cloud(60, 29);
+  auto normals = shapes::random_normals(60, 30);
+  for (std::size_t i = 0; i < 60; i += 3) {
+    points.push_back(points[i]);
+    normals.push_back(normals[i]);
+  }
+  for (const auto weighting : {FpfhWeighting::published, FpfhWeighting::text}) {
+    const Descriptors d = fpfh(points, normals, KdTree(points), kNine, weighting);
+    const Twin twin{points, normals, kNine, weighting};
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{60}}) {
+      const Row expected = twin.fpfh(i);
+      for (std::size_t b = 0; b < kFpfhBins; ++b) EXPECT_NEAR(d.row(i)[b], expected[b], 1e-4);
+    }
+  }
+}
+
+TEST(FpfhHistogram, DegenerateShapesGiveNumbers) {
+  const double tiny = 1e-160;  // its square is below the normal numbers
+  const std::vector<std::vector<Vec3>> shapes_without_area = {
+      {{0, 0, 0}},
+      {{0, 0, 0}, {1, 0, 0}},
+      std::vector<Vec3>(20, Vec3(1, 2, 3)),
+      {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {0, 0, 3}},  // along the normals: the frame is undefined
+      {{0, 0, 0}, {tiny, 0, 0}, {0, 2 * tiny, 0}, {1, 1, 1}}};
+  for (const auto& points : shapes_without_area) {
+    for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 0, 0)}) {
+      for (const auto weighting : {FpfhWeighting::published, FpfhWeighting::text}) {
+        for (const Support& support : {kNine, Support{0, 0.0}, Support{0, 10.0}}) {
+          const Normals normals(points.size(), normal);
+          const Descriptors d = fpfh(points, normals, KdTree(points), support, weighting);
+          EXPECT_TRUE(std::ranges::all_of(d.values, [](float v) { return std::isfinite(v) && v >= 0; }));
+        }
+      }
+    }
+  }
+}
+
+TEST(FpfhHistogram, RefusesNormalsThatAreNotFinite) {
+  const auto points = shapes::random_cloud(20, 31);
+  auto normals = shapes::random_normals(20, 32);
+  normals[7].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(fpfh(points, normals, KdTree(points), kNine, FpfhWeighting::published), InputError);
+}
+
+TEST(PairFeatures, OfARightAngleAreKnown) {
+  const DarbouxTriple edge = pair_features({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}, false);
+  EXPECT_NEAR(edge.phi, 0, 1e-15);
+  EXPECT_NEAR(edge.alpha, 0, 1e-15);
+  EXPECT_NEAR(std::abs(edge.theta), std::numbers::pi / 2, 1e-15);
+  // The other end's normal lies along the line, so with the swap the frame has no v.
+  const DarbouxTriple swapped = pair_features({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}, true);
+  EXPECT_EQ(swapped.alpha, 0);
+  EXPECT_EQ(swapped.phi, 0);
+  EXPECT_EQ(swapped.theta, 0);
+}
+
+TEST(PairFeatures, WithTheSwapAreSymmetric) {
+  const auto points = shapes::random_cloud(200, 33);
+  const auto normals = shapes::random_normals(200, 34);
+  for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+    const DarbouxTriple a = pair_features(points[i], normals[i], points[i + 1], normals[i + 1], true);
+    const DarbouxTriple b = pair_features(points[i + 1], normals[i + 1], points[i], normals[i], true);
+    EXPECT_DOUBLE_EQ(a.alpha, b.alpha);
+    EXPECT_DOUBLE_EQ(a.phi, b.phi);
+    EXPECT_DOUBLE_EQ(a.theta, b.theta);
+  }
+}
+
+TEST(Neighborhoods, AreTheSearchesOfTheTree) {
+  const auto points = shapes::random_cloud(100, 35);
+  const KdTree tree(points);
+  std::vector<Neighbor> found;
+  for (const Support& support : {kNine, Support{0, 0.25}}) {
+    const Neighborhoods all = neighborhoods(tree, points, support);
+    ASSERT_EQ(all.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (support.neighbours > 0)
+        tree.nearest(points[i], 9, found);
+      else
+        tree.within(points[i], support.radius, found);
+      ASSERT_EQ(all.of(i).size(), found.size());
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        EXPECT_EQ(all.of(i)[k], found[k].index);
+        EXPECT_EQ(all.distances_squared_of(i)[k], found[k].distance_squared);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,69 @@
+#include "stages/core/support.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+double brute_force_mean(const std::vector<Vec3>& points, double radius) {
+  double pairs = 0;
+  for (const Vec3& p : points)
+    for (const Vec3& q : points) pairs += (p - q).squaredNorm() <= radius * radius ? 1 : 0;
+  return pairs / static_cast<double>(points.size()) - 1;
+}
+
+TEST(MeanNeighborCount, EqualsBruteForce) {
+  const auto cloud = shapes::random_cloud(300, 11);
+  for (const double radius : {0.0, 0.05, 0.2, 2.0})
+    EXPECT_DOUBLE_EQ(mean_neighbor_count(cloud, KdTree(cloud), radius), brute_force_mean(cloud, radius));
+}
+
+TEST(GrownSupportRadius, IsTheFirstPowerThatHoldsSix) {
+  for (const auto& points : {shapes::random_cloud(400, 5), shapes::bumpy_sphere(3).vertices}) {
+    const SupportRadius support = grown_support_radius(points, 0.01);
+    const double steps = std::log(support.radius / (0.01 * bounding_radius(points))) / std::log(1.1);
+    EXPECT_NEAR(steps, std::round(steps), 1e-9);
+    EXPECT_GT(steps, 0.5);
+    EXPECT_EQ(support.neighbours, static_cast<int>(brute_force_mean(points, support.radius)));
+    EXPECT_GE(support.neighbours, 6);
+    EXPECT_LT(brute_force_mean(points, support.radius / 1.1), 6);
+  }
+}
+
+TEST(GrownSupportRadius, StaysWhereItHoldsEnough) {
+  const auto cloud = shapes::random_cloud(400, 6);
+  const SupportRadius support = grown_support_radius(cloud, 0.5);
+  EXPECT_DOUBLE_EQ(support.radius, 0.5 * bounding_radius(cloud));
+  EXPECT_GT(support.neighbours, 6);
+}
+
+TEST(GrownSupportRadius, FewerThanSevenPointsGrowUntilItHoldsThemAll) {
+  for (std::size_t n = 1; n <= 6; ++n) {
+    const auto few = shapes::random_cloud(n, 7);
+    EXPECT_EQ(grown_support_radius(few, 0.01).neighbours, static_cast<int>(n) - 1) << n << " points";
+  }
+}
+
+TEST(GrownSupportRadius, OfCoincidentPointsIsZero) {
+  const std::vector<Vec3> same(20, Vec3(1, 2, 3));
+  const SupportRadius support = grown_support_radius(same, 0.01);
+  EXPECT_EQ(support.radius, 0);
+  EXPECT_EQ(support.neighbours, 19);
+}
+
+TEST(GrownSupportRadius, RefusesNoPointsAndNumbersThatAreNone) {
+  EXPECT_THROW(grown_support_radius(std::vector<Vec3>{}, 0.01), InputError);
+  auto cloud = shapes::random_cloud(20, 8);
+  cloud[3].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(grown_support_radius(cloud, 0.01), InputError);
+}
+
+}  // namespace
+}  // namespace salbench
