@@ -1,0 +1,45 @@
+#include "io/mesh_file.h"
+
+#include <array>
+#include <cctype>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "io/text_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+struct Format {
+  std::string_view extension;
+  Mesh (*parse)(std::string_view, std::string_view);
+};
+
+constexpr std::array kFormats = {Format{".off", parse_off}, Format{".obj", parse_obj},
+                                 Format{".ply", parse_ply}};
+
+const Format* format_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const Format& format : kFormats)
+    if (format.extension == extension) return &format;
+  return nullptr;
+}
+
+}  // namespace
+
+bool has_mesh_extension(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+
+Mesh read_mesh(const std::filesystem::path& path) {
+  const Format* format = format_of(path);
+  if (format == nullptr)
+    throw InputError(
+        fmt::format("{}: is not named as a mesh: convert it to .off, .obj or .ply", path.string()));
+  const std::string bytes = read_file(path);
+  if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty, copy it again", path.string()));
+  return format->parse(bytes, path.string());
+}
+
+}  // namespace salbench

@@ -1,0 +1,28 @@
+// Triangle meshes from files as they are found in the wild.
+//
+// Polygons become fans of triangles in the order of their vertices; vertices keep the file's numbering,
+// whether a face uses them or not; colours, normals and texture coordinates are passed over. A mesh may come
+// out without faces: stages/core/mesh_check.h says what can be used.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// By extension, in upper or lower case. Throws InputError, one line "PATH:LINE: what is wrong", for what is
+// unreadable, cut short, or no mesh: every count, index and coordinate is checked. Binary formats name the
+// element and the byte instead of the line.
+Mesh read_mesh(const std::filesystem::path& path);
+
+bool has_mesh_extension(const std::filesystem::path& path);  // .off .obj .ply
+
+// The same from memory; `name` stands in the messages for the path.
+Mesh parse_off(std::string_view text,
+               std::string_view name);  // [C][N][ST]OFF text, with or without header word
+Mesh parse_obj(std::string_view text, std::string_view name);   // v and f records; all others are passed over
+Mesh parse_ply(std::string_view bytes, std::string_view name);  // ascii, binary little and big endian
+
+}  // namespace salbench

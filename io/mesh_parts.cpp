@@ -1,0 +1,34 @@
+#include "io/mesh_parts.h"
+
+#include <fmt/format.h>
+
+namespace salbench {
+
+Vec3 read_point(TextScanner& in) {
+  Vec3 point;
+  for (int axis = 0; axis < 3; ++axis) point[axis] = in.number();
+  return point;
+}
+
+void append_fan(std::vector<Triangle>& faces, std::span<const std::int32_t> polygon) {
+  for (std::size_t i = 2; i < polygon.size(); ++i) faces.push_back({polygon[0], polygon[i - 1], polygon[i]});
+}
+
+std::string wrong_with_count(std::int64_t count, std::string_view plural) {
+  if (count < 0) return fmt::format("{} {}: a count cannot be negative", count, plural);
+  if (count > kMostVertices)
+    return fmt::format("{} {}: at most {} can be read", count, plural, kMostVertices);
+  return {};
+}
+
+std::string wrong_with_polygon(std::int64_t n_vertices) {
+  if (n_vertices >= 3) return {};
+  return fmt::format("a face with {} vertices: it needs at least 3", n_vertices);
+}
+
+std::string index_out_of_range(std::int64_t index, std::int64_t first, std::int64_t n_vertices) {
+  return fmt::format("vertex index {} is out of range: there are {} vertices, numbered from {}", index,
+                     n_vertices, first);
+}
+
+}  // namespace salbench

@@ -1,0 +1,282 @@
+// Polygon files: the header says what the body consists of, so one walk over the elements serves every
+// encoding, and a body class turns it into text or bytes. The walk covers all elements, the last included: a
+// file that is cut short is found out wherever it ends. [turk1994]
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "io/mesh_file.h"
+#include "io/mesh_parts.h"
+#include "io/ply_header.h"
+#include "io/text_scanner.h"
+
+namespace salbench {
+namespace {
+
+using ply::Element;
+using ply::Encoding;
+using ply::Property;
+using ply::Type;
+
+std::string plural_of(const Element& element) {
+  if (element.name == "vertex") return "vertices";
+  if (element.name == "face") return "faces";
+  return fmt::format("elements {}", in_quotes(element.name));
+}
+
+// One record a line.
+class AsciiBody {
+ public:
+  explicit AsciiBody(const TextScanner& after_header) : in_(after_header) {}
+
+  void begin(const Element& element) { in_.begin_records(element.count, plural_of(element)); }
+  void next_record() { in_.next_record(); }
+  void end_record() {
+    if (!in_.peek_word().empty()) in_.fail("the line has more values than the header says");
+  }
+  double value(Type) { return in_.number(); }
+  void skip(Type, std::int64_t n) {
+    for (std::int64_t i = 0; i < n; ++i) in_.skip_word();
+  }
+  void end() {
+    if (in_.next_filled_line()) in_.fail("there is more text after the last element: the header is wrong");
+  }
+  [[noreturn]] void fail(std::string_view what) const { in_.fail(what); }
+
+ private:
+  TextScanner in_;
+};
+
+class BinaryBody {
+ public:
+  BinaryBody(const TextScanner& after_header, std::size_t file_size, bool swapped)
+      : bytes_(after_header.text_after_line()),
+        name_(after_header.name()),
+        file_size_(file_size),
+        swapped_(swapped) {}
+
+  void begin(const Element& element) {
+    element_ = &element;
+    records_begun_ = 0;
+  }
+  void next_record() { ++records_begun_; }
+  void end_record() {}
+
+  double value(Type type) {
+    switch (type) {
+      case Type::int8:
+        return take<std::int8_t>();
+      case Type::uint8:
+        return take<std::uint8_t>();
+      case Type::int16:
+        return take<std::int16_t>();
+      case Type::uint16:
+        return take<std::uint16_t>();
+      case Type::int32:
+        return take<std::int32_t>();
+      case Type::uint32:
+        return take<std::uint32_t>();
+      case Type::float32:
+        return static_cast<double>(take<float>());
+      case Type::float64:
+        return take<double>();
+    }
+    return 0;
+  }
+  void skip(Type type, std::int64_t n) { take_bytes(static_cast<std::size_t>(n) * size_of(type)); }
+
+  void end() const {  // some writers end with a line end
+    if (bytes_.find_first_not_of(" \r\n") != bytes_.npos)
+      throw InputError(
+          fmt::format("{}: there are {} bytes after the last element: the header is wrong, or the "
+                      "file went through a conversion of line ends",
+                      name_, bytes_.size()));
+  }
+  [[noreturn]] void fail(std::string_view what) const {
+    throw InputError(fmt::format("{}: {} {} (counted from 1), before byte {}: {}", name_, element_->name,
+                                 records_begun_, file_size_ - bytes_.size(), what));
+  }
+
+ private:
+  static std::size_t size_of(Type type) {
+    switch (type) {
+      case Type::int8:
+      case Type::uint8:
+        return 1;
+      case Type::int16:
+      case Type::uint16:
+        return 2;
+      case Type::int32:
+      case Type::uint32:
+      case Type::float32:
+        return 4;
+      case Type::float64:
+        return 8;
+    }
+    return 0;
+  }
+
+  std::string_view take_bytes(std::size_t n) {
+    if (n > bytes_.size())
+      throw InputError(fmt::format("{}: {}", name_,
+                                   ends_early(records_begun_ - 1, element_->count, plural_of(*element_))));
+    const std::string_view taken = bytes_.substr(0, n);
+    bytes_.remove_prefix(n);
+    return taken;
+  }
+
+  template <class T>
+  T take() {
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), take_bytes(sizeof(T)).data(), sizeof(T));
+    if (swapped_) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+  }
+
+  std::string_view bytes_;  // not yet read
+  std::string name_;
+  std::size_t file_size_;
+  bool swapped_;
+  const Element* element_ = nullptr;
+  std::int64_t records_begun_ = 0;
+};
+
+template <class Body>
+std::int64_t list_length(Body& body, Type type) {
+  const double length = body.value(type);
+  constexpr double kLongest = 4294967295.0;  // what the widest integer type can say
+  if (!(length >= 0 && length <= kLongest) || length != std::floor(length))
+    body.fail(fmt::format("{} is no length of a list", length));
+  return static_cast<std::int64_t>(length);
+}
+
+template <class Body>
+void skip_property(Body& body, const Property& property) {
+  body.skip(property.type, property.length_type ? list_length(body, *property.length_type) : 1);
+}
+
+template <class Body>
+void read_vertices(Body& body, const Element& element, std::vector<Vec3>& vertices) {
+  const std::array<const Property*, 3> axes = {element.find("x"), element.find("y"), element.find("z")};
+  for (std::int64_t i = 0; i < element.count; ++i) {
+    body.next_record();
+    Vec3 point = Vec3::Zero();
+    for (const Property& property : element.properties) {
+      const auto axis = std::find(axes.begin(), axes.end(), &property) - axes.begin();
+      if (axis < 3)
+        point[axis] = body.value(property.type);
+      else
+        skip_property(body, property);
+    }
+    body.end_record();
+    if (!point.allFinite()) body.fail("a coordinate is not a finite number");
+    vertices.push_back(point);
+  }
+}
+
+template <class Body>
+void read_polygon(Body& body, const Property& corners, std::int64_t n_vertices,
+                  std::vector<std::int32_t>& polygon) {
+  const std::int64_t size = list_length(body, *corners.length_type);
+  if (const std::string wrong = wrong_with_polygon(size); !wrong.empty()) body.fail(wrong);
+  polygon.clear();
+  for (std::int64_t i = 0; i < size; ++i) {
+    const double index = body.value(corners.type);
+    if (index != std::floor(index)) body.fail(fmt::format("{} is no vertex index", index));
+    if (index < 0 || index >= static_cast<double>(n_vertices))
+      body.fail(fmt::format("vertex index {} is out of range: there are {} vertices, numbered from 0", index,
+                            n_vertices));
+    polygon.push_back(static_cast<std::int32_t>(index));
+  }
+}
+
+const Property* corners_of(const Element& face) {
+  const Property* corners = face.find("vertex_indices");
+  return corners != nullptr ? corners : face.find("vertex_index");
+}
+
+template <class Body>
+void read_faces(Body& body, const Element& element, std::int64_t n_vertices, std::vector<Triangle>& faces) {
+  const Property* corners = corners_of(element);
+  std::vector<std::int32_t> polygon;
+  for (std::int64_t i = 0; i < element.count; ++i) {
+    body.next_record();
+    for (const Property& property : element.properties) {
+      if (&property == corners)
+        read_polygon(body, property, n_vertices, polygon);
+      else
+        skip_property(body, property);
+    }
+    body.end_record();
+    append_fan(faces, polygon);
+  }
+}
+
+template <class Body>
+void skip_element(Body& body, const Element& element) {
+  if (element.properties.empty()) return;  // no bytes, however many are announced
+  for (std::int64_t i = 0; i < element.count; ++i) {
+    body.next_record();
+    for (const Property& property : element.properties) skip_property(body, property);
+    body.end_record();
+  }
+}
+
+template <class Body>
+Mesh read_body(Body body, const ply::Header& header, std::size_t file_size) {
+  const Element* vertex = header.find("vertex");
+  const Element* face = header.find("face");
+  Mesh mesh;
+  mesh.vertices.reserve(room_for(vertex->count, file_size));
+  if (face != nullptr) mesh.faces.reserve(room_for(face->count, file_size));
+  for (const Element& element : header.elements) {
+    body.begin(element);
+    if (&element == vertex)
+      read_vertices(body, element, mesh.vertices);
+    else if (&element == face)
+      read_faces(body, element, vertex->count, mesh.faces);
+    else
+      skip_element(body, element);
+  }
+  body.end();
+  return mesh;
+}
+
+// What the walk relies on.
+void check_header(const TextScanner& in, const ply::Header& header) {
+  const Element* vertex = header.find("vertex");
+  if (vertex == nullptr) in.fail("the header has no element \"vertex\": the file holds no mesh");
+  for (const char* axis : {"x", "y", "z"}) {
+    const Property* property = vertex->find(axis);
+    if (property == nullptr || property->length_type)
+      in.fail(fmt::format("the header gives vertices no number \"{}\"", axis));
+  }
+  if (header.find("tristrips") != nullptr)
+    in.fail("triangle strips cannot be read: write the mesh with an element \"face\"");
+  const Element* face = header.find("face");
+  if (face != nullptr && (corners_of(*face) == nullptr || !corners_of(*face)->length_type))
+    in.fail("the header gives faces no list \"vertex_indices\"");
+  for (const Element* element : {vertex, face}) {
+    if (element == nullptr) continue;
+    if (const std::string wrong = wrong_with_count(element->count, plural_of(*element)); !wrong.empty())
+      in.fail(wrong);
+  }
+}
+
+}  // namespace
+
+Mesh parse_ply(std::string_view bytes, std::string_view name) {
+  TextScanner in(bytes, name);
+  const ply::Header header = ply::read_header(in);
+  check_header(in, header);
+  if (header.encoding == Encoding::ascii) return read_body(AsciiBody(in), header, bytes.size());
+  const bool swapped = (header.encoding == Encoding::big_endian) != (std::endian::native == std::endian::big);
+  return read_body(BinaryBody(in, bytes.size(), swapped), header, bytes.size());
+}
+
+}  // namespace salbench

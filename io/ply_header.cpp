@@ -1,0 +1,108 @@
+#include "io/ply_header.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace salbench::ply {
+namespace {
+
+template <class Named>
+const Named* find_named(const std::vector<Named>& all, std::string_view name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+// Both spellings are in use.
+constexpr std::array<std::pair<std::string_view, Type>, 16> kTypes = {{{"char", Type::int8},
+                                                                       {"int8", Type::int8},
+                                                                       {"uchar", Type::uint8},
+                                                                       {"uint8", Type::uint8},
+                                                                       {"short", Type::int16},
+                                                                       {"int16", Type::int16},
+                                                                       {"ushort", Type::uint16},
+                                                                       {"uint16", Type::uint16},
+                                                                       {"int", Type::int32},
+                                                                       {"int32", Type::int32},
+                                                                       {"uint", Type::uint32},
+                                                                       {"uint32", Type::uint32},
+                                                                       {"float", Type::float32},
+                                                                       {"float32", Type::float32},
+                                                                       {"double", Type::float64},
+                                                                       {"float64", Type::float64}}};
+
+Type read_type(TextScanner& in) {
+  const std::string_view word = in.word();
+  for (const auto& [name, type] : kTypes)
+    if (name == word) return type;
+  in.fail(fmt::format("{} is no PLY type", in_quotes(word)));
+}
+
+Encoding read_encoding(TextScanner& in) {
+  const std::string_view word = in.word();
+  if (word == "ascii") return Encoding::ascii;
+  if (word == "binary_little_endian") return Encoding::little_endian;
+  if (word == "binary_big_endian") return Encoding::big_endian;
+  in.fail(
+      fmt::format("{} is no PLY format: ascii, binary_little_endian or binary_big_endian", in_quotes(word)));
+}
+
+std::string read_name(TextScanner& in) {
+  const std::string_view word = in.word();
+  if (word.empty()) in.fail("the line ends where a name is expected");
+  return std::string(word);
+}
+
+Element read_element(TextScanner& in) {
+  Element element;
+  element.name = read_name(in);
+  element.count = in.integer();
+  if (element.count < 0)
+    in.fail(
+        fmt::format("{} elements {}: a count cannot be negative", element.count, in_quotes(element.name)));
+  return element;
+}
+
+Property read_property(TextScanner& in) {
+  Property property;
+  if (in.peek_word() == "list") {
+    in.word();
+    property.length_type = read_type(in);
+  }
+  property.type = read_type(in);
+  property.name = read_name(in);
+  return property;
+}
+
+}  // namespace
+
+const Property* Element::find(std::string_view property) const { return find_named(properties, property); }
+
+const Element* Header::find(std::string_view element) const { return find_named(elements, element); }
+
+Header read_header(TextScanner& in) {
+  if (!in.next_line() || in.word() != "ply")
+    in.fail("the file does not begin with \"ply\": it is no PLY file");
+  std::optional<Encoding> encoding;
+  std::vector<Element> elements;
+  while (in.next_line()) {
+    const std::string_view keyword = in.word();
+    if (keyword == "format") {
+      encoding = read_encoding(in);
+    } else if (keyword == "element") {
+      elements.push_back(read_element(in));
+    } else if (keyword == "property") {
+      if (elements.empty()) in.fail("a property stands before the first element");
+      elements.back().properties.push_back(read_property(in));
+    } else if (keyword == "end_header") {
+      if (!encoding) in.fail("the header names no format");
+      return {*encoding, std::move(elements)};
+    } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
+      in.fail(fmt::format("{} is no word of a PLY header", in_quotes(keyword)));
+    }
+  }
+  in.fail("the file ends within the header: it is cut short, copy it again");
+}
+
+}  // namespace salbench::ply

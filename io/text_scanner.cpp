@@ -1,0 +1,126 @@
+#include "io/text_scanner.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace salbench {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+// from_chars takes no plus sign, which files do contain.
+std::string_view without_plus(std::string_view word) {
+  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  return plus ? word.substr(1) : word;
+}
+
+}  // namespace
+
+TextScanner::TextScanner(std::string_view text, std::string_view name, char comment)
+    : text_(text), name_(name), comment_(comment) {
+  if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+  line_end_ = text_.find('\n') == text_.npos ? '\r' : '\n';
+}
+
+bool TextScanner::next_line() {
+  if (text_.empty()) {
+    line_ = {};
+    return false;
+  }
+  const std::size_t end = text_.find(line_end_);
+  line_ = text_.substr(0, end);
+  text_.remove_prefix(end == text_.npos ? text_.size() : end + 1);
+  if (comment_ != '\0') line_ = line_.substr(0, line_.find(comment_));
+  ++line_number_;
+  return true;
+}
+
+bool TextScanner::next_filled_line() {
+  while (next_line())
+    if (!peek_word().empty()) return true;
+  return false;
+}
+
+void TextScanner::begin_records(std::int64_t announced, std::string_view plural) {
+  records_announced_ = announced;
+  records_begun_ = 0;
+  records_ = plural;
+}
+
+void TextScanner::next_record() {
+  if (!next_filled_line()) fail(ends_early(records_begun_, records_announced_, records_));
+  ++records_begun_;
+}
+
+std::string_view TextScanner::word() {
+  std::size_t begin = 0;
+  while (begin < line_.size() && is_space(line_[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < line_.size() && !is_space(line_[end])) ++end;
+  const std::string_view found = line_.substr(begin, end - begin);
+  line_.remove_prefix(end);
+  return found;
+}
+
+std::string_view TextScanner::peek_word() {
+  const std::string_view here = line_;
+  const std::string_view found = word();
+  line_ = here;
+  return found;
+}
+
+std::string_view TextScanner::expected_word(std::string_view what) {
+  const std::string_view found = word();
+  if (!found.empty()) return found;
+  if (text_.empty() && !records_.empty()) fail(ends_early(records_begun_ - 1, records_announced_, records_));
+  fail(fmt::format("the line ends where {} is expected", what));
+}
+
+void TextScanner::skip_word() { expected_word("a value"); }
+
+double TextScanner::number() {
+  const std::string_view found = expected_word("a number");
+  const std::string_view digits = without_plus(found);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range)
+    fail(fmt::format("{} does not fit a double", in_quotes(found)));
+  if (error != std::errc() || end != digits.data() + digits.size())
+    fail(fmt::format("{} is not a number", in_quotes(found)));
+  if (!std::isfinite(value)) fail(fmt::format("{} is not a finite number", in_quotes(found)));
+  return value;
+}
+
+std::int64_t TextScanner::integer() {
+  const std::string_view found = expected_word("a whole number");
+  const std::string_view digits = without_plus(found);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range) fail(fmt::format("{} does not fit 64 bits", in_quotes(found)));
+  if (error != std::errc() || end != digits.data() + digits.size())
+    fail(fmt::format("{} is not a whole number", in_quotes(found)));
+  return value;
+}
+
+void TextScanner::fail(std::string_view what) const {
+  if (line_number_ == 0) throw InputError(fmt::format("{}: {}", name_, what));  // nothing there to point at
+  throw InputError(fmt::format("{}:{}: {}", name_, line_number_, what));
+}
+
+std::string ends_early(std::int64_t complete, std::int64_t announced, std::string_view plural) {
+  return fmt::format("the file ends after {} of {} {}: it is cut short, copy it again", complete, announced,
+                     plural);
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t kLongest = 32;
+  std::string text = "\"";
+  for (const char c : word.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
+  return text + (word.size() > kLongest ? "...\"" : "\"");
+}
+
+}  // namespace salbench

@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr std::string_view kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+std::vector<Triangle> faces_of(const std::string& records) {
+  return parse_obj(std::string(kSquare) + records, "x.obj").faces;
+}
+
+void expect_refusal(std::string_view text, std::string_view why) {
+  EXPECT_THAT([&] { parse_obj(text, "x.obj"); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
+}
+
+void expect_refused_face(const std::string& record, std::string_view why) {
+  expect_refusal(std::string(kSquare) + record, why);
+}
+
+TEST(Obj, ReadsEveryFormOfACorner) {
+  for (const char* face :
+       {"f 1 2 3\n", "f 1/4 2/5 3/6\n", "f 1//7 2//7 3//7\n", "f 1/1/1 2/2/2 3/3/3", "f -4 -3 -2",
+        "f -4/-1 -3/-1 -2/-1", "f 1 \\\n2 \\\r\n 3\n", "f 1 2\\\n3\n", "\tf  1\t2 3 # face\r\n"})
+    EXPECT_THAT(faces_of(face), ElementsAre(Triangle{0, 1, 2})) << face;
+}
+
+TEST(Obj, SplitsPolygonsIntoFans) {
+  EXPECT_THAT(faces_of("f 1 2 3 4\n"), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+TEST(Obj, PassesOverOtherRecords) {
+  const Mesh mesh = parse_obj(
+      "# made by hand \\\nmtllib a.mtl\no thing\ng part\nv 1 2 3 1.0\nv 4 5 6 0.1 0.2 0.3\nvt 0 0\nvn 0 0 1\n"
+      "v 7 8 9\nusemtl red\ns off\nl 1 2\np 1\nf 1 2 3\n",
+      "x.obj");
+  EXPECT_THAT(mesh.vertices, ElementsAre(Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9)));
+  EXPECT_THAT(mesh.faces, ElementsAre(Triangle{0, 1, 2}));
+}
+
+TEST(Obj, NegativeIndicesCountBackFromWhereTheyStand) {
+  const Mesh mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -1 -2 -3\n", "x.obj");
+  EXPECT_THAT(mesh.faces, ElementsAre(Triangle{0, 1, 2}, Triangle{3, 2, 1}));
+}
+
+TEST(Obj, FacesMayStandBeforeTheirVertices) {
+  const std::string face = "f 1 2 4\n";
+  EXPECT_THAT(parse_obj(face + std::string(kSquare), "x.obj").faces, ElementsAre(Triangle{0, 1, 3}));
+  expect_refusal("\nf 1 2 5\n" + std::string(kSquare),
+                 "x.obj:2: vertex index 5 is out of range: there are 4");
+}
+
+TEST(Obj, NamesFileAndLineOfWhatIsWrong) {
+  expect_refused_face("f 1 2 0\n",
+                      "x.obj:5: vertex index 0 is out of range: there are 4 vertices, numbered from 1");
+  expect_refused_face("f 1 2 5\n", "x.obj:5: vertex index 5 is out of range");
+  expect_refused_face("f 1 2 -5\n", "x.obj:5: vertex index -5 is out of range");
+  expect_refused_face("f 1 2 3000000000\n", "x.obj:5: vertex index 3000000000 is out of range");
+  expect_refused_face("f 1 2 99999999999999999999\n", "x.obj:5: \"99999999999999999999\" is not a corner");
+  expect_refused_face("f 1 2\n", "x.obj:5: a face with 2 vertices");
+  expect_refused_face("f\n", "x.obj:5: a face with 0 vertices");
+  expect_refused_face("f 1 2 3x\n", "x.obj:5: \"3x\" is not a corner of a face");
+  expect_refused_face("f 1 2 3-1\n", "x.obj:5: \"3-1\" is not a corner of a face");
+  expect_refused_face("f 1 2 /3\n", "x.obj:5: \"/3\" is not a corner of a face");
+  expect_refused_face("v 1 nan 0\n", "x.obj:5: \"nan\" is not a finite number");
+  expect_refused_face("v 1 1e999 0\n", "x.obj:5: \"1e999\" does not fit a double");
+  expect_refused_face("v 1 one 0\n", "x.obj:5: \"one\" is not a number");
+  expect_refused_face("v 1 2\n", "x.obj:5: the line ends where a number is expected");
+}
+
+TEST(Obj, RefusesWhatHasNoVertices) {
+  expect_refusal("", "without a vertex");
+  expect_refusal("PK\x03\x04 an archive\n", "x.obj:1: the file ends without a vertex (v): it is no OBJ file");
+}
+
+TEST(Obj, CutShortAtAnyLengthIsReadOrRefused) {
+  const std::string text = std::string(kSquare) + "f 1/1 2/2 \\\n 3/3\nf -4//1 -2//1 -1//1\n";
+  for (std::size_t length = 0; length < text.size(); ++length) {
+    try {
+      const Mesh mesh = parse_obj(text.substr(0, length), "x.obj");
+      EXPECT_LE(mesh.faces.size(), 2U);
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("x.obj:"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace salbench

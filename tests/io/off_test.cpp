@@ -1,0 +1,147 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr const char* kTetrahedron =
+    "OFF\n"
+    "4 4 6\n"
+    "1 1 1\n"
+    "1 -1 -1\n"
+    "-1 1 -1\n"
+    "-1 -1 1.5e0\n"
+    "3 0 1 2\n"
+    "3 0 3 1\n"
+    "3 0 2 3\n"
+    "3 1 3 2\n";
+
+void expect_tetrahedron(const Mesh& mesh) {
+  EXPECT_THAT(mesh.vertices, ElementsAre(Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1.5)));
+  EXPECT_THAT(mesh.faces,
+              ElementsAre(Triangle{0, 1, 2}, Triangle{0, 3, 1}, Triangle{0, 2, 3}, Triangle{1, 3, 2}));
+}
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+void expect_refusal(std::string_view text, std::string_view why) {
+  EXPECT_THAT([&] { parse_off(text, "x.off"); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
+}
+
+TEST(Off, ReadsVerticesAndFaces) { expect_tetrahedron(parse_off(kTetrahedron, "x.off")); }
+
+TEST(Off, ReadsWhatIsFoundInTheWild) {
+  const std::string text = kTetrahedron;
+  const std::vector<std::string> variants = {
+      replaced(text, "\n", "\r\n"),
+      replaced(text, "\n", "\r"),
+      replaced(text, "\n", "  # a comment\n\n# another\n\t\n"),
+      replaced(text, "\n", " \t \n"),
+      "\xef\xbb\xbf" + text,
+      text.substr(0, text.size() - 1),            // no line end after the last face
+      replaced(text, "OFF\n4 4 6", "OFF 4 4 6"),  // counts on the header's line
+      replaced(text, "OFF\n4 4 6", "OFF4 4 6"),   // and glued to it
+      replaced(text, "OFF\n", ""),                // no header word
+      replaced(text, "4 4 6", "4 4"),             // no number of edges
+      replaced(text, "4 4 6", "4 4 0"),           // a wrong one
+      replaced(text, "OFF", "off"),
+      replaced(replaced(text, "OFF", "COFF"), " 1\n", " 1 0.2 0.3 0.4 1\n"),
+      replaced(replaced(text, "OFF", "NOFF"), " -1\n", " -1 0 0 1\n"),
+      replaced(replaced(text, "OFF", "STCNOFF"), " 1\n", " 1 0 0 1 9 9 9 9 0.5 0.5\n"),
+      replaced(replaced(text, "3 0 1 2", "3 0 1 2 0.5 0.5 0.5"), "3 0 3 1", "3 0 3 1 255 0 0 255"),
+      replaced(text, "1 1 1\n", "+1 +1.0 1E0\n"),
+  };
+  for (const std::string& variant : variants) {
+    SCOPED_TRACE(variant);
+    expect_tetrahedron(parse_off(variant, "x.off"));
+  }
+}
+
+TEST(Off, SplitsPolygonsIntoFans) {
+  const Mesh mesh =
+      parse_off("OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 2 0\n5 0 1 2 3 4 7\n4 3 2 1 0\n", "x.off");
+  EXPECT_THAT(mesh.faces, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4},
+                                      Triangle{3, 2, 1}, Triangle{3, 1, 0}));
+}
+
+TEST(Off, KeepsEveryDigitOfACoordinate) {
+  const Mesh mesh = parse_off("OFF 1 0 0\n0.1 -2.2250738585072014e-308 123456789.123456789\n", "x.off");
+  EXPECT_THAT(mesh.vertices, ElementsAre(Vec3(0.1, -2.2250738585072014e-308, 123456789.123456789)));
+}
+
+TEST(Off, NamesFileAndLineOfWhatIsWrong) {
+  const std::string text = kTetrahedron;
+  expect_refusal(replaced(text, "1 -1 -1", "1 -1 x"), "x.off:4: \"x\" is not a number");
+  expect_refusal(replaced(text, "1 -1 -1", "1 -1"), "x.off:4: the line ends where a number is expected");
+  expect_refusal(replaced(text, "1 -1 -1", "1 nan -1"), "x.off:4: \"nan\" is not a finite number");
+  expect_refusal(replaced(text, "1 -1 -1", "1 -inf -1"), "x.off:4: \"-inf\" is not a finite number");
+  expect_refusal(replaced(text, "1 -1 -1", "1 1e999 -1"), "x.off:4: \"1e999\" does not fit a double");
+  expect_refusal(replaced(text, "1 -1 -1", "1 0x1p3 -1"), "x.off:4: \"0x1p3\" is not a number");
+  expect_refusal(replaced(text, "1 -1 -1", "1 -1,5 -1"), "x.off:4: \"-1,5\" is not a number");
+  expect_refusal(replaced(text, "3 0 3 1", "3 0 4 1"),
+                 "x.off:8: vertex index 4 is out of range: there are 4 vertices");
+  expect_refusal(replaced(text, "3 0 3 1", "3 0 -1 1"), "x.off:8: vertex index -1 is out of range");
+  expect_refusal(replaced(text, "3 0 3 1", "3 0 1.5 1"), "x.off:8: \"1.5\" is not a whole number");
+  expect_refusal(replaced(text, "3 0 3 1", "2 0 3"), "x.off:8: a face with 2 vertices: it needs at least 3");
+  expect_refusal(replaced(text, "3 0 3 1", "0"), "x.off:8: a face with 0 vertices");
+  expect_refusal(replaced(text, "3 0 3 1", "-3 0 3 1"), "x.off:8: a face with -3 vertices");
+  expect_refusal(replaced(text, "3 0 3 1", "4 0 3 1"),
+                 "x.off:8: the line ends where a whole number is expected");
+  expect_refusal(text + "3 0 1 3\n", "x.off:11: there is more text after 4 vertices and 4 faces");
+}
+
+TEST(Off, RefusesHeadersThatCannotBe) {
+  expect_refusal("", "x.off: the file has no text");
+  expect_refusal(" \n# only a comment\n", "the file has no text");
+  expect_refusal("OFF\n", "the file ends before the counts");
+  expect_refusal("OFF\n4\n", "x.off:2: the line ends where a whole number is expected");
+  expect_refusal("OFF\n-4 4 6\n", "x.off:2: -4 vertices: a count cannot be negative");
+  expect_refusal("OFF\n4 -4 6\n", "x.off:2: -4 faces: a count cannot be negative");
+  expect_refusal("OFF BINARY\n", "binary OFF cannot be read");
+  expect_refusal("4OFF\n", "\"4OFF\" is an unknown kind of OFF");
+  expect_refusal("nOFF\n3\n", "\"nOFF\" is an unknown kind of OFF");
+  expect_refusal("solid cube\n", "\"solid\" is no OFF header");
+  expect_refusal(std::string_view("\x7f"
+                                  "ELF\x02\x01\0\0",
+                                  8),
+                 "\"?ELF????\" is no OFF header");
+}
+
+TEST(Off, AbsurdCountsNeedNoMemory) {
+  expect_refusal("OFF\n1000000000000 4 6\n0 0 0\n", "x.off:2: 1000000000000 vertices: at most 2147483647");
+  expect_refusal("OFF\n99999999999999999999 4 6\n", "x.off:2: \"99999999999999999999\" does not fit 64 bits");
+  expect_refusal("OFF\n2147483647 4 6\n0 0 0\n1 1 1\n", "the file ends after 2 of 2147483647 vertices");
+  expect_refusal("OFF\n1 2147483647 6\n0 0 0\n", "the file ends after 0 of 2147483647 faces");
+  expect_refusal("OFF\n1 1 0\n0 0 0\n2147483647 0 0 0 0\n", "the file ends after 0 of 1 faces");
+}
+
+TEST(Off, CutShortAtAnyLengthSaysHowFarItWent) {
+  const std::string text = kTetrahedron;
+  int parsed = 0, said_how_far = 0;
+  for (std::size_t length = 0; length < text.size(); ++length) {
+    try {
+      parse_off(text.substr(0, length), "x.off");
+      ++parsed;
+    } catch (const InputError& error) {
+      said_how_far += std::string_view(error.what()).find("the file ends after ") != std::string_view::npos;
+    }
+  }
+  EXPECT_EQ(parsed, 1);  // only the last line end may be missing
+  EXPECT_GT(said_how_far, static_cast<int>(text.size()) / 2);
+  expect_refusal(text.substr(0, text.find("-1 -1 1.5")), "the file ends after 3 of 4 vertices");
+  expect_refusal(text.substr(0, text.find("3 1 3 2") + 3), "the file ends after 3 of 4 faces");
+}
+
+}  // namespace
+}  // namespace salbench
