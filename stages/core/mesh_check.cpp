@@ -32,11 +32,14 @@ void check_indices(const Mesh& mesh) {
                          std::to_string(n) + " (counted from 0)");
 }
 
+bool repeats_a_vertex(const Triangle& face) {
+  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+}
+
 // Coordinates carry a rounding of half a unit in the last place, and a height over the longest edge that is
 // no larger says nothing: collinear vertices rarely come out at exactly zero. Lengths are taken relative to
 // that edge, so the test is the same at any scale.
-bool is_degenerate(const Mesh& mesh, const Triangle& face) {
-  if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) return true;
+bool has_no_area(const Mesh& mesh, const Triangle& face) {
   double longest = 0, largest_coordinate = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     longest = std::max(longest, (corner(mesh, face, (i + 1) % 3) - corner(mesh, face, i)).stableNorm());
@@ -47,11 +50,6 @@ bool is_degenerate(const Mesh& mesh, const Triangle& face) {
   const Vec3 b = (corner(mesh, face, 2) - corner(mesh, face, 0)) / longest;
   const double relative_height = a.cross(b).norm();
   return !(relative_height > 4 * std::numeric_limits<double>::epsilon() * (largest_coordinate / longest));
-}
-
-std::int64_t drop_degenerate_faces(Mesh& mesh) {
-  return static_cast<std::int64_t>(
-      std::erase_if(mesh.faces, [&](const Triangle& face) { return is_degenerate(mesh, face); }));
 }
 
 // Of the faces over the same vertices the first stays.
@@ -117,13 +115,15 @@ CheckedMesh check_mesh(Mesh mesh) {
   check_coordinates(mesh);
   check_indices(mesh);
   MeshReport report;
-  report.degenerate_faces = drop_degenerate_faces(mesh);
+  report.degenerate_faces = static_cast<std::int64_t>(std::erase_if(mesh.faces, repeats_a_vertex));
+  report.duplicate_faces = drop_duplicate_faces(mesh.faces);
+  count_edges(mesh.faces, report);
+  report.degenerate_faces += static_cast<std::int64_t>(
+      std::erase_if(mesh.faces, [&](const Triangle& face) { return has_no_area(mesh, face); }));
   if (mesh.faces.empty()) throw InputError("none of the mesh's faces has an area");
   if (!std::isnormal(surface_area(mesh)))
     throw InputError("the mesh's surface area is beyond floating point: scale its coordinates");
-  report.duplicate_faces = drop_duplicate_faces(mesh.faces);
   count_parts(mesh, report);
-  count_edges(mesh.faces, report);
   return {std::move(mesh), report};
 }
 

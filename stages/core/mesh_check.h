@@ -14,6 +14,7 @@ struct MeshReport {
   std::int64_t duplicate_faces = 0;    // dropped: the same three vertices as an earlier face, in any order
   std::int64_t isolated_vertices = 0;  // kept: in none of the faces left
   std::int32_t components = 0;         // connected parts of the surface; isolated vertices are none
+  // Faces without area count here, since they hold a surface together:
   std::int64_t boundary_edges = 0;     // in one face only
   std::int64_t nonmanifold_edges = 0;  // in three faces or more
   std::int64_t misoriented_edges = 0;  // in two faces that pass it in the same direction

@@ -46,6 +46,19 @@ TEST(MeshCheck, DropsDegenerateFacesAndKeepsTheVertices) {
   EXPECT_EQ(mesh.faces.size(), n_faces);
 }
 
+TEST(MeshCheck, FacesWithoutAreaCloseASurface) {
+  Mesh mesh = shapes::tetrahedron();
+  // Cut the edge 0-1 of one face in the middle; a flat face fills the slit.
+  mesh.vertices.push_back((mesh.vertices[0] + mesh.vertices[1]) / 2);
+  mesh.faces.erase(mesh.faces.begin());
+  mesh.faces.insert(mesh.faces.end(), {{0, 4, 2}, {4, 1, 2}, {0, 1, 4}});
+  const CheckedMesh checked = check_mesh(mesh);
+  EXPECT_EQ(checked.report.degenerate_faces, 1);
+  EXPECT_EQ(checked.mesh.faces.size(), 5U);
+  EXPECT_EQ(checked.report.boundary_edges, 0);
+  EXPECT_EQ(checked.report.misoriented_edges, 0);
+}
+
 TEST(MeshCheck, CollinearIsJudgedAgainstTheRoundingOfTheCoordinates) {
   const auto degenerate = [](double offset, double height, double scale) {
     Mesh mesh = shapes::tetrahedron();
