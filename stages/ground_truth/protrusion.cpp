@@ -1,0 +1,85 @@
+// Explicit diffusion of the positions over edges: a step moves vertex i towards the mean of its neighbours.
+// Where edges have the mean squared length e, that mean lies (e / 4) * Laplacian away, so a vertex moves by
+// the share step / e of it and every part of the mesh diffuses at one speed, however densely it is sampled.
+#include "stages/ground_truth/protrusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "stages/core/mesh_ops.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kMaxSteps = 128;  // bounds the time on very dense meshes, which then diffuse less far
+
+const Vec3& at(const std::vector<Vec3>& points, std::int32_t i) {
+  return points[static_cast<std::size_t>(i)];
+}
+
+std::vector<double> mean_squared_edges(const std::vector<Vec3>& points, const Adjacency& adjacency) {
+  std::vector<double> squares(points.size(), 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const std::int32_t j : adjacency.of(i)) squares[i] += (at(points, j) - points[i]).squaredNorm();
+    if (!adjacency.of(i).empty()) squares[i] /= static_cast<double>(adjacency.of(i).size());
+  }
+  return squares;
+}
+
+double median_of_positive(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !(value > 0); });
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<Vec3> diffused(const Mesh& mesh, double unit) {
+  const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
+  const std::vector<double> squares = mean_squared_edges(mesh.vertices, adjacency);
+  const double wanted = 4 * unit * unit;
+  // A vertex cannot move by more than all the way: steps of half the median leave room for shorter edges.
+  const double step_square = median_of_positive(squares) / 2;
+  const double steps = std::clamp(std::ceil(wanted / step_square), 1.0, kMaxSteps);
+  std::vector<double> share(squares.size(), 0.0);
+  for (std::size_t i = 0; i < share.size(); ++i)
+    if (squares[i] > 0) share[i] = std::min(1.0, wanted / steps / squares[i]);
+
+  std::vector<Vec3> points = mesh.vertices, next(points.size());
+  for (double step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Vec3 sum = Vec3::Zero();
+      for (const std::int32_t j : adjacency.of(i)) sum += at(points, j) - points[i];
+      next[i] = points[i];
+      if (share[i] > 0) next[i] += share[i] / static_cast<double>(adjacency.of(i).size()) * sum;
+    }
+    std::swap(points, next);
+  }
+  return points;
+}
+
+std::vector<Vec3> vertex_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
+  for (const Triangle& face : mesh.faces)
+    for (const std::int32_t vertex : face)
+      normals[static_cast<std::size_t>(vertex)] += face_area_vector(mesh, face);
+  for (Vec3& normal : normals)
+    if (normal.squaredNorm() > 0) normal.normalize();
+  return normals;
+}
+
+}  // namespace
+
+ScalarField protrusion(const Mesh& mesh, double scale) {
+  ScalarField result(mesh.vertices.size(), 0.0);
+  const double unit = scale * std::sqrt(surface_area(mesh));
+  if (!(unit > 0)) return result;
+  const std::vector<Vec3> smooth = diffused(mesh, unit);
+  const std::vector<Vec3> normals = vertex_normals(mesh);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = (mesh.vertices[i] - smooth[i]).dot(normals[i]) / unit;
+  return result;
+}
+
+}  // namespace salbench

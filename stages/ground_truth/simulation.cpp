@@ -1,0 +1,167 @@
+// People asked for points that others would also choose agree on tips, corners and other places that stand
+// out of their surroundings [chen2012]. So the bulges of the surface have tops, each participant draws among
+// them in proportion to a power of the bulge, and lands somewhere near.
+#include "stages/ground_truth/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/rng.h"
+#include "stages/ground_truth/protrusion.h"
+#include "stages/ground_truth/smoothing.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kFlat = 1e-9;   // bulges below this, in units of their scale, are rounding
+constexpr double kHollow = 0.5;  // attraction of a hollow, beside a bulge of the same size
+constexpr int kTries = 64;       // draws in a row too near to earlier picks before a participant stops
+
+std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+void require(bool holds, const char* key, const std::string& what, double value) {
+  if (!holds) throw OptionError(key, "must be " + what + ", not " + std::to_string(value));
+}
+
+void require_not_negative(const char* key, double value) {
+  require(value >= 0 && std::isfinite(value), key, "0 or a positive number", value);
+}
+
+// Draws indices with probability proportional to their weights, of which there is at least one.
+class WeightedDraw {
+ public:
+  explicit WeightedDraw(const std::vector<double>& weights) : cumulative_(weights.size()) {
+    std::partial_sum(weights.begin(), weights.end(), cumulative_.begin());
+  }
+  bool all_zero() const { return cumulative_.back() == 0; }
+  std::int32_t operator()(Rng& rng) const {
+    const double target = rng.uniform() * cumulative_.back();
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
+    // The product may round up to the total.
+    return static_cast<std::int32_t>(std::min(found, std::prev(cumulative_.end())) - cumulative_.begin());
+  }
+
+ private:
+  std::vector<double> cumulative_;
+};
+
+// A third of the area of the incident faces; 1 everywhere where no face has an area.
+std::vector<double> vertex_areas(const Mesh& mesh) {
+  std::vector<double> areas(mesh.vertices.size(), 0.0);
+  for (const Triangle& face : mesh.faces) {
+    const double share = face_area_vector(mesh, face).norm() / 6;
+    for (const std::int32_t vertex : face) areas[index(vertex)] += share;
+  }
+  if (*std::max_element(areas.begin(), areas.end()) == 0) std::fill(areas.begin(), areas.end(), 1.0);
+  return areas;
+}
+
+// How strongly each vertex attracts picks, at most 1; 0 everywhere where the mesh is flat.
+ScalarField attraction(const Mesh& mesh, const SimulationOptions& options) {
+  ScalarField field = protrusion(mesh, options.scale);
+  for (double& value : field) value = std::max(value, -kHollow * value);
+  const double largest = *std::max_element(field.begin(), field.end());
+  for (double& value : field) value = value < kFlat ? 0 : std::pow(value / largest, options.sharpness);
+  return field;
+}
+
+// Keeps the tops of a field, greatest first, that no greater top is within reach of; the rest becomes 0.
+ScalarField tops_of(const ScalarField& field, EdgeDistances& distances, double reach) {
+  std::vector<std::int32_t> order(field.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return field[index(a)] > field[index(b)]; });
+  ScalarField tops(field.size(), 0.0);
+  std::vector<bool> covered(field.size(), false);
+  for (const std::int32_t vertex : order) {
+    if (field[index(vertex)] == 0) break;
+    if (covered[index(vertex)]) continue;
+    tops[index(vertex)] = field[index(vertex)];
+    for (const Reached& near : distances.from(vertex, reach)) covered[index(near.index)] = true;
+  }
+  return tops;
+}
+
+// One mesh, looked at by one participant after the other.
+class Picker {
+ public:
+  Picker(const Mesh& mesh, const SimulationOptions& options)
+      : options_(options),
+        unit_(std::sqrt(surface_area(mesh))),
+        adjacency_(edge_adjacency(mesh.vertices.size(), mesh.faces)),
+        distances_(mesh.vertices, adjacency_),
+        anywhere_(vertex_areas(mesh)),
+        tops_(tops_of(attraction(mesh, options), distances_, options.separation * unit_)),
+        taken_(mesh.vertices.size()) {}
+
+  std::vector<std::int32_t> picks_of_one(Rng& rng) {
+    const auto mean = static_cast<std::uint64_t>(options_.picks);
+    const std::uint64_t fewest = (mean + 1) / 2;
+    const std::uint64_t wanted = fewest + rng.below(2 * (mean - fewest) + 1);  // even around the mean
+    taken_.assign(taken_.size(), false);
+    std::vector<std::int32_t> picks;
+    int failed = 0;
+    while (picks.size() < wanted && failed < kTries) {
+      const std::int32_t vertex = candidate(rng);
+      if (taken_[index(vertex)]) {
+        ++failed;
+        continue;
+      }
+      failed = 0;
+      picks.push_back(vertex);
+      for (const Reached& near : distances_.from(vertex, options_.separation * unit_))
+        taken_[index(near.index)] = true;
+    }
+    return picks;
+  }
+
+ private:
+  std::int32_t candidate(Rng& rng) {
+    if (tops_.all_zero() || rng.uniform() < options_.random_share) return anywhere_(rng);
+    const std::int32_t top = tops_(rng);
+    const auto around = distances_.from(top, options_.scatter * unit_ * std::abs(rng.normal()));
+    return around[rng.below(around.size())].index;
+  }
+
+  SimulationOptions options_;
+  double unit_;  // of lengths: square root of the surface area
+  Adjacency adjacency_;
+  EdgeDistances distances_;
+  WeightedDraw anywhere_, tops_;
+  std::vector<bool> taken_;  // too near to a pick of the current participant
+};
+
+}  // namespace
+
+void check(const SimulationOptions& options) {
+  require(options.participants >= 1, "participants", "at least 1", options.participants);
+  require(options.picks >= 1, "picks", "at least 1", options.picks);
+  require(options.random_share >= 0 && options.random_share <= 1, "random_share", "within [0, 1]",
+          options.random_share);
+  require(options.scale > 0 && std::isfinite(options.scale), "scale", "a positive number", options.scale);
+  require_not_negative("separation", options.separation);
+  require_not_negative("scatter", options.scatter);
+  require_not_negative("sharpness", options.sharpness);
+}
+
+GroundTruth simulated_ground_truth(const Mesh& mesh, const SimulationOptions& options, std::uint64_t seed,
+                                   std::string_view item) {
+  check(options);
+  if (mesh.vertices.empty()) throw InputError("a mesh without vertices cannot be picked from");
+  Picker picker(mesh, options);
+  GroundTruth truth;
+  truth.simulated = true;
+  for (std::int32_t k = 0; k < options.participants; ++k) {
+    Rng rng(seed, "simulated_picks", std::string(item) + "/" + std::to_string(k));
+    truth.picks.push_back(picker.picks_of_one(rng));
+  }
+  truth.saliency = smoothed_picks(mesh, truth.picks);
+  return truth;
+}
+
+}  // namespace salbench

@@ -1,0 +1,204 @@
+#include "stages/ground_truth/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/ground_truth/smoothing.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::IsSubsetOf;
+using testing::SizeIs;
+
+std::vector<Vec3> tip_directions() {
+  return {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(-1, -1, -1).normalized()};
+}
+
+// A sphere with four horns.
+Mesh horned_sphere() {
+  Mesh mesh = shapes::sphere(4);
+  for (Vec3& v : mesh.vertices) {
+    double height = 1;
+    for (const Vec3& tip : tip_directions())
+      height += 0.5 * std::exp(-(v - tip).squaredNorm() / (2 * 0.12 * 0.12));
+    v *= height;
+  }
+  return mesh;
+}
+
+std::size_t number_of_picks(const GroundTruth& truth) {
+  return std::accumulate(truth.picks.begin(), truth.picks.end(), std::size_t{0},
+                         [](std::size_t sum, const auto& own) { return sum + own.size(); });
+}
+
+// What holds on every mesh: participants with at least one pick, distinct vertices, the saliency of them.
+void expect_sound(const GroundTruth& truth, const Mesh& mesh) {
+  EXPECT_TRUE(truth.simulated);
+  EXPECT_THAT(truth.picks, SizeIs(SimulationOptions{}.participants));
+  for (const auto& own : truth.picks) {
+    EXPECT_GE(own.size(), 1U);
+    EXPECT_EQ(std::set(own.begin(), own.end()).size(), own.size());
+  }
+  EXPECT_EQ(truth.saliency, smoothed_picks(mesh, truth.picks));  // throws where a pick is no vertex
+}
+
+TEST(SimulatedGroundTruth, AgreesOnTheTips) {
+  const Mesh mesh = horned_sphere();
+  const GroundTruth truth = simulated_ground_truth(mesh, {}, 1, "horns");
+  expect_sound(truth, mesh);
+  for (const Vec3& tip : tip_directions()) {
+    const auto found = std::count_if(truth.picks.begin(), truth.picks.end(), [&](const auto& own) {
+      return std::any_of(own.begin(), own.end(), [&](std::int32_t pick) {
+        const Vec3& v = mesh.vertices[static_cast<std::size_t>(pick)];
+        return v.norm() > 1.35 && v.normalized().dot(tip) > 0.9;
+      });
+    });
+    EXPECT_GE(found, 12) << "of 23 participants at " << tip.transpose();
+  }
+}
+
+TEST(SimulatedGroundTruth, KeepsThePicksOfAParticipantApart) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
+  EdgeDistances distances(mesh.vertices, adjacency);
+  SimulationOptions options;
+  for (const double separation : {0.02, 0.1}) {
+    options.separation = separation;
+    for (const auto& own : simulated_ground_truth(mesh, options, 1, "bumpy").picks) {
+      for (const std::int32_t pick : own) {
+        std::vector<std::int32_t> near;
+        for (const Reached& r : distances.from(pick, separation * std::sqrt(surface_area(mesh))))
+          if (std::find(own.begin(), own.end(), r.index) != own.end()) near.push_back(r.index);
+        EXPECT_THAT(near, testing::ElementsAre(pick));
+      }
+    }
+  }
+}
+
+TEST(SimulatedGroundTruth, DrawsTheNumberOfPicksAroundItsMean) {
+  SimulationOptions options;
+  options.participants = 400;
+  options.separation = 0;
+  for (const std::int32_t mean : {1, 7, 10}) {
+    options.picks = mean;
+    const GroundTruth truth = simulated_ground_truth(shapes::bumpy_sphere(4), options, 1, "bumpy");
+    EXPECT_NEAR(static_cast<double>(number_of_picks(truth)) / 400, mean, 0.05 * mean);
+    for (const auto& own : truth.picks) {
+      EXPECT_GE(2 * own.size(), static_cast<std::size_t>(mean));
+      EXPECT_LE(2 * own.size(), static_cast<std::size_t>(3 * mean));
+    }
+  }
+}
+
+TEST(SimulatedGroundTruth, DependsOnSeedAndItemAlone) {
+  const Mesh mesh = shapes::bumpy_sphere(3);
+  const GroundTruth truth = simulated_ground_truth(mesh, {}, 1, "52");
+  EXPECT_EQ(simulated_ground_truth(mesh, {}, 1, "52").picks, truth.picks);
+  EXPECT_EQ(simulated_ground_truth(mesh, {}, 1, "52").saliency, truth.saliency);
+  EXPECT_NE(simulated_ground_truth(mesh, {}, 2, "52").picks, truth.picks);
+  EXPECT_NE(simulated_ground_truth(mesh, {}, 1, "53").picks, truth.picks);
+}
+
+TEST(SimulatedGroundTruth, MoreParticipantsLeaveTheFirstAsTheyWere) {
+  const Mesh mesh = shapes::bumpy_sphere(3);
+  SimulationOptions more;
+  more.participants = 40;
+  const auto few = simulated_ground_truth(mesh, {}, 1, "52").picks;
+  const auto many = simulated_ground_truth(mesh, more, 1, "52").picks;
+  EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
+}
+
+TEST(SimulatedGroundTruth, ParticipantsDiffer) {
+  const auto picks = simulated_ground_truth(shapes::bumpy_sphere(4), {}, 1, "52").picks;
+  EXPECT_EQ(std::set(picks.begin(), picks.end()).size(), picks.size());
+}
+
+TEST(SimulatedGroundTruth, SpreadsEvenlyOverAFlatSheet) {
+  Mesh mesh = shapes::grid(30);  // x < 1/2 is then stretched to twice the area of the rest
+  for (Vec3& v : mesh.vertices) v.x() = v.x() < 0.5 ? 2 * v.x() : v.x() + 0.5;
+  SimulationOptions options;
+  options.participants = 300;
+  options.separation = 0;
+  const GroundTruth truth = simulated_ground_truth(mesh, options, 1, "sheet");
+  std::size_t left = 0;
+  for (const auto& own : truth.picks)
+    for (const std::int32_t pick : own) left += mesh.vertices[static_cast<std::size_t>(pick)].x() < 1;
+  EXPECT_NEAR(static_cast<double>(left) / static_cast<double>(number_of_picks(truth)), 2.0 / 3, 0.04);
+}
+
+TEST(SimulatedGroundTruth, OfATetrahedronStopsAtFourPicks) {
+  const Mesh mesh = shapes::tetrahedron();
+  const GroundTruth truth = simulated_ground_truth(mesh, {}, 1, "tetrahedron");
+  expect_sound(truth, mesh);
+  EXPECT_THAT(truth.picks, Each(SizeIs(testing::Le(4U))));
+  EXPECT_THAT(truth.picks, testing::Contains(SizeIs(4U)));
+}
+
+TEST(SimulatedGroundTruth, NeverPicksAnIsolatedVertexOfAMesh) {
+  Mesh mesh = shapes::tetrahedron();
+  mesh.vertices.insert(mesh.vertices.begin(), Vec3(50, 0, 0));
+  for (Triangle& face : mesh.faces)
+    for (std::int32_t& vertex : face) ++vertex;
+  mesh.vertices.emplace_back(-50, 0, 0);
+  const GroundTruth truth = simulated_ground_truth(mesh, {}, 1, "isolated");
+  expect_sound(truth, mesh);
+  for (const auto& own : truth.picks) EXPECT_THAT(own, IsSubsetOf({1, 2, 3, 4}));
+}
+
+TEST(SimulatedGroundTruth, ReachesAllComponents) {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  const Mesh twin = mesh;
+  const auto shift = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Vec3& v : twin.vertices) mesh.vertices.push_back(v + Vec3(5, 0, 0));
+  for (const auto& [a, b, c] : twin.faces) mesh.faces.push_back({a + shift, b + shift, c + shift});
+  const GroundTruth truth = simulated_ground_truth(mesh, {}, 1, "twins");
+  expect_sound(truth, mesh);
+  std::size_t second = 0;
+  for (const auto& own : truth.picks)
+    second +=
+        static_cast<std::size_t>(std::count_if(own.begin(), own.end(), [&](auto p) { return p >= shift; }));
+  EXPECT_NEAR(static_cast<double>(second) / static_cast<double>(number_of_picks(truth)), 0.5, 0.12);
+}
+
+TEST(SimulatedGroundTruth, WorksWithoutASurface) {
+  for (const Mesh& mesh : {Mesh{shapes::random_cloud(40, 1), {}}, Mesh{{Vec3(1, 2, 3)}, {}},
+                           Mesh{std::vector<Vec3>(3, Vec3(1, 2, 3)), {{0, 1, 2}}},
+                           Mesh{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}})
+    expect_sound(simulated_ground_truth(mesh, {}, 1, "points"), mesh);
+}
+
+TEST(SimulatedGroundTruth, RefusesAMeshWithoutVertices) {
+  EXPECT_THROW(simulated_ground_truth({}, {}, 1, "nothing"), InputError);
+}
+
+TEST(SimulationOptions, NameTheFieldThatIsWrong) {
+  const auto wrong_key = [](const SimulationOptions& options) -> std::string {
+    try {
+      check(options);
+    } catch (const OptionError& error) {
+      return error.key;
+    }
+    return "";
+  };
+  EXPECT_EQ(wrong_key({}), "");
+  EXPECT_EQ(wrong_key({.participants = 0}), "participants");
+  EXPECT_EQ(wrong_key({.picks = 0}), "picks");
+  EXPECT_EQ(wrong_key({.random_share = 1.1}), "random_share");
+  EXPECT_EQ(wrong_key({.separation = -1}), "separation");
+  EXPECT_EQ(wrong_key({.scale = 0}), "scale");
+  EXPECT_EQ(wrong_key({.scatter = std::nan("")}), "scatter");
+  EXPECT_EQ(wrong_key({.sharpness = -1}), "sharpness");
+}
+
+}  // namespace
+}  // namespace salbench
