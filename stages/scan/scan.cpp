@@ -1,0 +1,224 @@
+// Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
+// where the ray meets it, is decided in double. Every candidate comes to the filter and is refused there, so
+// Embree never shortens the ray: the result depends neither on the order in which it visits its tree, which
+// differs with the number of threads that built it, nor on the reciprocal estimates of the processor's maker.
+//
+// Frame of tracing, "local": the centroid at the origin, the square root of the surface area as unit.
+#include "stages/scan/scan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <embree3/rtcore.h>
+
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+// The corners of an icosahedron in the order of the benchmark's views.
+Vec3 view_direction(int view) {
+  constexpr double c = 0.85065, d = 0.52573;
+  static const std::array<Vec3, kViews> corners = {
+      Vec3(0, d, -c), Vec3(0, d, c),   Vec3(0, -d, c), Vec3(-d, c, 0), Vec3(-d, -c, 0), Vec3(d, c, 0),
+      Vec3(d, -c, 0), Vec3(0, -d, -c), Vec3(c, 0, d),  Vec3(-c, 0, d), Vec3(-c, 0, -d), Vec3(c, 0, -d)};
+  return corners[static_cast<std::size_t>(view)].normalized();
+}
+
+struct LocalFrame {
+  Vec3 origin_in_mesh;
+  double unit_in_mesh;
+
+  Vec3 local_from_mesh(const Vec3& p) const { return (p - origin_in_mesh) / unit_in_mesh; }
+  Vec3 mesh_from_local(const Vec3& p) const { return origin_in_mesh + unit_in_mesh * p; }
+};
+
+LocalFrame local_frame(const Mesh& mesh) {
+  const double area = surface_area(mesh);
+  if (!(area > 0) || !std::isfinite(area))
+    throw InputError("the surface area is " + std::to_string(area) + ": nothing can be scanned");
+  return {area_centroid(mesh), std::sqrt(area)};
+}
+
+struct Camera {
+  Vec3 position;  // local, as are the directions
+  Vec3 forward, right, up;
+
+  // Through the image plane at distance 1.
+  Vec3 ray(double x, double y) const { return forward + x * right + y * up; }
+};
+
+Camera camera_of_view(int view, double distance) {
+  const Vec3 direction = view_direction(view);
+  Camera camera{distance * direction, -direction, Vec3::Zero(), Vec3::Zero()};
+  camera.right = camera.forward.cross(Vec3::UnitY()).normalized();  // no view looks along Y
+  camera.up = camera.right.cross(camera.forward);
+  return camera;
+}
+
+// Number of rays on each side of the central one.
+int half_grid(const std::vector<Vec3>& local_vertices, const Mesh& mesh, const ScanOptions& options) {
+  double radius = 0;
+  for (const Triangle& face : mesh.faces)
+    for (const std::int32_t v : face)
+      radius = std::max(radius, local_vertices[static_cast<std::size_t>(v)].norm());
+  const double half_field = radius < options.distance
+                                ? std::min(std::asin(radius / options.distance), kWidestHalfField)
+                                : kWidestHalfField;
+  return static_cast<int>(
+      std::ceil(std::tan(half_field) / std::tan(options.step_degrees * kRadiansPerDegree)));
+}
+
+template <auto release>
+struct Release {
+  template <class Handle>
+  void operator()(Handle* handle) const {
+    release(handle);
+  }
+};
+using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>>;
+using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release<rtcReleaseGeometry>>;
+
+// The one device of the process, never released: a second one, or one thread for this one, would change the
+// thread pool of everybody else. Pinned to one instruction set, for the same candidates on every machine.
+RTCDevice device() {
+  static RTCDevice device = rtcNewDevice("isa=sse2");
+  if (device == nullptr) throw std::runtime_error("Embree cannot be started");
+  return device;
+}
+
+void check_embree(const char* what) {
+  if (rtcGetDeviceError(device()) != RTC_ERROR_NONE)
+    throw std::runtime_error(std::string("Embree failed to ") + what);
+}
+
+Scene build_scene(const std::vector<Vec3>& local_vertices, const std::vector<Triangle>& faces) {
+  const Geometry geometry(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                                             RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                             local_vertices.size()));
+  auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), faces.size()));
+  check_embree("allocate the mesh");
+  for (const Vec3& p : local_vertices)
+    for (const double x : p) *vertex++ = static_cast<float>(x);
+  for (const Triangle& face : faces)
+    for (const std::int32_t v : face) *index++ = static_cast<std::uint32_t>(v);
+  rtcCommitGeometry(geometry.get());
+
+  Scene scene(rtcNewScene(device()));
+  // Not robust, 3-4 % of the rays slip through between two faces.
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);  // few rays: building is most of the time
+  rtcAttachGeometry(scene.get(), geometry.get());
+  rtcCommitScene(scene.get());
+  check_embree("build the scene");
+  return scene;
+}
+
+// The nearest hit so far of one ray; Embree hands the context on to the filter.
+struct NearestHit : RTCIntersectContext {
+  const Mesh& mesh;
+  const std::vector<Vec3>& local_vertices;
+  Vec3 origin, direction;  // local
+
+  double depth = std::numeric_limits<double>::infinity();  // of the hit, along the direction
+  std::uint32_t face = RTC_INVALID_GEOMETRY_ID;
+  Vec3 point_in_mesh = Vec3::Zero();
+
+  // Embree found the face in float. Weights that come out negative in double are rounding there: the point
+  // stays on the face. A face seen exactly edge-on is left to its neighbours.
+  void offer(std::uint32_t candidate) {
+    const Triangle& corners = mesh.faces[candidate];
+    std::array<Vec3, 3> v;
+    for (std::size_t k = 0; k < 3; ++k) v[k] = local_vertices[static_cast<std::size_t>(corners[k])] - origin;
+    Vec3 weights(direction.dot(v[1].cross(v[2])), direction.dot(v[2].cross(v[0])),
+                 direction.dot(v[0].cross(v[1])));
+    if (weights.sum() < 0) weights = -weights;
+    weights = weights.cwiseMax(0.0);
+    const double sum = weights.sum();
+    if (!(sum > 0)) return;
+    weights /= sum;
+
+    const double candidate_depth = direction.dot(weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2]);
+    if (candidate_depth > depth || (candidate_depth == depth && candidate > face)) return;
+    depth = candidate_depth;
+    face = candidate;
+    point_in_mesh.setZero();
+    for (std::size_t k = 0; k < 3; ++k)
+      point_in_mesh +=
+          weights[static_cast<Eigen::Index>(k)] * mesh.vertices[static_cast<std::size_t>(corners[k])];
+  }
+};
+
+// N is 1: rays are traced one by one.
+void offer_and_refuse(const RTCFilterFunctionNArguments* arguments) {
+  static_cast<NearestHit*>(arguments->context)->offer(RTCHitN_primID(arguments->hit, 1, 0));
+  arguments->valid[0] = 0;
+}
+
+RTCRayHit float_ray(const Vec3& origin, const Vec3& direction) {
+  RTCRayHit ray{};
+  ray.ray.org_x = static_cast<float>(origin.x());
+  ray.ray.org_y = static_cast<float>(origin.y());
+  ray.ray.org_z = static_cast<float>(origin.z());
+  ray.ray.dir_x = static_cast<float>(direction.x());
+  ray.ray.dir_y = static_cast<float>(direction.y());
+  ray.ray.dir_z = static_cast<float>(direction.z());
+  ray.ray.tfar = std::numeric_limits<float>::infinity();
+  ray.ray.mask = ~0U;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return ray;
+}
+
+}  // namespace
+
+void check(const ScanOptions& options) {
+  const auto require = [](bool good, const char* key, const char* what, double value) {
+    if (!good) throw OptionError{key, std::string("must be ") + what + ", not " + std::to_string(value)};
+  };
+  require(options.distance > 0 && options.distance <= 1e4, "distance", "in (0, 10000]", options.distance);
+  require(options.step_degrees >= 0.01 && options.step_degrees <= 10, "step_degrees", "in [0.01, 10]",
+          options.step_degrees);
+}
+
+Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
+  CHECK_LE(0, view);
+  CHECK_LT(view, kViews);
+  const LocalFrame frame = local_frame(mesh);
+  std::vector<Vec3> local_vertices;
+  local_vertices.reserve(mesh.vertices.size());
+  for (const Vec3& p : mesh.vertices) local_vertices.push_back(frame.local_from_mesh(p));
+
+  const Scene scene = build_scene(local_vertices, mesh.faces);
+  const Camera camera = camera_of_view(view, options.distance);
+  const double step = std::tan(options.step_degrees * kRadiansPerDegree);
+  const int half = half_grid(local_vertices, mesh, options);
+
+  Scan scan{{}, frame.mesh_from_local(camera.position)};
+  for (int row = half; row >= -half; --row) {
+    for (int column = -half; column <= half; ++column) {
+      NearestHit nearest{{}, mesh, local_vertices, camera.position, camera.ray(column * step, row * step)};
+      rtcInitIntersectContext(&nearest);
+      nearest.filter = offer_and_refuse;
+      alignas(16) RTCRayHit ray = float_ray(nearest.origin, nearest.direction);
+      rtcIntersect1(scene.get(), &nearest, &ray);
+      if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh);
+    }
+  }
+  if (scan.points.empty()) throw InputError("view " + std::to_string(view) + " sees nothing of the mesh");
+  return scan;
+}
+
+}  // namespace salbench

@@ -1,0 +1,40 @@
+// Simulated range images: what a depth camera sees of a mesh from the corners of an icosahedron. [tasse2016]
+//
+// The camera looks at the area-weighted centroid of the mesh, with Y up. Its rays form a square grid in the
+// image plane with one ray through the centroid, wide enough for the sphere around the centroid that holds
+// the mesh, but for at most kWidestHalfField. A point of the scan is the nearest hit of one ray.
+#pragma once
+
+#include <numbers>
+
+#include "stages/core/options.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+inline constexpr int kViews = 12;
+
+// A shape so slender that it passes the camera would need rays in all directions. The grid stops here.
+inline constexpr double kWidestHalfField = std::numbers::pi / 3;
+
+struct ScanOptions {
+  double distance = 3;          // of the camera from the centroid, in sqrt(surface area)
+  double step_degrees = 0.125;  // the image plane's step is the tangent of this angle
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("distance", self.distance, "camera to area centroid, in square roots of the surface area");
+    visit("step_degrees", self.step_degrees, "angle between neighbouring rays at the image centre");
+  }
+};
+void check(const ScanOptions& options);
+
+// The scan of view 0..kViews-1 in the mesh's own coordinates, row by row: rows from top to bottom, in a row
+// from left to right, as the camera sees them. Every point lies on a face, to double precision. Faces are
+// two-sided; vertices without a face do not count.
+//
+// Depends on nothing but its arguments: several threads may scan at once, and x86-64 machines agree.
+// Throws InputError where the surface area is 0 or not finite, or where no ray meets the mesh.
+Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options = {});
+
+}  // namespace salbench
