@@ -1,0 +1,47 @@
+// Agreement of a saliency map with what people marked. `map` is a histogram-matched map with one finite value
+// per point; `picked` are distinct point indices, picked by at least one participant. [tasse2016]
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "stages/core/rng.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct MetricsOptions {
+  std::int32_t splits = 100;
+  std::int32_t thresholds = 20;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("splits", self.splits, "random draws of unpicked points that the AUC is averaged over");
+    visit("thresholds", self.thresholds, "points of the ROC curve, evenly spaced over the values");
+  }
+};
+void check(const MetricsOptions& options);  // throws OptionError
+
+// Area under the ROC curve by the paper's protocol: as many negatives as there are picks are drawn with
+// replacement from all points but the first, once per split. NaN without picks or with a single point.
+// [tasse2016]
+double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
+           Rng rng);
+
+// Probability that a picked point has a larger value than an unpicked one, ties one half: the AUC without
+// sampling and without thresholds. O(n log n). NaN where all points or none are picked. [mann1947]
+double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked);
+
+// Mean over the picks of how many (population) standard deviations the map lies above its mean; 0 for a
+// constant map, NaN without picks. [tasse2016]
+double nss(std::span<const double> map, std::span<const std::int32_t> picked);
+
+// Pearson correlation; 0 where one of the two is constant, NaN for empty fields. [tasse2016]
+double cc(std::span<const double> map, std::span<const double> saliency);
+
+// All metrics of one map. What the ground truth has nothing for is NaN: auc, auc_exact and nss without picks,
+// cc and lcc without saliency values. Throws InputError where the ground truth is not of this shape: picks
+// out of range, or another number of points.
+Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng);
+
+}  // namespace salbench

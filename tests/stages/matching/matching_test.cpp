@@ -1,0 +1,131 @@
+#include "stages/matching/matching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/field.h"
+#include "stages/core/rng.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+
+// Many small values and few large ones, as saliency has it.
+ScalarField skewed_field(std::size_t n, double power, std::uint64_t seed) {
+  Rng rng(seed, "field", "");
+  ScalarField field(n);
+  for (double& value : field) value = std::pow(rng.uniform(), power);
+  return field;
+}
+
+Histogram uniform_reference() {
+  Histogram reference;
+  reference.fill(1);
+  return reference;
+}
+
+TEST(NormalisedHistogram, IsTheDensityOverTheUnitInterval) {
+  ScalarField field = {-3, 5, std::nan("")};  // to 0, 1 and 3/8
+  const Histogram histogram = normalised_histogram(field);
+  EXPECT_NEAR(histogram[0], 100.0 / 3, 1e-9);
+  EXPECT_NEAR(histogram[37], 100.0 / 3, 1e-9);
+  EXPECT_NEAR(histogram[99], 100.0 / 3, 1e-9);
+  EXPECT_NEAR(std::accumulate(histogram.begin(), histogram.end(), 0.0), 100, 1e-9);
+}
+
+TEST(NormalisedHistogram, OfAConstantFieldIsOneBinInTheMiddle) {
+  const Histogram histogram = normalised_histogram(ScalarField{7, 7, 7, 7});
+  EXPECT_NEAR(histogram[50], 100, 1e-9);
+  EXPECT_NEAR(std::accumulate(histogram.begin(), histogram.end(), 0.0), 100, 1e-9);
+}
+
+TEST(MeanHistogram, IsTheMeanOfEachBin) {
+  Histogram a{}, b{};
+  a[3] = 100;
+  b[3] = 40;
+  b[99] = 60;
+  const Histogram mean = mean_histogram(std::vector{a, b});
+  EXPECT_DOUBLE_EQ(mean[3], 70);
+  EXPECT_DOUBLE_EQ(mean[99], 30);
+  EXPECT_THAT(mean_histogram({}), Each(0.0));
+}
+
+TEST(Matched, ToItsOwnHistogramIsTheNormalisedMap) {
+  const ScalarField field = skewed_field(5000, 2, 1);
+  const ScalarField result = matched(field, normalised_histogram(field));
+  const ScalarField expected = min_max_normalized(field);
+  for (std::size_t i = 0; i < field.size(); ++i) ASSERT_NEAR(result[i], expected[i], 1e-12);
+}
+
+TEST(Matched, TakesOnTheReferenceDistribution) {
+  for (const double power : {0.5, 1.0, 3.0}) {
+    const Histogram reference = normalised_histogram(skewed_field(20000, 2, 2));
+    const Histogram result = normalised_histogram(matched(skewed_field(20000, power, 3), reference));
+    double result_below = 0, reference_below = 0, largest_gap = 0;
+    for (std::size_t i = 0; i < kHistogramBins; ++i) {
+      result_below += result[i] / kHistogramBins;
+      reference_below += reference[i] / kHistogramBins;
+      largest_gap = std::max(largest_gap, std::abs(result_below - reference_below));
+    }
+    EXPECT_LT(largest_gap, 0.05) << power;
+  }
+}
+
+TEST(Matched, MovesEdgesByTheCumulativeDensities) {
+  // A flat map of n = 100 against a reference twice as dense in its lower half: edge x goes to x / 2, but for
+  // the last, which is where the reference's cumulative density ends for good.
+  ScalarField field(100);
+  for (std::size_t i = 0; i < field.size(); ++i) field[i] = (static_cast<double>(i) + 0.5) / 100;
+  field.front() = 0;
+  field.back() = 1;
+  Histogram reference{};
+  std::fill_n(reference.begin(), 50, 2.0);
+  const ScalarField result = matched(field, reference);
+  EXPECT_EQ(result.front(), 0);
+  for (std::size_t i = 1; i + 1 < field.size(); ++i) EXPECT_NEAR(result[i], field[i] / 2, 1e-9) << i;
+  EXPECT_EQ(result.back(), 1);
+}
+
+TEST(Matched, KeepsTheOrderAndIgnoresScaleAndOffset) {
+  const ScalarField field = skewed_field(3000, 4, 4);
+  ScalarField scaled = field;
+  for (double& value : scaled) value = 1024 * value - 7;
+  const Histogram reference = normalised_histogram(skewed_field(3000, 2, 5));
+  const ScalarField result = matched(field, reference);
+  const ScalarField of_scaled = matched(scaled, reference);
+  std::vector<std::size_t> order(field.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return field[i]; });
+  for (std::size_t i = 1; i < order.size(); ++i) ASSERT_LE(result[order[i - 1]], result[order[i]]);
+  for (std::size_t i = 0; i < field.size(); ++i) ASSERT_NEAR(of_scaled[i], result[i], 1e-9);
+}
+
+TEST(Matched, SpansTheUnitIntervalWhateverTheReference) {
+  Histogram one_bin{};
+  one_bin[40] = 100;
+  for (const Histogram& reference : {uniform_reference(), one_bin}) {
+    const ScalarField result = matched(skewed_field(500, 2, 6), reference);
+    EXPECT_EQ(*std::ranges::min_element(result), 0);
+    EXPECT_EQ(*std::ranges::max_element(result), 1);
+  }
+}
+
+TEST(Matched, LeavesAConstantMapAsItIs) {
+  EXPECT_THAT(matched(ScalarField{5, 5}, uniform_reference()), ElementsAre(5, 5));
+  EXPECT_THAT(matched(ScalarField{std::nan(""), std::nan("")}, uniform_reference()), ElementsAre(0, 0));
+  EXPECT_TRUE(matched(ScalarField{}, uniform_reference()).empty());
+}
+
+TEST(Matched, TakesNanAsZero) {
+  EXPECT_EQ(matched(ScalarField{-1, std::nan(""), 3, 2}, uniform_reference()),
+            matched(ScalarField{-1, 0, 3, 2}, uniform_reference()));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,233 @@
+#include "stages/metrics/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+struct Example {
+  ScalarField map;
+  std::vector<std::int32_t> picked;
+};
+
+// Values with many ties where `levels` is small; larger ones are picked more often.
+Example random_example(std::size_t n, int levels, std::uint64_t seed) {
+  Rng rng(seed, "example", "");
+  Example example;
+  for (std::size_t i = 0; i < n; ++i) {
+    example.map.push_back(std::floor(levels * rng.uniform()) / levels);
+    if (rng.uniform() < 0.05 + 0.3 * example.map.back())
+      example.picked.push_back(static_cast<std::int32_t>(i));
+  }
+  return example;
+}
+
+ScalarField values_at(const ScalarField& map, const std::vector<std::int32_t>& picked) {
+  ScalarField values;
+  for (const std::int32_t i : picked) values.push_back(map[static_cast<std::size_t>(i)]);
+  return values;
+}
+
+// The protocol as it reads: every rate by counting.
+double auc_by_counting(const Example& example, const MetricsOptions& options, Rng rng) {
+  const auto rate = [](const ScalarField& values, double threshold) {
+    return static_cast<double>(std::ranges::count_if(values, [&](double v) { return v >= threshold; })) /
+           static_cast<double>(values.size());
+  };
+  const ScalarField positives = values_at(example.map, example.picked);
+  double sum = 0;
+  for (int split = 0; split < options.splits; ++split) {
+    ScalarField negatives;
+    for (std::size_t k = 0; k < positives.size(); ++k)
+      negatives.push_back(example.map[1 + rng.below(example.map.size() - 1)]);
+    const double largest = std::max(std::ranges::max(positives), std::ranges::max(negatives));
+    std::vector<std::pair<double, double>> curve = {{1, 1}};
+    for (int t = 0; t < options.thresholds; ++t) {
+      const double threshold = t == options.thresholds - 1 ? largest : largest * t / (options.thresholds - 1);
+      curve.emplace_back(rate(negatives, threshold), rate(positives, threshold));
+    }
+    curve.emplace_back(0, 0);
+    for (std::size_t k = 1; k < curve.size(); ++k)
+      sum += (curve[k - 1].first - curve[k].first) * (curve[k - 1].second + curve[k].second) / 2;
+  }
+  return sum / options.splits;
+}
+
+double auc_exact_by_pairs(const Example& example) {
+  double wins = 0, pairs = 0;
+  const auto is_picked = [&](std::size_t i) {
+    return std::ranges::binary_search(example.picked, static_cast<std::int32_t>(i));
+  };
+  for (std::size_t i = 0; i < example.map.size(); ++i) {
+    for (std::size_t j = 0; j < example.map.size(); ++j) {
+      if (!is_picked(i) || is_picked(j)) continue;
+      wins += example.map[i] > example.map[j] ? 1 : example.map[i] == example.map[j] ? 0.5 : 0;
+      pairs += 1;
+    }
+  }
+  return wins / pairs;
+}
+
+TEST(Auc, EqualsTheProtocolByCounting) {
+  for (const int levels : {4, 1000}) {
+    const Example example = random_example(400, levels, 61);
+    for (const MetricsOptions& options : {MetricsOptions{}, MetricsOptions{7, 2}}) {
+      const Rng rng(1, "score", "x");
+      EXPECT_NEAR(auc(example.map, example.picked, options, rng), auc_by_counting(example, options, rng),
+                  1e-12);
+    }
+  }
+}
+
+TEST(Auc, ApproachesTheExactOneWithManyThresholdsAndSplits) {
+  // Negatives include the picks: they pull the sampled value towards one half by the fraction picked.
+  const Example example = random_example(20000, 100000, 62);
+  const double sampled = auc(example.map, example.picked, {20, 2000}, Rng(1, "score", "x"));
+  const double picked_part = static_cast<double>(example.picked.size()) / 20000;
+  const double exact = auc_exact(example.map, example.picked);
+  EXPECT_NEAR(sampled, exact * (1 - picked_part) + 0.5 * picked_part, 0.003);
+}
+
+TEST(Auc, OfTwoPointsIsKnown) {
+  const std::vector<std::int32_t> first = {0};  // the only negative is then the second point
+  const Rng rng(1, "score", "x");
+  EXPECT_DOUBLE_EQ(auc(ScalarField{1, 0}, first, {}, rng), 1);
+  EXPECT_DOUBLE_EQ(auc(ScalarField{0, 1}, first, {}, rng), 0);
+}
+
+TEST(Auc, OfAConstantMapIsOneHalf) {
+  const std::vector<std::int32_t> picked = {0, 3};
+  for (const double value : {0.0, 0.7, -2.0})
+    EXPECT_DOUBLE_EQ(auc(ScalarField(5, value), picked, {}, Rng(1, "score", "x")), 0.5) << value;
+}
+
+TEST(Auc, NeverDrawsTheFirstPointAsANegative) {
+  // Were it drawn, the largest value would be 9 and no threshold between would reach the pick.
+  ScalarField map(50, 0.1);
+  map[0] = 9;
+  map[7] = 0.2;
+  const std::vector<std::int32_t> picked = {7};
+  const double area = auc(map, picked, {1000, 20}, Rng(1, "score", "x"));
+  EXPECT_GT(area, 0.95);  // the pick meets itself in one draw of 49
+  EXPECT_LT(area, 1);
+}
+
+TEST(Auc, DependsOnItsRandomNumbersAlone) {
+  const Example example = random_example(300, 1000, 63);
+  const auto with = [&](std::uint64_t seed) {
+    return auc(example.map, example.picked, {}, Rng(seed, "score", "x"));
+  };
+  EXPECT_EQ(with(1), with(1));
+  EXPECT_NE(with(1), with(2));
+}
+
+TEST(AucExact, EqualsAllPairsAlsoOnTies) {
+  for (const int levels : {1, 3, 20, 100000}) {
+    const Example example = random_example(300, levels, 64);
+    EXPECT_NEAR(auc_exact(example.map, example.picked), auc_exact_by_pairs(example), 1e-12) << levels;
+  }
+}
+
+TEST(AucExact, SeesTheOrderAlone) {
+  const Example example = random_example(500, 50, 65);
+  ScalarField stretched = example.map, mirrored = example.map;
+  for (double& value : stretched) value = std::exp(3 * value);
+  for (double& value : mirrored) value = -value;
+  const double exact = auc_exact(example.map, example.picked);
+  EXPECT_DOUBLE_EQ(auc_exact(stretched, example.picked), exact);
+  EXPECT_NEAR(auc_exact(mirrored, example.picked), 1 - exact, 1e-12);
+}
+
+TEST(AucExact, WithoutBothKindsIsUndefined) {
+  EXPECT_TRUE(std::isnan(auc_exact(ScalarField{1, 2}, {})));
+  EXPECT_TRUE(std::isnan(auc_exact(ScalarField{1, 2}, std::vector<std::int32_t>{0, 1})));
+}
+
+TEST(Nss, CountsDeviationsAboveTheMean) {
+  const ScalarField map = {0, 0, 0, 4};  // mean 1, deviation sqrt(3)
+  EXPECT_NEAR(nss(map, std::vector<std::int32_t>{3}), 3 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(nss(map, std::vector<std::int32_t>{0, 3}), 1 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(nss(map, std::vector<std::int32_t>{0, 1, 2, 3}), 0, 1e-12);
+  EXPECT_EQ(nss(ScalarField{2, 2, 2}, std::vector<std::int32_t>{1}), 0);
+  EXPECT_TRUE(std::isnan(nss(map, {})));
+}
+
+TEST(Cc, IsThePearsonCorrelation) {
+  EXPECT_NEAR(cc(ScalarField{1, 2, 3}, ScalarField{10, 20, 30}), 1, 1e-12);
+  EXPECT_NEAR(cc(ScalarField{1, 2, 3}, ScalarField{3, 2, 1}), -1, 1e-12);
+  EXPECT_NEAR(cc(ScalarField{1, 2, 3, 4}, ScalarField{1, -1, -1, 1}), 0, 1e-12);
+  EXPECT_NEAR(cc(ScalarField{1, 2, 3}, ScalarField{1, 3, 2}), 0.5, 1e-12);
+  EXPECT_EQ(cc(ScalarField{5, 5, 5}, ScalarField{1, 2, 3}), 0);
+  EXPECT_EQ(cc(ScalarField{1, 2, 3}, ScalarField{0.1, 0.1, 0.1}), 0);
+  EXPECT_TRUE(std::isnan(cc({}, {})));
+}
+
+TEST(NssAndCc, IgnoreScaleAndOffset) {
+  const Example a = random_example(200, 1000, 66), b = random_example(200, 1000, 67);
+  ScalarField scaled = a.map;
+  for (double& value : scaled) value = 5 * value - 3;
+  EXPECT_NEAR(nss(scaled, a.picked), nss(a.map, a.picked), 1e-12);
+  EXPECT_NEAR(cc(scaled, b.map), cc(a.map, b.map), 1e-12);
+}
+
+TEST(Score, CountsAPointOnceWhoeverPickedIt) {
+  const ScalarField map = {0, 0, 0, 4, 1};
+  const GroundTruth often{{0, 0, 0, 1, 0}, {{3}, {3, 0}, {3, 3}}};
+  const GroundTruth once{{0, 0, 0, 1, 0}, {{0, 3}}};
+  const Scores a = score(map, often, {}, Rng(1, "score", "x"));
+  const Scores b = score(map, once, {}, Rng(1, "score", "x"));
+  EXPECT_EQ(a.n_picks, 2);
+  EXPECT_EQ(a.n_points, 5);
+  EXPECT_EQ(a.nss, b.nss);
+  EXPECT_EQ(a.auc, b.auc);
+  EXPECT_EQ(a.auc_exact, b.auc_exact);
+  EXPECT_EQ(a.cc, cc(map, often.saliency));
+  EXPECT_EQ(a.lcc, std::abs(a.cc));
+}
+
+TEST(Score, LccIsTheMagnitudeOfCc) {
+  const Scores scores = score({3, 2, 1}, {{1, 2, 3}, {{0}}}, {}, Rng(1, "score", "x"));
+  EXPECT_NEAR(scores.cc, -1, 1e-12);
+  EXPECT_NEAR(scores.lcc, 1, 1e-12);
+}
+
+TEST(Score, IsNanWhereTheGroundTruthSaysNothing) {
+  const Scores no_picks = score({1, 2, 3}, {{1, 3, 2}, {{}, {}}}, {}, Rng(1, "score", "x"));
+  EXPECT_TRUE(std::isnan(no_picks.auc) && std::isnan(no_picks.auc_exact) && std::isnan(no_picks.nss));
+  EXPECT_NEAR(no_picks.cc, 0.5, 1e-12);
+  EXPECT_EQ(no_picks.n_picks, 0);
+  const Scores no_values = score({1, 2, 3}, {{}, {{2}}}, {}, Rng(1, "score", "x"));
+  EXPECT_TRUE(std::isnan(no_values.cc) && std::isnan(no_values.lcc));
+  EXPECT_EQ(no_values.auc_exact, 1);
+}
+
+TEST(Score, OfAConstantMapIsThatOfChance) {
+  const Scores scores = score({7, 7, 7}, {{1, 3, 2}, {{1}}}, {}, Rng(1, "score", "x"));
+  EXPECT_EQ(scores.nss, 0);
+  EXPECT_EQ(scores.cc, 0);
+  EXPECT_EQ(scores.lcc, 0);
+  EXPECT_EQ(scores.auc, 0.5);
+  EXPECT_EQ(scores.auc_exact, 0.5);
+}
+
+TEST(Score, RefusesGroundTruthOfAnotherShape) {
+  const Rng rng(1, "score", "x");
+  EXPECT_THROW(score({1, 2, 3}, {{1, 2}, {}}, {}, rng), InputError);
+  EXPECT_THROW(score({1, 2, 3}, {{1, 2, 3}, {{3}}}, {}, rng), InputError);
+  EXPECT_THROW(score({1, 2, 3}, {{1, 2, 3}, {{-1}}}, {}, rng), InputError);
+}
+
+TEST(MetricsOptions, RefusesNoSplitsAndASingleThreshold) {
+  EXPECT_NO_THROW(check(MetricsOptions{1, 2}));
+  EXPECT_THROW(check(MetricsOptions{0, 20}), OptionError);
+  EXPECT_THROW(check(MetricsOptions{100, 1}), OptionError);
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,81 @@
+// The authors' published figures, and the ground truth that they were made with, for the tests that compare
+// with them. `folder` is that of real_data() in tests/support/data.h.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench::published {
+
+using std::filesystem::path;
+
+// The meshes whose human ground truth is at hand.
+inline constexpr std::array kMeshes{9,   47,  52,  58,  74,  114, 124, 125, 185, 200,
+                                    214, 237, 257, 260, 309, 341, 353, 367, 386};
+
+inline std::ifstream opened(const path& file) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error("cannot open " + file.string());
+  return in;
+}
+
+inline std::vector<double> numbers(const path& file) {
+  std::ifstream in = opened(file);
+  std::vector<double> values;
+  for (double value = 0; in >> value;) values.push_back(value);
+  return values;
+}
+
+inline GroundTruth ground_truth(const path& folder, int mesh) {
+  const path root = folder / "SchellingData";
+  const std::string name = std::to_string(mesh);
+  GroundTruth truth;
+  truth.saliency = numbers(root / "Distributions" / (name + ".val"));
+  for (int k = 0; k < 100; ++k) {
+    const path file = root / "RawData" / (name + "_" + std::to_string(k) + ".pid");
+    if (!std::filesystem::exists(file)) continue;
+    auto& picks = truth.picks.emplace_back();
+    for (const double vertex : numbers(file)) picks.push_back(static_cast<std::int32_t>(vertex));
+  }
+  return truth;
+}
+
+// Mean histogram of the ground truth of all 400 meshes: bin_left,GS,...
+inline Histogram reference_histogram(const path& folder) {
+  std::ifstream in = opened(folder / "reference" / "mean_histograms_meshes.csv");
+  Histogram histogram{};
+  std::string line;
+  std::getline(in, line);
+  for (double& density : histogram) {
+    std::getline(in, line);
+    density = std::stod(line.substr(line.find(',') + 1));
+  }
+  return histogram;
+}
+
+// One line of published_scores.csv (item,model,auc,nss,cc); NaN where it has none.
+inline Scores scores(const path& folder, int mesh, const std::string& model) {
+  std::ifstream in = opened(folder / "reference" / "published_scores.csv");
+  const std::string start = std::to_string(mesh) + "," + model + ",";
+  Scores found;
+  found.auc = found.nss = found.cc = std::numeric_limits<double>::quiet_NaN();
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with(start)) continue;
+    const char* at = line.c_str() + start.size();
+    char* end = nullptr;
+    for (double* value : {&found.auc, &found.nss, &found.cc}) {
+      *value = std::strtod(at, &end);
+      at = end + 1;
+    }
+  }
+  return found;
+}
+
+}  // namespace salbench::published

@@ -1,0 +1,30 @@
+// The authors' own maps must score what the authors published for them.
+#include "tests/stages/metrics/published.h"
+
+#include <gtest/gtest.h>
+
+#include "stages/matching/matching.h"
+#include "stages/metrics/metrics.h"
+#include "tests/support/data.h"
+
+namespace salbench {
+namespace {
+
+TEST(PublishedScores, FollowFromThePublishedMaps) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  const Histogram reference = published::reference_histogram(*data);
+  for (const int mesh : published::kMeshes) {
+    const std::string name = std::to_string(mesh);
+    const ScalarField map = published::numbers(*data / "reference" / "CS" / (name + ".val"));
+    const Scores actual =
+        score(matched(map, reference), published::ground_truth(*data, mesh), {}, Rng(1, "CS", name));
+    const Scores expected = published::scores(*data, mesh, "CS");
+    EXPECT_NEAR(actual.nss, expected.nss, 1e-4) << "mesh " << mesh;
+    EXPECT_NEAR(actual.cc, expected.cc, 1e-4) << "mesh " << mesh;
+    EXPECT_NEAR(actual.auc, expected.auc, 0.005) << "mesh " << mesh;
+  }
+}
+
+}  // namespace
+}  // namespace salbench
