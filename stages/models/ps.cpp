@@ -1,0 +1,52 @@
+#include "stages/models/ps.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "stages/core/check.h"
+
+namespace salbench {
+namespace {
+
+using Axis = Eigen::Matrix<double, kFpfhBins, 1>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, kFpfhBins, Eigen::RowMajor>;
+
+// The bins that the pairs of a flat patch vote for: theta, alpha and phi are all 0.
+constexpr Eigen::Index kFlatBins[] = {5, 16, 27};
+
+Axis first_principal_axis(const Rows& centred) {
+  const Eigen::Matrix<double, kFpfhBins, kFpfhBins> covariance =
+      centred.transpose() * centred / static_cast<double>(centred.rows());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kFpfhBins, kFpfhBins>> solver(covariance);
+  CHECK_EQ(static_cast<int>(solver.info()), static_cast<int>(Eigen::Success));
+  return solver.eigenvectors().col(kFpfhBins - 1);  // eigenvalues ascend
+}
+
+// An eigenvector has no sign of its own.
+void turn_away_from_flat(Axis& axis) {
+  double along_flat = 0;
+  for (const Eigen::Index bin : kFlatBins) along_flat += axis[bin];
+  if (along_flat > 0) axis = -axis;
+}
+
+}  // namespace
+
+ScalarField ps_saliency(const ModelInput& input, const PsOptions& options) {
+  CHECK_EQ(input.fpfh != nullptr, true);
+  CHECK_EQ(input.fpfh->size(), input.points.size());
+  const auto n = static_cast<Eigen::Index>(input.fpfh->size());
+  if (n == 0) return {};
+  using StoredRows = Eigen::Matrix<float, Eigen::Dynamic, kFpfhBins, Eigen::RowMajor>;
+  Rows centred = Eigen::Map<const StoredRows>(input.fpfh->values.data(), n, kFpfhBins).cast<double>();
+  const Eigen::Matrix<double, 1, kFpfhBins> mean = centred.colwise().mean();
+  centred.rowwise() -= mean;
+
+  Axis axis = first_principal_axis(centred);
+  turn_away_from_flat(axis);
+  ScalarField saliency(input.points.size());
+  Eigen::Map<Eigen::VectorXd> projection(saliency.data(), n);
+  projection = centred * axis;
+  if (options.absolute) projection = projection.cwiseAbs();
+  return saliency;
+}
+
+}  // namespace salbench

@@ -1,0 +1,163 @@
+#include "stages/models/ps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/matching/matching.h"
+#include "stages/metrics/metrics.h"
+#include "tests/stages/metrics/published.h"
+#include "tests/support/data.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+
+ScalarField saliency_of(const Descriptors& descriptors, const PsOptions& options = {}) {
+  const std::vector<Vec3> points(descriptors.size(), Vec3::Zero());
+  ModelInput input;
+  input.points = points;
+  input.fpfh = &descriptors;
+  return ps_saliency(input, options);
+}
+
+// Rows of a flat patch, all their weight in bins 5, 16 and 27, some of which moved one bin up by `share`.
+Descriptors nearly_flat(const std::vector<float>& shares) {
+  Descriptors descriptors;
+  for (const float share : shares) {
+    std::array<float, kFpfhBins> row{};
+    for (const std::size_t flat : {5U, 16U, 27U}) {
+      row[flat] = 100 * (1 - share);
+      row[flat + 1] = 100 * share;
+    }
+    descriptors.values.insert(descriptors.values.end(), row.begin(), row.end());
+  }
+  return descriptors;
+}
+
+Descriptors random_descriptors(std::size_t n, std::uint64_t seed) {
+  return fpfh(shapes::random_cloud(n, seed), shapes::random_normals(n, seed + 1), FpfhOptions{});
+}
+
+TEST(PsSaliency, OfOneDirectionIsTheDistanceAlongIt) {
+  // Moving a share s of three blocks by one bin is a step of 100 s in 6 of the 33 directions.
+  const ScalarField saliency = saliency_of(nearly_flat({0, 0, 0, 0.1F, 0.3F}));
+  const double step = 100 * std::sqrt(6.0), mean = 0.08;
+  const double shares[] = {0, 0, 0, 0.1, 0.3};
+  for (std::size_t i = 0; i < saliency.size(); ++i)
+    EXPECT_NEAR(saliency[i], step * (shares[i] - mean), 1e-4) << i;
+}
+
+TEST(PsSaliency, PutsFlatPlacesLowAlsoWhereTheyAreFew) {
+  const ScalarField saliency = saliency_of(nearly_flat({0, 0.9F, 1, 1, 1}));
+  EXPECT_EQ(std::ranges::min_element(saliency) - saliency.begin(), 0);
+}
+
+TEST(PsSaliency, AbsoluteIsTheMagnitude) {
+  const Descriptors descriptors = random_descriptors(200, 71);
+  const ScalarField is_signed = saliency_of(descriptors);
+  const ScalarField absolute = saliency_of(descriptors, {.absolute = true});
+  EXPECT_LT(std::ranges::min(is_signed), 0);
+  for (std::size_t i = 0; i < is_signed.size(); ++i) EXPECT_EQ(absolute[i], std::abs(is_signed[i]));
+}
+
+TEST(PsSaliency, HasMeanZeroAndTheLargestVarianceOfAllDirections) {
+  const Descriptors descriptors = random_descriptors(400, 73);
+  const auto n = static_cast<double>(descriptors.size());
+  const ScalarField saliency = saliency_of(descriptors);
+  EXPECT_NEAR(std::accumulate(saliency.begin(), saliency.end(), 0.0) / n, 0, 1e-9);
+
+  // The twin: power iteration on the data itself, without a covariance or a solver.
+  std::vector<Eigen::VectorXd> centred;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(kFpfhBins);
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    Eigen::VectorXd row(kFpfhBins);
+    for (std::size_t b = 0; b < kFpfhBins; ++b) row[static_cast<Eigen::Index>(b)] = descriptors.row(i)[b];
+    centred.push_back(row);
+    mean += row / n;
+  }
+  for (Eigen::VectorXd& row : centred) row -= mean;
+  Eigen::VectorXd axis = Eigen::VectorXd::LinSpaced(kFpfhBins, 1, 2);
+  for (int round = 0; round < 3000; ++round) {
+    Eigen::VectorXd next = Eigen::VectorXd::Zero(kFpfhBins);
+    for (const Eigen::VectorXd& row : centred) next += row.dot(axis) * row;
+    axis = next.normalized();
+  }
+  if (axis[5] + axis[16] + axis[27] > 0) axis = -axis;
+  for (std::size_t i = 0; i < centred.size(); ++i) EXPECT_NEAR(saliency[i], axis.dot(centred[i]), 1e-6) << i;
+}
+
+TEST(PsSaliency, IsNothingWhereAllDescriptorsAreEqual) {
+  EXPECT_THAT(saliency_of(nearly_flat({0.5F, 0.5F, 0.5F, 0.5F})), Each(0.0));
+  EXPECT_THAT(saliency_of(nearly_flat({0.25F})), Each(0.0));
+  EXPECT_TRUE(saliency_of({}).empty());
+}
+
+// ---- The authors' own results, with the normals and descriptors of the `published` protocol.
+
+Normals area_weighted_normals(const Mesh& mesh) {
+  Normals normals(mesh.vertices.size(), Vec3::Zero());
+  const auto at = [&](std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
+  for (const auto& [a, b, c] : mesh.faces)
+    for (const std::int32_t corner : {a, b, c})
+      normals[static_cast<std::size_t>(corner)] += (at(b) - at(a)).cross(at(c) - at(a));
+  for (Vec3& normal : normals) normal.normalize();
+  return normals;
+}
+
+ScalarField real_saliency(const published::path& data, int item) {
+  const Mesh mesh = read_mesh(data / "SchellingData" / "Meshes" / (std::to_string(item) + ".off"));
+  const Descriptors descriptors = fpfh(mesh.vertices, area_weighted_normals(mesh), FpfhOptions{});
+  ModelInput input;
+  input.points = mesh.vertices;
+  input.fpfh = &descriptors;
+  return ps_saliency(input, {});
+}
+
+TEST(PsSaliency, ScoresWhatTheAuthorsPublished) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  const Histogram reference = published::reference_histogram(*data);
+  double nss_error = 0, cc_error = 0;
+  int compared = 0;
+  for (const int mesh : published::kMeshes) {
+    const Scores expected = published::scores(*data, mesh, "PS");
+    if (std::isnan(expected.nss)) continue;  // PS is published for twelve of them
+    const Scores actual = score(matched(real_saliency(*data, mesh), reference),
+                                published::ground_truth(*data, mesh), {}, Rng(1, "PS", ""));
+    nss_error += std::abs(actual.nss - expected.nss);
+    cc_error += std::abs(actual.cc - expected.cc);
+    ++compared;
+  }
+  ASSERT_EQ(compared, 12);
+  RecordProperty("mean_nss_error", std::to_string(nss_error / compared));
+  RecordProperty("mean_cc_error", std::to_string(cc_error / compared));
+  EXPECT_LE(nss_error / compared, 0.005);
+  EXPECT_LE(cc_error / compared, 0.005);
+}
+
+TEST(PsSaliency, IsTheMapOfThePapersFigure) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  for (const int item : {2, 65}) {
+    const auto figure =
+        published::numbers(*data / "reference" / "figures" / ("PS_" + std::to_string(item) + ".txt"));
+    const ScalarField saliency = real_saliency(*data, item);
+    ScalarField ours, theirs;  // at the vertices that the figure shows
+    for (std::size_t i = 0; i + 1 < figure.size(); i += 2) {
+      ours.push_back(saliency[static_cast<std::size_t>(figure[i])]);
+      theirs.push_back(figure[i + 1]);
+    }
+    EXPECT_GE(cc(ours, theirs), 0.995) << "mesh " << item;
+  }
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,43 @@
+#include "stages/models/rs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+ScalarField random_saliency(const std::vector<Vec3>& points, std::uint64_t seed, std::string_view item) {
+  ModelInput input;
+  input.points = points;
+  input.seed = seed;
+  input.item = item;
+  return rs_saliency(input, {});
+}
+
+TEST(RsSaliency, IsUniformOverTheUnitInterval) {
+  ScalarField values = random_saliency(shapes::random_cloud(20000, 1), 1, "9");
+  std::ranges::sort(values);
+  double largest_gap = 0;  // Kolmogorov-Smirnov: 1.63 / sqrt(n) is exceeded once in a hundred seeds
+  for (std::size_t i = 0; i < values.size(); ++i)
+    largest_gap = std::max(largest_gap, std::abs(values[i] - static_cast<double>(i) / 20000));
+  EXPECT_LT(largest_gap, 1.63 / std::sqrt(20000.0));
+  EXPECT_GE(values.front(), 0);
+  EXPECT_LT(values.back(), 1);
+}
+
+TEST(RsSaliency, DependsOnSeedAndItemAlone) {
+  const auto points = shapes::random_cloud(50, 1), others = shapes::random_cloud(50, 2);
+  EXPECT_EQ(random_saliency(points, 1, "9"), random_saliency(others, 1, "9"));
+  EXPECT_NE(random_saliency(points, 1, "9"), random_saliency(points, 2, "9"));
+  EXPECT_NE(random_saliency(points, 1, "9"), random_saliency(points, 1, "9_0"));
+}
+
+TEST(RsSaliency, OfNoPointsIsEmpty) { EXPECT_TRUE(random_saliency({}, 1, "9").empty()); }
+
+}  // namespace
+}  // namespace salbench
