@@ -1,0 +1,41 @@
+// The histograms nearest to each in chi-square distance, sum (a - b)^2 / (a + b), exactly and in O(n) memory.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "stages/core/types.h"
+#include "stages/models/chi2_kernel.h"
+
+namespace salbench {
+
+struct Chi2Neighbor {
+  std::int32_t index;
+  float chi2;
+};
+
+class Chi2Search {
+ public:
+  // Bins that are 0 in every histogram are left out. Throws InputError where a value is negative or not
+  // finite.
+  explicit Chi2Search(const Descriptors& descriptors,
+                      chi2_kernel::Instructions instructions = chi2_kernel::widest_supported());
+
+  std::size_t size() const { return size_; }
+  std::size_t used_bins() const { return bins_; }
+
+  // Calls visit(i, nearest) for i = 0..n-1 in order. `nearest`, valid during the call, holds the k histograms
+  // of smallest distance to i, i itself among them, by ascending index; of those at equal distance where the
+  // k end, the ones of higher index. 1 <= k <= n.
+  using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbor> nearest)>;
+  void for_each(std::size_t k, const Visit& visit) const;
+
+ private:
+  std::size_t size_ = 0, groups_ = 0, bins_ = 0;
+  std::vector<float> table_;  // groups x bins x 16, the last group filled up with empty histograms
+  chi2_kernel::Instructions instructions_;
+};
+
+}  // namespace salbench

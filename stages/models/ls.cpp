@@ -1,0 +1,155 @@
+// Shtrom, Leifman and Tal 2013, as the benchmark's authors ran it. It departs from the publication in that a
+// point is compared only with the points most similar to it, and in that the high level describes only the
+// most distinct points anew: their descriptors are compared with all others' low-level ones. What the
+// paper's text describes are other values of the same options.
+#include "stages/models/ls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/neighbors.h"
+#include "stages/models/chi2_search.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kHistogramTotal = 300;  // of a descriptor in the published weighting: 3 blocks of 100
+
+std::size_t count_of(double share, std::size_t n) {
+  return static_cast<std::size_t>(share * static_cast<double>(n));
+}
+
+// The `count` points of largest value, ascending; of equal values the higher index stays.
+std::vector<std::int32_t> largest(const ScalarField& field, std::size_t count) {
+  std::vector<std::int32_t> points(field.size());
+  std::iota(points.begin(), points.end(), 0);
+  const auto rank = [&](std::int32_t i) { return std::pair(field[static_cast<std::size_t>(i)], i); };
+  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), points.end(),
+                   [&](std::int32_t a, std::int32_t b) { return rank(a) > rank(b); });
+  points.resize(count);
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+// Centred, in units of R.
+std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
+  if (points.empty()) throw InputError("the shape has no points");
+  const Vec3 center = centroid(points);
+  const double radius = bounding_radius(points);
+  if (!std::isfinite(radius)) throw InputError("the shape has a coordinate that is not finite");
+  if (radius == 0) throw InputError("all points of the shape coincide");
+  std::vector<Vec3> result;
+  result.reserve(points.size());
+  for (const Vec3& p : points) result.push_back((p - center) / radius);
+  return result;
+}
+
+// 1 - exp(-mean dissimilarity to the selected points); dissimilarity(chi2, distance).
+template <class Dissimilarity>
+ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descriptors, double selected_share,
+                         Dissimilarity&& dissimilarity) {
+  const std::size_t selected = std::max<std::size_t>(count_of(selected_share, points.size()), 1);
+  ScalarField result(points.size());
+  Chi2Search(descriptors).for_each(selected, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+    double sum = 0;
+    for (const auto& [j, chi2] : nearest)
+      sum += dissimilarity(static_cast<double>(chi2) / kHistogramTotal,
+                           (points[i] - points[static_cast<std::size_t>(j)]).norm());
+    result[i] = 1 - std::exp(-sum / static_cast<double>(selected));
+  });
+  return result;
+}
+
+// The distinctness of the nearest focus, fading with the distance from it.
+ScalarField association(std::span<const Vec3> points, const ScalarField& low, const LsOptions& options) {
+  const std::size_t count = std::max<std::size_t>(count_of(options.foci_share, points.size()), 1);
+  const std::vector<std::int32_t> foci = largest(low, count);
+  std::vector<Vec3> places;
+  places.reserve(foci.size());
+  for (const std::int32_t focus : foci) places.push_back(points[static_cast<std::size_t>(focus)]);
+  const KdTree tree(places);
+
+  const double twice_variance = 2 * options.foci_sigma * options.foci_sigma;
+  ScalarField result(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto nearest = static_cast<std::size_t>(tree.nearest(points[i]));
+    result[i] = low[static_cast<std::size_t>(foci[nearest])] *
+                std::exp(-(points[i] - places[nearest]).squaredNorm() / twice_variance);
+  }
+  return result;
+}
+
+// The low-level descriptors, those of the most distinct points replaced by high-level ones.
+Descriptors mixed_descriptors(const ModelInput& input, const ScalarField& low, const LsOptions& options) {
+  const std::vector<std::int32_t> distinct = largest(low, count_of(options.high_share, low.size()));
+  const Support support{0, options.high_radius * bounding_radius(input.points)};
+  const Descriptors high =
+      fpfh(input.points, input.normals, KdTree(input.points), support, options.high_weighting, distinct);
+  Descriptors mixed = *input.fpfh;
+  for (std::size_t h = 0; h < distinct.size(); ++h) {
+    const auto row = high.row(h);
+    std::copy(row.begin(), row.end(),
+              mixed.values.begin() + static_cast<std::ptrdiff_t>(distinct[h]) * kFpfhBins);
+  }
+  return mixed;
+}
+
+void check_share(const char* key, double share) {
+  if (!(share >= 0 && share <= 1))
+    throw OptionError(key, "must be between 0 and 1, not " + std::to_string(share));
+}
+
+void check_length(const char* key, double length) {
+  if (!(length > 0) || !std::isfinite(length))
+    throw OptionError(key, "must be a number above 0, not " + std::to_string(length));
+}
+
+}  // namespace
+
+LsOptions LsOptions::text() {
+  // S = (D_low + D_high) / 2 + A / 2: the halves are a common factor.
+  LsOptions options;
+  options.selected_share = 1;
+  options.high_share = 1;
+  options.high_weighting = FpfhWeighting::text;
+  options.high_weight = 1;
+  return options;
+}
+
+void check(const LsOptions& options) {
+  check_share("selected_share", options.selected_share);
+  check_share("foci_share", options.foci_share);
+  check_share("high_share", options.high_share);
+  check_length("foci_sigma", options.foci_sigma);
+  check_length("high_radius", options.high_radius);
+  if (!(options.high_weight >= 0) || !std::isfinite(options.high_weight))
+    throw OptionError("high_weight",
+                      "must be a number of at least 0, not " + std::to_string(options.high_weight));
+}
+
+ScalarField ls_saliency(const ModelInput& input, const LsOptions& options) {
+  check(options);
+  CHECK_EQ(input.fpfh != nullptr, true);
+  CHECK_EQ(input.fpfh->size(), input.points.size());
+  CHECK_EQ(input.normals.size(), input.points.size());
+  const std::vector<Vec3> points = in_units_of_radius(input.points);
+
+  // Near points count more at the low level, far ones at the high level.
+  const ScalarField low = distinctness(points, *input.fpfh, options.selected_share,
+                                       [](double chi2, double distance) { return chi2 / (1 + distance); });
+  ScalarField saliency = association(points, low, options);
+  const ScalarField high =
+      distinctness(points, mixed_descriptors(input, low, options), options.selected_share,
+                   [](double chi2, double distance) { return chi2 * std::log1p(distance); });
+  for (std::size_t i = 0; i < saliency.size(); ++i) saliency[i] += low[i] + options.high_weight * high[i];
+  return saliency;
+}
+
+}  // namespace salbench

@@ -1,0 +1,43 @@
+// LS, saliency of large point sets: a point is salient where its surroundings are unlike those that resemble
+// them most, at two scales, or where it lies near such a point.
+#pragma once
+
+#include "stages/core/fpfh.h"
+#include "stages/core/options.h"
+#include "stages/models/model.h"
+
+namespace salbench {
+
+// As the benchmark's authors ran it; lengths in units of R, the largest distance to the centroid. Of a share
+// of the points the number is rounded down; there is always one selected point and one focus.
+struct LsOptions {
+  double selected_share = 0.05;
+  double foci_share = 0.2;
+  double foci_sigma = 0.05;
+  double high_share = 0.1;
+  double high_radius = 0.1;
+  FpfhWeighting high_weighting = FpfhWeighting::published;
+  double high_weight = 0.5;
+
+  static LsOptions text();  // as the paper describes it; the shared descriptors are then of its grown radius
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("selected_share", self.selected_share, "points compared with, the most similar ones; 1: all");
+    visit("foci_share", self.foci_share, "points of largest low-level distinctness: the foci of attention");
+    visit("foci_sigma", self.foci_sigma, "reach of a focus: standard deviation of its Gaussian, in R");
+    visit("high_share", self.high_share, "points described at the high level, those of largest distinctness");
+    visit("high_radius", self.high_radius, "support radius of the high level, in R");
+    visit("high_weighting", self.high_weighting, "how the neighbours' histograms are combined there");
+    visit("high_weight", self.high_weight, "of high-level distinctness, relative to the low level");
+  }
+};
+void check(const LsOptions& options);  // throws OptionError
+
+// D_low + A + high_weight D_high, >= 0. Reads input.normals and, for the low level, input.fpfh. Time O(n^2),
+// memory O(n) and the neighbourhoods of the high level. Where the selected share is less than two points a
+// point is compared with itself alone, and all are 0. Throws InputError for a shape without points, without
+// extent, or with a coordinate, normal or descriptor that is not finite. [shtrom2013] [tasse2016]
+ScalarField ls_saliency(const ModelInput& input, const LsOptions& options);
+
+}  // namespace salbench

@@ -1,0 +1,190 @@
+#include "stages/models/chi2_search.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/rng.h"
+
+namespace salbench {
+namespace {
+
+using chi2_kernel::Instructions;
+using testing::ElementsAre;
+
+// Bins hold 0..levels-1: few levels make many equal distances, and many bins that are 0 in both histograms.
+Descriptors random_histograms(std::size_t n, std::uint64_t levels, std::uint64_t seed) {
+  Rng rng(seed, "histograms", "");
+  Descriptors descriptors;
+  descriptors.values.resize(n * kFpfhBins);
+  for (float& value : descriptors.values) value = static_cast<float>(rng.below(levels));
+  return descriptors;
+}
+
+// Histograms with a single bin filled, distances |a - b|^2 / (a + b).
+Descriptors one_bin(const std::vector<float>& heights) {
+  Descriptors descriptors;
+  descriptors.values.resize(heights.size() * kFpfhBins);
+  for (std::size_t i = 0; i < heights.size(); ++i) descriptors.values[i * kFpfhBins + 7] = heights[i];
+  return descriptors;
+}
+
+std::vector<std::vector<std::int32_t>> indices_of(const Chi2Search& search, std::size_t k) {
+  std::vector<std::vector<std::int32_t>> result;
+  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+    EXPECT_EQ(i, result.size());
+    result.emplace_back();
+    for (const Chi2Neighbor& neighbor : nearest) result.back().push_back(neighbor.index);
+  });
+  return result;
+}
+
+float chi2(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
+  float sum = 0;
+  for (std::size_t bin = 0; bin < kFpfhBins; ++bin)
+    if (a[bin] + b[bin] > 0) sum += (b[bin] - a[bin]) * (b[bin] - a[bin]) / (b[bin] + a[bin]);
+  return sum;
+}
+
+// The brute-force twin: a full sort of every row, of equal distances the higher index first.
+void expect_equals_brute_force(const Descriptors& descriptors, std::size_t k, Instructions instructions) {
+  const std::size_t n = descriptors.size();
+  Chi2Search(descriptors, instructions)
+      .for_each(k, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+        std::vector<std::pair<float, std::size_t>> all;
+        for (std::size_t j = 0; j < n; ++j) all.emplace_back(chi2(descriptors.row(i), descriptors.row(j)), j);
+        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+          return std::pair(a.first, b.second) < std::pair(b.first, a.second);
+        });
+        all.resize(k);
+        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+        ASSERT_EQ(nearest.size(), k);
+        for (std::size_t c = 0; c < k; ++c) {
+          ASSERT_EQ(static_cast<std::size_t>(nearest[c].index), all[c].second) << "row " << i << " of " << n;
+          ASSERT_EQ(nearest[c].chi2, all[c].first) << "row " << i << " of " << n;  // to the last bit
+        }
+      });
+}
+
+TEST(Chi2Search, EqualsBruteForceWhereNoDistancesAreEqual) {
+  for (const std::size_t n : {1U, 15U, 16U, 17U, 130U}) {
+    const Descriptors histograms = random_histograms(n, 1U << 20U, n);
+    for (const std::size_t k : {std::size_t{1}, (n + 4) / 5, n})
+      expect_equals_brute_force(histograms, k, Instructions::baseline);
+  }
+}
+
+TEST(Chi2Search, EqualsBruteForceWhereManyDistancesAreEqual) {
+  for (const std::size_t k : {1U, 7U, 40U, 99U})
+    expect_equals_brute_force(random_histograms(100, 2, k), k, Instructions::baseline);
+}
+
+TEST(Chi2Search, EqualsBruteForceWhereASampleBoundsTheSelection) {
+  for (const std::uint64_t levels : {2U, 1U << 20U}) {
+    const Descriptors histograms = random_histograms(1100, levels, levels);
+    for (const std::size_t k : {1U, 55U, 1050U})
+      expect_equals_brute_force(histograms, k, chi2_kernel::widest_supported());
+  }
+}
+
+TEST(Chi2Search, RecoversFromASampleThatMisleads) {
+  // Every eighth histogram, just those of the sample, equals the first: they are fewer than asked for.
+  std::vector<float> heights(2048);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 8 == 0 ? 1 : 2 + static_cast<float>(i);
+  expect_equals_brute_force(one_bin(heights), 614, chi2_kernel::widest_supported());
+}
+
+TEST(Chi2Search, OrdersDistancesOfAnyMagnitude) {
+  for (const float magnitude : {1e-20F, 1e-9F, 1e9F, 1e18F}) {
+    std::vector<float> heights(1200);
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      heights[i] = magnitude * static_cast<float>(i * 7 % 1200) / 1200;
+    std::size_t rows = 0;
+    Chi2Search(one_bin(heights)).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+      ++rows;
+      ASSERT_EQ(nearest.size(), 60U);
+      ASSERT_TRUE(std::any_of(nearest.begin(), nearest.end(),
+                              [&](const Chi2Neighbor& neighbor) { return neighbor.chi2 == 0; }))
+          << i << " at " << magnitude;
+    });
+    EXPECT_EQ(rows, heights.size());
+  }
+}
+
+TEST(Chi2Search, OfEqualDistancesAtTheBoundaryTheHigherIndexStays) {
+  const Chi2Search search(one_bin({1, 4, 1, 4, 4}));
+  EXPECT_THAT(indices_of(search, 1),
+              ElementsAre(ElementsAre(2), ElementsAre(4), ElementsAre(2), ElementsAre(4), ElementsAre(4)));
+  EXPECT_THAT(indices_of(search, 4)[0], ElementsAre(0, 2, 3, 4));
+  EXPECT_THAT(indices_of(search, 4)[1], ElementsAre(1, 2, 3, 4));
+}
+
+TEST(Chi2Search, LeavesOutOnlyBinsThatAreNeverFilled) {
+  EXPECT_EQ(Chi2Search(one_bin({0, 0, 3})).used_bins(), 1U);
+  EXPECT_EQ(Chi2Search(random_histograms(50, 9, 1)).used_bins(), 33U);
+  const Chi2Search empty(one_bin({0, 0, 0}));
+  EXPECT_EQ(empty.used_bins(), 0U);
+  EXPECT_THAT(indices_of(empty, 2)[0], ElementsAre(1, 2));
+}
+
+TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
+  for (const float wrong :
+       {-1.F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    try {
+      Chi2Search search(one_bin({1, 2, wrong}));
+      FAIL() << wrong;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("descriptor of point 2"));
+    }
+  }
+}
+
+TEST(Chi2Kernel, EveryVariantGivesTheSameBytes) {
+  const std::size_t groups = 5, bins = 17;
+  Rng rng(3, "kernel", "");
+  std::vector<float> table(groups * bins * chi2_kernel::kLanes), queries(chi2_kernel::kQueries * bins);
+  for (float& value : table) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
+  for (float& value : queries) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
+  const auto run = [&](Instructions instructions) {
+    std::vector<float> result(chi2_kernel::kQueries * groups * chi2_kernel::kLanes);
+    chi2_kernel::distances(instructions, table.data(), groups, bins, queries.data(), result.data());
+    return result;
+  };
+  const std::vector<float> baseline = run(Instructions::baseline);
+  EXPECT_GT(*std::min_element(baseline.begin(), baseline.end()), 0);
+  for (const Instructions wider : {Instructions::avx2, Instructions::avx512}) {
+    if (chi2_kernel::supported(wider)) {
+      EXPECT_EQ(run(wider), baseline) << static_cast<int>(wider);
+    }
+  }
+}
+
+TEST(Chi2Kernel, IsExactToSinglePrecision) {
+  const Descriptors histograms = random_histograms(60, 1U << 20U, 4);
+  Chi2Search(histograms).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+    for (const auto& [j, distance] : nearest) {
+      double sum = 0;
+      for (std::size_t bin = 0; bin < kFpfhBins; ++bin) {
+        const double a = histograms.row(i)[bin], b = histograms.row(static_cast<std::size_t>(j))[bin];
+        if (a + b > 0) sum += (a - b) * (a - b) / (a + b);
+      }
+      ASSERT_NEAR(distance, sum, 2e-6 * sum) << i << " and " << j;
+    }
+  });
+}
+
+TEST(Chi2Kernel, IndicesUpToTakesTheLimitAndPassesOverInfinity) {
+  std::vector<float> values(48, std::numeric_limits<float>::infinity());
+  values[0] = values[15] = values[16] = values[47] = 2;
+  values[20] = 2.5F;
+  std::vector<std::int32_t> indices(48, -1);
+  ASSERT_EQ(chi2_kernel::indices_up_to(2, values.data(), values.size(), indices.data()), 4U);
+  indices.resize(4);
+  EXPECT_THAT(indices, ElementsAre(0, 15, 16, 47));
+}
+
+}  // namespace
+}  // namespace salbench

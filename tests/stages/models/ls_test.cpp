@@ -1,0 +1,327 @@
+#include "stages/models/ls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+// A shape with the descriptors that LS takes as given: 9 nearest points.
+struct Shape {
+  std::vector<Vec3> points;
+  Normals normals;
+  Descriptors low;
+
+  Shape(std::vector<Vec3> p, Normals n)
+      : points(std::move(p)),
+        normals(std::move(n)),
+        low(fpfh(points, normals, KdTree(points), {9, 0}, FpfhWeighting::published)) {}
+
+  ScalarField ls(const LsOptions& options = {}) const {
+    ModelInput input;
+    input.points = points;
+    input.normals = normals;
+    input.fpfh = &low;
+    return ls_saliency(input, options);
+  }
+};
+
+Shape cloud(std::size_t n, std::uint64_t seed) {
+  return {shapes::random_cloud(n, seed), shapes::random_normals(n, seed)};
+}
+
+// Stretched along a skew axis: the mirror symmetry of the bumps would make distances equal.
+Shape bumps() {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  Normals normals;
+  for (Vec3& v : mesh.vertices) {
+    v += 0.2 * v.dot(Vec3(0.3, 0.5, 0.7)) * Vec3(0.3, 0.5, 0.7);
+    normals.push_back(v.normalized());
+  }
+  return {mesh.vertices, normals};
+}
+
+template <class Map>
+Shape moved(const Shape& shape, Map&& point, const Eigen::Matrix3d& rotation) {
+  std::vector<Vec3> points;
+  Normals normals;
+  for (const Vec3& p : shape.points) points.push_back(point(p));
+  for (const Vec3& n : shape.normals) normals.push_back(rotation * n);
+  return {points, normals};
+}
+
+void expect_near(const ScalarField& actual, const ScalarField& expected, double tolerance) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i)
+    ASSERT_NEAR(actual[i], expected[i], tolerance) << "point " << i;
+}
+
+// A cloud is so sparse that points have no neighbour at 0.1 R: a wider support leaves no two descriptors, and
+// no two distances, alike.
+LsOptions for_clouds() {
+  LsOptions options;
+  options.high_radius = 0.6;
+  return options;
+}
+
+// The brute-force twin: the formulas one after the other, by full sorts.
+struct Twin {
+  const Shape& shape;
+  const LsOptions& options;
+  std::size_t n = shape.points.size();
+  double radius = bounding_radius(shape.points);
+
+  std::size_t count(double share) const {
+    return static_cast<std::size_t>(std::floor(share * static_cast<double>(n)));
+  }
+  double distance(std::size_t i, std::size_t j) const {
+    return (shape.points[i] - shape.points[j]).norm() / radius;
+  }
+
+  // In single precision as LS has it, so that no two distances change places.
+  static double chi2(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
+    float sum = 0;
+    for (std::size_t bin = 0; bin < kFpfhBins; ++bin)
+      if (a[bin] + b[bin] > 0) sum += (a[bin] - b[bin]) * (a[bin] - b[bin]) / (a[bin] + b[bin]);
+    return static_cast<double>(sum) / 300;
+  }
+
+  ScalarField distinctness(const Descriptors& descriptors, bool high) const {
+    ScalarField result;
+    const std::size_t k = count(options.selected_share);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::vector<std::pair<double, std::size_t>> all;
+      for (std::size_t j = 0; j < n; ++j) all.emplace_back(chi2(descriptors.row(i), descriptors.row(j)), j);
+      std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+        return std::pair(a.first, b.second) < std::pair(b.first, a.second);
+      });
+      double sum = 0;
+      for (std::size_t c = 0; c < k; ++c) {
+        const double d = distance(i, all[c].second);
+        sum += high ? all[c].first * std::log(1 + d) : all[c].first / (1 + d);
+      }
+      result.push_back(1 - std::exp(-sum / static_cast<double>(k)));
+    }
+    return result;
+  }
+
+  std::vector<std::int32_t> top(const ScalarField& field, double share) const {
+    std::vector<std::int32_t> order(n);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+      return std::pair(field[static_cast<std::size_t>(a)], a) >
+             std::pair(field[static_cast<std::size_t>(b)], b);
+    });
+    order.resize(count(share));
+    return order;
+  }
+
+  ScalarField ls() const {
+    const ScalarField low = distinctness(shape.low, false);
+    Descriptors mixed = shape.low;
+    const KdTree tree(shape.points);
+    const Descriptors high =
+        fpfh(shape.points, shape.normals, tree, {0, options.high_radius * radius}, options.high_weighting);
+    for (const std::int32_t i : top(low, options.high_share))
+      for (std::size_t bin = 0; bin < kFpfhBins; ++bin)
+        mixed.values[static_cast<std::size_t>(i) * kFpfhBins + bin] =
+            high.row(static_cast<std::size_t>(i))[bin];
+    const ScalarField high_distinctness = distinctness(mixed, true);
+
+    ScalarField result(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      double nearest = std::numeric_limits<double>::infinity(), association = 0;
+      for (const std::int32_t f : top(low, options.foci_share)) {
+        const double d = distance(i, static_cast<std::size_t>(f));
+        if (d >= nearest) continue;
+        nearest = d;
+        association = low[static_cast<std::size_t>(f)] *
+                      std::exp(-d * d / (2 * options.foci_sigma * options.foci_sigma));
+      }
+      result[i] = low[i] + association + options.high_weight * high_distinctness[i];
+    }
+    return result;
+  }
+};
+
+TEST(LsSaliency, EqualsTheFormulasAsPublished) {
+  for (const std::size_t n : {40U, 77U, 333U, 1100U}) {
+    const Shape shape = cloud(n, n);
+    const LsOptions options = for_clouds();
+    expect_near(shape.ls(options), Twin{shape, options}.ls(), 1e-12);
+  }
+}
+
+TEST(LsSaliency, EqualsTheFormulasOfTheText) {
+  const Shape shape = cloud(200, 5);
+  LsOptions options = LsOptions::text();
+  options.high_radius = 0.5;
+  expect_near(shape.ls(options), Twin{shape, options}.ls(), 1e-12);
+}
+
+TEST(LsSaliency, EqualsTheFormulasOnASurface) {
+  const Shape shape = bumps();
+  expect_near(shape.ls(), Twin{shape, LsOptions{}}.ls(), 1e-12);
+}
+
+// Three points on a line, R = 1; the histogram of the middle one shares no bin with those of the ends, so
+// that chi2 is 2 between them, and 0 elsewhere.
+Shape line() {
+  Shape shape({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}, Normals(3, Vec3(0, 0, 1)));
+  shape.low.values.assign(3 * kFpfhBins, 0);
+  shape.low.values[5] = shape.low.values[kFpfhBins + 6] = shape.low.values[2 * kFpfhBins + 5] = 300;
+  return shape;
+}
+
+LsOptions all_pairs() {
+  LsOptions options;
+  options.selected_share = 1;
+  options.high_share = 0;
+  options.foci_sigma = 1;
+  return options;
+}
+
+TEST(LsSaliency, OfThreePointsIsWhatOneComputesByHand) {
+  const double end = 1 - std::exp(-1.0 / 3), middle = 1 - std::exp(-2.0 / 3);
+  const double high_end = 1 - std::pow(2, -2.0 / 3), high_middle = 1 - std::pow(2, -4.0 / 3);
+  LsOptions options = all_pairs();
+  options.foci_share = 0.34;  // one focus, the middle
+  const double s_end = end + middle * std::exp(-0.5) + 0.5 * high_end;
+  expect_near(line().ls(options), {s_end, middle + middle + 0.5 * high_middle, s_end}, 1e-12);
+}
+
+TEST(LsSaliency, OfEquallyDistinctPointsTheHigherIndexIsTheFocus) {
+  const double end = 1 - std::exp(-1.0 / 3), middle = 1 - std::exp(-2.0 / 3);
+  LsOptions options = all_pairs();
+  options.foci_share = 0.67;  // the middle and one of the ends
+  options.high_weight = 0;
+  expect_near(line().ls(options), {end + middle * std::exp(-0.5), 2 * middle, 2 * end}, 1e-12);
+}
+
+TEST(LsSaliency, ComparesOnlyWithTheMostSimilar) {
+  LsOptions options = all_pairs();
+  options.selected_share = 0.67;  // of the ends: each other; of the middle: itself and one end
+  options.high_weight = 0;
+  options.foci_share = 0;
+  const double middle = 1 - std::exp(-1.0 / 2);
+  expect_near(line().ls(options), {middle * std::exp(-0.5), 2 * middle, middle * std::exp(-0.5)}, 1e-12);
+}
+
+TEST(LsSaliency, DoesNotChangeWithTheUnit) {
+  const Shape shape = bumps();
+  const auto times = [&](double factor) {
+    return moved(
+               shape, [&](const Vec3& p) { return Vec3(factor * p); }, Eigen::Matrix3d::Identity())
+        .ls();
+  };
+  EXPECT_EQ(times(1024), shape.ls());  // a power of two rounds nothing: the same bytes
+  expect_near(times(0.37), shape.ls(), 1e-6);
+}
+
+TEST(LsSaliency, DoesNotChangeWithThePlace) {
+  const Shape shape = cloud(400, 9);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const auto place = [&](const Vec3& p) { return Vec3(turn * p + Vec3(5, -7, 2)); };
+  expect_near(moved(shape, place, turn).ls(), shape.ls(), 1e-6);
+}
+
+TEST(LsSaliency, DoesNotChangeWithTheOrderOfThePoints) {
+  const Shape shape = cloud(400, 9);
+  const Shape reversed({shape.points.rbegin(), shape.points.rend()},
+                       {shape.normals.rbegin(), shape.normals.rend()});
+  ScalarField saliency = reversed.ls(for_clouds());
+  std::reverse(saliency.begin(), saliency.end());
+  expect_near(saliency, shape.ls(for_clouds()), 1e-6);
+}
+
+TEST(LsSaliency, IsHighestAtTheOneBumpOfAPlane) {
+  Mesh mesh = shapes::grid(40);
+  Normals normals;
+  for (Vec3& v : mesh.vertices) {
+    const Vec3 away = v - Vec3(0.7, 0.3, 0);
+    const double height = 0.08 * std::exp(-away.squaredNorm() / 0.005);
+    v.z() = height;
+    normals.push_back(Vec3(2 * away.x() * height / 0.005, 2 * away.y() * height / 0.005, 1).normalized());
+  }
+  const ScalarField saliency = Shape(mesh.vertices, normals).ls();
+  const auto top =
+      static_cast<std::size_t>(std::max_element(saliency.begin(), saliency.end()) - saliency.begin());
+  EXPECT_LT((mesh.vertices[top] - Vec3(0.7, 0.3, mesh.vertices[top].z())).norm(), 0.15);
+  EXPECT_LT(saliency[40], 0.1 * saliency[top]);  // the corner farthest from the bump on its side
+}
+
+TEST(LsSaliency, FewerThanTwentyPointsHaveNoOthersToCompareWith) {
+  EXPECT_THAT(cloud(19, 1).ls(), testing::Each(0.0));
+}
+
+TEST(LsSaliency, AShapeOfOneKindOfPointIsConstant) {
+  Shape shape = cloud(100, 2);
+  shape.low.values.assign(shape.low.values.size(), 9);
+  LsOptions options;
+  options.high_share = 0;
+  EXPECT_THAT(shape.ls(options), testing::Each(0.0));
+}
+
+TEST(LsSaliency, SomeCoincidentPointsDoNoHarm) {
+  std::vector<Vec3> points = shapes::random_cloud(100, 3);
+  for (std::size_t i = 0; i < 30; ++i) points[i] = points[99];
+  const Shape shape(points, shapes::random_normals(100, 3));
+  EXPECT_THAT(shape.ls(), testing::Each(testing::AllOf(testing::Ge(0.0), testing::Le(2.5))));
+}
+
+void expect_input_error(const Shape& shape, const char* words) {
+  try {
+    shape.ls();
+    FAIL() << words;
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(words));
+  }
+}
+
+TEST(LsSaliency, NamesWhatIsWrongWithAShape) {
+  expect_input_error(Shape({}, {}), "no points");
+  expect_input_error(Shape({{1, 2, 3}}, {{0, 0, 1}}), "coincide");
+  expect_input_error(Shape(std::vector<Vec3>(50, Vec3(1, 2, 3)), Normals(50, Vec3(0, 0, 1))), "coincide");
+
+  Shape far = cloud(50, 1);
+  far.points[7].y() = std::numeric_limits<double>::infinity();
+  expect_input_error(far, "not finite");
+  Shape unknown = cloud(50, 1);
+  unknown.low.values[3 * kFpfhBins + 4] = std::numeric_limits<float>::quiet_NaN();
+  expect_input_error(unknown, "descriptor of point 3");
+  Shape blind = cloud(50, 1);
+  blind.normals[5].x() = std::numeric_limits<double>::quiet_NaN();
+  expect_input_error(blind, "normal of point 5");
+}
+
+TEST(LsOptions, NamesTheOptionThatIsWrong) {
+  const auto wrong_key = [](auto&& change) -> std::string {
+    LsOptions options;
+    change(options);
+    try {
+      check(options);
+    } catch (const OptionError& error) {
+      return error.key;
+    }
+    return "none";
+  };
+  EXPECT_EQ(wrong_key([](LsOptions& o) { o.selected_share = 1.5; }), "selected_share");
+  EXPECT_EQ(wrong_key([](LsOptions& o) { o.foci_share = -0.1; }), "foci_share");
+  EXPECT_EQ(wrong_key([](LsOptions& o) { o.high_share = std::nan(""); }), "high_share");
+  EXPECT_EQ(wrong_key([](LsOptions& o) { o.foci_sigma = 0; }), "foci_sigma");
+  EXPECT_EQ(wrong_key([](LsOptions& o) { o.high_radius = -1; }), "high_radius");
+  EXPECT_EQ(wrong_key([](LsOptions& o) { o.high_weight = std::nan(""); }), "high_weight");
+  EXPECT_EQ(wrong_key([](LsOptions& o) { o = LsOptions::text(); }), "none");
+}
+
+}  // namespace
+}  // namespace salbench
