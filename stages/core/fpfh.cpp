@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
+#include <string>
+#include <utility>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"

@@ -1,6 +1,5 @@
 #include "stages/fpfh/fpfh.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -29,8 +28,8 @@ void check(const FpfhOptions& options) {
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const FpfhOptions& options) {
   check(options);
   if (points.empty()) throw InputError("the shape has no points");
-  if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
-    throw InputError("the shape has a coordinate that is not finite");
+  if (!centroid(points).allFinite() || !std::isfinite(bounding_radius(points)))
+    throw InputError("the shape has a coordinate that is not finite or too large");
   const KdTree tree(points);
   return fpfh(points, normals, tree, support_of(points, tree, options), options.weighting);
 }

@@ -45,9 +45,11 @@ TEST(Fpfh, HandsTheWeightingOn) {
 
 TEST(Fpfh, RefusesAShapeWithoutPointsOrWithCoordinatesThatAreNotFinite) {
   EXPECT_THROW(fpfh({}, {}, FpfhOptions{}), InputError);
-  auto points = shapes::random_cloud(20, 55);
-  points[4].z() = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(fpfh(points, shapes::random_normals(20, 56), FpfhOptions{}), InputError);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
+    auto points = shapes::random_cloud(20, 55);
+    points[4].z() = bad;
+    EXPECT_THROW(fpfh(points, shapes::random_normals(20, 56), FpfhOptions{}), InputError) << bad;
+  }
 }
 
 std::string refused(const FpfhOptions& options) {
