@@ -1,0 +1,165 @@
+#include "stages/normals/normals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/neighbors.h"
+#include "stages/core/support.h"
+#include "stages/normals/orient.h"
+#include "stages/normals/planes.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::int32_t kMostNeighbours = 1000;  // beyond, a plane is no longer local
+
+const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
+
+void require_finite(std::span<const Vec3> points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!points[i].allFinite()) throw InputError("point " + std::to_string(i) + " is not finite");
+}
+
+// Zero where the faces tell nothing.
+Normals area_weighted_normals(const Mesh& mesh) {
+  Normals sums(mesh.vertices.size(), Vec3::Zero());
+  std::vector<double> areas(mesh.vertices.size(), 0);
+  for (const Triangle& face : mesh.faces) {
+    const Vec3 area = face_area_vector(mesh, face);
+    for (const std::int32_t v : face) {
+      sums[static_cast<std::size_t>(v)] += area;
+      areas[static_cast<std::size_t>(v)] += area.norm();
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double length = sums[i].norm();
+    sums[i] = length > 1e-12 * areas[i] ? Vec3(sums[i] / length) : Vec3::Zero();  // below, what cancelled
+  }
+  return sums;
+}
+
+void fill_from_nearest(const std::vector<Vec3>& points, Normals& normals) {
+  std::vector<std::size_t> known, unknown;
+  for (std::size_t i = 0; i < normals.size(); ++i) (normals[i].isZero(0) ? unknown : known).push_back(i);
+  if (unknown.empty()) return;
+  if (known.empty()) throw InputError("no face has an area: the mesh has no normals");
+  std::vector<Vec3> known_points;
+  known_points.reserve(known.size());
+  for (const std::size_t i : known) known_points.push_back(points[i]);
+  const KdTree tree(known_points);
+  for (const std::size_t i : unknown)
+    normals[i] = normals[known[static_cast<std::size_t>(tree.nearest(points[i]))]];
+}
+
+std::int32_t plane_neighbours(const std::vector<Vec3>& points, const KdTree& tree,
+                              const MeshNormalsOptions& options) {
+  if (options.neighbours > 0) return options.neighbours;
+  const std::int32_t others = grown_support_radius(points, tree, options.support).neighbours;
+  return std::min(others, options.most_neighbours);
+}
+
+// The six outermost points along the axes are on the hull, so outwards is known there. Of these the one that
+// faces its axis most: where the surface runs along the axis, noise would decide.
+OrientationSeed outermost(std::span<const Vec3> points, const Normals& normals,
+                          std::span<const std::int32_t> component) {
+  OrientationSeed best{component.front(), Vec3::UnitX()};
+  double best_facing = -1;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const std::int32_t extreme =
+          *std::max_element(component.begin(), component.end(), [&](std::int32_t i, std::int32_t j) {
+            return sign * at(points, i)[axis] < sign * at(points, j)[axis];
+          });
+      const double facing = std::abs(at(normals, extreme)[axis]);
+      if (facing <= best_facing) continue;
+      best_facing = facing;
+      best = {extreme, sign * Vec3::Unit(axis)};
+    }
+  }
+  return best;
+}
+
+Normals hoppe_mesh_normals(const std::vector<Vec3>& points, const MeshNormalsOptions& options) {
+  if (points.empty()) throw InputError("a mesh without vertices has no normals");
+  const KdTree tree(points);
+  const Vec3 center = centroid(points);
+  const auto outwards = [&](std::size_t i) -> Vec3 {
+    return points[i] == center ? Vec3::UnitZ() : Vec3(points[i] - center);
+  };
+  Normals normals = plane_normals(points, tree, plane_neighbours(points, tree, options), outwards);
+  const auto seed_of = [&](std::span<const std::int32_t> part) { return outermost(points, normals, part); };
+  orient_normals(points, tree, {options.orientation_neighbours}, seed_of, normals);
+  return normals;
+}
+
+// Median distance of a point to its nearest other one; 0 of fewer than two points.
+double median_spacing(std::span<const Vec3> points, const KdTree& tree) {
+  std::vector<double> squared;
+  squared.reserve(points.size());
+  std::vector<Neighbor> near;
+  for (const Vec3& p : points) {
+    tree.nearest(p, 2, near);
+    squared.push_back(near.back().distance_squared);
+  }
+  if (squared.empty()) return 0;
+  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
+  std::nth_element(squared.begin(), middle, squared.end());
+  return std::sqrt(*middle);
+}
+
+void require_between(const char* key, std::int32_t value, std::int32_t low, std::int32_t high) {
+  if (value < low || value > high)
+    throw OptionError{key, "must be in [" + std::to_string(low) + ", " + std::to_string(high) + "], not " +
+                               std::to_string(value)};
+}
+
+}  // namespace
+
+void check(const MeshNormalsOptions& options) {
+  if (options.neighbours != 0) require_between("neighbours", options.neighbours, 3, kMostNeighbours);
+  if (!(options.support > 0 && options.support <= 1))
+    throw OptionError{"support", "must be in (0, 1], not " + std::to_string(options.support)};
+  require_between("most_neighbours", options.most_neighbours, 3, kMostNeighbours);
+  require_between("orientation_neighbours", options.orientation_neighbours, 2, kMostNeighbours);
+}
+
+void check(const ScanNormalsOptions& options) {
+  if (!(options.gap >= 1 && options.gap <= 1e6))
+    throw OptionError{"gap", "must be in [1, 1000000], not " + std::to_string(options.gap)};
+  require_between("neighbours", options.neighbours, 3, kMostNeighbours);
+  require_between("orientation_neighbours", options.orientation_neighbours, 2, kMostNeighbours);
+}
+
+Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options) {
+  require_finite(mesh.vertices);
+  if (options.method == MeshNormalsMethod::pca) return hoppe_mesh_normals(mesh.vertices, options);
+  Normals normals = area_weighted_normals(mesh);
+  fill_from_nearest(mesh.vertices, normals);
+  return normals;
+}
+
+Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
+  const std::vector<Vec3>& points = scan.points;
+  require_finite(points);
+  const KdTree tree(points);
+  const auto to_camera = [&](std::size_t i) -> Vec3 {
+    return points[i] == scan.camera ? Vec3::UnitZ() : Vec3(scan.camera - points[i]);
+  };
+  Normals normals = plane_normals(points, tree, options.neighbours, to_camera);
+  const auto nearest_to_camera = [&](std::span<const std::int32_t> part) -> OrientationSeed {
+    const std::int32_t nearest =
+        *std::min_element(part.begin(), part.end(), [&](std::int32_t i, std::int32_t j) {
+          return (at(points, i) - scan.camera).squaredNorm() < (at(points, j) - scan.camera).squaredNorm();
+        });
+    return {nearest, to_camera(static_cast<std::size_t>(nearest))};
+  };
+  const OrientationGraph graph{options.orientation_neighbours, options.gap * median_spacing(points, tree)};
+  orient_normals(points, tree, graph, nearest_to_camera, normals);
+  return normals;
+}
+
+}  // namespace salbench

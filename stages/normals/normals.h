@@ -1,0 +1,67 @@
+// Unit normals of meshes and of scans.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "stages/core/options.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+enum class MeshNormalsMethod { faces, pca };
+template <>
+struct EnumNames<MeshNormalsMethod> {
+  static constexpr std::array<std::string_view, 2> names = {"faces", "pca"};
+};
+
+struct MeshNormalsOptions {
+  MeshNormalsMethod method = MeshNormalsMethod::faces;
+  std::int32_t neighbours = 0;        // pca: points a plane is fitted to, itself included; 0: see support
+  double support = 0.01;              // pca: radius in R, grown; its mean neighbour count is taken
+  std::int32_t most_neighbours = 30;  // pca: limit of that count
+  std::int32_t orientation_neighbours = 6;  // pca: nearest others that orientation passes to
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("method", self.method, "faces: area-weighted face normals; pca: planes, oriented by Hoppe's tree");
+    visit("neighbours", self.neighbours,
+          "pca: nearest points of a plane, itself included; 0: from the support");
+    visit("support", self.support, "pca: support radius in R, grown, that gives the number of neighbours");
+    visit("most_neighbours", self.most_neighbours, "pca: limit of that number");
+    visit("orientation_neighbours", self.orientation_neighbours, "pca: nearest others in Hoppe's graph");
+  }
+};
+void check(const MeshNormalsOptions& options);
+
+// n x 3, outward as far as the method can tell.
+//   faces: sum of the face normals weighted by area; a vertex whose faces have no area, or cancel, takes the
+//          normal of the nearest vertex that has one. Throws InputError where no vertex has one.
+//   pca:   the vertices as a point set: the plane of the nearest points, then Hoppe's tree; of each component
+//          of the graph the outermost point along the axis that it faces most is turned outwards. Where a
+//          neighbourhood spans no plane the direction from the centroid decides. [hoppe1992]
+// Throws InputError for vertices that are not finite.
+Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options = {});
+
+struct ScanNormalsOptions {
+  std::int32_t neighbours = 9;              // nearest points a plane is fitted to, the point itself included
+  std::int32_t orientation_neighbours = 6;  // nearest others that orientation passes to
+  double gap = 3;                           // where it does not: across this many median point spacings
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("neighbours", self.neighbours, "nearest points of a plane, itself included");
+    visit("orientation_neighbours", self.orientation_neighbours, "nearest others in Hoppe's graph");
+    visit("gap", self.gap, "longest edge of Hoppe's graph in median point spacings: beyond, depth jumps");
+  }
+};
+void check(const ScanNormalsOptions& options);
+
+// n x 3: the plane of the nearest points, then Hoppe's tree; of each component of the graph the point nearest
+// to the camera is turned towards it. The graph does not bridge depth jumps: there, a normal tells nothing of
+// its neighbour's. Where a neighbourhood spans no plane the direction to the camera decides. An empty scan
+// has no normals. Throws InputError for points that are not finite. [hoppe1992]
+Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options = {});
+
+}  // namespace salbench

@@ -1,0 +1,35 @@
+// Consistent orientation of normals by Hoppe's minimum spanning tree.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+
+#include "stages/core/neighbors.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// The graph along which orientation passes: each point with its nearest ones, the point itself not counted.
+struct OrientationGraph {
+  std::int32_t neighbours;  // >= 2
+  double longest_edge =
+      std::numeric_limits<double>::infinity();  // parts joined by longer edges alone are apart
+};
+
+// A point whose orientation is known: its normal makes no obtuse angle with `towards`.
+struct OrientationSeed {
+  std::int32_t point;
+  Vec3 towards;
+};
+
+// Chooses the seed of one connected component of the graph, given as ascending point indices.
+using SeedRule = std::function<OrientationSeed(std::span<const std::int32_t> component)>;
+
+// Turns unit normals so that they agree along a spanning tree of each component of the graph, grown from the
+// component's seed; the tree prefers pairs of parallel normals. `tree` is over `points`. [hoppe1992]
+void orient_normals(std::span<const Vec3> points, const KdTree& tree, const OrientationGraph& graph,
+                    const SeedRule& seed_of, Normals& normals);
+
+}  // namespace salbench

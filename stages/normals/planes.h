@@ -1,0 +1,22 @@
+// Normals without orientation: the directions across which the neighbourhoods are thinnest.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "stages/core/neighbors.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// What the normal of point i should be like where its neighbourhood does not tell; any length but 0.
+using PreferredDirection = std::function<Vec3(std::size_t point)>;
+
+// Normal of the least-squares plane through the `neighbours` points nearest to each point, itself included;
+// of either sign. Neighbourhoods on one line take the preferred direction made perpendicular to the line,
+// those in one place the preferred direction itself. `tree` is over `points`; neighbours >= 1.
+Normals plane_normals(std::span<const Vec3> points, const KdTree& tree, std::int32_t neighbours,
+                      const PreferredDirection& preferred);
+
+}  // namespace salbench

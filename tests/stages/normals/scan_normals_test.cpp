@@ -1,0 +1,112 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/normals/normals.h"
+#include "stages/scan/scan.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+double share_facing_camera(const Scan& scan, const Normals& normals) {
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) good += normals[i].dot(scan.camera - scan.points[i]) > 0;
+  return static_cast<double>(good) / static_cast<double>(normals.size());
+}
+
+void append(Mesh& mesh, const Mesh& part, const Vec3& shift) {
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Vec3& v : part.vertices) mesh.vertices.push_back(v + shift);
+  for (const Triangle& face : part.faces)
+    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+}
+
+TEST(ScanNormals, OfASphereAreRadialAndFaceTheCamera) {
+  for (const int view : {0, 5, 10}) {
+    const Scan scan = simulate_scan(shapes::sphere(5), view);
+    const Normals normals = scan_normals(scan);
+    ASSERT_EQ(normals.size(), scan.points.size());
+    const Vec3 to_camera = scan.camera.normalized();
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      ASSERT_NEAR(normals[i].norm(), 1, 1e-12);
+      const Vec3 radial = scan.points[i].normalized();
+      // Towards the outline the rays' rows part, and nine neighbours lie nearly on a line.
+      if (radial.dot(to_camera) > 0.5) {
+        ASSERT_GT(normals[i].dot(radial), 0.998) << "point " << i;
+      }
+    }
+    EXPECT_GE(share_facing_camera(scan, normals), 0.99) << "view " << view;
+  }
+}
+
+TEST(ScanNormals, EachOfSeveralBodiesFacesTheCamera) {
+  Mesh mesh;
+  for (const Vec3& shift : {Vec3(-3, 0, 0), Vec3(3, 0.5, 0), Vec3(0, 4, 1)})
+    append(mesh, shapes::bumpy_sphere(3), shift);
+  for (int view = 0; view < kViews; ++view) {
+    const Scan scan = simulate_scan(mesh, view);
+    EXPECT_GE(share_facing_camera(scan, scan_normals(scan)), 0.98) << "view " << view;
+  }
+}
+
+TEST(ScanNormals, OrientationDoesNotCrossDepthJumps) {
+  // Bars before a wall, hardly wider than the neighbourhood: each bar's rim mixes with the wall behind.
+  Mesh mesh = shapes::grid(4);
+  for (Vec3& v : mesh.vertices) v *= 10;
+  for (double x = 0.5; x < 10; x += 1) {
+    Mesh bar = shapes::grid(4);
+    for (Vec3& v : bar.vertices) v = {0.2 * v.x(), 10 * v.y(), 0};
+    append(mesh, bar, {x, 0, 1.5});
+  }
+  const Scan scan = simulate_scan(mesh, 1);
+  EXPECT_GE(share_facing_camera(scan, scan_normals(scan)), 0.98);
+}
+
+TEST(ScanNormals, DegenerateScansFaceTheCamera) {
+  const Vec3 camera(0, 0, 10);
+  const std::vector<std::vector<Vec3>> scans = {
+      {{1, 0, 0}},                                    // one point
+      {{1, 0, 0}, {2, 0, 0}},                         // two
+      std::vector<Vec3>(30, Vec3(1, 2, 3)),           // all in one place
+      {{0, 1, 1}, {1, 2, 1}, {2, 3, 1}, {3, 4, 1}},   // on a line across the view
+      {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {40, 0, 0}},  // far apart
+  };
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const Scan scan{scans[k], camera};
+    const Normals normals = scan_normals(scan);
+    ASSERT_EQ(normals.size(), scan.points.size());
+    EXPECT_EQ(share_facing_camera(scan, normals), 1) << "scan " << k;
+  }
+  EXPECT_LT((scan_normals({scans[0], camera})[0] - Vec3(-1, 0, 10).normalized()).norm(), 1e-12);
+  EXPECT_LT(std::abs(scan_normals({scans[3], camera})[1].dot(Vec3(1, 1, 0))), 1e-6);
+}
+
+TEST(ScanNormals, PointInTheCameraOrAlongTheLineToItHasANormalToo) {
+  const Scan scan{{{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}, {0, 0, 0}};
+  for (const Vec3& n : scan_normals(scan)) EXPECT_NEAR(n.norm(), 1, 1e-12);
+}
+
+TEST(ScanNormals, EmptyScanHasNoneAndBrokenOneIsRefused) {
+  EXPECT_TRUE(scan_normals({}).empty());
+  EXPECT_THROW(scan_normals({{{0, 0, std::nan("")}}, {0, 0, 1}}), InputError);
+}
+
+TEST(ScanNormalsOptions, NameTheFieldThatIsWrong) {
+  const auto key_of = [](ScanNormalsOptions options) -> std::string {
+    try {
+      check(options);
+    } catch (const OptionError& error) {
+      return error.key;
+    }
+    return "";
+  };
+  EXPECT_EQ(key_of({}), "");
+  EXPECT_EQ(key_of({.neighbours = 2}), "neighbours");
+  EXPECT_EQ(key_of({.orientation_neighbours = 0}), "orientation_neighbours");
+  EXPECT_EQ(key_of({.gap = 0.5}), "gap");
+}
+
+}  // namespace
+}  // namespace salbench
