@@ -1,0 +1,144 @@
+// PCL's triangulation works in float, and its limits are lengths: the points are handed over relative to
+// their mean and in median spacings, so that neither the mesh's place nor its unit matters.
+#include "stages/surface/surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include <pcl/console/print.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/surface/gp3.h>
+
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/neighbors.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+using Cloud = pcl::PointCloud<pcl::PointNormal>;
+
+// PCL tells the standard error of each point whose neighbours did not suffice: some on every scan.
+void silence_pcl() {
+  static const bool silenced = [] {
+    pcl::console::setVerbosityLevel(pcl::console::L_ERROR);
+    return true;
+  }();
+  static_cast<void>(silenced);
+}
+
+double median_spacing(const std::vector<Vec3>& points) {
+  const KdTree tree(points);
+  std::vector<double> squared;
+  squared.reserve(points.size());
+  std::vector<Neighbor> near;
+  for (const Vec3& p : points) {
+    tree.nearest(p, 2, near);
+    squared.push_back(near.back().distance_squared);
+  }
+  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
+  std::nth_element(squared.begin(), middle, squared.end());
+  return std::sqrt(*middle);
+}
+
+Cloud::Ptr cloud_in_spacings(const std::vector<Vec3>& points, const Normals& normals, double spacing) {
+  const Vec3 center = centroid(points);
+  auto cloud = pcl::make_shared<Cloud>();
+  cloud->reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    pcl::PointNormal p;
+    p.getVector3fMap() = ((points[i] - center) / spacing).cast<float>();
+    p.getNormalVector3fMap() = normals[i].cast<float>();
+    cloud->push_back(p);
+  }
+  return cloud;
+}
+
+// Towards the normals of its corners, whichever way PCL went round.
+Triangle turned(Triangle face, const std::vector<Vec3>& points, const Normals& normals) {
+  const auto at = [&face](const auto& of, std::size_t corner) -> const Vec3& {
+    return of[static_cast<std::size_t>(face[corner])];
+  };
+  const Vec3 area = (at(points, 1) - at(points, 0)).cross(at(points, 2) - at(points, 0));
+  if (area.dot(at(normals, 0) + at(normals, 1) + at(normals, 2)) < 0) std::swap(face[1], face[2]);
+  return face;
+}
+
+// PCL's faces overlap in places, and some come twice. Of those that pass an edge in the same direction the
+// first is kept: what is left is a surface with one side.
+Faces one_sided(const Faces& faces) {
+  const auto key = [](std::int32_t from, std::int32_t to) {
+    return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint64_t>(to);
+  };
+  std::unordered_set<std::uint64_t> passed;
+  passed.reserve(3 * faces.size());
+  Faces kept;
+  kept.reserve(faces.size());
+  for (const auto& [a, b, c] : faces) {
+    const std::array edges = {key(a, b), key(b, c), key(c, a)};
+    if (std::any_of(edges.begin(), edges.end(), [&](std::uint64_t edge) { return passed.contains(edge); }))
+      continue;
+    passed.insert(edges.begin(), edges.end());
+    kept.push_back({a, b, c});
+  }
+  return kept;
+}
+
+}  // namespace
+
+void check(const SurfaceOptions& options) {
+  const auto require = [](const char* key, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+      throw OptionError{key, "must be in [" + std::to_string(low) + ", " + std::to_string(high) + "], not " +
+                                 std::to_string(value)};
+  };
+  require("reach", options.reach, 1, 100);
+  require("longest_edge", options.longest_edge, 1, 1000);
+  require("neighbours", options.neighbours, 3, 1000);
+  require("steepest_degrees", options.steepest_degrees, 1, 180);
+  require("smallest_angle", options.smallest_angle, 0, 60);
+  require("largest_angle", options.largest_angle, 60, 180);
+}
+
+Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options) {
+  CHECK_EQ(normals.size(), scan.points.size());
+  if (scan.points.size() < 3) return {};
+  const double spacing = median_spacing(scan.points);
+  if (!(spacing > 0)) return {};
+
+  silence_pcl();
+  pcl::GreedyProjectionTriangulation<pcl::PointNormal> triangulation;
+  triangulation.setMu(options.reach);
+  triangulation.setSearchRadius(options.longest_edge);
+  triangulation.setMaximumNearestNeighbors(options.neighbours);
+  triangulation.setMaximumSurfaceAngle(options.steepest_degrees * kRadiansPerDegree);
+  triangulation.setMinimumAngle(options.smallest_angle * kRadiansPerDegree);
+  triangulation.setMaximumAngle(options.largest_angle * kRadiansPerDegree);
+  triangulation.setNormalConsistency(true);
+  triangulation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>());
+  triangulation.setInputCloud(cloud_in_spacings(scan.points, normals, spacing));
+  std::vector<pcl::Vertices> polygons;
+  triangulation.reconstruct(polygons);
+
+  Faces faces;
+  faces.reserve(polygons.size());
+  for (const pcl::Vertices& polygon : polygons) {
+    const auto& v = polygon.vertices;
+    CHECK_EQ(v.size(), 3U);
+    faces.push_back(turned({v[0], v[1], v[2]}, scan.points, normals));
+  }
+  return one_sided(faces);
+}
+
+}  // namespace salbench

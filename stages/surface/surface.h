@@ -1,0 +1,36 @@
+// Partial meshes: a surface over the points of one scan, for the models that need edges. [tasse2016]
+#pragma once
+
+#include <cstdint>
+
+#include "stages/core/options.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct SurfaceOptions {
+  double reach = 2.5;            // of the edges of a point, in distances to its nearest other point
+  double longest_edge = 8;       // in median distances to the nearest other point
+  std::int32_t neighbours = 30;  // nearest points that an edge may lead to
+  double steepest_degrees = 60;  // between the normals of a face's corners
+  double smallest_angle = 10;    // of a face, in degrees; met where possible
+  double largest_angle = 120;    // of a face, in degrees
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("reach", self.reach, "longest edge in distances to the point's nearest other point");
+    visit("longest_edge", self.longest_edge, "longest edge in median distances to the nearest other point");
+    visit("neighbours", self.neighbours, "nearest points that an edge may lead to");
+    visit("steepest_degrees", self.steepest_degrees, "largest angle between normals across a face");
+    visit("smallest_angle", self.smallest_angle, "smallest angle of a face in degrees, where possible");
+    visit("largest_angle", self.largest_angle, "largest angle of a face in degrees");
+  }
+};
+void check(const SurfaceOptions& options);
+
+// f x 3 indices of the scan's points, by greedy projection triangulation; counter-clockwise seen from the
+// side that the normals point to. Depth jumps stay open, and there are holes and points without a face. Fewer
+// than three points, or none apart, have no faces. One unit normal per point, all finite. [marton2009]
+Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options = {});
+
+}  // namespace salbench

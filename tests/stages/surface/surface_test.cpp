@@ -1,0 +1,196 @@
+#include "stages/surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/normals/normals.h"
+#include "stages/scan/scan.h"
+#include "tests/support/data.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+double share_covered(const Scan& scan, const Faces& faces) {
+  std::vector<char> covered(scan.points.size(), 0);
+  for (const Triangle& face : faces)
+    for (const std::int32_t v : face) covered[static_cast<std::size_t>(v)] = 1;
+  return static_cast<double>(std::count(covered.begin(), covered.end(), 1)) /
+         static_cast<double>(covered.size());
+}
+
+double longest_edge(const Scan& scan, const Faces& faces) {
+  double longest = 0;
+  for (const Triangle& face : faces)
+    for (std::size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, (scan.points[static_cast<std::size_t>(face[k])] -
+                                   scan.points[static_cast<std::size_t>(face[(k + 1) % 3])])
+                                      .norm());
+  return longest;
+}
+
+// Every edge passed at most once in each direction, so in at most two faces.
+void expect_one_sided(const Faces& faces, std::size_t n_points) {
+  std::set<std::pair<std::int32_t, std::int32_t>> passed;
+  for (const Triangle& face : faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_GE(face[k], 0);
+      ASSERT_LT(static_cast<std::size_t>(face[k]), n_points);
+      ASSERT_NE(face[k], face[(k + 1) % 3]);
+      EXPECT_TRUE(passed.emplace(face[k], face[(k + 1) % 3]).second)
+          << face[k] << " to " << face[(k + 1) % 3];
+    }
+  }
+}
+
+TEST(PartialMesh, OfASphereIsItsVisibleCap) {
+  const Mesh mesh = shapes::sphere(5);
+  for (const int view : {0, 4, 9}) {
+    const Scan scan = simulate_scan(mesh, view);
+    const Faces faces = partial_mesh(scan, scan_normals(scan));
+    expect_one_sided(faces, scan.points.size());
+    EXPECT_GT(share_covered(scan, faces), 0.98) << "view " << view;
+
+    // Of the cap, the zone that the camera sees at less than 60 degrees: 2 pi times its height. Further out
+    // the rays' rows part.
+    const Mesh partial{scan.points, faces};
+    double zone = 0, inward = 0;
+    for (const Triangle& face : faces) {
+      const Vec3 area = face_area_vector(partial, face) / 2;
+      const Vec3 radial =
+          (scan.points[static_cast<std::size_t>(face[0])] + scan.points[static_cast<std::size_t>(face[1])] +
+           scan.points[static_cast<std::size_t>(face[2])])
+              .normalized();
+      if (radial.dot(scan.camera.normalized()) < 0.5) continue;
+      zone += area.norm();
+      if (area.dot(radial) <= 0) inward += area.norm();  // slivers
+    }
+    EXPECT_NEAR(zone, std::numbers::pi, 0.01) << "view " << view;
+    EXPECT_LT(inward, 1e-4 * zone) << "view " << view;
+  }
+}
+
+TEST(PartialMesh, LeavesDepthJumpsOpen) {
+  Mesh mesh = shapes::grid(4);
+  Mesh front = shapes::grid(4);
+  for (Vec3& v : mesh.vertices) v = 4 * v + Vec3(-2, -2, -1);
+  for (Vec3& v : front.vertices) v = v + Vec3(-0.5, -0.5, 1);
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Triangle& face : front.faces)
+    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+  mesh.vertices.insert(mesh.vertices.end(), front.vertices.begin(), front.vertices.end());
+
+  const Scan scan = simulate_scan(mesh, 1);
+  const Faces faces = partial_mesh(scan, scan_normals(scan));
+  EXPECT_GT(share_covered(scan, faces), 0.98);
+  for (const Triangle& face : faces) {
+    double low = 1e9, high = -1e9;
+    for (const std::int32_t v : face) {
+      low = std::min(low, scan.points[static_cast<std::size_t>(v)].z());
+      high = std::max(high, scan.points[static_cast<std::size_t>(v)].z());
+    }
+    ASSERT_LT(high - low, 1) << "a face spans front and back";
+  }
+}
+
+TEST(PartialMesh, FillsAGridWithTwoFacesACell) {
+  const Scan scan{shapes::grid(20).vertices, {0, 0, 5}};
+  const Faces faces = partial_mesh(scan, Normals(scan.points.size(), Vec3::UnitZ()));
+  expect_one_sided(faces, scan.points.size());
+  EXPECT_GT(share_covered(scan, faces), 0.95);
+  EXPECT_NEAR(surface_area({scan.points, faces}), 1, 0.05);
+}
+
+TEST(PartialMesh, DependsNeitherOnTheUnitNorOnThePlace) {
+  const Scan scan = simulate_scan(shapes::bumpy_sphere(4), 7);
+  const Normals normals = scan_normals(scan);
+  Scan moved = scan;
+  for (Vec3& p : moved.points) p = 1e-5 * p + Vec3(3, -8, 1);  // in float, the shape would be gone
+  const Faces faces = partial_mesh(scan, normals), after = partial_mesh(moved, normals);
+  EXPECT_NEAR(static_cast<double>(after.size()), static_cast<double>(faces.size()),
+              0.01 * static_cast<double>(faces.size()));
+  EXPECT_NEAR(surface_area({moved.points, after}) * 1e10, surface_area({scan.points, faces}), 0.01);
+}
+
+TEST(PartialMesh, EdgesKeepToTheReach) {
+  const Scan scan = simulate_scan(shapes::bumpy_sphere(4), 2);
+  const Normals normals = scan_normals(scan);
+  SurfaceOptions wide, tight;
+  wide.reach = wide.longest_edge = 6;
+  tight.reach = 6;
+  tight.longest_edge = 1.5;
+  const double step = std::tan(0.125 * std::numbers::pi / 180) * (scan.camera.norm() - 1.2);
+  EXPECT_GT(longest_edge(scan, partial_mesh(scan, normals, wide)), 3 * step);
+  EXPECT_LT(longest_edge(scan, partial_mesh(scan, normals, tight)), 2.5 * step);
+}
+
+TEST(PartialMesh, TooFewPointsHaveNoFaces) {
+  const Normals up(8, Vec3::UnitZ());
+  for (const std::size_t n : {0U, 1U, 2U}) {
+    const Scan scan{{shapes::random_cloud(n, 1)}, {0, 0, 9}};
+    EXPECT_TRUE(partial_mesh(scan, Normals(n, Vec3::UnitZ())).empty());
+  }
+  EXPECT_TRUE(partial_mesh({std::vector<Vec3>(8, Vec3(1, 1, 1)), {0, 0, 9}}, up).empty());
+}
+
+TEST(PartialMesh, ThreePointsAreAFaceTowardsTheirNormals) {
+  const Scan scan{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, {0, 0, 9}};
+  const Faces faces = partial_mesh(scan, Normals(3, Vec3::UnitZ()));
+  ASSERT_EQ(faces.size(), 1U);
+  EXPECT_GT(face_area_vector({scan.points, faces}, faces[0]).z(), 0);
+}
+
+TEST(PartialMesh, DoesNotDependOnOtherThreads) {
+  const Scan scan = simulate_scan(shapes::bumpy_sphere(3), 6);
+  const Normals normals = scan_normals(scan);
+  std::vector<Faces> results(3);
+  std::vector<std::thread> threads;
+  for (Faces& faces : results) threads.emplace_back([&] { faces = partial_mesh(scan, normals); });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(results[0].size(), scan.points.size());
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+TEST(PartialMesh, CoversRealScans) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  for (const int number : {9, 52, 124, 209, 260, 353}) {
+    const auto path = *data / "SchellingData" / "Meshes" / (std::to_string(number) + ".off");
+    if (!std::filesystem::exists(path)) continue;
+    const Scan scan = simulate_scan(read_mesh(path), number % kViews);
+    const Faces faces = partial_mesh(scan, scan_normals(scan));
+    EXPECT_GT(share_covered(scan, faces), 0.97) << number;
+    expect_one_sided(faces, scan.points.size());
+  }
+}
+
+TEST(SurfaceOptions, NameTheFieldThatIsWrong) {
+  const auto key_of = [](SurfaceOptions options) -> std::string {
+    try {
+      check(options);
+    } catch (const OptionError& error) {
+      return error.key;
+    }
+    return "";
+  };
+  EXPECT_EQ(key_of({}), "");
+  EXPECT_EQ(key_of({.reach = 0}), "reach");
+  EXPECT_EQ(key_of({.longest_edge = std::nan("")}), "longest_edge");
+  EXPECT_EQ(key_of({.neighbours = 2}), "neighbours");
+  EXPECT_EQ(key_of({.steepest_degrees = 0}), "steepest_degrees");
+  EXPECT_EQ(key_of({.smallest_angle = 61}), "smallest_angle");
+  EXPECT_EQ(key_of({.largest_angle = 59}), "largest_angle");
+}
+
+}  // namespace
+}  // namespace salbench
