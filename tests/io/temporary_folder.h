@@ -3,10 +3,9 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
-
-#include "io/text_file.h"
 
 namespace salbench {
 
@@ -26,7 +25,7 @@ class TemporaryFolder {
   // Writes a file, with the folders above it.
   std::filesystem::path write(const std::filesystem::path& name, std::string_view text) const {
     std::filesystem::create_directories((path_ / name).parent_path());
-    write_text_file(path_ / name, text);
+    std::ofstream(path_ / name, std::ios::binary) << text;
     return path_ / name;
   }
 

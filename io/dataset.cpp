@@ -1,0 +1,290 @@
+// A layout is a list of places: where the meshes may lie and, for each, where their ground truth may. The
+// first place with a mesh is taken, so what is found never depends on anything but the names in the folders.
+
+#include "io/dataset.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "io/mesh_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The tracks of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
+constexpr std::array<std::string_view, 20> kCategories = {
+    "human",     "cup",   "glasses",  "airplane", "ant",  "chair",      "octopus",
+    "table",     "teddy", "hand",     "plier",    "fish", "bird",       "spring",
+    "armadillo", "buste", "mechanic", "bearing",  "vase", "four-legged"};
+constexpr int kMeshesPerCategory = 20;
+constexpr int kBenchmarkMeshes = static_cast<int>(kCategories.size()) * kMeshesPerCategory;
+
+struct NaturalLess {
+  using is_transparent = void;
+  bool operator()(std::string_view a, std::string_view b) const { return natural_less(a, b); }
+};
+
+struct TruthFolders {
+  fs::path saliency;  // N.val
+  fs::path picks;     // N_k.pid
+};
+
+// Where a layout may be.
+struct Place {
+  fs::path meshes;
+  std::vector<TruthFolders> truth;  // the first of which a folder exists is taken
+};
+
+struct Found {
+  Layout layout;
+  Place place;
+  std::vector<std::string> mesh_names;  // with extension
+};
+
+// Names of what a folder holds other than folders and hidden files, in natural order; nothing if there is no
+// such folder.
+std::vector<std::string> files_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code broken_link;  // is no folder: reading it will say what is wrong
+    const std::string name = entry->path().filename().string();
+    if (!entry->is_directory(broken_link) && !name.starts_with('.')) names.push_back(name);
+  }
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+    throw InputError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  std::sort(names.begin(), names.end(), natural_less);
+  return names;
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+TruthFolders schelling_truth(const fs::path& base) { return {base / "Distributions", base / "RawData"}; }
+TruthFolders gs_truth(const fs::path& base) { return {base / "Saliency", base / "RawData"}; }
+
+// ROOT itself, or the folders that archives of the study unpack to.
+std::vector<fs::path> schelling_bases(const fs::path& root) {
+  return {root, root / "SchellingData", root / "SchellingData" / "SchellingData"};
+}
+
+std::vector<TruthFolders> truth_below(const fs::path& root) {
+  std::vector<TruthFolders> truth = {gs_truth(root / "GS")};
+  for (const fs::path& base : schelling_bases(root)) truth.push_back(schelling_truth(base));
+  return truth;
+}
+
+fs::path beside(const fs::path& folder, const char* name) {
+  return (folder / ".." / name).lexically_normal();
+}
+
+std::vector<Place> places_of(Layout layout, const fs::path& root) {
+  std::vector<Place> places;
+  switch (layout) {
+    case Layout::gs:
+      for (const char* meshes : {"off", "Meshes"}) {
+        if (is_folder(root / "GS")) places.push_back({root / meshes, {gs_truth(root / "GS")}});
+        if (is_folder(root / "Saliency")) {
+          places.push_back({root / meshes, {gs_truth(root)}});
+          places.push_back({beside(root, meshes), {gs_truth(root)}});
+        }
+      }
+      break;
+    case Layout::schelling:
+      for (const fs::path& base : schelling_bases(root))
+        places.push_back({base / "Meshes", {schelling_truth(base)}});
+      break;
+    case Layout::princeton:
+      for (const fs::path& base : {root, root / "data", root / "MeshsegBenchmark-1.0" / "data"})
+        places.push_back({base / "off", truth_below(root)});
+      if (root.filename() == "off") places.push_back({root, truth_below(beside(root, "."))});
+      break;
+    case Layout::folder:
+      places.push_back({root, {schelling_truth(root), schelling_truth(beside(root, "."))}});
+      break;
+    case Layout::automatic:
+      break;
+  }
+  return places;
+}
+
+std::optional<Found> find_layout(const fs::path& root, Layout layout) {
+  for (const Place& place : places_of(layout, root)) {
+    std::vector<std::string> names = files_in(place.meshes);
+    std::erase_if(names, [](const std::string& name) { return !has_mesh_extension(name); });
+    if (!names.empty()) return Found{layout, place, std::move(names)};
+  }
+  return {};
+}
+
+std::string where_looked_for(const fs::path& root, Layout layout) {
+  std::vector<std::string> folders;
+  for (const Place& place : places_of(layout, root)) folders.push_back(place.meshes.string());
+  if (folders.empty()) return fmt::format("{} (with neither GS/ nor Saliency/ in it)", root.string());
+  std::sort(folders.begin(), folders.end());
+  folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
+  return fmt::format("{}", fmt::join(folders, ", "));
+}
+
+// In this order, since meshes in Meshes/ with their ground truth in GS/ would pass for the Schelling layout.
+std::vector<Layout> layouts_to_try(Layout layout) {
+  if (layout != Layout::automatic) return {layout};
+  return {Layout::gs, Layout::schelling, Layout::princeton, Layout::folder};
+}
+
+Found find_meshes(const fs::path& root, Layout wanted) {
+  if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
+  std::vector<std::string> searched;
+  for (const Layout layout : layouts_to_try(wanted)) {
+    if (const auto found = find_layout(root, layout)) return *found;
+    searched.push_back(fmt::format("{}: {}", name_of(layout), where_looked_for(root, layout)));
+  }
+  throw InputError(fmt::format("{}: no .off, .obj or .ply meshes found; looked in {}", root.string(),
+                               fmt::join(searched, "; ")));
+}
+
+// 1..400, or 0 for a name that is not such a number.
+int benchmark_number(std::string_view name) {
+  if (name.empty() || name.size() > 3 || name[0] == '0') return 0;
+  int number = 0;
+  for (const char c : name) {
+    if (c < '0' || c > '9') return 0;
+    number = number * 10 + (c - '0');
+  }
+  return number <= kBenchmarkMeshes ? number : 0;
+}
+
+using ItemsByName = std::map<std::string, DatasetItem, NaturalLess>;
+
+ItemsByName items_of(const Found& found) {
+  ItemsByName items;
+  for (const std::string& file : found.mesh_names) {
+    DatasetItem item;
+    item.mesh = found.place.meshes / file;
+    item.name = item.mesh.stem().string();
+    if (const int number = benchmark_number(item.name); number > 0 && found.layout != Layout::folder)
+      item.category = kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)];
+    const auto [twin, fresh] = items.try_emplace(item.name, item);
+    if (!fresh)
+      throw InputError(fmt::format("{}: has the same name as {}: keep one of them", item.mesh.string(),
+                                   twin->second.mesh.string()));
+  }
+  return items;
+}
+
+// "michael3" of "michael3_0.pid"; empty if the file is not named in this way.
+std::string_view picked_item(std::string_view file) {
+  const std::string_view stem = file.substr(0, file.size() - std::string_view(".pid").size());
+  const std::size_t bar = stem.rfind('_');
+  if (bar == stem.npos || bar + 1 == stem.size()) return {};
+  return stem.find_first_not_of("0123456789", bar + 1) == stem.npos ? stem.substr(0, bar)
+                                                                    : std::string_view();
+}
+
+// Gives each item its files and notes the files that belong to none.
+void add_truth(const TruthFolders& folders, ItemsByName& items, std::vector<std::string>& notes) {
+  std::map<std::string, std::string, NaturalLess> without_mesh;  // name -> one of its files
+  for (const std::string& file : files_in(folders.saliency)) {
+    if (!file.ends_with(".val")) continue;
+    const std::string name = file.substr(0, file.size() - 4);
+    if (const auto item = items.find(name); item != items.end())
+      item->second.saliency = folders.saliency / file;
+    else
+      without_mesh.emplace(name, (folders.saliency / file).string());
+  }
+  for (const std::string& file : files_in(folders.picks)) {
+    if (!file.ends_with(".pid")) continue;
+    const std::string_view name = picked_item(file);
+    if (const auto item = items.find(name); item != items.end())
+      item->second.picks.push_back(folders.picks / file);
+    else if (name.empty())
+      notes.push_back(
+          fmt::format("{}: is not named NAME_NUMBER.pid and was left out", (folders.picks / file).string()));
+    else
+      without_mesh.emplace(name, (folders.picks / file).string());
+  }
+  for (const auto& [name, file] : without_mesh)
+    notes.push_back(fmt::format("{}: ground truth without a mesh ({})", name, file));
+}
+
+// "261-280, 399"
+std::string ranges(const std::vector<int>& ascending) {
+  std::vector<std::string> parts;
+  for (std::size_t first = 0, last; first < ascending.size(); first = last + 1) {
+    last = first;
+    while (last + 1 < ascending.size() && ascending[last + 1] == ascending[last] + 1) ++last;
+    parts.push_back(first == last ? fmt::format("{}", ascending[first])
+                                  : fmt::format("{}-{}", ascending[first], ascending[last]));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// Where the items are meshes of the benchmark, says which of them are not here.
+void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& notes) {
+  for (const auto& [name, item] : items)
+    if (item.category.empty()) return;
+  std::vector<int> missing;
+  for (int number = 1; number <= kBenchmarkMeshes; ++number)
+    if (!items.contains(std::to_string(number))) missing.push_back(number);
+  if (!missing.empty())
+    notes.push_back(fmt::format("{} of the {} meshes of SHREC'07 are here, without {}", items.size(),
+                                kBenchmarkMeshes, ranges(missing)));
+}
+
+}  // namespace
+
+Dataset find_dataset(const fs::path& root, Layout layout) {
+  fs::path folder = root.lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();  // "data/" is "data"
+  const Found found = find_meshes(folder, layout);
+  ItemsByName items = items_of(found);
+  Dataset dataset;
+  dataset.layout = name_of(found.layout);
+  note_missing_numbers(items, dataset.notes);
+  const auto truth = std::find_if(
+      found.place.truth.begin(), found.place.truth.end(),
+      [](const TruthFolders& folders) { return is_folder(folders.saliency) || is_folder(folders.picks); });
+  if (truth != found.place.truth.end()) add_truth(*truth, items, dataset.notes);
+  for (auto& [name, item] : items) dataset.items.push_back(std::move(item));
+  return dataset;
+}
+
+bool natural_less(std::string_view a, std::string_view b) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto digits_at = [&](std::string_view text, std::size_t at) {
+    std::size_t end = at;
+    while (end < text.size() && is_digit(text[end])) ++end;
+    return text.substr(at, end - at);
+  };
+  const auto significant = [](std::string_view digits) {
+    digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+    return digits;
+  };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string_view run_a = digits_at(a, i), run_b = digits_at(b, j);
+      const std::string_view x = significant(run_a), y = significant(run_b);
+      if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
+      i += run_a.size();
+      j += run_b.size();
+    } else {
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+      ++i;
+      ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return j < b.size();
+  return a < b;  // equal but for leading zeros
+}
+
+}  // namespace salbench

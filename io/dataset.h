@@ -1,0 +1,53 @@
+// Finds the meshes of a data set and the ground truth that belongs to each, in the folder layouts in use.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stages/core/options.h"
+
+namespace salbench {
+
+// ROOT is the folder that the user names; the item's name is N.
+enum class Layout {
+  automatic,  // the first of gs, schelling, princeton and folder that fits
+  schelling,  // {Meshes/N.off, Distributions/N.val, RawData/N_k.pid} in ROOT, also below SchellingData/, once
+              // or twice [chen2012]
+  princeton,  // off/N.off in ROOT, data/ or MeshsegBenchmark-1.0/data/; ground truth anywhere in ROOT as in
+              // the layouts above and below [chen2009]
+  gs,     // GS/{Saliency/N.val, RawData/N_k.pid}, meshes in off/ or Meshes/, all in ROOT; or ROOT is GS/
+  folder  // meshes in ROOT itself; Distributions/ and RawData/ in it or beside it, or nowhere
+};
+template <>
+struct EnumNames<Layout> {
+  static constexpr std::array<std::string_view, 5> names = {"automatic", "schelling", "princeton", "gs",
+                                                            "folder"};
+};
+
+struct DatasetItem {
+  std::string name;                          // the mesh file's name without its extension
+  std::string category;                      // class of SHREC'07; empty if it has none
+  std::filesystem::path mesh;                // .off .obj .ply
+  std::filesystem::path saliency;            // .val; empty if there is none
+  std::vector<std::filesystem::path> picks;  // .pid by participant's number; may be empty
+};
+
+struct Dataset {
+  std::string layout;              // name of the layout found
+  std::vector<DatasetItem> items;  // in natural order: 2 before 10
+  std::vector<std::string> notes;  // one line each: ground truth without a mesh, numbers that are missing
+};
+
+// Lists folders and reads no file; the result does not depend on the order in which the system lists them.
+// Throws InputError where there are no meshes, saying what was looked for where, and for two meshes of one
+// name.
+Dataset find_dataset(const std::filesystem::path& root, Layout layout);
+
+// Compares runs of digits as numbers: "2" < "10", "michael3" < "michael8", "1_2" < "1_10". A strict total
+// order.
+bool natural_less(std::string_view a, std::string_view b);
+
+}  // namespace salbench

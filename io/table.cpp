@@ -1,0 +1,247 @@
+#include "io/table.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "io/text_file.h"
+#include "io/text_scanner.h"
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+std::string shortest(double value) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  return std::string(digits.data(), end);
+}
+
+std::string csv_text(const Cell& cell) {
+  if (const auto* number = std::get_if<double>(&cell)) return std::isnan(*number) ? "" : shortest(*number);
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
+  return std::get<std::string>(cell);
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return text;
+  std::string escaped = "\"";
+  for (const char c : text) escaped.append(c == '"' ? 2 : 1, c);
+  return escaped + '"';
+}
+
+void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
+  const std::size_t begin = csv.size();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) csv += ',';
+    csv += csv_field(csv_text(cells[i]));
+  }
+  if (csv.size() == begin) csv += "\"\"";  // a blank line would not be read as a row
+  csv += '\n';
+}
+
+// Goes over the fields of a CSV text and counts the lines.
+class CsvReader {
+ public:
+  CsvReader(std::string_view text, std::string_view name) : text_(text), name_(name) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+  }
+
+  // The fields of the next line that is not blank; nothing at the end.
+  std::optional<std::vector<std::string>> next_row() {
+    while (skip_line_end()) {
+    }
+    if (text_.empty()) return {};
+    row_line_ = line_;
+    std::vector<std::string> fields = {field()};
+    while (text_.starts_with(',')) {
+      text_.remove_prefix(1);
+      fields.push_back(field());
+    }
+    if (!text_.empty() && !skip_line_end()) fail(line_, "there is text after the quote that closes a field");
+    return fields;
+  }
+
+  std::size_t row_line() const { return row_line_; }
+
+  [[noreturn]] void fail(std::size_t line, std::string_view what) const {
+    throw InputError(fmt::format("{}:{}: {}", name_, line, what));
+  }
+
+ private:
+  bool skip_line_end() {
+    const std::size_t length =
+        text_.starts_with("\r\n") ? 2 : text_.starts_with('\n') || text_.starts_with('\r');
+    text_.remove_prefix(length);
+    line_ += length > 0;
+    return length > 0;
+  }
+
+  std::string field() {
+    if (text_.starts_with('"')) return quoted_field();
+    const std::string_view field = text_.substr(0, text_.find_first_of(",\r\n"));
+    text_.remove_prefix(field.size());
+    return std::string(field);
+  }
+
+  std::string quoted_field() {
+    const std::size_t opened = line_;
+    std::string field;
+    while (true) {
+      text_.remove_prefix(1);  // the quote
+      const std::size_t length = text_.find('"');
+      if (length == text_.npos) fail(opened, "a quote opens a field that nothing closes");
+      field += text_.substr(0, length);
+      line_ += static_cast<std::size_t>(
+          std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(length), '\n'));
+      text_.remove_prefix(length + 1);
+      if (!text_.starts_with('"')) return field;
+      field += '"';  // two quotes stand for one
+    }
+  }
+
+  std::string_view text_;  // not yet read
+  std::string name_;
+  std::size_t line_ = 1;
+  std::size_t row_line_ = 1;
+};
+
+std::size_t column_index(const Table& table, std::string_view column) {
+  const auto found = std::find(table.columns.begin(), table.columns.end(), column);
+  if (found != table.columns.end()) return static_cast<std::size_t>(found - table.columns.begin());
+  std::vector<std::string> names;
+  for (const std::string& name : table.columns) names.push_back(in_quotes(name));
+  throw InputError(fmt::format("{}: there is no column {}; there are {}", table.name, in_quotes(column),
+                               fmt::join(names, ", ")));
+}
+
+std::string place_of_row(const Table& table, std::size_t row) {
+  return table.lines.empty() ? fmt::format("{}row {}", table.name, row + 1)
+                             : fmt::format("{}:{}", table.name, table.lines[row]);
+}
+
+double number_of(const Table& table, std::size_t row, const Cell& cell) {
+  if (const auto* number = std::get_if<double>(&cell)) return *number;
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*count);
+  const auto& text = std::get<std::string>(cell);
+  if (text.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw InputError(fmt::format("{}: {} is not a number", place_of_row(table, row), in_quotes(text)));
+  return value;
+}
+
+std::string console_cell(const Cell& cell, int decimals) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
+  const double value = std::get<double>(cell);
+  if (std::isnan(value)) return "-";
+  // What would read as zero and is not keeps its magnitude.
+  const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
+  return vanishes ? fmt::format("{:.1e}", value) : fmt::format("{:.{}f}", value, decimals);
+}
+
+// Columns that a UTF-8 text takes on the console: its code points.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));
+}
+
+struct ConsoleColumn {
+  std::vector<std::string> cells;  // the name first
+  std::size_t width = 0;
+  bool to_the_right = true;
+};
+
+ConsoleColumn console_column(const Table& table, std::size_t index, int decimals) {
+  ConsoleColumn column;
+  column.cells.push_back(table.columns[index]);
+  for (const auto& row : table.rows) {
+    CHECK_EQ(row.size(), table.columns.size());
+    column.cells.push_back(console_cell(row[index], decimals));
+    if (std::holds_alternative<std::string>(row[index])) column.to_the_right = false;
+  }
+  for (const std::string& cell : column.cells) column.width = std::max(column.width, width_of(cell));
+  return column;
+}
+
+}  // namespace
+
+std::string to_csv(const Table& table) {
+  std::string csv;
+  append_csv_line(csv, std::vector<Cell>(table.columns.begin(), table.columns.end()));
+  for (const auto& row : table.rows) {
+    CHECK_EQ(row.size(), table.columns.size());
+    append_csv_line(csv, row);
+  }
+  return csv;
+}
+
+Table parse_csv(std::string_view text, std::string_view name) {
+  CsvReader reader(text, name);
+  Table table;
+  table.name = name;
+  auto header = reader.next_row();
+  if (!header)
+    throw InputError(fmt::format("{}: the file is empty, where a line of column names is expected", name));
+  table.columns = std::move(*header);
+  std::vector<std::string> sorted = table.columns;
+  std::sort(sorted.begin(), sorted.end());
+  if (const auto twin = std::adjacent_find(sorted.begin(), sorted.end()); twin != sorted.end())
+    reader.fail(reader.row_line(), fmt::format("two columns are named {}", in_quotes(*twin)));
+  while (auto fields = reader.next_row()) {
+    if (fields->size() != table.columns.size())
+      reader.fail(reader.row_line(),
+                  fmt::format("the line has {} fields, the header {}", fields->size(), table.columns.size()));
+    table.rows.emplace_back(std::make_move_iterator(fields->begin()), std::make_move_iterator(fields->end()));
+    table.lines.push_back(reader.row_line());
+  }
+  return table;
+}
+
+Table read_csv(const std::filesystem::path& path) { return parse_csv(read_file(path), path.string()); }
+
+std::vector<double> number_column(const Table& table, std::string_view column) {
+  const std::size_t index = column_index(table, column);
+  std::vector<double> numbers;
+  for (std::size_t row = 0; row < table.rows.size(); ++row)
+    numbers.push_back(number_of(table, row, table.rows[row][index]));
+  return numbers;
+}
+
+std::vector<std::string> text_column(const Table& table, std::string_view column) {
+  const std::size_t index = column_index(table, column);
+  std::vector<std::string> texts;
+  for (const auto& row : table.rows) texts.push_back(csv_text(row[index]));
+  return texts;
+}
+
+std::string aligned(const Table& table, int decimals) {
+  std::vector<ConsoleColumn> columns;
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    columns.push_back(console_column(table, i, decimals));
+  std::string text;
+  for (std::size_t row = 0; row <= table.rows.size(); ++row) {
+    std::string line;
+    for (const ConsoleColumn& column : columns) {
+      const std::string& cell = column.cells[row];
+      const std::string padding(column.width - width_of(cell), ' ');
+      line += column.to_the_right ? padding + cell : cell + padding;
+      line += "  ";
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + '\n';
+  }
+  return text;
+}
+
+}  // namespace salbench

@@ -1,0 +1,214 @@
+#include "io/dataset.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "tests/io/temporary_folder.h"
+#include "tests/support/data.h"
+
+namespace salbench {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+class DatasetFolder : public TemporaryFolder {
+ public:
+  DatasetFolder(std::initializer_list<const char*> files) {
+    for (const char* file : files) write(file, "");
+  }
+};
+
+// "2 cup Meshes/22.off Distributions/22.val RawData/22_0.pid", paths relative to `base`.
+std::vector<std::string> summary(const Dataset& dataset, const std::filesystem::path& base) {
+  std::vector<std::string> lines;
+  for (const DatasetItem& item : dataset.items) {
+    std::string line = item.name + " " + (item.category.empty() ? "-" : item.category);
+    const auto add = [&](const std::filesystem::path& path) {
+      line += " " + path.lexically_relative(base).string();
+    };
+    add(item.mesh);
+    if (!item.saliency.empty()) add(item.saliency);
+    for (const auto& path : item.picks) add(path);
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+void expect_refusal(const std::filesystem::path& root, Layout layout,
+                    const testing::Matcher<std::string>& why) {
+  EXPECT_THAT([&] { find_dataset(root, layout); }, ThrowsMessage<InputError>(why));
+}
+
+TEST(Dataset, FindsTheSchellingLayoutFromAnyOfItsFolders) {
+  const DatasetFolder folder = {
+      "SchellingData/SchellingData/Meshes/21.off",        "SchellingData/SchellingData/Meshes/3.off",
+      "SchellingData/SchellingData/Distributions/21.val", "SchellingData/SchellingData/RawData/21_0.pid",
+      "SchellingData/SchellingData/RawData/21_10.pid",    "SchellingData/SchellingData/RawData/21_9.pid"};
+  const auto inner = folder / "SchellingData" / "SchellingData";
+  for (const auto& root : {folder.path(), folder / "SchellingData", inner, folder / "SchellingData/"}) {
+    SCOPED_TRACE(root);
+    for (const Layout layout : {Layout::automatic, Layout::schelling}) {
+      const Dataset dataset = find_dataset(root, layout);
+      EXPECT_EQ(dataset.layout, "schelling");
+      EXPECT_THAT(summary(dataset, inner),
+                  ElementsAre("3 human Meshes/3.off",
+                              "21 cup Meshes/21.off Distributions/21.val RawData/21_0.pid "
+                              "RawData/21_9.pid RawData/21_10.pid"));
+    }
+  }
+}
+
+TEST(Dataset, NamesMayHaveDigitsAndUnderscores) {
+  const DatasetFolder folder = {"Meshes/michael3.off", "Meshes/michael.off",     "Meshes/a_1.off",
+                                "Meshes/a.off",        "RawData/michael3_0.pid", "RawData/michael_30.pid",
+                                "RawData/a_1.pid",     "RawData/a_1_2.pid"};
+  EXPECT_THAT(summary(find_dataset(folder.path(), Layout::automatic), folder.path()),
+              ElementsAre("a - Meshes/a.off RawData/a_1.pid", "a_1 - Meshes/a_1.off RawData/a_1_2.pid",
+                          "michael - Meshes/michael.off RawData/michael_30.pid",
+                          "michael3 - Meshes/michael3.off RawData/michael3_0.pid"));
+}
+
+TEST(Dataset, FindsThePrincetonMeshesWithGroundTruthBesideThem) {
+  for (const std::string off : {"off", "data/off", "MeshsegBenchmark-1.0/data/off"}) {
+    for (const std::string truth :
+         {"Distributions", "SchellingData/Distributions", "SchellingData/SchellingData/Distributions"}) {
+      SCOPED_TRACE(off + " " + truth);
+      const TemporaryFolder folder;
+      folder.write(off + "/400.off", "");
+      folder.write(truth + "/400.val", "");
+      const Dataset dataset = find_dataset(folder.path(), Layout::automatic);
+      EXPECT_EQ(dataset.layout, "princeton");
+      EXPECT_THAT(summary(dataset, folder.path()),
+                  ElementsAre("400 four-legged " + off + "/400.off " + truth + "/400.val"));
+    }
+  }
+  const DatasetFolder folder = {"off/1.off", "RawData/1_0.pid"};
+  EXPECT_THAT(summary(find_dataset(folder / "off", Layout::princeton), folder.path()),
+              ElementsAre("1 human off/1.off RawData/1_0.pid"));
+}
+
+TEST(Dataset, FindsTheGsLayout) {
+  for (const std::string meshes : {"off", "Meshes"}) {
+    SCOPED_TRACE(meshes);
+    const TemporaryFolder folder;
+    folder.write(meshes + "/41.off", "");
+    folder.write("GS/Saliency/41.val", "");
+    folder.write("GS/RawData/41_0.pid", "");
+    for (const auto& root : {folder.path(), folder / "GS"}) {
+      const Dataset dataset = find_dataset(root, Layout::automatic);
+      EXPECT_EQ(dataset.layout, "gs");
+      EXPECT_THAT(summary(dataset, folder.path()),
+                  ElementsAre("41 glasses " + meshes + "/41.off GS/Saliency/41.val GS/RawData/41_0.pid"));
+    }
+  }
+}
+
+TEST(Dataset, TakesAnyFolderOfMeshes) {
+  const DatasetFolder folder = {
+      "all/10.off",      "all/2.OBJ",      "all/horse.ply",           "all/readme.txt",
+      "all/.hidden.off", "all/more/4.off", "Distributions/horse.val", "RawData/2_0.pid"};
+  const Dataset dataset = find_dataset(folder / "all", Layout::automatic);
+  EXPECT_EQ(dataset.layout, "folder");
+  EXPECT_THAT(summary(dataset, folder.path()), ElementsAre("2 - all/2.OBJ RawData/2_0.pid", "10 - all/10.off",
+                                                           "horse - all/horse.ply Distributions/horse.val"));
+  EXPECT_THAT(dataset.notes, IsEmpty());
+}
+
+TEST(Dataset, OnlyNumbersOfTheBenchmarkHaveAClass) {
+  const DatasetFolder folder = {"Meshes/1.off", "Meshes/20.off",  "Meshes/261.off", "Meshes/400.off",
+                                "Meshes/0.off", "Meshes/401.off", "Meshes/007.off", "Meshes/1b.off"};
+  EXPECT_THAT(summary(find_dataset(folder.path(), Layout::automatic), folder.path()),
+              ElementsAre("0 - Meshes/0.off", "1 human Meshes/1.off", "1b - Meshes/1b.off",
+                          "007 - Meshes/007.off", "20 human Meshes/20.off", "261 spring Meshes/261.off",
+                          "400 four-legged Meshes/400.off", "401 - Meshes/401.off"));
+}
+
+TEST(Dataset, NotesGroundTruthWithoutAMesh) {
+  const DatasetFolder folder = {"Meshes/horse.off",  "Distributions/261.val", "RawData/261_0.pid",
+                                "RawData/261_1.pid", "RawData/cow_0.pid",     "RawData/readme.pid",
+                                "RawData/notes.txt"};
+  const Dataset dataset = find_dataset(folder.path(), Layout::automatic);
+  EXPECT_THAT(dataset.notes, ElementsAre(HasSubstr("readme.pid: is not named NAME_NUMBER.pid"),
+                                         HasSubstr("261: ground truth without a mesh"),
+                                         HasSubstr("cow: ground truth without a mesh")));
+}
+
+TEST(Dataset, NotesMeshesThatTheBenchmarkHasAndTheFolderHasNot) {
+  const TemporaryFolder folder;
+  for (int i = 1; i <= 400; ++i)
+    if ((i < 261 || i > 280) && i != 399) folder.write("off/" + std::to_string(i) + ".off", "");
+  EXPECT_THAT(find_dataset(folder.path(), Layout::automatic).notes,
+              ElementsAre("379 of the 400 meshes of SHREC'07 are here, without 261-280, 399"));
+}
+
+TEST(Dataset, RefusesTwoMeshesOfOneName) {
+  const DatasetFolder folder = {"a.off", "a.obj", "b.off"};
+  expect_refusal(folder.path(), Layout::automatic,
+                 AllOf(HasSubstr("a.off: has the same name as"), HasSubstr("a.obj")));
+}
+
+TEST(Dataset, SaysWhatItLookedForAndWhere) {
+  const DatasetFolder folder = {"Meshes/readme.txt"};
+  expect_refusal(folder.path(), Layout::automatic,
+                 AllOf(HasSubstr("no .off, .obj or .ply meshes found"), HasSubstr("gs: "),
+                       HasSubstr("schelling: " + (folder / "Meshes").string()), HasSubstr("princeton: "),
+                       HasSubstr("folder: " + folder.path().string())));
+  expect_refusal(folder.path(), Layout::princeton,
+                 HasSubstr((folder / "MeshsegBenchmark-1.0/data/off").string()));
+  expect_refusal(folder / "absent", Layout::automatic, HasSubstr("absent: there is no such folder"));
+  expect_refusal(folder / "Meshes/readme.txt", Layout::folder, HasSubstr("there is no such folder"));
+}
+
+TEST(Dataset, FindsTheRealData) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  const Dataset study = find_dataset(*data, Layout::automatic);
+  EXPECT_EQ(study.layout, "schelling");
+  EXPECT_EQ(study.items.size(), 380U);
+  EXPECT_EQ(std::count_if(study.items.begin(), study.items.end(),
+                          [](const DatasetItem& item) { return item.picks.size() >= 22; }),
+            19);
+  EXPECT_THAT(study.notes, ElementsAre("380 of the 400 meshes of SHREC'07 are here, without 261-280"));
+
+  const Dataset tracked = find_dataset(*data / "eyetracking", Layout::automatic);
+  EXPECT_EQ(tracked.items.size(), 23U);
+  for (const DatasetItem& item : tracked.items) {
+    EXPECT_EQ(item.category, "");
+    EXPECT_FALSE(item.saliency.empty());
+    EXPECT_EQ(item.picks.size(), 1U) << item.name;
+  }
+  EXPECT_THAT(tracked.notes, IsEmpty());
+}
+
+TEST(NaturalLess, ComparesRunsOfDigitsAsNumbers) {
+  std::vector<std::string> names = {
+      "10", "b2", "2", "a", "b10", "b010", "a_1_2", "a_1", "99999999999999999999999", "1b", "b", "02"};
+  std::sort(names.begin(), names.end(), natural_less);
+  EXPECT_THAT(names, ElementsAre("1b", "02", "2", "10", "99999999999999999999999", "a", "a_1", "a_1_2", "b",
+                                 "b2", "b010", "b10"));
+}
+
+TEST(NaturalLess, IsAStrictTotalOrder) {
+  const std::vector<std::string> names = {"",    "0",   "00",   "1",   "01",   "1a", "01a", "a1",
+                                          "a01", "a1b", "a01b", "1a2", "1a02", "_",  "1_"};
+  for (const auto& a : names) {
+    EXPECT_FALSE(natural_less(a, a));
+    for (const auto& b : names) {
+      EXPECT_EQ(natural_less(a, b) || natural_less(b, a), a != b) << a << " " << b;
+      EXPECT_FALSE(natural_less(a, b) && natural_less(b, a)) << a << " " << b;
+      for (const auto& c : names)
+        EXPECT_TRUE(!natural_less(a, b) || !natural_less(b, c) || natural_less(a, c))
+            << a << " " << b << " " << c;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,90 @@
+#include "io/ground_truth_file.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.h"
+#include "stages/core/errors.h"
+#include "tests/io/temporary_folder.h"
+#include "tests/support/data.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+void expect_refused_saliency(std::string_view text, std::size_t n, std::string_view why) {
+  EXPECT_THAT([&] { parse_saliency(text, "9.val", n); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
+}
+
+void expect_refused_picks(std::string_view text, std::size_t n, std::string_view why) {
+  EXPECT_THAT([&] { parse_picks(text, "9_0.pid", n); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
+}
+
+TEST(GroundTruthFile, ReadsOneValueALine) {
+  for (const char* text :
+       {"0.5\n0\n1e-3\n", "0.5\r\n0\r\n1e-3\r\n", " 0.5 \n\n0\t\n1e-3\n\n\n", "0.5\n0\n1e-3"})
+    EXPECT_THAT(parse_saliency(text, "9.val", 3), ElementsAre(0.5, 0, 1e-3)) << text;
+}
+
+TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
+  expect_refused_saliency("1\nnan\n", 2, "9.val:2: \"nan\" is not a finite number");
+  expect_refused_saliency("1\n-inf\n", 2, "9.val:2: \"-inf\" is not a finite number");
+  expect_refused_saliency("1\nx\n", 2, "9.val:2: \"x\" is not a number");
+  expect_refused_saliency("1\n2 3\n", 2, "9.val:2: the line has more than one value");
+  expect_refused_saliency("1\n2\n3\n", 2, "9.val:3: the file has 3 values, the mesh 2 vertices");
+  expect_refused_saliency("1\n", 2, "9.val:1: the file has 1 values, the mesh 2 vertices");
+  expect_refused_saliency("", 2, "9.val: the file has 0 values");
+}
+
+TEST(GroundTruthFile, KeepsTheOrderAndRepetitionsOfPicks) {
+  EXPECT_THAT(parse_picks("7\r\n0\r\n7\r\n", "9_0.pid", 8), ElementsAre(7, 0, 7));
+  EXPECT_THAT(parse_picks("", "9_0.pid", 8), IsEmpty());
+}
+
+TEST(GroundTruthFile, NamesFileAndLineOfABadPick) {
+  expect_refused_picks("7\n8\n", 8,
+                       "9_0.pid:2: vertex 8 is out of range: the mesh has 8 vertices, numbered from 0");
+  expect_refused_picks("-1\n", 8, "9_0.pid:1: vertex -1 is out of range");
+  expect_refused_picks("1.5\n", 8, "9_0.pid:1: \"1.5\" is not a whole number");
+  expect_refused_picks("1 2\n", 8, "9_0.pid:1: the line has more than one value");
+  expect_refused_picks("99999999999999999999\n", 8, "does not fit 64 bits");
+}
+
+TEST(GroundTruthFile, AParticipantWithoutPicksCounts) {
+  const TemporaryFolder folder;
+  DatasetItem item;
+  item.picks = {folder.write("1_0.pid", "3\n"), folder.write("1_1.pid", "")};
+  EXPECT_THAT(read_ground_truth(item, 4).picks, ElementsAre(ElementsAre(3), IsEmpty()));
+  EXPECT_THAT(read_ground_truth(item, 4).saliency, IsEmpty());
+  item.picks = {item.picks[1], item.picks[1]};
+  EXPECT_THAT(read_ground_truth(item, 4).picks, IsEmpty());  // nobody picked anything: there are no picks
+}
+
+TEST(GroundTruthFile, ReadsTheStudysFiles) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  int with_truth = 0;
+  for (const DatasetItem& item : find_dataset(*data, Layout::automatic).items) {
+    if (item.saliency.empty()) continue;
+    SCOPED_TRACE(item.name);
+    const GroundTruth truth = read_ground_truth(item, read_mesh(item.mesh).vertices.size());
+    ++with_truth;
+    EXPECT_GE(truth.picks.size(), 22U);
+    // A vertex that somebody picked has at least that person's share of saliency.
+    for (const auto& picks : truth.picks)
+      for (const std::int32_t vertex : picks)
+        EXPECT_GE(truth.saliency[static_cast<std::size_t>(vertex)],
+                  0.999 / static_cast<double>(truth.picks.size()));
+  }
+  EXPECT_EQ(with_truth, 19);
+}
+
+}  // namespace
+}  // namespace salbench

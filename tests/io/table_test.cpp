@@ -1,0 +1,125 @@
+#include "io/table.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/rng.h"
+#include "tests/io/temporary_folder.h"
+#include "tests/support/data.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+void expect_refusal(std::string_view csv, std::string_view why) {
+  EXPECT_THAT([&] { parse_csv(csv, "x.csv"); }, ThrowsMessage<InputError>(HasSubstr(why))) << csv;
+}
+
+TEST(Csv, WritesWhatItMustQuoteInQuotes) {
+  const Table table{
+      {"item", "n, of", "auc"},
+      {{"52", std::int64_t{7}, 0.1}, {"a \"b\"", std::int64_t{-1}, kNan}, {"c\nd", std::int64_t{0}, 1e300}}};
+  EXPECT_EQ(to_csv(table), "item,\"n, of\",auc\n52,7,0.1\n\"a \"\"b\"\"\",-1,\n\"c\nd\",0,1e+300\n");
+}
+
+TEST(Csv, ReadsBackEveryTextItWrites) {
+  const std::vector<std::string> texts = {"",     "plain", " spaced ",   "a,b", "\"",
+                                          "\"\"", "\r\n",  "two\nlines", "ä"};
+  Table table{{"text", "comma,name"}, {}};
+  for (const std::string& text : texts) table.rows.push_back({text, text + "x"});
+  const Table back = parse_csv(to_csv(table), "x.csv");
+  EXPECT_EQ(back.columns, table.columns);
+  EXPECT_EQ(back.rows, table.rows);
+
+  Table narrow{{"text"}, {}};  // its empty fields would be blank lines
+  for (const std::string& text : texts) narrow.rows.push_back({text});
+  EXPECT_EQ(text_column(parse_csv(to_csv(narrow), "x.csv"), "text"), texts);
+}
+
+TEST(Csv, DoublesReadBackToTheSameValue) {
+  Rng rng(3, "table", "");
+  std::vector<double> values = {
+      0, -0.0, 0.1, 1.0 / 3, 5e-324, -1.7976931348623157e308, std::numeric_limits<double>::infinity()};
+  for (int i = 0; i < 2000; ++i)
+    values.push_back(std::ldexp(rng.uniform() - 0.5, static_cast<int>(rng.below(2000)) - 1000));
+  Table table{{"value"}, {}};
+  for (const double value : values) table.rows.push_back({value});
+  EXPECT_EQ(number_column(parse_csv(to_csv(table), "x.csv"), "value"), values);
+  EXPECT_TRUE(std::isnan(number_column(parse_csv(to_csv({{"v"}, {{kNan}}}), "x.csv"), "v").at(0)));
+}
+
+TEST(Csv, ReadsFilesOfOtherPrograms) {
+  const Table table = parse_csv(
+      "\xef\xbb\xbf"
+      "a,b\r\n\r\n\"1\",2\r\n3,4",
+      "x.csv");
+  EXPECT_THAT(table.columns, ElementsAre("a", "b"));
+  EXPECT_THAT(number_column(table, "a"), ElementsAre(1, 3));
+  EXPECT_THAT(text_column(table, "b"), ElementsAre("2", "4"));
+  EXPECT_THAT(table.lines, ElementsAre(3, 4));
+}
+
+TEST(Csv, NamesFileAndLineOfWhatIsWrong) {
+  expect_refusal("", "x.csv: the file is empty");
+  expect_refusal("\n\n", "x.csv: the file is empty");
+  expect_refusal("a,b\n1,2\n3\n", "x.csv:3: the line has 1 fields, the header 2");
+  expect_refusal("a,b\n\"1\n1\",2\n1,2,3\n", "x.csv:4: the line has 3 fields");
+  expect_refusal("a,b\n1,\"2\n", "x.csv:2: a quote opens a field that nothing closes");
+  expect_refusal("a,b\n1,\"2\"3\n", "x.csv:2: there is text after the quote");
+  expect_refusal("a,b,a\n", "x.csv:1: two columns are named \"a\"");
+  const Table table = parse_csv("GS,LS\n0.5,1\n0.5 ,1\n", "x.csv");
+  EXPECT_THAT([&] { number_column(table, "GS"); },
+              ThrowsMessage<InputError>("x.csv:3: \"0.5 \" is not a number"));
+  EXPECT_THAT([&] { number_column(table, "CS"); },
+              ThrowsMessage<InputError>("x.csv: there is no column \"CS\"; there are \"GS\", \"LS\""));
+}
+
+TEST(Csv, AnyCutOfAFileIsReadOrRefused) {
+  const std::string csv = "a,\"b\"\"c\"\n\"x\ny\",\"2\"\r\n3,4\n";
+  for (std::size_t length = 0; length < csv.size(); ++length) {
+    try {
+      EXPECT_LE(parse_csv(csv.substr(0, length), "x.csv").rows.size(), 2U);
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("x.csv"));
+    }
+  }
+}
+
+TEST(Csv, ReadsTheReferenceHistogramOfThePaper) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  const Table table = read_csv(*data / "reference" / "mean_histograms_meshes.csv");
+  const std::vector<double> reference = number_column(table, "GS");
+  ASSERT_EQ(reference.size(), 100U);
+  EXPECT_EQ(reference[0], 70.0805584);
+  double sum = 0;
+  for (const double density : reference) sum += density;
+  EXPECT_NEAR(sum, 100, 1e-5);
+}
+
+TEST(Aligned, PutsNumbersToTheRight) {
+  const Table table{
+      {"model", "auc", "n"},
+      {{"LS", 0.62849, std::int64_t{400}}, {"Größe", -12.5, std::int64_t{7}}, {"", kNan, std::int64_t{0}}}};
+  EXPECT_EQ(aligned(table, 3),
+            "model      auc    n\n"
+            "LS       0.628  400\n"
+            "Größe  -12.500    7\n"
+            "             -    0\n");
+}
+
+TEST(Aligned, ShowsTheMagnitudeOfWhatWouldReadAsZero) {
+  EXPECT_EQ(aligned({{"p"}, {{3.2e-12}, {0.0}, {0.0004}}}, 4), "      p\n3.2e-12\n 0.0000\n 0.0004\n");
+}
+
+}  // namespace
+}  // namespace salbench
