@@ -207,7 +207,12 @@ std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& ke
     impl_->move_aside(stage, key, path, bytes ? "its checksum does not fit" : "gone or unreadable");
     return {};
   }
-  return hdf5_content(*bytes, path.string()).arrays;
+  Arrays arrays = hdf5_content(*bytes, path.string()).arrays;
+  if (content_digest(arrays) != entry->content) {
+    impl_->move_aside(stage, key, path, "its content is not what its name says");
+    return {};
+  }
+  return arrays;
 }
 
 Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,

@@ -4,6 +4,7 @@
 #include "io/hdf5_file.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include <fmt/format.h>
@@ -64,6 +65,12 @@ struct Type<std::int64_t> {
 
 Handle property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "H5Pcreate"}; }
 Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose, "H5Screate"}; }
+
+// Files in memory are told apart by their names alone: two of one name would be one file to the library.
+std::string image_name() {
+  static std::atomic<std::uint64_t> counter = 0;
+  return fmt::format("image {}", counter++);
+}
 
 Handle core_access() {
   Handle access = property_list(H5P_FILE_ACCESS);
@@ -216,7 +223,7 @@ Bytes hdf5_image(const Hdf5Content& content) {
   const Handle access = core_access();
   const Handle creation = property_list(H5P_FILE_CREATE);
   must(H5Pset_obj_track_times(creation, false), "H5Pset_obj_track_times");
-  const Handle file(H5Fcreate("image", H5F_ACC_TRUNC, creation, access), H5Fclose, "H5Fcreate");
+  const Handle file(H5Fcreate(image_name().c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose, "H5Fcreate");
   const Handle links = property_list(H5P_LINK_CREATE);
   must(H5Pset_create_intermediate_group(links, 1), "H5Pset_create_intermediate_group");
   for (const auto& [name, value] : content.attributes) write_attribute(file, name, value);
@@ -236,7 +243,7 @@ Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name
     const Handle access = core_access();
     // The library copies the image; it never writes to it in read-only mode.
     must(H5Pset_file_image(access, const_cast<std::byte*>(image.data()), image.size()), "H5Pset_file_image");
-    const Handle file(H5Fopen("image", H5F_ACC_RDONLY, access), H5Fclose, "H5Fopen");
+    const Handle file(H5Fopen(image_name().c_str(), H5F_ACC_RDONLY, access), H5Fclose, "H5Fopen");
     std::vector<std::string> names;
     must(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, append_name, &names, H5O_INFO_BASIC), "H5Ovisit");
     Hdf5Content content{{}, read_attributes(file)};

@@ -25,6 +25,10 @@ struct FpfhOptions {
   bool grow = true;
   FpfhWeighting weighting = FpfhWeighting::published;
 
+  static FpfhOptions text() {  // the paper's words
+    return {.neighbourhood = FpfhNeighborhood::radius, .weighting = FpfhWeighting::text};
+  }
+
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("neighbourhood", self.neighbourhood, "take so many nearest points, or all within a radius");

@@ -18,12 +18,12 @@ namespace salbench {
 
 // Only the parts that the model's catalog row names are filled; the others are empty.
 struct ModelInput {
-  std::span<const Vec3> points;       // n x 3, always there
-  std::span<const Vec3> normals;      // n x 3, unit
-  std::span<const Triangle> faces;    // f x 3; of a scan: its partial mesh
-  const Descriptors* fpfh = nullptr;  // n x 33, the shared descriptors of the shape
-  std::uint64_t seed = 0;             // with the item's name: what random numbers depend on
-  std::string_view item;
+  std::span<const Vec3> points = {};     // n x 3, always there
+  std::span<const Vec3> normals = {};    // n x 3, unit
+  std::span<const Triangle> faces = {};  // f x 3; of a scan: its partial mesh
+  const Descriptors* fpfh = nullptr;     // n x 33, the shared descriptors of the shape
+  std::uint64_t seed = 0;                // with the item's name: what random numbers depend on
+  std::string_view item = {};
 
   Rng rng(std::string_view stage) const { return Rng(seed, stage, item); }
 };

@@ -23,6 +23,8 @@ struct MeshNormalsOptions {
   std::int32_t most_neighbours = 30;  // pca: limit of that count
   std::int32_t orientation_neighbours = 6;  // pca: nearest others that orientation passes to
 
+  static MeshNormalsOptions text() { return {.method = MeshNormalsMethod::pca}; }  // the paper's words
+
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("method", self.method, "faces: area-weighted face normals; pca: planes, oriented by Hoppe's tree");

@@ -1,0 +1,235 @@
+#include "pipeline/catalog.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "io/ground_truth_file.h"
+#include "io/mesh_file.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_check.h"
+#include "stages/ground_truth/scan_truth.h"
+#include "stages/matching/matching.h"
+
+namespace salbench {
+namespace {
+
+// --- the functions of the rows -------------------------------------------------------------------------
+
+Value load_mesh(const StageInputs& in) {
+  CheckedMesh checked = check_mesh(read_mesh(in.source->mesh));
+  for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", in.item, warning);
+  return std::move(checked.mesh);
+}
+
+// Picks alone are enough: the saliency is then made from them, as the study's authors did. [chen2012]
+Value load_ground_truth(const StageInputs& in) {
+  const Mesh& mesh = in.get<Mesh>(0);
+  GroundTruth truth = read_ground_truth(*in.source, mesh.vertices.size());
+  if (truth.saliency.empty() && truth.picks.empty())
+    throw InputError(
+        fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty .pid files",
+                    in.source->picks.front().string()));
+  if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh, truth.picks);
+  return truth;
+}
+
+std::span<const Vec3> points_of(const Value& shape) {
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) return mesh->vertices;
+  return std::get<Scan>(shape).points;
+}
+
+std::span<const Triangle> faces_of(const Value& surface) {
+  if (const auto* mesh = std::get_if<Mesh>(&surface)) return mesh->faces;
+  return std::get<Faces>(surface);
+}
+
+// --- building a chain ----------------------------------------------------------------------------------
+
+class ChainBuilder {
+ public:
+  ChainBuilder(Chain& chain, const Chain* of_mesh) : chain_(chain), of_mesh_(of_mesh) {}
+
+  Input shape(std::string_view stage) const { return {Input::From::shape, stage_index(chain_, stage)}; }
+  Input mesh(std::string_view stage) const { return {Input::From::mesh, stage_index(*of_mesh_, stage)}; }
+  static Input reference() { return {Input::From::reference, 0}; }
+
+  void add(Stage stage) {
+    for (const Input& input : stage.inputs)
+      stage.after_reference |= input.from == Input::From::reference ||
+                               (input.from == Input::From::shape && chain_[input.stage].after_reference);
+    chain_.push_back(std::move(stage));
+  }
+
+ private:
+  Chain& chain_;
+  const Chain* of_mesh_;
+};
+
+// Names of the stages that play the same part for meshes and for scans.
+struct Parts {
+  std::string_view points, normals, surface, ground_truth;
+};
+constexpr Parts kMeshParts{"mesh", "normals", "mesh", "ground_truth"};
+constexpr Parts kScanParts{"scan", "scan_normals", "surface", "scan_ground_truth"};
+
+void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, const Model& model) {
+  const std::string map = "map." + model.name, matched_map = "matched." + model.name;
+  std::vector<Input> inputs = {chain.shape(parts.points)};
+  if ((model.reads & kReadsNormals) != 0) inputs.push_back(chain.shape(parts.normals));
+  if ((model.reads & kReadsFaces) != 0) inputs.push_back(chain.shape(parts.surface));
+  if ((model.reads & kReadsFpfh) != 0) inputs.push_back(chain.shape("fpfh"));
+  chain.add({.name = map,
+             .version = model.version,
+             .kind = "field",
+             .options = model.options,
+             .inputs = std::move(inputs),
+             .seeded = (model.reads & kReadsSeed) != 0,
+             .run = [model](const StageInputs& in) -> Value {
+               std::size_t next = 1;
+               ModelInput input{.points = points_of(*in.values[0]), .seed = in.seed, .item = in.item};
+               if ((model.reads & kReadsNormals) != 0) input.normals = in.get<Normals>(next++);
+               if ((model.reads & kReadsFaces) != 0) input.faces = faces_of(*in.values[next++]);
+               if ((model.reads & kReadsFpfh) != 0) input.fpfh = &in.get<Descriptors>(next++);
+               return model.saliency(input);
+             }});
+  chain.add({.name = matched_map,
+             .version = 1,
+             .kind = "field",
+             .inputs = {chain.shape(map), ChainBuilder::reference()},
+             .run = [](const StageInputs& in) -> Value {
+               return matched(in.get<ScalarField>(0), in.get<Histogram>(1));
+             }});
+  chain.add({.name = "scores." + model.name,
+             .version = 1,
+             .kind = "scores",
+             .options = options_text(config.metrics),
+             .inputs = {chain.shape(matched_map), chain.shape(parts.ground_truth)},
+             .seeded = true,
+             .run = [options = config.metrics, name = model.name](const StageInputs& in) -> Value {
+               return score(in.get<ScalarField>(0), in.get<GroundTruth>(1), options,
+                            Rng(in.seed, "scores." + name, in.item));
+             }});
+}
+
+// What both kinds of shape have in common: descriptors, models, scores.
+void add_evaluation(ChainBuilder& chain, const Parts& parts, const Config& config) {
+  chain.add({.name = "fpfh",
+             .version = 1,
+             .kind = "descriptors",
+             .options = options_text(config.fpfh),
+             .inputs = {chain.shape(parts.points), chain.shape(parts.normals)},
+             .run = [options = config.fpfh](const StageInputs& in) -> Value {
+               return fpfh(points_of(*in.values[0]), in.get<Normals>(1), options);
+             }});
+  for (const Model& model : config.models) add_model(chain, parts, config, model);
+}
+
+Stage mesh_ground_truth(const ChainBuilder& chain, const Config& config) {
+  if (config.simulated())
+    return {.name = "ground_truth",
+            .version = 1,
+            .kind = "ground_truth",
+            .options = options_text(config.simulation),
+            .inputs = {chain.shape("mesh")},
+            .seeded = true,
+            .run = [options = config.simulation](const StageInputs& in) -> Value {
+              return simulated_ground_truth(in.get<Mesh>(0), options, in.seed, in.item);
+            }};
+  return {.name = "ground_truth",
+          .version = 1,
+          .kind = "ground_truth",
+          .inputs = {chain.shape("mesh")},
+          .source = Source::truth_files,
+          .run = load_ground_truth};
+}
+
+Chain mesh_chain(const Config& config) {
+  Chain stages;
+  ChainBuilder chain(stages, nullptr);
+  chain.add({.name = "mesh", .version = 1, .kind = "mesh", .source = Source::mesh_file, .run = load_mesh});
+  chain.add(mesh_ground_truth(chain, config));
+  if (!config.dataset.meshes) return stages;  // only what scans read
+  chain.add({.name = "normals",
+             .version = 1,
+             .kind = "normals",
+             .options = options_text(config.normals),
+             .inputs = {chain.shape("mesh")},
+             .run = [options = config.normals](const StageInputs& in) -> Value {
+               return mesh_normals(in.get<Mesh>(0), options);
+             }});
+  add_evaluation(chain, kMeshParts, config);
+  return stages;
+}
+
+Chain scan_chain(const Config& config, const Chain& of_mesh) {
+  Chain stages;
+  if (!config.dataset.scans) return stages;
+  ChainBuilder chain(stages, &of_mesh);
+  chain.add({.name = "scan",
+             .version = 1,
+             .kind = "scan",
+             .options = options_text(config.scan),
+             .inputs = {chain.mesh("mesh")},
+             .per_view = true,
+             .run = [options = config.scan](const StageInputs& in) -> Value {
+               return simulate_scan(in.get<Mesh>(0), in.view, options);
+             }});
+  chain.add({.name = "scan_ground_truth",
+             .version = 1,
+             .kind = "ground_truth",
+             .inputs = {chain.shape("scan"), chain.mesh("mesh"), chain.mesh("ground_truth")},
+             .run = [](const StageInputs& in) -> Value {
+               return scan_ground_truth(in.get<Scan>(0), in.get<Mesh>(1), in.get<GroundTruth>(2));
+             }});
+  chain.add({.name = "scan_normals",
+             .version = 1,
+             .kind = "normals",
+             .options = options_text(config.scan_normals),
+             .inputs = {chain.shape("scan")},
+             .run = [options = config.scan_normals](const StageInputs& in) -> Value {
+               return scan_normals(in.get<Scan>(0), options);
+             }});
+  chain.add({.name = "surface",
+             .version = 1,
+             .kind = "faces",
+             .options = options_text(config.surface),
+             .inputs = {chain.shape("scan"), chain.shape("scan_normals")},
+             .run = [options = config.surface](const StageInputs& in) -> Value {
+               return partial_mesh(in.get<Scan>(0), in.get<Normals>(1), options);
+             }});
+  add_evaluation(chain, kScanParts, config);
+  return stages;
+}
+
+}  // namespace
+
+Catalog make_catalog(const Config& config) {
+  Catalog catalog;
+  catalog.mesh = mesh_chain(config);
+  catalog.scan = scan_chain(config, catalog.mesh);
+  catalog.reference = {
+      .name = "reference", .version = 1, .kind = "histogram", .run = [](const StageInputs& in) -> Value {
+        std::vector<Histogram> histograms;
+        for (const Value* value : in.values) histograms.push_back(std::get<Histogram>(*value));
+        return mean_histogram(histograms);
+      }};
+  return catalog;
+}
+
+Value reference_part(const GroundTruth& truth) { return normalised_histogram(truth.saliency); }
+
+bool has_stage(const Chain& chain, std::string_view name) {
+  for (const Stage& stage : chain)
+    if (stage.name == name) return true;
+  return false;
+}
+
+std::size_t stage_index(const Chain& chain, std::string_view name) {
+  for (std::size_t i = 0; i < chain.size(); ++i)
+    if (chain[i].name == name) return i;
+  throw std::out_of_range(fmt::format("no stage '{}'", name));
+}
+
+}  // namespace salbench

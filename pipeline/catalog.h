@@ -1,0 +1,68 @@
+// THE table of stages: what there is to compute for a mesh and for a scan of it, from what, and how.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/dataset.h"
+#include "io/value.h"
+#include "pipeline/config.h"
+
+namespace salbench {
+
+// Where an input comes from: an earlier stage of the same shape, a stage of the mesh that the shape is a scan
+// of, or the reference histogram of the data set.
+struct Input {
+  enum class From : std::uint8_t { shape, mesh, reference } from = From::shape;
+  std::size_t stage = 0;  // index in that chain
+};
+
+enum class Source : std::uint8_t { none, mesh_file, truth_files };
+
+struct StageInputs {
+  std::vector<const Value*> values;  // in the order of the row's inputs
+  const DatasetItem* source = nullptr;
+  std::uint64_t seed = 0;
+  std::string item;  // "52", "52_3"
+  int view = 0;      // of a scan
+
+  template <class T>
+  const T& get(std::size_t i) const {
+    return std::get<T>(*values[i]);
+  }
+};
+
+struct Stage {
+  std::string name;          // folder in the cache; the same for meshes and scans where the work is the same
+  std::int32_t version = 1;  // raised when the output changes; tests/pipeline/golden_test.cpp watches
+  std::string_view kind = {};  // layout of its result (io/value.h)
+  std::string options = {};    // canonical text of what it depends on
+  std::vector<Input> inputs = {};
+  Source source = Source::none;
+  bool seeded = false;           // uses random numbers: seed and item enter the key
+  bool per_view = false;         // the view enters the key
+  bool after_reference = false;  // needs the whole data set's ground truth first: second pass
+  std::function<Value(const StageInputs&)> run = {};
+};
+
+using Chain = std::vector<Stage>;  // every input stands before its user
+
+struct Catalog {
+  Chain mesh, scan;
+  // Mean histogram of the ground truths of all items of one kind. Its inputs are as many as there are items,
+  // so it runs on what reference_part() keeps of each.
+  Stage reference;
+};
+
+Value reference_part(const GroundTruth& truth);
+
+Catalog make_catalog(const Config& config);
+
+// Index of a stage in a chain. Throws std::out_of_range.
+std::size_t stage_index(const Chain& chain, std::string_view name);
+bool has_stage(const Chain& chain, std::string_view name);
+
+}  // namespace salbench

@@ -1,0 +1,97 @@
+#include <csignal>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "pipeline/commands.h"
+#include "stages/core/errors.h"
+
+namespace {
+
+using namespace salbench;
+
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);  // what a signal handler may touch
+
+// The first signal asks for an orderly end; a second one ends the program at once, which the cache survives.
+void on_signal(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+}
+
+constexpr const char* kExamples = R"(Examples:
+  salbench run configs/shrec07.yaml --data SchellingData          the whole benchmark; run it again to resume
+  salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
+  salbench plan configs/shrec07.yaml --data SchellingData         what a run would compute, and why
+  salbench status configs/shrec07.yaml --data SchellingData       what is there already
+
+Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
+3 cache or output folder unusable; 130 interrupted, the line that resumes was printed.)";
+
+CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, Arguments& arguments) {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->add_option("CONFIG", arguments.config, "configuration file (YAML); see configs/")->required();
+  verb->add_option("--data", arguments.data, "folder of the data set");
+  verb->add_option("--cache", arguments.cache,
+                   "folder of the artefacts (default: cache in CONFIG, or salbench-cache)");
+  verb->add_option("--out", arguments.output,
+                   "folder of the results (default: output in CONFIG, or salbench-out/NAME)");
+  verb->add_option("--threads", arguments.threads,
+                   "threads (default: all cores); results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  verb->add_option("--items", arguments.items, "only these meshes and their scans, such as 1-20,52,125");
+  verb->add_option(
+      "--reference", arguments.reference,
+      "match to this histogram (CSV with a column GS of 100 bins), not to the data set's own mean");
+  verb->add_flag("--quiet", arguments.quiet, "neither progress nor tables; warnings and errors only");
+  return verb;
+}
+
+std::string joined(int argc, char** argv) {
+  std::string line;
+  for (int i = 0; i < argc; ++i) line += (i > 0 ? " " : "") + std::string(argv[i]);
+  return line;
+}
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"Benchmark of 3D saliency models on meshes and simulated range scans."};
+  app.set_version_flag("--version", "salbench " SALBENCH_VERSION);
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  Arguments arguments;
+  arguments.command_line = joined(argc, argv);
+  CLI::App* run = add_verb(app, "run", "compute what is missing and write the tables", arguments);
+  CLI::App* plan =
+      add_verb(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
+  add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kAllDone : kUnusableArguments;
+  }
+  if (run->parsed()) return run_command(arguments, interrupted);
+  return plan->parsed() ? plan_command(arguments) : status_command(arguments);
+}
+
+int guarded(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const StorageError& error) {
+    spdlog::error("{}", error.what());
+    return kUnusableStorage;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kUnusableArguments;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("salbench"));
+  spdlog::set_pattern("%^%l%$: %v");
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  return guarded(argc, argv);
+}

@@ -1,0 +1,32 @@
+#include "pipeline/model_catalog.h"
+
+#include <array>
+
+#include "stages/models/ps.h"
+#include "stages/models/rs.h"
+
+namespace salbench {
+namespace {
+
+template <class Options>
+ModelRow row(std::string_view name, std::int32_t version, unsigned reads,
+             ScalarField (*saliency)(const ModelInput&, const Options&)) {
+  return {name, [=](const Section& section, Protocol protocol) {
+            auto options = preset<Options>(protocol);
+            section.read(options);
+            return Model{std::string(name), version, reads, options_text(options),
+                         [=](const ModelInput& input) { return saliency(input, options); }};
+          }};
+}
+
+}  // namespace
+
+std::span<const ModelRow> model_rows() {
+  static const std::array rows = {
+      row("PS", 1, kReadsFpfh, ps_saliency),
+      row("RS", 1, kReadsSeed, rs_saliency),
+  };
+  return rows;
+}
+
+}  // namespace salbench

@@ -1,0 +1,95 @@
+// Options as text: parsed from a configuration, and written as the canonical lines that enter a cache key.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "stages/core/options.h"
+
+namespace salbench {
+
+template <class Number>
+requires std::is_arithmetic_v<Number>
+bool parse_option(std::string_view text, Number& value) {
+  const char* end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stopped != end) return false;
+  if constexpr (std::is_floating_point_v<Number>) return std::isfinite(value);
+  return true;
+}
+
+inline bool parse_option(std::string_view text, bool& value) {
+  value = text == "true";
+  return text == "true" || text == "false";
+}
+
+inline bool parse_option(std::string_view text, std::string& value) {
+  value = text;
+  return true;
+}
+
+template <class Enum>
+requires std::is_enum_v<Enum>
+bool parse_option(std::string_view text, Enum& value) {
+  const auto& names = EnumNames<Enum>::names;
+  const auto found = std::find(names.begin(), names.end(), text);
+  value = static_cast<Enum>(found - names.begin());
+  return found != names.end();
+}
+
+template <class Value>
+std::string expected_of() {
+  if constexpr (std::is_same_v<Value, bool>) return "true or false";
+  if constexpr (std::is_floating_point_v<Value>) return "a finite number";
+  if constexpr (std::is_integral_v<Value>)
+    return std::is_signed_v<Value> ? "a whole number" : "a whole number >= 0";
+  if constexpr (std::is_enum_v<Value>) {
+    std::string list;
+    for (const std::string_view name : EnumNames<Value>::names)
+      list += (list.empty() ? "" : ", ") + std::string(name);
+    return "one of " + list;
+  }
+  return "a text";
+}
+
+template <class Value>
+std::string option_text(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(name_of(value));
+  } else {
+    return fmt::format("{}", value);  // doubles: the shortest text that reads back as the same bits
+  }
+}
+
+// One `key: value` a line, in the order of the struct.
+template <class Options>
+std::string options_text(const Options& options) {
+  std::string lines;
+  Options::fields(options, [&](std::string_view key, const auto& value, std::string_view) {
+    lines += fmt::format("{}: {}\n", key, option_text(value));
+  });
+  return lines;
+}
+
+// The paper's words in place of what its authors ran, where the struct tells them apart.
+enum class Protocol { published, text };
+template <>
+struct EnumNames<Protocol> {
+  static constexpr std::array<std::string_view, 2> names{"published", "text"};
+};
+
+template <class Options>
+Options preset(Protocol protocol) {
+  if constexpr (requires { Options::text(); })
+    if (protocol == Protocol::text) return Options::text();
+  return Options{};
+}
+
+}  // namespace salbench

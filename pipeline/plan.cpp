@@ -1,0 +1,244 @@
+#include "pipeline/plan.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "stages/scan/scan.h"
+
+namespace salbench {
+namespace {
+
+Job verdict_of(Verdict verdict, Reason reason, std::size_t because = 0) {
+  return {verdict, reason, static_cast<std::uint8_t>(because), {}, {}};
+}
+
+const Job& input_job(const Plan& plan, const ItemRef& item, const Input& input) {
+  switch (input.from) {
+    case Input::From::mesh:
+      return plan.families[item.family].mesh[input.stage];
+    case Input::From::reference:
+      return plan.reference[item.is_mesh() ? 0 : 1];
+    default:
+      return plan.jobs(item)[input.stage];
+  }
+}
+
+const std::string& input_name(const Context& context, const ItemRef& item, const Input& input) {
+  switch (input.from) {
+    case Input::From::mesh:
+      return context.catalog.mesh[input.stage].name;
+    case Input::From::reference:
+      return context.catalog.reference.name;
+    default:
+      return context.chain(item)[input.stage].name;
+  }
+}
+
+// Takes over the verdict of an input that is not known; nothing where it is.
+std::optional<Job> stopped_by(const Job& input, std::size_t index) {
+  switch (input.verdict) {
+    case Verdict::cached:
+    case Verdict::done:
+      return {};
+    case Verdict::absent:
+      return verdict_of(Verdict::absent, Reason::no_ground_truth, index);
+    case Verdict::failed:
+    case Verdict::blocked:
+      return verdict_of(Verdict::blocked, Reason::input_failed, index);
+    default:
+      return verdict_of(Verdict::wait, Reason::input_pending, index);
+  }
+}
+
+// The files that a stage reads join its inputs; nothing where they allow it to go on.
+std::optional<Job> add_sources(const Family& family, const Stage& stage, Recipe& recipe) {
+  if (stage.source == Source::none) return {};
+  const auto& files = family.sources(stage.source == Source::mesh_file);
+  if (files.empty()) return verdict_of(Verdict::absent, Reason::no_ground_truth);
+  for (const SourceDigest& file : files) {
+    if (!file.digest) return verdict_of(Verdict::compute, Reason::unreadable);
+    recipe.inputs.emplace_back(file.name, *file.digest);
+  }
+  return {};
+}
+
+Job looked_up(const Recipe& recipe, const Lookup& lookup) {
+  Job job = verdict_of(Verdict::compute, Reason::never_computed);
+  job.key = key_of(recipe);
+  if (const auto content = lookup(recipe.stage, job.key)) {
+    job.verdict = Verdict::cached;
+    job.reason = Reason::none;
+    job.content = *content;
+  }
+  return job;
+}
+
+}  // namespace
+
+std::string_view text_of(Reason reason) {
+  switch (reason) {
+    case Reason::never_computed:
+      return "not in the cache";
+    case Reason::changed:
+      return "options, inputs, seed or version changed";
+    case Reason::input_pending:
+      return "waits for";
+    case Reason::input_failed:
+      return "cannot be had without";
+    case Reason::no_ground_truth:
+      return "no ground truth";
+    case Reason::unreadable:
+      return "a source file cannot be read";
+    default:
+      return "";
+  }
+}
+
+std::vector<Job>& Plan::jobs(const ItemRef& item) {
+  FamilyJobs& family = families[item.family];
+  return item.is_mesh() ? family.mesh : family.scans[static_cast<std::size_t>(item.view)];
+}
+
+const std::vector<Job>& Plan::jobs(const ItemRef& item) const { return const_cast<Plan*>(this)->jobs(item); }
+
+std::string Context::name(const ItemRef& item) const {
+  const std::string& mesh = source(item).name;
+  return item.is_mesh() ? mesh : fmt::format("{}_{}", mesh, item.view);
+}
+
+std::vector<ItemRef> Context::family(std::size_t f) const {
+  std::vector<ItemRef> items = {{f, -1}};
+  if (!catalog.scan.empty())
+    for (int view = 0; view < kViews; ++view) items.push_back({f, view});
+  return items;
+}
+
+std::vector<ItemRef> Context::items(bool meshes) const {
+  std::vector<ItemRef> result;
+  for (std::size_t f = 0; f < workload.families.size(); ++f)
+    for (const ItemRef& item : family(f))
+      if (item.is_mesh() == meshes) result.push_back(item);
+  return result;
+}
+
+Decision decide(const Context& context, const Plan& plan, const ItemRef& item, std::size_t index,
+                const Lookup& lookup) {
+  const Stage& stage = context.chain(item)[index];
+  Recipe recipe{stage.name, stage.version, stage.options, {}, {}};
+  if (stage.per_view) recipe.options += fmt::format("view: {}\n", item.view);
+  if (stage.seeded) recipe.seed = fmt::format("{}/{}", context.seed, context.name(item));
+  for (std::size_t i = 0; i < stage.inputs.size(); ++i) {
+    const Job& input = input_job(plan, item, stage.inputs[i]);
+    if (auto stopped = stopped_by(input, i)) return {*stopped, {}};
+    recipe.inputs.emplace_back(input_name(context, item, stage.inputs[i]), input.content);
+  }
+  if (auto stopped = add_sources(context.workload.families[item.family], stage, recipe))
+    return {*stopped, {}};
+  Job job = looked_up(recipe, lookup);
+  return {job, std::move(recipe)};
+}
+
+// Items whose ground truth fails are left out of the mean: one bad file must not stop a whole data set.
+Decision decide_reference(const Context& context, const Plan& plan, bool meshes, const Lookup& lookup) {
+  const Stage& stage = context.catalog.reference;
+  if (context.given_reference) {
+    Job job = verdict_of(Verdict::done, Reason::none);
+    job.content = content_digest(arrays_from(*context.given_reference));
+    return {job, {}};
+  }
+  const Chain& chain = meshes ? context.catalog.mesh : context.catalog.scan;
+  const std::string_view truth_name = meshes ? "ground_truth" : "scan_ground_truth";
+  Recipe recipe{stage.name, stage.version, stage.options, {}, {}};
+  if (chain.empty()) return {verdict_of(Verdict::absent, Reason::no_ground_truth), {}};
+  const std::size_t truth = stage_index(chain, truth_name);
+  for (const ItemRef& item : context.items(meshes)) {
+    const Job& job = plan.jobs(item)[truth];
+    if (job.open()) return {verdict_of(Verdict::wait, Reason::input_pending), {}};
+    if (job.known()) recipe.inputs.emplace_back(context.name(item), job.content);
+  }
+  if (recipe.inputs.empty()) return {verdict_of(Verdict::absent, Reason::no_ground_truth), {}};
+  Job job = looked_up(recipe, lookup);
+  return {job, std::move(recipe)};
+}
+
+Plan make_plan(const Context& context, const Index& index) {
+  const Lookup lookup = [&](std::string_view stage, const Digest& key) { return index.find(stage, key); };
+  Plan plan;
+  plan.families.resize(context.workload.families.size());
+  const auto decide_stages = [&](bool after_reference) {
+    for (std::size_t f = 0; f < plan.families.size(); ++f) {
+      for (const ItemRef& item : context.family(f)) {
+        const Chain& chain = context.chain(item);
+        for (std::size_t stage = 0; stage < chain.size(); ++stage) {
+          if (chain[stage].after_reference != after_reference) continue;
+          Job job = decide(context, plan, item, stage, lookup).job;
+          if (job.reason == Reason::never_computed && index.has_item(chain[stage].name, context.name(item)))
+            job.reason = Reason::changed;
+          plan.jobs(item)[stage] = job;
+        }
+      }
+    }
+  };
+  for (Plan::FamilyJobs& family : plan.families) {
+    family.mesh.resize(context.catalog.mesh.size());
+    if (!context.catalog.scan.empty())
+      family.scans.assign(kViews, std::vector<Job>(context.catalog.scan.size()));
+  }
+  decide_stages(false);
+  for (const bool meshes : {true, false})
+    plan.reference[meshes ? 0 : 1] = decide_reference(context, plan, meshes, lookup).job;
+  decide_stages(true);
+  return plan;
+}
+
+std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan) {
+  std::vector<StageCount> counts;
+  std::vector<std::map<std::string, std::size_t>> reasons;
+  std::map<std::string, std::size_t> row_of;
+  for (std::size_t f = 0; f < plan.families.size(); ++f) {
+    for (const ItemRef& item : context.family(f)) {
+      const Chain& chain = context.chain(item);
+      for (std::size_t s = 0; s < chain.size(); ++s) {
+        const auto [row, fresh] = row_of.try_emplace(chain[s].name, counts.size());
+        if (fresh) {
+          counts.push_back({chain[s].name, 0, 0, 0, 0, 0, {}});
+          reasons.emplace_back();
+        }
+        StageCount& count = counts[row->second];
+        const Job& job = plan.jobs(item)[s];
+        switch (job.verdict) {
+          case Verdict::cached:
+          case Verdict::done:
+            ++count.cached;
+            break;
+          case Verdict::compute:
+            ++count.compute;
+            break;
+          case Verdict::wait:
+            ++count.wait;
+            break;
+          case Verdict::absent:
+            ++count.absent;
+            break;
+          default:
+            ++count.failed;
+        }
+        if (job.known()) continue;
+        std::string why(text_of(job.reason));
+        if (job.reason == Reason::input_pending || job.reason == Reason::input_failed)
+          why += " " + input_name(context, item, chain[s].inputs[job.because]);
+        ++reasons[row->second][why];
+      }
+    }
+  }
+  for (std::size_t row = 0; row < counts.size(); ++row) {
+    counts[row].reasons.assign(reasons[row].begin(), reasons[row].end());
+    std::stable_sort(counts[row].reasons.begin(), counts[row].reasons.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+  }
+  return counts;
+}
+
+}  // namespace salbench

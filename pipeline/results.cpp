@@ -1,0 +1,172 @@
+#include "pipeline/results.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "cache/files.h"
+#include "io/text_file.h"
+#include "stages/core/errors.h"
+#include "stages/stats/summary.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Metric {
+  const char* name;
+  double Scores::*value;
+};
+constexpr std::array kMetrics = {Metric{"auc", &Scores::auc}, Metric{"auc_exact", &Scores::auc_exact},
+                                 Metric{"nss", &Scores::nss}, Metric{"cc", &Scores::cc},
+                                 Metric{"lcc", &Scores::lcc}};
+
+// In the order of their first row.
+std::vector<std::pair<std::string, std::string>> datasets_and_models(const std::vector<ResultRow>& rows) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const char* dataset : {"meshes", "scans"})
+    for (const ResultRow& row : rows)
+      if (row.dataset == dataset &&
+          std::find(pairs.begin(), pairs.end(), std::pair(row.dataset, row.model)) == pairs.end())
+        pairs.emplace_back(row.dataset, row.model);
+  return pairs;
+}
+
+std::string quoted(const std::string& text) {  // a double-quoted YAML scalar
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n')
+      result += "\\n";
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+std::string host_name() {
+  char name[256] = {};
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+std::string run_yaml(const RunRecord& record) {
+  std::string yaml;
+  if (record.config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
+  yaml += fmt::format(
+      "program: salbench {}\nhost: {}\nthreads: {}\nseconds: {:.3f}\nartefacts_computed: {}\n",
+      SALBENCH_VERSION, quoted(host_name()), record.threads, record.seconds, record.runner.computed());
+  yaml += record.context.given_reference ? "reference: given by --reference\n"
+                                         : "reference: mean over the items of the run\n";
+  yaml += fmt::format("meshes: {}\n", record.context.workload.families.size());
+  yaml += "stages:  # version, artefacts this run computed, seconds summed over threads\n";
+  for (const StageCount& count : count_by_stage(record.context, record.plan)) {
+    const Chain& chain = has_stage(record.context.catalog.mesh, count.stage) ? record.context.catalog.mesh
+                                                                             : record.context.catalog.scan;
+    const auto timing = record.runner.timings().find(count.stage);
+    const StageTiming spent = timing == record.runner.timings().end() ? StageTiming{} : timing->second;
+    yaml += fmt::format("  {}: {{version: {}, computed: {}, seconds: {:.3f}}}\n", count.stage,
+                        chain[stage_index(chain, count.stage)].version, spent.computed, spent.seconds);
+  }
+  yaml += record.runner.failures().empty() ? "failed: []\n" : "failed:\n";
+  for (const Failure& failure : record.runner.failures())
+    yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n", quoted(record.context.name(failure.item)),
+                        failure.stage, quoted(failure.cause));
+  yaml += "configuration:\n";
+  std::string line;
+  for (const char c : config_yaml(record.config)) {
+    line += c;
+    if (c != '\n') continue;
+    yaml += "  " + line;
+    line.clear();
+  }
+  return yaml;
+}
+
+}  // namespace
+
+std::vector<ResultRow> collect_results(const Config& config, const Context& context, const Plan& plan,
+                                       Runner& runner) {
+  std::vector<ResultRow> rows;
+  for (std::size_t f = 0; f < context.workload.families.size(); ++f) {
+    for (const ItemRef& item : context.family(f)) {
+      const Chain& chain = context.chain(item);
+      for (const Model& model : config.models) {
+        const std::string name = "scores." + model.name;
+        if (!has_stage(chain, name)) continue;
+        const std::size_t stage = stage_index(chain, name);
+        if (!plan.jobs(item)[stage].known()) continue;
+        rows.push_back({item.is_mesh() ? "meshes" : "scans", context.source(item).name,
+                        context.source(item).category, item.is_mesh() ? "" : std::to_string(item.view),
+                        model.name, std::get<Scores>(runner.result(item, stage))});
+      }
+    }
+  }
+  return rows;
+}
+
+Table results_table(const std::vector<ResultRow>& rows) {
+  Table table{.columns = {"dataset", "item", "class", "view", "model", "auc", "auc_exact", "nss", "cc", "lcc",
+                          "n_points", "n_picks"},
+              .rows = {}};
+  for (const ResultRow& row : rows) {
+    const Scores& s = row.scores;
+    table.rows.push_back({row.dataset, row.item, row.category, row.view, row.model, s.auc, s.auc_exact, s.nss,
+                          s.cc, s.lcc, s.n_points, s.n_picks});
+  }
+  return table;
+}
+
+Table summary_table(const std::vector<ResultRow>& rows) {
+  Table table{.columns = {"dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"},
+              .rows = {}};
+  for (const auto& [dataset, model] : datasets_and_models(rows)) {
+    for (const Metric& metric : kMetrics) {
+      std::vector<double> values;
+      for (const ResultRow& row : rows)
+        if (row.dataset == dataset && row.model == model) values.push_back(row.scores.*metric.value);
+      const Summary summary = summarize(values);
+      table.rows.push_back({dataset, model, metric.name, summary.n, summary.mean, summary.sd, summary.ci_low,
+                            summary.ci_high});
+    }
+  }
+  return table;
+}
+
+Histogram read_reference(const std::string& path) {
+  try {
+    const std::vector<double> column = number_column(read_csv(path), "GS");
+    Histogram histogram{};
+    if (column.size() != histogram.size())
+      throw ConfigError(fmt::format("{}: column GS has {} rows, not 100 bins", path, column.size()));
+    for (std::size_t i = 0; i < histogram.size(); ++i) {
+      if (!(column[i] >= 0))
+        throw ConfigError(fmt::format("{}:{}: column GS holds no density >= 0", path, i + 2));
+      histogram[i] = column[i];
+    }
+    return histogram;
+  } catch (const InputError& error) {
+    throw ConfigError(error.what());
+  }
+}
+
+void prepare_output(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw StorageError(fmt::format("{}: the output folder cannot be created: {}; choose another with --out",
+                                   folder.string(), error.message()));
+  write_text_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
+}
+
+void write_results(const fs::path& folder, const RunRecord& record, const std::vector<ResultRow>& rows) {
+  const std::string head = record.config.simulated() ? fmt::format("# {}\n", kSimulatedNote) : "";
+  write_text_file(folder / "results.csv", head + to_csv(results_table(rows)));
+  write_text_file(folder / "summary.csv", head + to_csv(summary_table(rows)));
+  write_text_file(folder / "run.yaml", run_yaml(record));
+}
+
+}  // namespace salbench

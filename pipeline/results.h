@@ -1,0 +1,56 @@
+// The tables of a run: results.csv, summary.csv and run.yaml.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/table.h"
+#include "pipeline/config.h"
+#include "pipeline/plan.h"
+#include "pipeline/runner.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+inline constexpr const char* kSimulatedNote =
+    "SIMULATED participants: the ground truth was made by the program; these scores say nothing about "
+    "people.";
+
+struct ResultRow {
+  std::string dataset;  // "meshes" or "scans"
+  std::string item;     // the mesh
+  std::string category;
+  std::string view;  // of a scan; empty for a mesh
+  std::string model;
+  Scores scores;
+};
+
+// One row an item and model that was scored; by item, mesh before scans, then in the order of the models.
+std::vector<ResultRow> collect_results(const Config& config, const Context& context, const Plan& plan,
+                                       Runner& runner);
+
+Table results_table(const std::vector<ResultRow>& rows);
+
+// dataset, model, metric, n, mean, sd, 95 % confidence interval of the mean; undefined scores are left out of
+// n.
+Table summary_table(const std::vector<ResultRow>& rows);
+
+// A histogram of 100 bins from the column GS of a CSV file. Throws ConfigError.
+Histogram read_reference(const std::string& path);
+
+void prepare_output(const std::filesystem::path& folder);  // throws StorageError
+
+struct RunRecord {
+  const Config& config;
+  const Context& context;
+  const Plan& plan;
+  const Runner& runner;
+  int threads = 1;
+  double seconds = 0;
+};
+
+void write_results(const std::filesystem::path& folder, const RunRecord& record,
+                   const std::vector<ResultRow>& rows);
+
+}  // namespace salbench

@@ -1,0 +1,269 @@
+// A family (a mesh and its scans) is the unit of memory: what its items read of each other is loaded once and
+// dropped with the family. The flow graph sees three bodies: open, part, close.
+#include "pipeline/runner.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "pipeline/flow.h"
+#include "stages/core/errors.h"
+#include "stages/scan/scan.h"
+
+namespace salbench {
+namespace {
+
+using ValuePtr = std::shared_ptr<const Value>;
+
+bool has_open_job(const Context& context, const Plan& plan, const ItemRef& item, bool after_reference) {
+  const Chain& chain = context.chain(item);
+  const auto& jobs = plan.jobs(item);
+  for (std::size_t s = 0; s < chain.size(); ++s)
+    if (chain[s].after_reference == after_reference && jobs[s].open()) return true;
+  return false;
+}
+
+std::string unreadable_source(const Family& family, const Stage& stage) {
+  for (const SourceDigest& file : family.sources(stage.source == Source::mesh_file))
+    if (!file.digest) return file.error;
+  return {};
+}
+
+// Stages of the mesh that its scans read: they are settled before the scans start.
+std::vector<std::size_t> shared_stages(const Catalog& catalog) {
+  std::vector<std::size_t> shared;
+  for (const Stage& stage : catalog.scan)
+    for (const Input& input : stage.inputs)
+      if (input.from == Input::From::mesh) shared.push_back(input.stage);
+  std::sort(shared.begin(), shared.end());
+  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
+  return shared;
+}
+
+}  // namespace
+
+// The values of one family's items while it is worked on, each loaded or computed at most once.
+class Runner::FamilyRun {
+ public:
+  FamilyRun(Runner& runner, std::size_t family) : runner_(runner), family_(family) {
+    for (const ItemRef& item : runner.context_.family(family))
+      values_.emplace_back(runner.context_.chain(item).size());
+  }
+
+  // Brings one job to its end: from wait or compute to done, cached, absent, failed or blocked.
+  void advance(const ItemRef& item, std::size_t index) {
+    Job& job = runner_.plan_.jobs(item)[index];
+    if (!job.open()) return;
+    Decision decision = decide(
+        runner_.context_, runner_.plan_, item, index,
+        [&](std::string_view stage, const Digest& key) { return runner_.store_.find_now(stage, key); });
+    // The plan's reason is kept: why it was recomputed is asked afterwards.
+    const Reason reason = job.reason;
+    job = decision.job;
+    if (job.verdict != Verdict::compute) return;
+    const Stage& stage = runner_.context_.chain(item)[index];
+    if (job.reason == Reason::unreadable) {
+      job.verdict = Verdict::failed;
+      runner_.record(item, stage, unreadable_source(runner_.context_.workload.families[family_], stage));
+      return;
+    }
+    job.reason = reason;
+    try {
+      job.content = compute(item, index, decision.recipe);
+      job.verdict = Verdict::done;
+    } catch (const StorageError&) {
+      throw;
+    } catch (const std::exception& error) {
+      job.verdict = Verdict::failed;
+      runner_.record(item, stage, error.what());
+    }
+  }
+
+  // The value of a known job. One thread at a time: items of the family share the mesh's values.
+  ValuePtr value(const ItemRef& item, std::size_t index) {
+    const std::lock_guard lock(mutex_);
+    ValuePtr& slot = values_[static_cast<std::size_t>(item.view + 1)][index];
+    if (slot) return slot;
+    const Stage& stage = runner_.context_.chain(item)[index];
+    const Job& job = runner_.plan_.jobs(item)[index];
+    if (const auto arrays = runner_.store_.load(stage.name, job.key))
+      slot = std::make_shared<const Value>(value_from(stage.kind, *arrays));
+    else
+      recompute(item, index, job.content);
+    return slot;
+  }
+
+ private:
+  // A damaged artefact is a miss, but its content is still known: only the same content will do.
+  void recompute(const ItemRef& item, std::size_t index, const Digest& expected) {
+    Decision decision = decide(runner_.context_, runner_.plan_, item, index,
+                               [](std::string_view, const Digest&) { return std::nullopt; });
+    if (compute(item, index, decision.recipe) != expected)
+      throw std::logic_error(
+          fmt::format("stage {} gave another result than before for the same inputs: it is not "
+                      "deterministic; please report this",
+                      runner_.context_.chain(item)[index].name));
+  }
+
+  Digest compute(const ItemRef& item, std::size_t index, const Recipe& recipe) {
+    const Stage& stage = runner_.context_.chain(item)[index];
+    StageInputs inputs{
+        {}, &runner_.context_.source(item), runner_.context_.seed, runner_.context_.name(item), item.view};
+    std::vector<ValuePtr> held;
+    for (const Input& input : stage.inputs) {
+      held.push_back(input_value(item, input));
+      inputs.values.push_back(held.back().get());
+    }
+    const auto started = std::chrono::steady_clock::now();
+    auto result = std::make_shared<const Value>(stage.run(inputs));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    ArtefactNote note{inputs.item, seconds, runner_.context_.attributes};
+    const Digest content = runner_.store_.save(recipe, stage.kind, arrays_from(*result), note);
+    runner_.record(stage.name, seconds);
+    const std::lock_guard lock(mutex_);
+    values_[static_cast<std::size_t>(item.view + 1)][index] = std::move(result);
+    return content;
+  }
+
+  ValuePtr input_value(const ItemRef& item, const Input& input) {
+    switch (input.from) {
+      case Input::From::mesh:
+        return value({family_, -1}, input.stage);
+      case Input::From::reference:
+        return runner_.references_[item.is_mesh() ? 0 : 1];
+      default:
+        return value(item, input.stage);
+    }
+  }
+
+  Runner& runner_;
+  std::size_t family_;
+  std::recursive_mutex mutex_;                 // of values_; recomputing a damaged value needs further values
+  std::vector<std::vector<ValuePtr>> values_;  // mesh, then the scans
+};
+
+Runner::Runner(const Context& context, Plan& plan, Store& store, Progress& progress,
+               const std::atomic<bool>& stop)
+    : context_(context), plan_(plan), store_(store), progress_(progress), stop_(stop) {}
+
+Runner::~Runner() = default;
+
+void Runner::run(int threads) {
+  run_pass(threads, false);
+  if (stop_) return;
+  make_reference(true);
+  make_reference(false);
+  run_pass(threads, true);
+  std::stable_sort(failures_.begin(), failures_.end(), [&](const Failure& a, const Failure& b) {
+    if (a.item.family != b.item.family) return a.item.family < b.item.family;
+    if (a.item.view != b.item.view) return a.item.view < b.item.view;
+    const Chain& chain = context_.chain(a.item);
+    return stage_index(chain, a.stage) < stage_index(chain, b.stage);
+  });
+}
+
+void Runner::run_pass(int threads, bool after_reference) {
+  const std::vector<std::size_t> shared = shared_stages(context_.catalog);
+  std::vector<std::vector<ItemRef>> work;  // by family: the items with something to do
+  std::size_t items = 0;
+  for (std::size_t f = 0; f < plan_.families.size(); ++f) {
+    std::vector<ItemRef> open;
+    for (const ItemRef& item : context_.family(f))
+      if (has_open_job(context_, plan_, item, after_reference)) open.push_back(item);
+    items += open.size();
+    if (!open.empty()) work.push_back(std::move(open));
+  }
+  if (work.empty()) return;
+
+  std::vector<std::unique_ptr<FamilyRun>> alive(work.size());
+  const auto advance_item = [&](FamilyRun& family, const ItemRef& item) {
+    const Chain& chain = context_.chain(item);
+    for (std::size_t s = 0; s < chain.size() && !stop_; ++s)
+      if (chain[s].after_reference == after_reference) family.advance(item, s);
+  };
+  progress_.begin(after_reference ? "matching and scoring" : "maps", items);
+  const FlowBodies bodies{.open =
+                              [&](int w) {
+                                const auto index = static_cast<std::size_t>(w);
+                                const std::size_t f = work[index].front().family;
+                                alive[index] = std::make_unique<FamilyRun>(*this, f);
+                                for (const std::size_t s : shared)
+                                  if (!after_reference) alive[index]->advance({f, -1}, s);
+                                return static_cast<int>(work[index].size());
+                              },
+                          .part =
+                              [&](int w, int part) {
+                                const auto index = static_cast<std::size_t>(w);
+                                advance_item(*alive[index], work[index][static_cast<std::size_t>(part)]);
+                                if (!stop_) progress_.item_done();
+                              },
+                          .close = [&](int w) { alive[static_cast<std::size_t>(w)].reset(); }};
+  stream_families(static_cast<int>(work.size()), {.threads = threads, .families_alive = threads + 1}, stop_,
+                  bodies);
+  progress_.end();
+}
+
+void Runner::make_reference(bool meshes) {
+  Job& job = plan_.reference[meshes ? 0 : 1];
+  ValuePtr& value = references_[meshes ? 0 : 1];
+  const Stage& stage = context_.catalog.reference;
+  Decision decision =
+      decide_reference(context_, plan_, meshes,
+                       [&](std::string_view name, const Digest& key) { return store_.find_now(name, key); });
+  const Reason reason = job.reason;
+  job = decision.job;
+  if (context_.given_reference) {
+    value = std::make_shared<const Value>(*context_.given_reference);
+    return;
+  }
+  if (job.verdict == Verdict::cached) {
+    if (const auto arrays = store_.load(stage.name, job.key)) {
+      value = std::make_shared<const Value>(value_from(stage.kind, *arrays));
+      return;
+    }
+  }
+  if (job.verdict == Verdict::absent) return;
+
+  job.reason = reason;
+  const auto started = std::chrono::steady_clock::now();
+  std::vector<Value> parts;
+  const std::size_t truth = stage_index(meshes ? context_.catalog.mesh : context_.catalog.scan,
+                                        meshes ? "ground_truth" : "scan_ground_truth");
+  for (const ItemRef& item : context_.items(meshes))
+    if (plan_.jobs(item)[truth].known())
+      parts.push_back(reference_part(std::get<GroundTruth>(result(item, truth))));
+  StageInputs inputs;
+  for (const Value& part : parts) inputs.values.push_back(&part);
+  value = std::make_shared<const Value>(stage.run(inputs));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const ArtefactNote note{meshes ? "meshes" : "scans", seconds, context_.attributes};
+  job.content = store_.save(decision.recipe, stage.kind, arrays_from(*value), note);
+  job.verdict = Verdict::done;
+  record(stage.name, seconds);
+}
+
+Value Runner::result(const ItemRef& item, std::size_t stage) {
+  return *FamilyRun(*this, item.family).value(item, stage);
+}
+
+std::size_t Runner::computed() const {
+  std::size_t sum = 0;
+  for (const auto& [stage, timing] : timings_) sum += timing.computed;
+  return sum;
+}
+
+void Runner::record(const ItemRef& item, const Stage& stage, const std::string& cause) {
+  spdlog::error("{}: {}: {}", context_.name(item), stage.name, cause);
+  const std::lock_guard lock(mutex_);
+  failures_.push_back({item, stage.name, cause});
+}
+
+void Runner::record(const std::string& stage, double seconds) {
+  const std::lock_guard lock(mutex_);
+  ++timings_[stage].computed;
+  timings_[stage].seconds += seconds;
+}
+
+}  // namespace salbench

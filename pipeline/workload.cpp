@@ -1,0 +1,102 @@
+#include "pipeline/workload.h"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+std::optional<int> as_number(std::string_view text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+struct Range {
+  int first = 0, last = 0;
+};
+
+// "3-17"; nothing where it is no range of numbers, or an empty one.
+std::optional<Range> as_range(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  if (dash == std::string_view::npos) return {};
+  const auto first = as_number(text.substr(0, dash)), last = as_number(text.substr(dash + 1));
+  if (!first || !last || *first > *last) return {};
+  return Range{*first, *last};
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (begin <= list.size()) {
+    const std::size_t comma = std::min(list.find(',', begin), list.size());
+    std::string part = list.substr(begin, comma - begin);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    if (!part.empty()) parts.push_back(part);
+    begin = comma + 1;
+  }
+  return parts;
+}
+
+// A number range takes the items that exist in it: data sets have gaps. A single name must exist.
+std::set<std::string> selected_names(const std::string& selection, const std::set<std::string>& present) {
+  std::set<std::string> names;
+  for (const std::string& part : split(selection)) {
+    if (present.contains(part)) {
+      names.insert(part);
+      continue;
+    }
+    const std::optional<Range> range = as_range(part);
+    if (!range) throw ConfigError(fmt::format("--items {}: the data set has no item '{}'", selection, part));
+    const std::size_t before = names.size();
+    for (const std::string& name : present)
+      if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
+        names.insert(name);
+    if (names.size() == before)
+      throw ConfigError(fmt::format("--items {}: the data set has no item in the range {}", selection, part));
+  }
+  return names;
+}
+
+SourceDigest digest_of(std::string name, const std::filesystem::path& path) {
+  try {
+    return {std::move(name), file_digest(path), {}};
+  } catch (const InputError& error) {
+    return {std::move(name), {}, error.what()};
+  }
+}
+
+Family make_family(const DatasetItem& source) {
+  Family family{source, {}, {}};
+  std::string extension = source.mesh.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  family.mesh_file.push_back(digest_of("mesh file " + extension, source.mesh));
+  if (!source.saliency.empty()) family.truth_files.push_back(digest_of("saliency file", source.saliency));
+  for (std::size_t k = 0; k < source.picks.size(); ++k)
+    family.truth_files.push_back(digest_of(fmt::format("picks {}", k), source.picks[k]));
+  return family;
+}
+
+}  // namespace
+
+Workload make_workload(const Dataset& dataset, const std::string& selection) {
+  std::set<std::string> present;
+  for (const DatasetItem& item : dataset.items) present.insert(item.name);
+  const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
+  if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
+
+  Workload workload{{}, dataset.notes};
+  for (const DatasetItem& item : dataset.items)
+    if (names.contains(item.name)) workload.families.push_back(make_family(item));
+  return workload;
+}
+
+}  // namespace salbench

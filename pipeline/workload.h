@@ -1,0 +1,39 @@
+// The items of a run: which meshes, which scans of them, and what their files contain.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cache/digest.h"
+#include "io/dataset.h"
+
+namespace salbench {
+
+// A file that an item is read from, by the name it has in a key, with its digest or why there is none.
+struct SourceDigest {
+  std::string name;  // "mesh file .off", "saliency file", "picks 3": no paths
+  std::optional<Digest> digest;
+  std::string error;
+};
+
+struct Family {
+  DatasetItem source;  // a mesh, and its scans are its family
+  std::vector<SourceDigest> mesh_file;
+  std::vector<SourceDigest> truth_files;  // empty: nothing is known about the mesh
+
+  const std::vector<SourceDigest>& sources(bool of_mesh) const { return of_mesh ? mesh_file : truth_files; }
+};
+
+struct Workload {
+  std::vector<Family> families;  // in the data set's order
+  std::vector<std::string> notes;
+};
+
+// Reads and digests the files of the items that `selection` names ("1-20,52,125"; empty: all). Throws
+// ConfigError where it names an item that is not there.
+Workload make_workload(const Dataset& dataset, const std::string& selection);
+
+}  // namespace salbench

@@ -1,0 +1,61 @@
+#include "pipeline/config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+
+Config config_of(const std::string& yaml) { return read_config(Section::from_text(yaml, "x.yaml"), "x"); }
+
+std::string error_of(const std::string& yaml) {
+  try {
+    config_of(yaml);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Config, AnEmptyFileIsThePublishedProtocolWithAllModels) {
+  const Config config = config_of("");
+  EXPECT_EQ(config.protocol, Protocol::published);
+  EXPECT_EQ(config.models.size(), model_rows().size());
+  EXPECT_EQ(config.fpfh.neighbours, 9);
+  EXPECT_EQ(config.normals.method, MeshNormalsMethod::faces);
+}
+
+TEST(Config, TheTextProtocolHasThePapersWords) {
+  const Config config = config_of("protocol: text\nmodels: {PS: }");
+  EXPECT_EQ(config.fpfh.neighbourhood, FpfhNeighborhood::radius);
+  EXPECT_EQ(config.fpfh.weighting, FpfhWeighting::text);
+  EXPECT_EQ(config.normals.method, MeshNormalsMethod::pca);
+  EXPECT_EQ(config.models[0].options, "absolute: true\n");
+}
+
+TEST(Config, WritesItselfSoThatItReadsBackTheSame) {
+  for (const char* yaml :
+       {"", "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}"}) {
+    const std::string written = config_yaml(config_of(yaml));
+    EXPECT_EQ(config_yaml(config_of(written)), written);
+  }
+}
+
+TEST(Config, UnknownKeysAndModelsAreErrorsWithTheNearestName) {
+  EXPECT_EQ(error_of("protocol: published\nsed: 1"),
+            "x.yaml:2: sed is not a known key; did you mean 'seed'?");
+  EXPECT_THAT(error_of("models: {XS: }"), HasSubstr("models.XS is not a known key; did you mean"));
+  EXPECT_THAT(error_of("models:\n  PS: {absolut: true}"),
+              HasSubstr("x.yaml:2: models.PS.absolut is not a known key"));
+  EXPECT_THAT(error_of("protocol: txt"), HasSubstr("not one of published, text"));
+  EXPECT_THAT(error_of("models: {}"), HasSubstr("names no model"));
+  EXPECT_THAT(error_of("fpfh: {radius: -1}"), HasSubstr("fpfh.radius must be"));
+  EXPECT_THAT(error_of("dataset: {meshes: false, scans: false}"), HasSubstr("dataset.scans"));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,222 @@
+// What a run computes, counted: the engine's promise is that it is exactly what is missing.
+#include "pipeline/runner.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/results.h"
+#include "tests/io/temporary_folder.h"
+#include "tests/support/memory_store.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+class RunnerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
+    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
+  }
+
+  // Runs and returns "stage@item" of all that was computed.
+  std::vector<std::string> run(const std::string& yaml = kToyConfig, int threads = 2) {
+    ToyRun toy(data_.path(), store_, yaml);
+    toy.run(threads);
+    for (const Failure& failure : toy.runner.failures())
+      failures_.push_back(toy.context.name(failure.item) + ": " + failure.stage + ": " + failure.cause);
+    results_ = to_csv(results_table(collect_results(toy.config, toy.context, toy.plan, toy.runner)));
+    return store_.take_saved();
+  }
+
+  TemporaryFolder data_;
+  MemoryStore store_;
+  std::vector<std::string> failures_;
+  std::string results_;
+};
+
+// Per mesh: mesh, ground_truth, normals, fpfh and 3 for each of 2 models; per scan: scan, ground truth,
+// normals, surface, fpfh and the same 6; two reference histograms.
+constexpr std::size_t kMeshJobs = 4 + 6, kScanJobs = 5 + 6, kAll = 2 * (kMeshJobs + 12 * kScanJobs) + 2;
+
+TEST_F(RunnerTest, AFirstRunComputesEverythingAndASecondNothing) {
+  EXPECT_THAT(run(), SizeIs(kAll));
+  EXPECT_THAT(failures_, IsEmpty());
+  const std::string first = results_;
+  EXPECT_THAT(run(), IsEmpty());
+  EXPECT_EQ(results_, first);
+}
+
+TEST_F(RunnerTest, ThePlanForesaysWhatIsDone) {
+  ToyRun first(data_.path(), store_);
+  EXPECT_EQ(first.open(), kAll - 2);
+  first.run();
+  EXPECT_EQ(first.count(Verdict::done), kAll - 2);
+  ToyRun second(data_.path(), store_);
+  EXPECT_EQ(second.open(), 0U);
+  EXPECT_EQ(second.count(Verdict::cached), kAll - 2);
+}
+
+TEST_F(RunnerTest, ResultsDoNotDependOnThreads) {
+  run(kToyConfig, 1);
+  const std::string one = results_;
+  store_.clear();
+  run(kToyConfig, 4);
+  EXPECT_EQ(results_, one);
+}
+
+TEST_F(RunnerTest, OneRemovedArtefactIsComputedAgainAndNothingElse) {
+  run();
+  for (const auto& [stage, item] : std::vector<std::pair<std::string, std::string>>{{"mesh", "1"},
+                                                                                    {"scan", "1_3"},
+                                                                                    {"fpfh", "1_3"},
+                                                                                    {"map.PS", "2"},
+                                                                                    {"scores.PS", "2_11"},
+                                                                                    {"matched.RS", "1"}}) {
+    store_.remove(stage, item);
+    // It comes out as it was, so whatever depends on it is still valid: early cut-off.
+    EXPECT_THAT(run(), ElementsAre(stage + "@" + item));
+  }
+}
+
+TEST_F(RunnerTest, ADamagedArtefactIsComputedAgainWhenItIsRead) {
+  run();
+  const std::string before = results_;
+  store_.damage("fpfh", "1_3");
+  store_.remove("map.PS", "1_3");
+  EXPECT_THAT(run(), ElementsAre("fpfh@1_3", "map.PS@1_3"));
+  store_.damage("scores.PS", "2");
+  EXPECT_THAT(run(), ElementsAre("scores.PS@2"));
+  EXPECT_EQ(results_, before);
+}
+
+TEST_F(RunnerTest, AnOptionOfOneModelConcernsThatModelAlone) {
+  run();
+  const auto computed = run("scan: {step_degrees: 1}\nmodels: {PS: {absolute: true}, RS: }\n");
+  EXPECT_THAT(computed, SizeIs(26 * 3));
+  for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr(".PS@"));
+  EXPECT_THAT(run(), IsEmpty());  // and back: both are in the cache
+}
+
+TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
+  run();
+  const auto computed = run(std::string(kToyConfig) + "metrics: {splits: 7}\n");
+  EXPECT_THAT(computed, SizeIs(26 * 2));
+  for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
+}
+
+TEST_F(RunnerTest, AnEditedMeshConcernsItsFamilyAndTheReference) {
+  run();
+  Mesh edited = shapes::bumpy_sphere(2);
+  edited.vertices[0] *= 1.01;
+  write_text_file(data_ / "Meshes/1.off", off_text(edited));
+  const auto computed = run();
+  for (const std::string& job : computed)
+    EXPECT_THAT(job, testing::AnyOf(HasSubstr("@1"), HasSubstr("reference@"), HasSubstr("matched."),
+                                    HasSubstr("scores.")));
+  EXPECT_THAT(computed, Contains("map.PS@1_0"));
+  EXPECT_THAT(computed, Not(Contains("map.PS@2_0")));
+}
+
+TEST_F(RunnerTest, ANewlyWrittenButEqualFileConcernsNothing) {
+  run();
+  write_text_file(data_ / "Meshes/1.off", off_text(shapes::bumpy_sphere(2)));
+  EXPECT_THAT(run(), IsEmpty());
+  // Another spelling of the same mesh: read again, found equal, and no further.
+  write_text_file(data_ / "Meshes/1.off", "# a comment\n" + off_text(shapes::bumpy_sphere(2)));
+  EXPECT_THAT(run(), ElementsAre("mesh@1"));
+}
+
+TEST_F(RunnerTest, AnotherSeedConcernsWhatIsRandom) {
+  run();
+  const auto computed = run(std::string(kToyConfig) + "seed: 7\n");
+  EXPECT_THAT(computed, SizeIs(26 * (1 + 1 + 2)));  // map, matched and scores of RS, scores of PS
+}
+
+TEST_F(RunnerTest, AFailingItemStopsNoOther) {
+  write_text_file(data_ / "Meshes/3.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
+  ToyRun toy(data_.path(), store_);
+  toy.run();
+  ASSERT_THAT(toy.runner.failures(), SizeIs(1));
+  EXPECT_EQ(toy.runner.failures()[0].stage, "mesh");
+  EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("3.off"));
+  EXPECT_EQ(toy.count(Verdict::done), kAll - 2);
+  EXPECT_EQ(toy.count(Verdict::failed), 1U);
+  EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::absent), kMeshJobs - 1 + 12 * kScanJobs);
+  EXPECT_EQ(collect_results(toy.config, toy.context, toy.plan, toy.runner).size(), 26U * 2);
+}
+
+TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
+  std::filesystem::create_directories(data_ / "Meshes");
+  write_text_file(data_ / "Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.1)));
+  const auto computed = run();
+  EXPECT_THAT(computed, SizeIs(kAll + (kMeshJobs - 1 - 2) + 12 * (kScanJobs - 1 - 2)));
+  EXPECT_THAT(failures_, IsEmpty());
+  EXPECT_THAT(computed, Contains("matched.PS@3_5"));
+  EXPECT_THAT(results_, Not(HasSubstr("\nmeshes,3,")));
+}
+
+TEST_F(RunnerTest, WithoutAnyGroundTruthMapsAreAllThereIs) {
+  TemporaryFolder plain;
+  write_text_file(plain / "a.off", off_text(shapes::sphere(2)));
+  ToyRun toy(plain.path(), store_);
+  toy.run();
+  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  const auto computed = store_.take_saved();
+  EXPECT_THAT(computed, Contains("map.PS@a_5"));
+  EXPECT_THAT(computed, Not(Contains("matched.PS@a_5")));
+}
+
+TEST_F(RunnerTest, AStoppedRunResumesToTheSameResults) {
+  run();
+  const std::string uninterrupted = results_;
+  store_.clear();
+  {
+    ToyRun toy(data_.path(), store_);
+    toy.stop = true;
+    toy.run();
+    EXPECT_THAT(store_.take_saved(), IsEmpty());
+  }
+  run();
+  EXPECT_EQ(results_, uninterrupted);
+}
+
+TEST_F(RunnerTest, AGivenReferenceReplacesTheMean) {
+  ToyRun toy(data_.path(), store_);
+  Histogram flat;
+  flat.fill(1);
+  toy.context.given_reference = flat;
+  toy.plan = make_plan(toy.context, store_);
+  toy.run();
+  const auto computed = store_.take_saved();
+  EXPECT_THAT(computed, SizeIs(kAll - 2));
+  EXPECT_THAT(computed, Not(Contains("reference@meshes")));
+}
+
+// A store that is full must end the run at once, not item by item.
+class FullStore final : public Store {
+ public:
+  std::optional<Digest> find(std::string_view, const Digest&) const override { return {}; }
+  bool has_item(std::string_view, std::string_view) const override { return false; }
+  std::optional<Digest> find_now(std::string_view, const Digest&) override { return {}; }
+  std::optional<Arrays> load(std::string_view, const Digest&) override { return {}; }
+  Digest save(const Recipe&, std::string_view, const Arrays&, const ArtefactNote&) override {
+    throw StorageError("no space left");
+  }
+};
+
+TEST_F(RunnerTest, AFullCacheEndsTheRun) {
+  FullStore full;
+  ToyRun toy(data_.path(), full);
+  EXPECT_THROW(toy.run(), StorageError);
+}
+
+}  // namespace
+}  // namespace salbench

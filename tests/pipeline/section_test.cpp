@@ -1,0 +1,101 @@
+#include "pipeline/section.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+
+enum class Method { faces, pca };
+
+struct Sample {
+  bool flag = false;
+  std::int32_t count = 9;
+  double radius = 0.01;
+  Method method = Method::faces;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("flag", self.flag, "");
+    visit("count", self.count, "");
+    visit("radius", self.radius, "");
+    visit("method", self.method, "");
+  }
+  static Sample text() { return {.flag = true}; }
+};
+void check(const Sample& sample) {
+  if (sample.radius <= 0) throw OptionError("radius", "must be > 0, not " + std::to_string(sample.radius));
+}
+
+std::string error_of(const std::string& yaml) {
+  try {
+    const Section root = Section::from_text(yaml, "x.yaml");
+    Sample sample;
+    root.child("sample").read(sample);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+template <>
+struct EnumNames<Method> {
+  static constexpr std::array<std::string_view, 2> names{"faces", "pca"};
+};
+
+namespace {
+
+TEST(Section, OverwritesWhatItNamesAndKeepsTheRest) {
+  Sample sample;
+  Section::from_text("flag: true\nmethod: pca\nradius: 2.5e-1", "x").read(sample);
+  EXPECT_TRUE(sample.flag);
+  EXPECT_EQ(sample.method, Method::pca);
+  EXPECT_EQ(sample.radius, 0.25);
+  EXPECT_EQ(sample.count, 9);
+}
+
+TEST(Section, AnEmptySectionIsAllDefaults) {
+  Sample sample;
+  const Section root = Section::from_text("sample:\n", "x");
+  root.child("sample").read(sample);
+  root.child("absent").read(sample);
+  EXPECT_EQ(sample.count, 9);
+}
+
+TEST(Section, ErrorsNameFileLineKeyAndTheNearestValidKey) {
+  EXPECT_EQ(error_of("# c\nsample:\n  radios: 1"),
+            "x.yaml:3: sample.radios is not a known key; did you mean 'radius'?");
+  EXPECT_THAT(error_of("sample: {zzzzzzzz: 1}"), HasSubstr("known are: flag, count, radius, method"));
+  EXPECT_EQ(error_of("sample:\n  count: many"), "x.yaml:2: sample.count is 'many', not a whole number");
+  EXPECT_EQ(error_of("sample:\n  count: 9.5"), "x.yaml:2: sample.count is '9.5', not a whole number");
+  EXPECT_THAT(error_of("sample:\n  method: face"), HasSubstr("not one of faces, pca"));
+  EXPECT_THAT(error_of("sample:\n\n  radius: -1"), HasSubstr("x.yaml:3: sample.radius must be > 0"));
+  EXPECT_THAT(error_of("sample:\n  radius: nan"), HasSubstr("not a finite number"));
+  EXPECT_THAT(error_of("sample:\n  flag: true\n  flag: false"),
+              HasSubstr("x.yaml:3: the key 'flag' is given twice"));
+  EXPECT_THAT(error_of("sample: 3"), HasSubstr("x.yaml:1: sample must be a mapping"));
+  EXPECT_THAT(error_of("sample: {count: [1]}"), HasSubstr("must be one value"));
+  EXPECT_THAT(error_of("a: [1\nb: 2"), HasSubstr("not valid YAML"));
+}
+
+TEST(Section, AMissingFileIsAnError) { EXPECT_THROW(Section::from_file("/no/such/file.yaml"), ConfigError); }
+
+TEST(OptionsText, ReadsBackToTheBit) {
+  const Sample sample{true, 12, 0.1 + 0.2, Method::pca};
+  EXPECT_EQ(options_text(sample), "flag: true\ncount: 12\nradius: 0.30000000000000004\nmethod: pca\n");
+  Sample back;
+  Section::from_text(options_text(sample), "x").read(back);
+  EXPECT_EQ(options_text(back), options_text(sample));
+}
+
+TEST(OptionsText, ProtocolsHaveTheirPresets) {
+  EXPECT_TRUE(preset<Sample>(Protocol::text).flag);
+  EXPECT_FALSE(preset<Sample>(Protocol::published).flag);
+}
+
+}  // namespace
+}  // namespace salbench

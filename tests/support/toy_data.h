@@ -1,0 +1,83 @@
+// A small data set in the Schelling layout on disk, made from analytic shapes, and the pieces of a run over
+// it.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "io/dataset.h"
+#include "io/text_file.h"
+#include "pipeline/config.h"
+#include "pipeline/plan.h"
+#include "pipeline/runner.h"
+#include "stages/ground_truth/simulation.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+
+inline std::string off_text(const Mesh& mesh) {
+  std::string text = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.faces.size());
+  for (const Vec3& v : mesh.vertices) text += fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
+  for (const Triangle& f : mesh.faces) text += fmt::format("3 {} {} {}\n", f[0], f[1], f[2]);
+  return text;
+}
+
+// Writes Meshes/NAME.off, Distributions/NAME.val and RawData/NAME_k.pid below `root`.
+inline void write_toy_item(const std::filesystem::path& root, const std::string& name, const Mesh& mesh) {
+  const GroundTruth truth = simulated_ground_truth(mesh, {.participants = 4, .picks = 5}, 1, name);
+  for (const char* folder : {"Meshes", "Distributions", "RawData"})
+    std::filesystem::create_directories(root / folder);
+  write_text_file(root / "Meshes" / (name + ".off"), off_text(mesh));
+  std::string values;
+  for (const double v : truth.saliency) values += fmt::format("{}\n", v);
+  write_text_file(root / "Distributions" / (name + ".val"), values);
+  for (std::size_t k = 0; k < truth.picks.size(); ++k) {
+    std::string picks;
+    for (const std::int32_t i : truth.picks[k]) picks += fmt::format("{}\n", i);
+    write_text_file(root / "RawData" / fmt::format("{}_{}.pid", name, k), picks);
+  }
+}
+
+// Coarse scans keep tests quick; everything else is as in a real run.
+inline constexpr const char* kToyConfig = "scan: {step_degrees: 1}\nmodels: {PS: , RS: }\n";
+
+// One planned and executed run. The store is the caller's, so that runs can follow each other.
+struct ToyRun {
+  ToyRun(const std::filesystem::path& root, Store& the_store, const std::string& yaml = kToyConfig,
+         const std::string& items = "")
+      : config(read_config(Section::from_text(yaml, "toy.yaml"), "toy")),
+        catalog(make_catalog(config)),
+        workload(make_workload(find_dataset(root, config.dataset.layout), items)),
+        context{catalog, workload, config.seed},
+        store(the_store),
+        plan(make_plan(context, store)),
+        progress(no_progress()),
+        runner(context, plan, store, *progress, stop) {}
+  ToyRun(const ToyRun&) = delete;
+  ToyRun& operator=(const ToyRun&) = delete;
+
+  void run(int threads = 2) { runner.run(threads); }
+  std::size_t count(Verdict verdict) const {
+    std::size_t n = 0;
+    for (std::size_t f = 0; f < plan.families.size(); ++f)
+      for (const ItemRef& item : context.family(f))
+        for (const Job& job : plan.jobs(item)) n += job.verdict == verdict ? 1U : 0U;
+    return n;
+  }
+  std::size_t open() const { return count(Verdict::wait) + count(Verdict::compute); }
+
+  Config config;
+  Catalog catalog;
+  Workload workload;
+  Context context;
+  Store& store;
+  Plan plan;
+  std::unique_ptr<Progress> progress;
+  std::atomic<bool> stop = false;
+  Runner runner;
+};
+
+}  // namespace salbench
