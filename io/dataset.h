@@ -11,16 +11,15 @@
 
 namespace salbench {
 
-// ROOT is the folder that the user names; the item's name is N.
-enum class Layout {
-  automatic,  // the first of gs, schelling, princeton and folder that fits
-  schelling,  // {Meshes/N.off, Distributions/N.val, RawData/N_k.pid} in ROOT, also below SchellingData/, once
-              // or twice [chen2012]
-  princeton,  // off/N.off in ROOT, data/ or MeshsegBenchmark-1.0/data/; ground truth anywhere in ROOT as in
-              // the layouts above and below [chen2009]
-  gs,     // GS/{Saliency/N.val, RawData/N_k.pid}, meshes in off/ or Meshes/, all in ROOT; or ROOT is GS/
-  folder  // meshes in ROOT itself; Distributions/ and RawData/ in it or beside it, or nowhere
-};
+// Where the files of the mesh N lie below ROOT, the folder that the user names.
+//   gs         GS/{Saliency/N.val, RawData/N_k.pid} with meshes in off/ or Meshes/; or ROOT is GS/
+//   schelling  {Meshes/N.off, Distributions/N.val, RawData/N_k.pid}, also below SchellingData/, once or twice
+//              [chen2012]
+//   princeton  off/N.off in ROOT, data/ or MeshsegBenchmark-1.0/data/; ground truth as in the layouts above
+//              [chen2009]
+//   folder     the meshes in ROOT itself; Distributions/ and RawData/ in it or beside it, or nowhere
+//   automatic  the first of these that fits
+enum class Layout { automatic, schelling, princeton, gs, folder };
 template <>
 struct EnumNames<Layout> {
   static constexpr std::array<std::string_view, 5> names = {"automatic", "schelling", "princeton", "gs",
