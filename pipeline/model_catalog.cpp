@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "stages/models/ls.h"
 #include "stages/models/ps.h"
 #include "stages/models/rs.h"
 
@@ -23,6 +24,7 @@ ModelRow row(std::string_view name, std::int32_t version, unsigned reads,
 
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
+      row("LS", 1, kReadsNormals | kReadsFpfh, ls_saliency),
       row("PS", 1, kReadsFpfh, ps_saliency),
       row("RS", 1, kReadsSeed, rs_saliency),
   };
