@@ -1,0 +1,67 @@
+// LS on a bumpy sphere with rough normals, one thread.
+#include <benchmark/benchmark.h>
+
+#include "stages/fpfh/fpfh.h"
+#include "stages/models/chi2_search.h"
+#include "stages/models/ls.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+struct Shape {
+  std::vector<Vec3> points;
+  Normals normals;
+  Descriptors descriptors;
+
+  // Any number of vertices of a fine sphere, spread evenly enough. Rough normals fill all bins of the
+  // descriptors, as those of real shapes do.
+  explicit Shape(std::size_t n) {
+    const Mesh mesh = shapes::bumpy_sphere(6);
+    const std::vector<Vec3> roughness = shapes::random_normals(n, 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      points.push_back(mesh.vertices[i * mesh.vertices.size() / n]);
+      normals.push_back((points.back().normalized() + 0.5 * roughness[i]).normalized());
+    }
+    descriptors = fpfh(points, normals, FpfhOptions{});
+  }
+};
+
+void ls(benchmark::State& state, const LsOptions& options) {
+  const Shape shape(static_cast<std::size_t>(state.range(0)));
+  ModelInput input;
+  input.points = shape.points;
+  input.normals = shape.normals;
+  input.fpfh = &shape.descriptors;
+  for (auto _ : state) benchmark::DoNotOptimize(ls_saliency(input, options));
+  state.counters["pairs/s"] = benchmark::Counter(2.0 * static_cast<double>(state.range(0) * state.range(0)),
+                                                 benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK_CAPTURE(ls, published, LsOptions{})
+    ->Arg(5000)
+    ->Arg(10000)
+    ->Arg(20000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ls, text, LsOptions::text())->Arg(5000)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+void chi2_search(benchmark::State& state, chi2_kernel::Instructions instructions) {
+  if (!chi2_kernel::supported(instructions)) return state.SkipWithError("not on this machine");
+  const Shape shape(static_cast<std::size_t>(state.range(0)));
+  const Chi2Search search(shape.descriptors, instructions);
+  for (auto _ : state)
+    search.for_each(search.size() / 20, [](std::size_t, std::span<const Chi2Neighbor> nearest) {
+      benchmark::DoNotOptimize(nearest.data());
+    });
+}
+BENCHMARK_CAPTURE(chi2_search, baseline, chi2_kernel::Instructions::baseline)
+    ->Arg(10000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(chi2_search, avx2, chi2_kernel::Instructions::avx2)
+    ->Arg(10000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(chi2_search, avx512, chi2_kernel::Instructions::avx512)
+    ->Arg(10000)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace salbench
