@@ -13,7 +13,7 @@
 #include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"
 #include "stages/ground_truth/protrusion.h"
-#include "stages/ground_truth/smoothing.h"
+#include "stages/core/smoothing.h"
 
 namespace salbench {
 namespace {

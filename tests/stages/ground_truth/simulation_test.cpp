@@ -10,7 +10,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/ground_truth/smoothing.h"
+#include "stages/core/smoothing.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "stages/core/mesh_ops.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -31,23 +30,28 @@ using Picks = std::span<const std::vector<std::int32_t>>;  // per participant: t
 // edges, s = 0.01 sqrt(surface area), P the number of participants, those without a pick included, and
 // count_k how many of them picked vertex k. [chen2012]
 //
-// Holds what all groups of participants on one mesh share; the mesh must outlive it. Safe to share between
-// threads.
+// n, one value per vertex; does not depend on the order of participants or picks. Throws InputError for a
+// pick that is no vertex, and for no participants at all where the result is per participant.
+ScalarField smoothed_picks(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
+
+// The same for any group of the participants, to the bit. Every pick's Gaussian is computed once and kept, so
+// the map of a group costs no more than to add them up. Safe to share between threads.
 class PickSmoother {
  public:
-  explicit PickSmoother(const Mesh& mesh, const SmoothingOptions& options = {});
+  PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
 
-  // n, one value per vertex; does not depend on the order of participants or picks. Throws InputError for a
-  // pick that is no vertex, and for no participants at all where the result is per participant.
-  ScalarField operator()(Picks picks) const;
+  ScalarField operator()(std::span<const std::size_t> participants) const;  // distinct, in any order
 
  private:
-  const Mesh& mesh_;
-  Adjacency adjacency_;
-  SmoothingOptions options_;
-  double sigma_;  // in the mesh's unit
-};
+  struct Weight {
+    std::int32_t vertex;
+    double value;  // of the Gaussian, in (0, 1]
+  };
 
-ScalarField smoothed_picks(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
+  std::size_t n_vertices_;
+  bool per_participant_;
+  std::vector<std::vector<std::size_t>> sites_of_;  // per participant: distinct, indices of picked vertices
+  std::vector<std::vector<Weight>> gaussians_;      // per picked vertex, ascending: what is in its reach
+};
 
 }  // namespace salbench

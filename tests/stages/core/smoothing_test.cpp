@@ -1,4 +1,4 @@
-#include "stages/ground_truth/smoothing.h"
+#include "stages/core/smoothing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 
 #include "io/mesh_file.h"
 #include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"
 #include "tests/support/data.h"
 #include "tests/support/shapes.h"
@@ -115,15 +116,43 @@ TEST(SmoothedPicks, AreSharesOfTheParticipants) {
   EXPECT_THAT(smoothed_picks(mesh, picks, group), ElementsAre(1, 3, 1, 0));
 }
 
-TEST(SmoothedPicks, OfGroupsAddUp) {
+TEST(PickSmoother, GivesAnyGroupWhatItsPicksAloneGive) {
+  const Mesh mesh = shapes::bumpy_sphere(3);
+  const PicksOfAll picks = random_picks(9, mesh.vertices.size(), 2);
+  for (const bool per_participant : {true, false}) {
+    SmoothingOptions options;
+    options.per_participant = per_participant;
+    const PickSmoother smooth(mesh, picks, options);
+    for (const std::vector<std::size_t>& group :
+         std::vector<std::vector<std::size_t>>{{4}, {8, 0}, {7, 3, 5, 1}, {0, 1, 2, 3, 4, 5, 6, 7, 8}}) {
+      PicksOfAll of_group;
+      for (const std::size_t k : group) of_group.push_back(picks[k]);
+      EXPECT_EQ(smooth(group), smoothed_picks(mesh, of_group, options));
+    }
+  }
+}
+
+TEST(PickSmoother, AddsTheMapsOfItsParticipantsUp) {
   const Mesh mesh = shapes::bumpy_sphere(3);
   SmoothingOptions group;
   group.per_participant = false;
-  const PickSmoother smooth(mesh, group);
   const PicksOfAll picks = random_picks(9, mesh.vertices.size(), 2);
-  const Picks all = picks;
-  const ScalarField total = smooth(all), left = smooth(all.first(4)), right = smooth(all.subspan(4));
-  for (std::size_t v = 0; v < total.size(); ++v) EXPECT_NEAR(total[v], left[v] + right[v], 1e-13);
+  const PickSmoother smooth(mesh, picks, group);
+  ScalarField sum(mesh.vertices.size(), 0.0);
+  std::vector<std::size_t> everyone;
+  for (std::size_t k = 0; k < picks.size(); ++k) {
+    const ScalarField own = smooth(std::vector{k});
+    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += own[v];
+    everyone.push_back(k);
+  }
+  const ScalarField total = smooth(everyone);
+  for (std::size_t v = 0; v < sum.size(); ++v) EXPECT_NEAR(total[v], sum[v], 1e-13);
+}
+
+TEST(PickSmoother, HasNoSuchParticipant) {
+  const PicksOfAll picks = {{0}, {1}};
+  const PickSmoother smooth(shapes::tetrahedron(), picks);
+  EXPECT_THROW(smooth(std::vector<std::size_t>{2}), std::logic_error);
 }
 
 TEST(SmoothedPicks, DoNotDependOnTheOrder) {
