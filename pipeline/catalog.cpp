@@ -9,6 +9,7 @@
 #include "io/mesh_file.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"
+#include "stages/core/smoothing.h"
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/matching/matching.h"
 
@@ -209,16 +210,17 @@ Catalog make_catalog(const Config& config) {
   Catalog catalog;
   catalog.mesh = mesh_chain(config);
   catalog.scan = scan_chain(config, catalog.mesh);
-  catalog.reference = {
-      .name = "reference", .version = 1, .kind = "histogram", .run = [](const StageInputs& in) -> Value {
-        std::vector<Histogram> histograms;
-        for (const Value* value : in.values) histograms.push_back(std::get<Histogram>(*value));
-        return mean_histogram(histograms);
-      }};
+  catalog.means.push_back(
+      {"reference", 1, std::string(kMeshParts.ground_truth), std::string(kScanParts.ground_truth)});
+  for (const Model& model : config.models)
+    catalog.means.push_back({"mean_histogram." + model.name, 1, "map." + model.name, "map." + model.name});
   return catalog;
 }
 
-Value reference_part(const GroundTruth& truth) { return normalised_histogram(truth.saliency); }
+Histogram histogram_of(const Value& value) {
+  if (const auto* truth = std::get_if<GroundTruth>(&value)) return normalised_histogram(truth->saliency);
+  return normalised_histogram(std::get<ScalarField>(value));
+}
 
 bool has_stage(const Chain& chain, std::string_view name) {
   for (const Stage& stage : chain)

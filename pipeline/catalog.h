@@ -50,14 +50,21 @@ struct Stage {
 
 using Chain = std::vector<Stage>;  // every input stands before its user
 
-struct Catalog {
-  Chain mesh, scan;
-  // Mean histogram of the ground truths of all items of one kind. Its inputs are as many as there are items,
-  // so it runs on what reference_part() keeps of each.
-  Stage reference;
+// The mean over a whole data set, of meshes or of scans, of the histograms of one stage's fields.
+struct MeanHistogram {
+  std::string name;  // folder in the cache
+  std::int32_t version = 1;
+  std::string of_mesh, of_scan;  // the stage that is averaged, in either chain
 };
 
-Value reference_part(const GroundTruth& truth);
+struct Catalog {
+  Chain mesh, scan;
+  std::vector<MeanHistogram>
+      means;  // first the ground truth's, the reference of the matching; then the maps'
+};
+inline constexpr std::size_t kReference = 0;  // in Catalog::means
+
+Histogram histogram_of(const Value& value);  // of a ground truth's saliency, or of a map
 
 Catalog make_catalog(const Config& config);
 

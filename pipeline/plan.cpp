@@ -19,7 +19,7 @@ const Job& input_job(const Plan& plan, const ItemRef& item, const Input& input) 
     case Input::From::mesh:
       return plan.families[item.family].mesh[input.stage];
     case Input::From::reference:
-      return plan.reference[item.is_mesh() ? 0 : 1];
+      return plan.means[kReference][item.is_mesh() ? 0 : 1];
     default:
       return plan.jobs(item)[input.stage];
   }
@@ -30,7 +30,7 @@ const std::string& input_name(const Context& context, const ItemRef& item, const
     case Input::From::mesh:
       return context.catalog.mesh[input.stage].name;
     case Input::From::reference:
-      return context.catalog.reference.name;
+      return context.catalog.means[kReference].name;
     default:
       return context.chain(item)[input.stage].name;
   }
@@ -140,21 +140,22 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
   return {job, std::move(recipe)};
 }
 
-// Items whose ground truth fails are left out of the mean: one bad file must not stop a whole data set.
-Decision decide_reference(const Context& context, const Plan& plan, bool meshes, const Lookup& lookup) {
-  const Stage& stage = context.catalog.reference;
-  if (context.given_reference) {
+// Items whose share of it fails are left out of a mean: one bad file must not stop a whole data set.
+Decision decide_mean(const Context& context, const Plan& plan, std::size_t index, bool meshes,
+                     const Lookup& lookup) {
+  const MeanHistogram& mean = context.catalog.means[index];
+  if (index == kReference && context.given_reference) {
     Job job = verdict_of(Verdict::done, Reason::none);
     job.content = content_digest(arrays_from(*context.given_reference));
     return {job, {}};
   }
   const Chain& chain = meshes ? context.catalog.mesh : context.catalog.scan;
-  const std::string_view truth_name = meshes ? "ground_truth" : "scan_ground_truth";
-  Recipe recipe{stage.name, stage.version, stage.options, {}, {}};
-  if (chain.empty()) return {verdict_of(Verdict::absent, Reason::no_ground_truth), {}};
-  const std::size_t truth = stage_index(chain, truth_name);
+  const std::string& averaged = meshes ? mean.of_mesh : mean.of_scan;
+  if (!has_stage(chain, averaged)) return {verdict_of(Verdict::absent, Reason::none), {}};
+  const std::size_t stage = stage_index(chain, averaged);
+  Recipe recipe{mean.name, mean.version, {}, {}, {}};
   for (const ItemRef& item : context.items(meshes)) {
-    const Job& job = plan.jobs(item)[truth];
+    const Job& job = plan.jobs(item)[stage];
     if (job.open()) return {verdict_of(Verdict::wait, Reason::input_pending), {}};
     if (job.known()) recipe.inputs.emplace_back(context.name(item), job.content);
   }
@@ -187,8 +188,10 @@ Plan make_plan(const Context& context, const Index& index) {
       family.scans.assign(kViews, std::vector<Job>(context.catalog.scan.size()));
   }
   decide_stages(false);
-  for (const bool meshes : {true, false})
-    plan.reference[meshes ? 0 : 1] = decide_reference(context, plan, meshes, lookup).job;
+  plan.means.resize(context.catalog.means.size());
+  for (std::size_t mean = 0; mean < plan.means.size(); ++mean)
+    for (const bool meshes : {true, false})
+      plan.means[mean][meshes ? 0 : 1] = decide_mean(context, plan, mean, meshes, lookup).job;
   decide_stages(true);
   return plan;
 }

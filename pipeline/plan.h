@@ -63,7 +63,7 @@ struct Plan {
     std::vector<std::vector<Job>> scans;  // a view: a job a stage of Catalog::scan
   };
   std::vector<FamilyJobs> families;
-  std::array<Job, 2> reference;  // of the meshes, of the scans
+  std::vector<std::array<Job, 2>> means;  // as Catalog::means; of the meshes, of the scans
 
   std::vector<Job>& jobs(const ItemRef& item);
   const std::vector<Job>& jobs(const ItemRef& item) const;
@@ -94,7 +94,8 @@ struct Decision {
 };
 Decision decide(const Context& context, const Plan& plan, const ItemRef& item, std::size_t stage,
                 const Lookup& lookup);
-Decision decide_reference(const Context& context, const Plan& plan, bool meshes, const Lookup& lookup);
+Decision decide_mean(const Context& context, const Plan& plan, std::size_t mean, bool meshes,
+                     const Lookup& lookup);
 
 Plan make_plan(const Context& context, const Index& index);
 

@@ -1,13 +1,13 @@
 #include "pipeline/results.h"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "cache/files.h"
 #include "io/text_file.h"
+#include "pipeline/statistics.h"
 #include "stages/core/errors.h"
 #include "stages/stats/summary.h"
 
@@ -15,25 +15,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Metric {
-  const char* name;
-  double Scores::*value;
-};
-constexpr std::array kMetrics = {Metric{"auc", &Scores::auc}, Metric{"auc_exact", &Scores::auc_exact},
-                                 Metric{"nss", &Scores::nss}, Metric{"cc", &Scores::cc},
-                                 Metric{"lcc", &Scores::lcc}};
-
-// In the order of their first row.
-std::vector<std::pair<std::string, std::string>> datasets_and_models(const std::vector<ResultRow>& rows) {
-  std::vector<std::pair<std::string, std::string>> pairs;
-  for (const char* dataset : {"meshes", "scans"})
-    for (const ResultRow& row : rows)
-      if (row.dataset == dataset &&
-          std::find(pairs.begin(), pairs.end(), std::pair(row.dataset, row.model)) == pairs.end())
-        pairs.emplace_back(row.dataset, row.model);
-  return pairs;
-}
 
 std::string quoted(const std::string& text) {  // a double-quoted YAML scalar
   std::string result = "\"";
@@ -87,6 +68,16 @@ std::string run_yaml(const RunRecord& record) {
 }
 
 }  // namespace
+
+std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows) {
+  std::vector<DatasetAndModel> pairs;
+  for (const char* dataset : {"meshes", "scans"})
+    for (const ResultRow& row : rows)
+      if (const DatasetAndModel pair{row.dataset, row.model};
+          row.dataset == dataset && std::find(pairs.begin(), pairs.end(), pair) == pairs.end())
+        pairs.push_back(pair);
+  return pairs;
+}
 
 std::vector<ResultRow> collect_results(const Config& config, const Context& context, const Plan& plan,
                                        Runner& runner) {
@@ -164,8 +155,15 @@ void prepare_output(const fs::path& folder) {
 
 void write_results(const fs::path& folder, const RunRecord& record, const std::vector<ResultRow>& rows) {
   const std::string head = record.config.simulated() ? fmt::format("# {}\n", kSimulatedNote) : "";
-  write_text_file(folder / "results.csv", head + to_csv(results_table(rows)));
-  write_text_file(folder / "summary.csv", head + to_csv(summary_table(rows)));
+  const auto write = [&](const char* name, const Table& table) {
+    write_text_file(folder / name, head + to_csv(table));
+  };
+  write("results.csv", results_table(rows));
+  write("summary.csv", summary_table(rows));
+  write("per_class.csv", per_class_table(rows));
+  write("significance.csv", significance_table(rows));
+  write("mean_histograms_meshes.csv", mean_histogram_table(record.context, record.runner, true));
+  write("mean_histograms_scans.csv", mean_histogram_table(record.context, record.runner, false));
   write_text_file(folder / "run.yaml", run_yaml(record));
 }
 

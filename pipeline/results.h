@@ -1,6 +1,7 @@
-// The tables of a run: results.csv, summary.csv and run.yaml.
+// What a run has found, item by item, and the files it is written to.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -26,6 +27,22 @@ struct ResultRow {
   Scores scores;
 };
 
+struct Metric {
+  const char* name;
+  double Scores::*value;
+};
+inline constexpr std::array kMetrics = {Metric{"auc", &Scores::auc}, Metric{"auc_exact", &Scores::auc_exact},
+                                        Metric{"nss", &Scores::nss}, Metric{"cc", &Scores::cc},
+                                        Metric{"lcc", &Scores::lcc}};
+
+struct DatasetAndModel {
+  std::string dataset, model;
+  bool operator==(const DatasetAndModel&) const = default;
+};
+
+// Those that the rows speak of: meshes before scans, models in the order of their first row.
+std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows);
+
 // One row an item and model that was scored; by item, mesh before scans, then in the order of the models.
 std::vector<ResultRow> collect_results(const Config& config, const Context& context, const Plan& plan,
                                        Runner& runner);
@@ -45,11 +62,12 @@ struct RunRecord {
   const Config& config;
   const Context& context;
   const Plan& plan;
-  const Runner& runner;
+  Runner& runner;
   int threads = 1;
   double seconds = 0;
 };
 
+// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and run.yaml.
 void write_results(const std::filesystem::path& folder, const RunRecord& record,
                    const std::vector<ResultRow>& rows);
 

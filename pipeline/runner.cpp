@@ -10,6 +10,7 @@
 
 #include "pipeline/flow.h"
 #include "stages/core/errors.h"
+#include "stages/matching/matching.h"
 #include "stages/scan/scan.h"
 
 namespace salbench {
@@ -132,7 +133,7 @@ class Runner::FamilyRun {
       case Input::From::mesh:
         return value({family_, -1}, input.stage);
       case Input::From::reference:
-        return runner_.references_[item.is_mesh() ? 0 : 1];
+        return runner_.means_[kReference][item.is_mesh() ? 0 : 1];
       default:
         return value(item, input.stage);
     }
@@ -153,8 +154,9 @@ Runner::~Runner() = default;
 void Runner::run(int threads) {
   run_pass(threads, false);
   if (stop_) return;
-  make_reference(true);
-  make_reference(false);
+  means_.resize(plan_.means.size());
+  for (std::size_t index = 0; index < means_.size(); ++index)
+    for (const bool meshes : {true, false}) means_[index][meshes ? 0 : 1] = make_mean(index, meshes);
   run_pass(threads, true);
   std::stable_sort(failures_.begin(), failures_.end(), [&](const Failure& a, const Failure& b) {
     if (a.item.family != b.item.family) return a.item.family < b.item.family;
@@ -205,43 +207,39 @@ void Runner::run_pass(int threads, bool after_reference) {
   progress_.end();
 }
 
-void Runner::make_reference(bool meshes) {
-  Job& job = plan_.reference[meshes ? 0 : 1];
-  ValuePtr& value = references_[meshes ? 0 : 1];
-  const Stage& stage = context_.catalog.reference;
+// Serial and in the order of the items: sums of doubles depend on their order.
+ValuePtr Runner::make_mean(std::size_t index, bool meshes) {
+  if (index == kReference && context_.given_reference)
+    return std::make_shared<const Value>(*context_.given_reference);
+  const MeanHistogram& mean = context_.catalog.means[index];
+  Job& job = plan_.means[index][meshes ? 0 : 1];
   Decision decision =
-      decide_reference(context_, plan_, meshes,
-                       [&](std::string_view name, const Digest& key) { return store_.find_now(name, key); });
-  const Reason reason = job.reason;
+      decide_mean(context_, plan_, index, meshes,
+                  [&](std::string_view name, const Digest& key) { return store_.find_now(name, key); });
   job = decision.job;
-  if (context_.given_reference) {
-    value = std::make_shared<const Value>(*context_.given_reference);
-    return;
-  }
-  if (job.verdict == Verdict::cached) {
-    if (const auto arrays = store_.load(stage.name, job.key)) {
-      value = std::make_shared<const Value>(value_from(stage.kind, *arrays));
-      return;
-    }
-  }
-  if (job.verdict == Verdict::absent) return;
+  if (job.verdict == Verdict::cached)
+    if (const auto arrays = store_.load(mean.name, job.key))
+      return std::make_shared<const Value>(value_from("histogram", *arrays));
+  if (job.verdict == Verdict::absent) return {};
 
-  job.reason = reason;
   const auto started = std::chrono::steady_clock::now();
-  std::vector<Value> parts;
-  const std::size_t truth = stage_index(meshes ? context_.catalog.mesh : context_.catalog.scan,
-                                        meshes ? "ground_truth" : "scan_ground_truth");
+  const std::size_t stage = meshes ? stage_index(context_.catalog.mesh, mean.of_mesh)
+                                   : stage_index(context_.catalog.scan, mean.of_scan);
+  std::vector<Histogram> histograms;
   for (const ItemRef& item : context_.items(meshes))
-    if (plan_.jobs(item)[truth].known())
-      parts.push_back(reference_part(std::get<GroundTruth>(result(item, truth))));
-  StageInputs inputs;
-  for (const Value& part : parts) inputs.values.push_back(&part);
-  value = std::make_shared<const Value>(stage.run(inputs));
+    if (plan_.jobs(item)[stage].known()) histograms.push_back(histogram_of(result(item, stage)));
+  auto value = std::make_shared<const Value>(mean_histogram(histograms));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const ArtefactNote note{meshes ? "meshes" : "scans", seconds, context_.attributes};
-  job.content = store_.save(decision.recipe, stage.kind, arrays_from(*value), note);
+  job.content = store_.save(decision.recipe, kind_of(*value), arrays_from(*value), note);
   job.verdict = Verdict::done;
-  record(stage.name, seconds);
+  record(mean.name, seconds);
+  return value;
+}
+
+std::optional<Histogram> Runner::mean(std::size_t index, bool meshes) {
+  const ValuePtr& value = means_.at(index)[meshes ? 0 : 1];
+  return value ? std::optional(std::get<Histogram>(*value)) : std::nullopt;
 }
 
 Value Runner::result(const ItemRef& item, std::size_t stage) {

@@ -1,9 +1,12 @@
 // Carries a plan out: computes what is missing, item by item, and stores it.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +38,9 @@ class Runner {
   // StorageError.
   void run(int threads);
 
+  // Of the meshes or of the scans; nothing where there was nothing to average. After run().
+  std::optional<Histogram> mean(std::size_t index, bool meshes);
+
   // A known result, from the cache where it is there. Damaged artefacts are computed again.
   Value result(const ItemRef& item, std::size_t stage);
 
@@ -45,7 +51,7 @@ class Runner {
  private:
   class FamilyRun;
   void run_pass(int threads, bool after_reference);
-  void make_reference(bool meshes);
+  std::shared_ptr<const Value> make_mean(std::size_t index, bool meshes);
   void record(const ItemRef& item, const Stage& stage, const std::string& cause);
   void record(const std::string& stage, double seconds);
 
@@ -57,7 +63,7 @@ class Runner {
   std::mutex mutex_;  // of failures_ and timings_
   std::vector<Failure> failures_;
   std::map<std::string, StageTiming> timings_;
-  std::array<std::shared_ptr<const Value>, 2> references_;  // of the meshes, of the scans
+  std::vector<std::array<std::shared_ptr<const Value>, 2>> means_;  // as Plan::means
 };
 
 }  // namespace salbench

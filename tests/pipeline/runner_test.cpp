@@ -43,8 +43,10 @@ class RunnerTest : public testing::Test {
 };
 
 // Per mesh: mesh, ground_truth, normals, fpfh and 3 for each of 2 models; per scan: scan, ground truth,
-// normals, surface, fpfh and the same 6; two reference histograms.
-constexpr std::size_t kMeshJobs = 4 + 6, kScanJobs = 5 + 6, kAll = 2 * (kMeshJobs + 12 * kScanJobs) + 2;
+// normals, surface, fpfh and the same 6. For meshes and for scans the mean histograms of the ground truth and
+// of 2 models.
+constexpr std::size_t kMeshJobs = 4 + 6, kScanJobs = 5 + 6, kMeans = 2 * 3;
+constexpr std::size_t kAll = 2 * (kMeshJobs + 12 * kScanJobs) + kMeans;
 
 TEST_F(RunnerTest, AFirstRunComputesEverythingAndASecondNothing) {
   EXPECT_THAT(run(), SizeIs(kAll));
@@ -56,12 +58,12 @@ TEST_F(RunnerTest, AFirstRunComputesEverythingAndASecondNothing) {
 
 TEST_F(RunnerTest, ThePlanForesaysWhatIsDone) {
   ToyRun first(data_.path(), store_);
-  EXPECT_EQ(first.open(), kAll - 2);
+  EXPECT_EQ(first.open(), kAll - kMeans);
   first.run();
-  EXPECT_EQ(first.count(Verdict::done), kAll - 2);
+  EXPECT_EQ(first.count(Verdict::done), kAll - kMeans);
   ToyRun second(data_.path(), store_);
   EXPECT_EQ(second.open(), 0U);
-  EXPECT_EQ(second.count(Verdict::cached), kAll - 2);
+  EXPECT_EQ(second.count(Verdict::cached), kAll - kMeans);
 }
 
 TEST_F(RunnerTest, ResultsDoNotDependOnThreads) {
@@ -100,7 +102,7 @@ TEST_F(RunnerTest, ADamagedArtefactIsComputedAgainWhenItIsRead) {
 TEST_F(RunnerTest, AnOptionOfOneModelConcernsThatModelAlone) {
   run();
   const auto computed = run("scan: {step_degrees: 1}\nmodels: {PS: {absolute: true}, RS: }\n");
-  EXPECT_THAT(computed, SizeIs(26 * 3));
+  EXPECT_THAT(computed, SizeIs(26 * 3 + 2));  // maps, matched maps, scores; the mean histograms of the maps
   for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr(".PS@"));
   EXPECT_THAT(run(), IsEmpty());  // and back: both are in the cache
 }
@@ -119,8 +121,8 @@ TEST_F(RunnerTest, AnEditedMeshConcernsItsFamilyAndTheReference) {
   write_text_file(data_ / "Meshes/1.off", off_text(edited));
   const auto computed = run();
   for (const std::string& job : computed)
-    EXPECT_THAT(job, testing::AnyOf(HasSubstr("@1"), HasSubstr("reference@"), HasSubstr("matched."),
-                                    HasSubstr("scores.")));
+    EXPECT_THAT(job, testing::AnyOf(HasSubstr("@1"), HasSubstr("reference@"), HasSubstr("mean_histogram."),
+                                    HasSubstr("matched."), HasSubstr("scores.")));
   EXPECT_THAT(computed, Contains("map.PS@1_0"));
   EXPECT_THAT(computed, Not(Contains("map.PS@2_0")));
 }
@@ -137,7 +139,7 @@ TEST_F(RunnerTest, ANewlyWrittenButEqualFileConcernsNothing) {
 TEST_F(RunnerTest, AnotherSeedConcernsWhatIsRandom) {
   run();
   const auto computed = run(std::string(kToyConfig) + "seed: 7\n");
-  EXPECT_THAT(computed, SizeIs(26 * (1 + 1 + 2)));  // map, matched and scores of RS, scores of PS
+  EXPECT_THAT(computed, SizeIs(26 * (1 + 1 + 2) + 2));  // map, matched, scores and means of RS; scores of PS
 }
 
 TEST_F(RunnerTest, AFailingItemStopsNoOther) {
@@ -147,7 +149,7 @@ TEST_F(RunnerTest, AFailingItemStopsNoOther) {
   ASSERT_THAT(toy.runner.failures(), SizeIs(1));
   EXPECT_EQ(toy.runner.failures()[0].stage, "mesh");
   EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("3.off"));
-  EXPECT_EQ(toy.count(Verdict::done), kAll - 2);
+  EXPECT_EQ(toy.count(Verdict::done), kAll - kMeans);
   EXPECT_EQ(toy.count(Verdict::failed), 1U);
   EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::absent), kMeshJobs - 1 + 12 * kScanJobs);
   EXPECT_EQ(collect_results(toy.config, toy.context, toy.plan, toy.runner).size(), 26U * 2);
