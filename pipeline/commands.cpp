@@ -1,5 +1,6 @@
 #include "pipeline/commands.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "cache/folder_store.h"
 #include "io/table.h"
+#include "io/text_file.h"
 #include "pipeline/config.h"
 #include "pipeline/plan.h"
 #include "pipeline/results.h"
@@ -91,6 +93,32 @@ void print_failures(const Setup& setup, const std::vector<Failure>& failures) {
     fmt::print(stderr, "  {}: {}: {}\n", setup.context.name(failure.item), failure.stage, failure.cause);
 }
 
+std::string val_text(const ScalarField& field) {
+  std::string lines;
+  for (const double value : field) lines += fmt::format("{}\n", value);
+  return lines;
+}
+
+// Writes TO/MODEL/ITEM.val for every map that is known; returns how many.
+std::size_t write_maps(const Setup& setup, const Plan& plan, Runner& runner, const Arguments& arguments) {
+  std::size_t written = 0;
+  for (const Model& model : setup.config.models) {
+    const std::string name = (arguments.matched ? "matched." : "map.") + model.name;
+    const fs::path folder = fs::path(arguments.to) / model.name;
+    prepare_folder(folder, "--to");
+    for (std::size_t f = 0; f < setup.workload.families.size(); ++f) {
+      for (const ItemRef& item : setup.context.family(f)) {
+        const Chain& chain = setup.context.chain(item);
+        if (!has_stage(chain, name) || !plan.jobs(item)[stage_index(chain, name)].known()) continue;
+        const Value map = runner.result(item, stage_index(chain, name));
+        write_text_file(folder / (setup.context.name(item) + ".val"), val_text(std::get<ScalarField>(map)));
+        ++written;
+      }
+    }
+  }
+  return written;
+}
+
 ExitStatus interrupted_status(const Arguments& arguments) {
   fmt::print(stderr, "\ninterrupted; everything finished so far is kept. To go on:\n  {}\n",
              arguments.command_line);
@@ -126,6 +154,20 @@ ExitStatus run_command(const Arguments& arguments, const std::atomic<bool>& stop
     fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup->config.protocol),
                runner.computed(), setup->output.string());
   }
+  print_failures(*setup, runner.failures());
+  return runner.failures().empty() ? kAllDone : kSomeFailed;
+}
+
+ExitStatus maps_command(const Arguments& arguments, const std::atomic<bool>& stop) {
+  const std::unique_ptr<Setup> setup = set_up(arguments);
+  FolderStore store(setup->cache, Access::read_write);
+  Plan plan = make_plan(setup->context, store);
+  const std::unique_ptr<Progress> progress = arguments.quiet ? no_progress() : terminal_progress();
+  Runner runner(setup->context, plan, store, *progress, stop);
+  runner.run(thread_count(arguments));
+  if (stop) return interrupted_status(arguments);
+  const std::size_t written = write_maps(*setup, plan, runner, arguments);
+  if (!arguments.quiet) fmt::print("{} maps written to {}\n", written, arguments.to);
   print_failures(*setup, runner.failures());
   return runner.failures().empty() ? kAllDone : kSomeFailed;
 }

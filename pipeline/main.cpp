@@ -23,6 +23,7 @@ void on_signal(int signal) {
 constexpr const char* kExamples = R"(Examples:
   salbench run configs/shrec07.yaml --data SchellingData          the whole benchmark; run it again to resume
   salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
+  salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
   salbench plan configs/shrec07.yaml --data SchellingData         what a run would compute, and why
   salbench status configs/shrec07.yaml --data SchellingData       what is there already
 
@@ -62,6 +63,11 @@ int dispatch(int argc, char** argv) {
   Arguments arguments;
   arguments.command_line = joined(argc, argv);
   CLI::App* run = add_verb(app, "run", "compute what is missing and write the tables", arguments);
+  CLI::App* maps =
+      add_verb(app, "maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value a line", arguments);
+  maps->add_option("--models", arguments.models, "only these, such as LS,PS");
+  maps->add_option("--to", arguments.to, "folder that the maps are written to")->required();
+  maps->add_flag("--matched", arguments.matched, "after histogram matching");
   CLI::App* plan =
       add_verb(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
   add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
@@ -71,6 +77,7 @@ int dispatch(int argc, char** argv) {
     return app.exit(error) == 0 ? kAllDone : kUnusableArguments;
   }
   if (run->parsed()) return run_command(arguments, interrupted);
+  if (maps->parsed()) return maps_command(arguments, interrupted);
   return plan->parsed() ? plan_command(arguments) : status_command(arguments);
 }
 

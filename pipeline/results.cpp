@@ -144,12 +144,16 @@ Histogram read_reference(const std::string& path) {
   }
 }
 
-void prepare_output(const fs::path& folder) {
+void prepare_folder(const fs::path& folder, std::string_view option) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    throw StorageError(fmt::format("{}: the output folder cannot be created: {}; choose another with --out",
-                                   folder.string(), error.message()));
+    throw StorageError(fmt::format("{}: the folder cannot be created: {}; choose another with {}",
+                                   folder.string(), error.message(), option));
+}
+
+void prepare_output(const fs::path& folder) {
+  prepare_folder(folder, "--out");
   write_text_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
 }
 

@@ -56,7 +56,9 @@ Table summary_table(const std::vector<ResultRow>& rows);
 // A histogram of 100 bins from the column GS of a CSV file. Throws ConfigError.
 Histogram read_reference(const std::string& path);
 
-void prepare_output(const std::filesystem::path& folder);  // throws StorageError
+// Makes the folder, or throws StorageError naming the option that chooses another.
+void prepare_folder(const std::filesystem::path& folder, std::string_view option);
+void prepare_output(const std::filesystem::path& folder);  // of a run: also tells that one is under way
 
 struct RunRecord {
   const Config& config;

@@ -31,24 +31,10 @@ std::optional<Range> as_range(std::string_view text) {
   return Range{*first, *last};
 }
 
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  while (begin <= list.size()) {
-    const std::size_t comma = std::min(list.find(',', begin), list.size());
-    std::string part = list.substr(begin, comma - begin);
-    part.erase(0, part.find_first_not_of(' '));
-    part.erase(part.find_last_not_of(' ') + 1);
-    if (!part.empty()) parts.push_back(part);
-    begin = comma + 1;
-  }
-  return parts;
-}
-
 // A number range takes the items that exist in it: data sets have gaps. A single name must exist.
 std::set<std::string> selected_names(const std::string& selection, const std::set<std::string>& present) {
   std::set<std::string> names;
-  for (const std::string& part : split(selection)) {
+  for (const std::string& part : split_list(selection)) {
     if (present.contains(part)) {
       names.insert(part);
       continue;
@@ -86,6 +72,20 @@ Family make_family(const DatasetItem& source) {
 }
 
 }  // namespace
+
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (begin <= list.size()) {
+    const std::size_t comma = std::min(list.find(',', begin), list.size());
+    std::string part = list.substr(begin, comma - begin);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    if (!part.empty()) parts.push_back(part);
+    begin = comma + 1;
+  }
+  return parts;
+}
 
 Workload make_workload(const Dataset& dataset, const std::string& selection) {
   std::set<std::string> present;
