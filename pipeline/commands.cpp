@@ -50,9 +50,26 @@ struct Setup {
   Setup& operator=(const Setup&) = delete;
 };
 
+// Keeps the models that `--models` names.
+void select_models(Config& config, const std::string& list) {
+  std::vector<std::string_view> known;
+  for (const Model& model : config.models) known.push_back(model.name);
+  const std::vector<std::string> wanted = split_list(list);
+  for (const std::string& name : wanted) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw ConfigError(fmt::format("--models {}: the configuration has no model '{}'; it has {}", list, name,
+                                  fmt::join(known, ", ")));
+  }
+  if (!wanted.empty())
+    std::erase_if(config.models, [&](const Model& model) {
+      return std::find(wanted.begin(), wanted.end(), model.name) == wanted.end();
+    });
+}
+
 std::unique_ptr<Setup> set_up(const Arguments& arguments) {
   Config config =
       read_config(Section::from_file(arguments.config), fs::path(arguments.config).stem().string());
+  select_models(config, arguments.models);
   const std::string data = arguments.data.empty() ? config.data : arguments.data;
   if (data.empty())
     throw ConfigError(
