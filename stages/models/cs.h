@@ -1,0 +1,45 @@
+// CS, cluster-based point set saliency: a cluster of points is salient where its descriptors are unlike those
+// of its surroundings, and where what resembles it lies close together; a point takes the mean of the
+// clusters that it resembles.
+#pragma once
+
+#include <cstdint>
+
+#include "stages/core/options.h"
+#include "stages/models/model.h"
+
+namespace salbench {
+
+struct CsOptions {
+  double radius = 0.02;
+  std::int32_t clusters = 500;
+  std::int32_t rounds = 30;
+  double descriptor_weight = 2;
+  bool repair = true;
+  double distribution_weight = 0.5;
+
+  static CsOptions text();  // the paper's table of parameters: 100 clusters
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("radius", self.radius,
+          "support radius in units of R, grown until it holds 6 other points on average");
+    visit("clusters", self.clusters, "clusters aimed at; the grid of seeds makes somewhat fewer or more");
+    visit("rounds", self.rounds, "limit of the rounds of k-means");
+    visit("descriptor_weight", self.descriptor_weight,
+          "of the descriptors' distance in k-means, relative to the distance in space");
+    visit("repair", self.repair,
+          "move voxels that k-means has cut off from their cluster to a neighbouring one");
+    visit("distribution_weight", self.distribution_weight,
+          "of the clusters' distribution in space; the rest is that of their uniqueness");
+  }
+};
+void check(const CsOptions& options);  // throws OptionError
+
+// In [0, 1]. Reads input.points and input.normals, and computes descriptors of its own. Where there are no
+// more points than clusters aimed at, each point is a cluster. Points that all coincide, and descriptors that
+// do not tell clusters apart where their distribution does not either, give a constant map. Throws InputError
+// for a shape without points or with a coordinate or normal that is not finite. [tasse2015] [tasse2016]
+ScalarField cs_saliency(const ModelInput& input, const CsOptions& options);
+
+}  // namespace salbench

@@ -1,0 +1,267 @@
+// Supervoxels: the points are gathered in the cells of a fine grid (voxels), and the voxels clustered by
+// k-means over position and descriptor, which starts from the cells of a coarse grid (seeds) and compares a
+// voxel with the clusters nearby only, as SLIC does.
+//
+// Departures from the textbook are those of the authors' program, which the published maps depend on:
+// - A voxel changes its cluster only for a cost below the least it ever had, not below its present cost. With
+//   the costs' scale changing from round to round, most meshes so come to rest after a few rounds.
+// - Clusters are visited in order, and the largest distances, which scale the costs of the next round, are
+//   those to the voxels that a cluster still has when its turn comes.
+// - A voxel with hardly a neighbour in its cluster joins the nearest other one in the end.
+// What each is worth is told at the top of cs.cpp.
+#include "stages/models/cs_clusters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "stages/core/check.h"
+#include "stages/core/neighbors.h"
+#include "stages/models/cs_cells.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::size_t kBins = kFpfhBins;
+constexpr std::size_t kSampledVoxels = 100;  // whose surroundings tell how large a seed has to be
+constexpr std::size_t kSurroundings = 9;     // nearest voxels, the voxel itself included
+constexpr double kRest = 1e-4;  // the centres' movement in total, in units of R: k-means has ended
+
+using Labels = std::vector<std::int32_t>;  // by voxel: its seed or cluster
+
+std::int32_t label_of(const Labels& labels, std::int32_t voxel) {
+  return labels[static_cast<std::size_t>(voxel)];
+}
+
+// The voxels' centres and mean descriptors, and a search tree over the centres.
+struct Voxels {
+  GroupMeans means;
+  KdTree tree;
+
+  explicit Voxels(GroupMeans of_voxels) : means(std::move(of_voxels)), tree(means.centres) {}
+  std::size_t size() const { return means.size(); }
+  const Vec3& centre(std::size_t j) const { return means.centres[j]; }
+};
+
+GroupMeans cluster_means(const Voxels& voxels, const Labels& labels, std::size_t count) {
+  return group_means(voxels.means.centres, voxels.means.descriptors, labels, count);
+}
+
+// Twice the radius of a ball that holds a cluster's share of voxels, the median over a sample. Where a
+// cluster would have less than two: the spacing of the voxels, root mean square over their nearest.
+double seed_leaf(const Voxels& voxels, std::size_t clusters) {
+  std::vector<Neighbor> found;
+  if (voxels.size() > 2 * clusters) {
+    const std::size_t share = voxels.size() / clusters;  // the voxel itself included
+    std::vector<double> reaches;
+    for (std::size_t j = 0; j < voxels.size();
+         j += std::max<std::size_t>(voxels.size() / kSampledVoxels, 1)) {
+      voxels.tree.nearest(voxels.centre(j), share, found);
+      reaches.push_back(found.back().distance_squared);
+    }
+    const auto median = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
+    std::nth_element(reaches.begin(), median, reaches.end());
+    return 2 * std::sqrt(*median);
+  }
+  double sum = 0;
+  for (const Vec3& centre : voxels.means.centres) {
+    voxels.tree.nearest(centre, kSurroundings, found);
+    const double others = std::max(static_cast<double>(found.size()) - 1, 1.0);
+    for (const Neighbor& neighbor : found) sum += neighbor.distance_squared / others;
+  }
+  return std::sqrt(sum / static_cast<double>(voxels.size()));
+}
+
+// The seed whose cell holds the voxel's centre. That cell may hold no point, the voxel being cut by its
+// border: the nearest voxel within the radius that has a seed then passes it on and, where there is none, the
+// voxel's first point.
+Labels seed_labels(std::span<const Vec3> points, const Labels& voxel_of, const Voxels& voxels, double radius,
+                   const OccupiedCells& seeds) {
+  Labels labels = seeds.find(voxels.means.centres);
+  std::vector<Neighbor> found;
+  for (std::size_t j = 0; j < labels.size(); ++j) {
+    if (labels[j] != OccupiedCells::kEmpty) continue;
+    voxels.tree.within(voxels.centre(j), radius, found);
+    const auto near = std::find_if(found.begin(), found.end(), [&](const Neighbor& neighbor) {
+      return label_of(labels, neighbor.index) != OccupiedCells::kEmpty;
+    });
+    if (near != found.end()) {
+      labels[j] = label_of(labels, near->index);
+    } else {
+      const auto first = std::find(voxel_of.begin(), voxel_of.end(), static_cast<std::int32_t>(j));
+      labels[j] = seeds.find(points[static_cast<std::size_t>(first - voxel_of.begin())]);
+    }
+  }
+  return labels;
+}
+
+// Largest distances between voxels and the clusters they are in: the scale of the costs.
+struct Largest {
+  double distance_squared = 0;
+  double chi2 = 0;
+
+  void include(double d2, double chi) {
+    distance_squared = std::max(distance_squared, d2);
+    chi2 = std::max(chi2, chi);
+  }
+};
+
+Largest largest_distances(const Voxels& voxels, const Labels& labels, const GroupMeans& clusters) {
+  Largest largest;
+  for (std::size_t j = 0; j < labels.size(); ++j) {
+    const auto k = static_cast<std::size_t>(labels[j]);
+    largest.include((voxels.centre(j) - clusters.centres[k]).squaredNorm(),
+                    chi_square(voxels.means.descriptors.row(j), clusters.descriptors.row(k)));
+  }
+  return largest;
+}
+
+// Where no voxel is away from its cluster, another cluster's distance is infinitely large beside that.
+double relative(double distance, double largest) { return distance == 0 ? 0 : distance / largest; }
+
+class KMeans {
+ public:
+  KMeans(const Voxels& voxels, Labels labels, std::size_t count, double unit, const CsOptions& options)
+      : voxels_(voxels),
+        labels_(std::move(labels)),
+        clusters_(cluster_means(voxels, labels_, count)),
+        largest_(largest_distances(voxels, labels_, clusters_)),
+        reach_(2 * std::sqrt(largest_.distance_squared)),
+        rest_(kRest * unit),
+        descriptor_weight_(options.descriptor_weight),
+        least_cost_(voxels.size(), std::numeric_limits<double>::max()) {}
+
+  Labels run(std::int32_t rounds) && {
+    for (std::int32_t round = 0; round < rounds; ++round) {
+      largest_ = assign();
+      if (update_means() < rest_) break;
+    }
+    return std::move(labels_);
+  }
+
+ private:
+  // Offers each cluster to the voxels within reach of its centre.
+  Largest assign() {
+    Largest next;
+    for (std::size_t k = 0; k < clusters_.size(); ++k) {
+      if (clusters_.sizes[k] == 0) continue;
+      voxels_.tree.within(clusters_.centres[k], reach_, found_);
+      for (const Neighbor& voxel : found_) {
+        const auto j = static_cast<std::size_t>(voxel.index);
+        const double chi2 = chi_square(voxels_.means.descriptors.row(j), clusters_.descriptors.row(k));
+        if (labels_[j] == static_cast<std::int32_t>(k)) next.include(voxel.distance_squared, chi2);
+        const double cost = relative(voxel.distance_squared, largest_.distance_squared) +
+                            descriptor_weight_ * relative(chi2, largest_.chi2);
+        if (cost < least_cost_[j]) {
+          least_cost_[j] = cost;
+          labels_[j] = static_cast<std::int32_t>(k);
+        }
+      }
+    }
+    return next;
+  }
+
+  // Sum over the centres of how far they have moved, along the axes.
+  double update_means() {
+    const std::vector<Vec3> before = std::move(clusters_.centres);
+    clusters_ = cluster_means(voxels_, labels_, before.size());
+    return std::transform_reduce(before.begin(), before.end(), clusters_.centres.begin(), 0.0, std::plus<>(),
+                                 [](const Vec3& a, const Vec3& b) { return (a - b).lpNorm<1>(); });
+  }
+
+  const Voxels& voxels_;
+  Labels labels_;
+  GroupMeans clusters_;
+  Largest largest_;
+  double reach_;  // stays as wide as at first
+  double rest_;
+  double descriptor_weight_;
+  std::vector<double> least_cost_;  // by voxel, over all rounds
+  std::vector<Neighbor> found_;
+};
+
+// A voxel of whose surroundings, itself included, fewer than a third are in its cluster joins the nearest
+// other one. One after the other, each seeing what became of those before.
+void repair_connectivity(const Voxels& voxels, Labels& labels) {
+  std::vector<Neighbor> found;
+  for (std::size_t j = 0; j < labels.size(); ++j) {
+    voxels.tree.nearest(voxels.centre(j), kSurroundings, found);
+    const auto shares = [&](const Neighbor& near) { return label_of(labels, near.index) == labels[j]; };
+    const auto sharing = static_cast<std::size_t>(std::count_if(found.begin(), found.end(), shares));
+    if (sharing < found.size() / 3)
+      labels[j] = label_of(labels, std::find_if_not(found.begin(), found.end(), shares)->index);
+  }
+}
+
+// Clusters in the order of their seeds, those that have lost all their voxels left out.
+Clusters numbered(const Labels& voxel_of, const Labels& labels, std::size_t seeds) {
+  std::vector<std::int32_t> number(seeds, 0);
+  for (const std::int32_t label : labels) number[static_cast<std::size_t>(label)] = 1;
+  const auto count = static_cast<std::size_t>(std::count(number.begin(), number.end(), 1));
+  std::exclusive_scan(number.begin(), number.end(), number.begin(), 0);
+  Clusters clusters{{}, count};
+  clusters.of_point.reserve(voxel_of.size());
+  for (const std::int32_t voxel : voxel_of)
+    clusters.of_point.push_back(number[static_cast<std::size_t>(label_of(labels, voxel))]);
+  return clusters;
+}
+
+}  // namespace
+
+double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
+  double result = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    const float sum = a[bin] + b[bin];
+    const float difference = a[bin] - b[bin];
+    if (sum > 0) result += static_cast<double>(difference * difference / sum);
+  }
+  return result;
+}
+
+GroupMeans group_means(std::span<const Vec3> points, const Descriptors& descriptors,
+                       std::span<const std::int32_t> group_of, std::size_t count) {
+  CHECK_EQ(points.size(), descriptors.size());
+  CHECK_EQ(points.size(), group_of.size());
+  GroupMeans means{std::vector<Vec3>(count, Vec3::Zero()), {}, std::vector<std::int32_t>(count)};
+  means.descriptors.values.resize(count * kBins);
+  std::vector<double> sums(count * kBins);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto group = static_cast<std::size_t>(group_of[i]);
+    ++means.sizes[group];
+    means.centres[group] += points[i];
+    const auto row = descriptors.row(i);
+    for (std::size_t bin = 0; bin < kBins; ++bin) sums[group * kBins + bin] += static_cast<double>(row[bin]);
+  }
+  for (std::size_t group = 0; group < count; ++group) {
+    const double size = std::max(means.sizes[group], 1);
+    means.centres[group] /= size;
+    for (std::size_t entry = group * kBins; entry < (group + 1) * kBins; ++entry)
+      means.descriptors.values[entry] = static_cast<float>(sums[entry] / size);
+  }
+  return means;
+}
+
+Clusters cs_clusters(std::span<const Vec3> points, const Descriptors& descriptors, double radius, double unit,
+                     const CsOptions& options) {
+  CHECK_GT(points.size(), 0U);
+  const auto aim = static_cast<std::size_t>(options.clusters);
+  if (points.size() <= aim) {
+    Clusters clusters{std::vector<std::int32_t>(points.size()), points.size()};
+    std::iota(clusters.of_point.begin(), clusters.of_point.end(), 0);
+    return clusters;
+  }
+  const OccupiedCells cells(points, radius);
+  const Labels voxel_of = cells.find(points);
+  const Voxels voxels(group_means(points, descriptors, voxel_of, cells.size()));
+  const double leaf = seed_leaf(voxels, aim);
+  const OccupiedCells seeds(points, leaf > 0 ? leaf : radius);  // 0: there is one voxel
+  Labels labels =
+      KMeans(voxels, seed_labels(points, voxel_of, voxels, radius, seeds), seeds.size(), unit, options)
+          .run(options.rounds);
+  if (options.repair) repair_connectivity(voxels, labels);
+  return numbered(voxel_of, labels, seeds.size());
+}
+
+}  // namespace salbench

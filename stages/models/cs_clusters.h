@@ -1,0 +1,39 @@
+// The first half of CS: a point set cut into small compact clusters of similar descriptors.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stages/core/types.h"
+#include "stages/models/cs.h"
+
+namespace salbench {
+
+// sum (a - b)^2 / (a + b), bins where both are 0 adding nothing; values >= 0. Not halved.
+double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b);
+
+// Means over groups of points; those of a group without points are 0.
+struct GroupMeans {
+  std::vector<Vec3> centres;        // m x 3
+  Descriptors descriptors;          // m x 33
+  std::vector<std::int32_t> sizes;  // m: points of the group
+
+  std::size_t size() const { return sizes.size(); }
+};
+
+// Point i, with descriptor i, belongs to group group_of[i] in 0..count-1.
+GroupMeans group_means(std::span<const Vec3> points, const Descriptors& descriptors,
+                       std::span<const std::int32_t> group_of, std::size_t count);
+
+struct Clusters {
+  std::vector<std::int32_t> of_point;  // n: 0..count-1
+  std::size_t count = 0;               // none is empty
+};
+
+// points n x 3, descriptors n x 33, n > 0; `radius` > 0 is the grown support radius and `unit` > 0 the
+// shape's R. About options.clusters of them, from about half to one and a half times as many. [tasse2015]
+Clusters cs_clusters(std::span<const Vec3> points, const Descriptors& descriptors, double radius, double unit,
+                     const CsOptions& options);
+
+}  // namespace salbench

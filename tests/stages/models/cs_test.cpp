@@ -1,0 +1,359 @@
+#include "stages/models/cs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/core/fpfh.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/support.h"
+#include "stages/models/cs_clusters.h"
+#include "stages/normals/normals.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::AllOf;
+using testing::Each;
+using testing::Ge;
+using testing::Le;
+
+struct Shape {
+  std::vector<Vec3> points;
+  Normals normals;
+};
+
+ScalarField saliency_of(const Shape& shape, const CsOptions& options = {}) {
+  ModelInput input;
+  input.points = shape.points;
+  input.normals = shape.normals;
+  return cs_saliency(input, options);
+}
+
+Shape shape_of(const Mesh& mesh) { return {mesh.vertices, mesh_normals(mesh)}; }
+
+Shape cloud(std::size_t n, std::uint64_t seed) {
+  return {shapes::random_cloud(n, seed), shapes::random_normals(n, seed)};
+}
+
+// A flat square with one dent in the middle of its lower left quarter.
+Mesh dented_plane(int cells) {
+  Mesh mesh = shapes::grid(cells);
+  for (Vec3& v : mesh.vertices)
+    v.z() = -0.06 * std::exp(-((v - Vec3(0.25, 0.25, 0)).squaredNorm()) / (2 * 0.03 * 0.03));
+  return mesh;
+}
+
+CsOptions options_for(std::int32_t clusters) {
+  CsOptions options;
+  options.clusters = clusters;
+  return options;
+}
+
+TEST(CsOptions, RejectWhatCannotBeUsed) {
+  const auto key_of = [](auto change) -> std::string {
+    CsOptions options;
+    change(options);
+    try {
+      check(options);
+    } catch (const OptionError& error) {
+      return error.key;
+    }
+    return "";
+  };
+  EXPECT_EQ(key_of([](CsOptions&) {}), "");
+  EXPECT_EQ(key_of([](CsOptions& o) { o.radius = 0; }), "radius");
+  EXPECT_EQ(key_of([](CsOptions& o) { o.radius = std::numeric_limits<double>::infinity(); }), "radius");
+  EXPECT_EQ(key_of([](CsOptions& o) { o.clusters = 0; }), "clusters");
+  EXPECT_EQ(key_of([](CsOptions& o) { o.rounds = -1; }), "rounds");
+  EXPECT_EQ(key_of([](CsOptions& o) { o.descriptor_weight = std::nan(""); }), "descriptor_weight");
+  EXPECT_EQ(key_of([](CsOptions& o) { o.distribution_weight = 1.5; }), "distribution_weight");
+}
+
+TEST(CsOptions, OfTheTextAskForAHundredClusters) {
+  EXPECT_EQ(CsOptions{}.clusters, 500);
+  EXPECT_EQ(CsOptions::text().clusters, 100);
+  EXPECT_EQ(CsOptions::text().radius, 0.02);
+}
+
+// Steps 4 to 8 of the benchmark's description, as dense sums over all points and clusters; lengths in units
+// of R. `clusters` are those of step 3.
+class WrittenOut {
+ public:
+  WrittenOut(const Shape& shape, const CsOptions& options) : shape_(shape) {
+    const KdTree tree(shape.points);
+    unit_ = bounding_radius(shape.points);
+    const SupportRadius support = grown_support_radius(shape.points, tree, options.radius);
+    radius_ = support.radius;
+    descriptors_ =
+        fpfh(shape.points, shape.normals, tree,
+             {static_cast<std::int32_t>(std::floor(1.2 * support.neighbours)), 0}, FpfhWeighting::published);
+    of_ = cs_clusters(shape.points, descriptors_, radius_, unit_, options);
+    clusters_ = group_means(shape.points, descriptors_, of_.of_point, of_.count);
+    count_ = static_cast<Eigen::Index>(of_.count);
+    n_ = static_cast<Eigen::Index>(shape.points.size());
+  }
+
+  ScalarField saliency() {
+    const Eigen::MatrixXd chi2 = chi2_of_clusters(), d2 = distances_of_clusters();
+    const Vec3 centre = mean_centre();
+    double vs = 0;
+    for (const Vec3& x : clusters_.centres) vs += ((x - centre) / unit_).squaredNorm() / double(count_);
+    const double vd = descriptor_variance();
+
+    const Eigen::MatrixXd near = three_rings();
+    Eigen::MatrixXd w = Eigen::MatrixXd::Zero(n_, count_);
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      for (Eigen::Index k = 0; k < count_; ++k) {
+        if (near(cluster_of(i), k) == 0) continue;
+        const double d = (point(i) - clusters_.centres[std::size_t(k)]).norm() / unit_;
+        w(i, k) =
+            std::exp(-d * d / (2 * vs) - 2.5 * chi_square(descriptors_.row(std::size_t(i)), row(k)) / vd);
+      }
+    }
+    const Eigen::RowVectorXd m = w.colwise().sum();
+    const Eigen::VectorXd c = m.transpose() / m.sum();
+    Eigen::MatrixXd p = w.array().rowwise() / m.array();
+    p.array().colwise() /= p.rowwise().sum().array().eval();
+
+    Eigen::VectorXd u(count_), d(count_);
+    for (Eigen::Index j = 0; j < count_; ++j) {
+      const Eigen::ArrayXd proximity = 1 / (1 + d2.row(j).array().transpose());
+      u[j] = (c.array() * chi2.row(j).transpose().array() * proximity).sum() / proximity.sum();
+      const Eigen::ArrayXd e = (-chi2.row(j).transpose().array() / vd).exp();
+      Vec3 mu = Vec3::Zero();
+      for (Eigen::Index k = 0; k < count_; ++k) mu += e[k] / e.sum() * clusters_.centres[std::size_t(k)];
+      d[j] = 0;
+      for (Eigen::Index k = 0; k < count_; ++k)
+        d[j] += c[k] * e[k] / e.sum() * ((clusters_.centres[std::size_t(k)] - mu) / unit_).squaredNorm();
+    }
+    const Eigen::ArrayXd s = 0.5 * (-scaled(d)).exp() + 0.5 * (1 - (-scaled(u)).exp());
+    const Eigen::VectorXd result = p * scaled(s.matrix()).matrix();
+    return {result.begin(), result.end()};
+  }
+
+  bool some_cluster_out_of_reach() { return (three_rings().array() == 0).any(); }
+
+ private:
+  static Eigen::ArrayXd scaled(const Eigen::VectorXd& x) {
+    return (x.array() - x.minCoeff()) / (x.maxCoeff() - x.minCoeff());
+  }
+  const Vec3& point(Eigen::Index i) const { return shape_.points[std::size_t(i)]; }
+  Eigen::Index cluster_of(Eigen::Index i) const { return of_.of_point[std::size_t(i)]; }
+  std::span<const float, kFpfhBins> row(Eigen::Index k) const {
+    return clusters_.descriptors.row(std::size_t(k));
+  }
+
+  Vec3 mean_centre() const {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& x : clusters_.centres) sum += x;
+    return sum / double(count_);
+  }
+
+  double descriptor_variance() const {
+    std::array<float, kFpfhBins> mean{};
+    for (std::size_t b = 0; b < mean.size(); ++b) {
+      double sum = 0;
+      for (Eigen::Index k = 0; k < count_; ++k) sum += double(row(k)[b]);
+      mean[b] = float(sum / double(count_));
+    }
+    double variance = 0;
+    for (Eigen::Index k = 0; k < count_; ++k) variance += chi_square(row(k), mean) / double(count_);
+    return variance;
+  }
+
+  Eigen::MatrixXd chi2_of_clusters() const {
+    return Eigen::MatrixXd::NullaryExpr(
+        count_, count_, [&](Eigen::Index j, Eigen::Index k) { return chi_square(row(j), row(k)); });
+  }
+
+  Eigen::MatrixXd distances_of_clusters() const {
+    return Eigen::MatrixXd::NullaryExpr(count_, count_, [&](Eigen::Index j, Eigen::Index k) {
+      return ((clusters_.centres[std::size_t(j)] - clusters_.centres[std::size_t(k)]) / unit_).squaredNorm();
+    });
+  }
+
+  // Positive where cluster k is within three steps of cluster j: the third power of the adjacency.
+  Eigen::MatrixXd three_rings() const {
+    Eigen::MatrixXd adjacent = Eigen::MatrixXd::Identity(count_, count_);
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      bool alone = true;
+      for (Eigen::Index q = 0; q < n_; ++q) {
+        if (q == i || (point(i) - point(q)).squaredNorm() > radius_ * radius_) continue;
+        adjacent(cluster_of(i), cluster_of(q)) = 1;
+        alone = false;
+      }
+      if (!alone) continue;
+      std::vector<Eigen::Index> order(static_cast<std::size_t>(n_));
+      std::iota(order.begin(), order.end(), 0);
+      std::ranges::sort(order, {}, [&](Eigen::Index q) { return (point(i) - point(q)).squaredNorm(); });
+      for (std::size_t q = 0; q < 9; ++q) adjacent(cluster_of(i), cluster_of(order[q])) = 1;
+    }
+    return adjacent * adjacent * adjacent;
+  }
+
+  const Shape& shape_;
+  double unit_ = 0, radius_ = 0;
+  Descriptors descriptors_;
+  Clusters of_;
+  GroupMeans clusters_;
+  Eigen::Index count_ = 0, n_ = 0;
+};
+
+void expect_written_out(const Shape& shape, std::int32_t clusters) {
+  const ScalarField saliency = saliency_of(shape, options_for(clusters));
+  WrittenOut twin(shape, options_for(clusters));
+  EXPECT_TRUE(twin.some_cluster_out_of_reach());
+  EXPECT_THAT(saliency, testing::Pointwise(testing::DoubleNear(1e-9), twin.saliency()));
+}
+
+TEST(CsSaliency, EqualsTheFormulasWrittenOut) {
+  expect_written_out(shape_of(shapes::bumpy_sphere(4)), 150);
+  expect_written_out(shape_of(dented_plane(40)), 150);
+}
+
+TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereTheClusterGraphIsDisconnected) {
+  Shape shape = shape_of(shapes::bumpy_sphere(3));
+  const std::size_t half = shape.points.size();
+  for (std::size_t i = 0; i < half; ++i) {
+    shape.points.push_back(0.7 * shape.points[i] + Vec3(5, 1, 0));
+    shape.normals.push_back(shape.normals[i]);
+  }
+  expect_written_out(shape, 60);
+}
+
+TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereAPointIsAlone) {
+  Shape shape = cloud(500, 3);  // random normals: no descriptor is very unlike another
+  shape.points.push_back(Vec3(1.7, 0.5, 0.5));
+  shape.normals.push_back(Vec3::UnitX());
+  expect_written_out(shape, 60);
+}
+
+TEST(CsSaliency, OfADentedPlaneIsHighestAtTheDent) {
+  const Mesh mesh = dented_plane(70);
+  const ScalarField saliency = saliency_of(shape_of(mesh), options_for(200));
+  double at_dent = 0, elsewhere = 0;
+  int dented = 0;
+  for (std::size_t i = 0; i < saliency.size(); ++i) {
+    const bool at = (mesh.vertices[i] - Vec3(0.25, 0.25, mesh.vertices[i].z())).norm() < 0.06;
+    (at ? at_dent : elsewhere) += saliency[i];
+    dented += at;
+  }
+  EXPECT_GT(at_dent / dented, 0.6);
+  EXPECT_LT(elsewhere / (static_cast<double>(saliency.size()) - dented), 0.2);
+}
+
+TEST(CsSaliency, DoesNotDependOnTheUnitOfLength) {
+  Shape shape = shape_of(shapes::bumpy_sphere(4));
+  const ScalarField saliency = saliency_of(shape, options_for(100));
+  for (Vec3& p : shape.points) p *= 0.0009765625;  // exact
+  EXPECT_EQ(saliency_of(shape, options_for(100)), saliency);
+}
+
+TEST(CsSaliency, DoesNotSeeTheSignOfTheNormals) {
+  Shape shape = shape_of(shapes::bumpy_sphere(4));
+  const ScalarField saliency = saliency_of(shape, options_for(100));
+  for (Vec3& normal : shape.normals) normal = -normal;
+  EXPECT_THAT(saliency_of(shape, options_for(100)), testing::Pointwise(testing::DoubleNear(1e-9), saliency));
+}
+
+TEST(CsSaliency, WeighsDistributionAndUniqueness) {
+  const Shape shape = shape_of(shapes::bumpy_sphere(4));
+  CsOptions options = options_for(100);
+  options.distribution_weight = 0;
+  const ScalarField unique = saliency_of(shape, options);
+  options.distribution_weight = 1;
+  EXPECT_NE(saliency_of(shape, options), unique);
+}
+
+TEST(CsDegenerate, NoPoints) { EXPECT_THROW(saliency_of({}), InputError); }
+
+TEST(CsDegenerate, OnePoint) { EXPECT_EQ(saliency_of({{{1, 2, 3}}, {Vec3::UnitZ()}}), ScalarField{0}); }
+
+TEST(CsDegenerate, CoincidentPoints) {
+  EXPECT_EQ(saliency_of({std::vector<Vec3>(30, {1, 2, 3}), Normals(30, Vec3::UnitZ())}), ScalarField(30, 0));
+}
+
+TEST(CsDegenerate, FewerPointsThanNeighbours) {
+  for (std::size_t n = 2; n <= 7; ++n) {
+    for (const std::int32_t clusters : {1, 2, 500}) {
+      const ScalarField saliency = saliency_of(cloud(n, n), options_for(clusters));
+      EXPECT_EQ(saliency.size(), n);
+      EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1)))) << n << " points, " << clusters << " clusters";
+    }
+  }
+}
+
+TEST(CsDegenerate, OneCluster) {
+  CsOptions options = options_for(1);
+  options.radius = 3;  // one voxel
+  const ScalarField saliency = saliency_of(cloud(50, 3), options);
+  EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1), saliency[0])));
+}
+
+TEST(CsDegenerate, ConstantDescriptors) {
+  // A plane: nothing tells clusters apart, and all are as scattered as any other.
+  const ScalarField saliency = saliency_of(shape_of(shapes::grid(30)), options_for(50));
+  EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1), saliency[0])));
+}
+
+TEST(CsDegenerate, PointsTwice) {
+  Shape shape = shape_of(shapes::bumpy_sphere(3));
+  shape.points.insert(shape.points.end(), shape.points.begin(), shape.points.end());
+  shape.normals.insert(shape.normals.end(), shape.normals.begin(), shape.normals.end());
+  const ScalarField saliency = saliency_of(shape, options_for(60));
+  EXPECT_FALSE(is_constant(saliency));
+  const auto middle = saliency.begin() + static_cast<std::ptrdiff_t>(saliency.size() / 2);
+  EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1))));
+  EXPECT_TRUE(std::equal(saliency.begin(), middle, middle,
+                         [](double a, double b) { return std::abs(a - b) < 1e-9; }));
+}
+
+TEST(CsDegenerate, NearlyConstantDescriptors) {
+  // One odd point in a plane: beside so small a variance, weights of its descriptor underflow.
+  Mesh mesh = shapes::grid(60);
+  mesh.vertices[1900].z() += 0.01;
+  const ScalarField saliency = saliency_of(shape_of(mesh), options_for(300));
+  EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1))));
+  EXPECT_GT(saliency[1900], 0.5);
+}
+
+TEST(CsDegenerate, PointsUnlikeTheirClusters) {
+  // Two squares, one cluster each, of pairs of points so close that each point is described by its partner;
+  // one half of the normals stands upright, the other lies. The clusters' mean descriptors all but agree:
+  // beside so small a variance no point is like any cluster, and its weights would all underflow.
+  Shape shape;
+  for (const double x : {0.0, 64.0}) {
+    for (const Vec3& p : shapes::random_cloud(100, 3)) {
+      const Vec3 at(x + p.x(), p.y(), 0), normal = p.z() < 0.5 ? Vec3::UnitZ() : Vec3::UnitX();
+      shape.points.insert(shape.points.end(), {at, at + Vec3(1e-6, 0, 0)});
+      shape.normals.insert(shape.normals.end(), {normal, normal});
+    }
+  }
+  shape.normals.back() = Vec3(1, 0.1, 0).normalized();
+  CsOptions options = options_for(2);
+  options.radius = 0.05;  // 1.6: each square is in one cell
+  options.distribution_weight = 0;
+  const ScalarField saliency = saliency_of(shape, options);
+  EXPECT_FALSE(is_constant(saliency));
+  EXPECT_THAT(saliency, Each(testing::AnyOf(0, 1)));  // their own cluster's
+}
+
+TEST(CsDegenerate, NotFinite) {
+  Shape shape = cloud(50, 3);
+  shape.points[7].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(saliency_of(shape), InputError);
+  shape = cloud(50, 3);
+  shape.normals[7].y() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(saliency_of(shape), InputError);
+}
+
+}  // namespace
+}  // namespace salbench
