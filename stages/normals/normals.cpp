@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <numbers>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
@@ -21,7 +23,7 @@ const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[sta
 
 void require_finite(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (!points[i].allFinite()) throw InputError("point " + std::to_string(i) + " is not finite");
+    if (!points[i].allFinite()) throw InputError(fmt::format("point {} is not finite", i));
 }
 
 // Zero where the faces tell nothing.
@@ -111,10 +113,9 @@ double median_spacing(std::span<const Vec3> points, const KdTree& tree) {
   return std::sqrt(*middle);
 }
 
-void require_between(const char* key, std::int32_t value, std::int32_t low, std::int32_t high) {
-  if (value < low || value > high)
-    throw OptionError{key, "must be in [" + std::to_string(low) + ", " + std::to_string(high) + "], not " +
-                               std::to_string(value)};
+void require_between(const char* key, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    throw OptionError{key, fmt::format("must be in [{}, {}], not {}", low, high, value)};
 }
 
 }  // namespace
@@ -122,16 +123,16 @@ void require_between(const char* key, std::int32_t value, std::int32_t low, std:
 void check(const MeshNormalsOptions& options) {
   if (options.neighbours != 0) require_between("neighbours", options.neighbours, 3, kMostNeighbours);
   if (!(options.support > 0 && options.support <= 1))
-    throw OptionError{"support", "must be in (0, 1], not " + std::to_string(options.support)};
+    throw OptionError{"support", fmt::format("must be in (0, 1], not {}", options.support)};
   require_between("most_neighbours", options.most_neighbours, 3, kMostNeighbours);
   require_between("orientation_neighbours", options.orientation_neighbours, 2, kMostNeighbours);
 }
 
 void check(const ScanNormalsOptions& options) {
-  if (!(options.gap >= 1 && options.gap <= 1e6))
-    throw OptionError{"gap", "must be in [1, 1000000], not " + std::to_string(options.gap)};
   require_between("neighbours", options.neighbours, 3, kMostNeighbours);
   require_between("orientation_neighbours", options.orientation_neighbours, 2, kMostNeighbours);
+  require_between("gap", options.gap, 1, 1e6);
+  require_between("steepest_degrees", options.steepest_degrees, 1, 90);
 }
 
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options) {
@@ -157,7 +158,8 @@ Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
         });
     return {nearest, to_camera(static_cast<std::size_t>(nearest))};
   };
-  const OrientationGraph graph{options.orientation_neighbours, options.gap * median_spacing(points, tree)};
+  const OrientationGraph graph{options.orientation_neighbours, options.gap * median_spacing(points, tree),
+                               options.steepest_degrees * std::numbers::pi / 180};
   orient_normals(points, tree, graph, nearest_to_camera, normals);
   return normals;
 }

@@ -49,21 +49,24 @@ Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options = {});
 struct ScanNormalsOptions {
   std::int32_t neighbours = 9;              // nearest points a plane is fitted to, the point itself included
   std::int32_t orientation_neighbours = 6;  // nearest others that orientation passes to
-  double gap = 3;                           // where it does not: across this many median point spacings
+  double gap = 3;                           // beyond so many median point spacings it does not pass
+  double steepest_degrees = 45;             // nor between normals that are further from parallel
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("neighbours", self.neighbours, "nearest points of a plane, itself included");
     visit("orientation_neighbours", self.orientation_neighbours, "nearest others in Hoppe's graph");
     visit("gap", self.gap, "longest edge of Hoppe's graph in median point spacings: beyond, depth jumps");
+    visit("steepest_degrees", self.steepest_degrees,
+          "largest angle between normals across an edge of the graph");
   }
 };
 void check(const ScanNormalsOptions& options);
 
 // n x 3: the plane of the nearest points, then Hoppe's tree; of each component of the graph the point nearest
-// to the camera is turned towards it. The graph does not bridge depth jumps: there, a normal tells nothing of
-// its neighbour's. Where a neighbourhood spans no plane the direction to the camera decides. An empty scan
-// has no normals. Throws InputError for points that are not finite. [hoppe1992]
+// to the camera is turned towards it. The graph bridges neither depth jumps nor sharp folds: there, a normal
+// tells nothing of its neighbour's. Where a neighbourhood spans no plane the direction to the camera decides.
+// An empty scan has no normals. Throws InputError for points that are not finite. [hoppe1992]
 Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options = {});
 
 }  // namespace salbench

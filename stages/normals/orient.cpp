@@ -5,6 +5,7 @@
 #include "stages/normals/orient.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -36,15 +37,18 @@ class DisjointSets {
 };
 
 std::vector<Component> connected_parts(std::span<const Vec3> points, const KdTree& tree,
-                                       const OrientationGraph& graph) {
+                                       const OrientationGraph& graph, const Normals& normals) {
   const double longest_squared = graph.longest_edge * graph.longest_edge;
+  const double least_cosine = std::cos(graph.largest_turn);
   DisjointSets sets(points.size());
   std::vector<Neighbor> near;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.nearest(points[i], static_cast<std::size_t>(graph.neighbours) + 1, near);
     for (const Neighbor& n : near) {
       const auto j = static_cast<std::size_t>(n.index);
-      if (j > i && n.distance_squared <= longest_squared) sets.join(i, j);
+      if (j > i && n.distance_squared <= longest_squared &&
+          std::abs(normals[i].dot(normals[j])) >= least_cosine)
+        sets.join(i, j);
     }
   }
   std::vector<Component> by_root(points.size());
@@ -84,8 +88,8 @@ Component pass_on(std::span<const Vec3> points, const Component& part, std::int3
 
 void orient_normals(std::span<const Vec3> points, const KdTree& tree, const OrientationGraph& graph,
                     const SeedRule& seed_of, Normals& normals) {
-  for (Component& part : connected_parts(points, tree, graph)) {
-    // Once, as a rule. Of equally distant neighbours CGAL may take others than KdTree, and it stops at a
+  for (Component& part : connected_parts(points, tree, graph, normals)) {
+    // Once, as a rule. But of equally distant neighbours CGAL may take others than KdTree, and it stops at a
     // right angle: what is left is a part of its own. It ends, since at least the seed is reached each time.
     while (!part.empty()) {
       const OrientationSeed seed = seed_of(part);

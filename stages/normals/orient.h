@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "stages/core/neighbors.h"
@@ -12,10 +13,11 @@
 namespace salbench {
 
 // The graph along which orientation passes: each point with its nearest ones, the point itself not counted.
+// Parts that are joined only by edges beyond the limits are components of their own.
 struct OrientationGraph {
   std::int32_t neighbours;  // >= 2
-  double longest_edge =
-      std::numeric_limits<double>::infinity();  // parts joined by longer edges alone are apart
+  double longest_edge = std::numeric_limits<double>::infinity();
+  double largest_turn = std::numbers::pi / 2;  // between the normals of an edge, of whatever sign; radians
 };
 
 // A point whose orientation is known: its normal makes no obtuse angle with `towards`.

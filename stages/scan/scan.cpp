@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <embree3/rtcore.h>
+#include <fmt/format.h>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -47,7 +48,7 @@ struct LocalFrame {
 LocalFrame local_frame(const Mesh& mesh) {
   const double area = surface_area(mesh);
   if (!(area > 0) || !std::isfinite(area))
-    throw InputError("the surface area is " + std::to_string(area) + ": nothing can be scanned");
+    throw InputError(fmt::format("the surface area is {}: nothing can be scanned", area));
   return {area_centroid(mesh), std::sqrt(area)};
 }
 
@@ -186,7 +187,7 @@ RTCRayHit float_ray(const Vec3& origin, const Vec3& direction) {
 
 void check(const ScanOptions& options) {
   const auto require = [](bool good, const char* key, const char* what, double value) {
-    if (!good) throw OptionError{key, std::string("must be ") + what + ", not " + std::to_string(value)};
+    if (!good) throw OptionError{key, fmt::format("must be {}, not {}", what, value)};
   };
   require(options.distance > 0 && options.distance <= 1e4, "distance", "in (0, 10000]", options.distance);
   require(options.step_degrees >= 0.01 && options.step_degrees <= 10, "step_degrees", "in [0.01, 10]",
@@ -217,7 +218,7 @@ Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
       if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh);
     }
   }
-  if (scan.points.empty()) throw InputError("view " + std::to_string(view) + " sees nothing of the mesh");
+  if (scan.points.empty()) throw InputError(fmt::format("view {} sees nothing of the mesh", view));
   return scan;
 }
 

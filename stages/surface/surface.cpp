@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <pcl/console/print.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -100,8 +100,7 @@ Faces one_sided(const Faces& faces) {
 void check(const SurfaceOptions& options) {
   const auto require = [](const char* key, double value, double low, double high) {
     if (!(value >= low && value <= high))
-      throw OptionError{key, "must be in [" + std::to_string(low) + ", " + std::to_string(high) + "], not " +
-                                 std::to_string(value)};
+      throw OptionError{key, fmt::format("must be in [{}, {}], not {}", low, high, value)};
   };
   require("reach", options.reach, 1, 100);
   require("longest_edge", options.longest_edge, 1, 1000);

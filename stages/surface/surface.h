@@ -29,8 +29,9 @@ struct SurfaceOptions {
 void check(const SurfaceOptions& options);
 
 // f x 3 indices of the scan's points, by greedy projection triangulation; counter-clockwise seen from the
-// side that the normals point to. Depth jumps stay open, and there are holes and points without a face. Fewer
-// than three points, or none apart, have no faces. One unit normal per point, all finite. [marton2009]
+// side that the normals point to. No two faces pass an edge in the same direction. Depth jumps stay open, and
+// there are holes and points without a face. Fewer than three points, or none apart, have no faces. One unit
+// normal per point, everything finite. [marton2009]
 Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options = {});
 
 }  // namespace salbench

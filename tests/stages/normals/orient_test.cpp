@@ -75,6 +75,18 @@ TEST(OrientNormals, EdgesBeyondTheLongestSeparate) {
   EXPECT_THAT(unlimited.sizes, testing::ElementsAre(100U));
 }
 
+TEST(OrientNormals, TurnsBeyondTheLargestSeparate) {
+  // Two strips that meet at a right angle, told apart by their normals alone.
+  const std::vector<Vec3> points = shapes::grid(9).vertices;
+  Normals folded(50, Vec3(0.6, 0, 0.8));
+  folded.insert(folded.end(), 50, Vec3(-0.8, 0, 0.6));
+  FirstUp rule;
+  Normals normals = randomly_flipped(folded);
+  orient_normals(points, KdTree(points), {8, 10, std::numbers::pi / 4}, std::ref(rule), normals);
+  EXPECT_THAT(rule.sizes, testing::ElementsAre(50U, 50U));
+  EXPECT_EQ(normals, folded);
+}
+
 TEST(OrientNormals, ReachesEveryPointAlsoAcrossRightAnglesAndCoincidentPoints) {
   // Nine points in each place: nearest neighbours are all at distance 0, chosen arbitrarily by whoever asks.
   std::vector<Vec3> points;
