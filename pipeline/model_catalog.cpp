@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "stages/models/cs.h"
+#include "stages/models/hs.h"
 #include "stages/models/ls.h"
 #include "stages/models/ps.h"
 #include "stages/models/rs.h"
@@ -20,12 +22,26 @@ ModelRow row(std::string_view name, std::int32_t version, unsigned reads,
           }};
 }
 
+ModelRow row_of_people(std::string_view name, std::int32_t version) {
+  return {name, [=](const Section& section, Protocol protocol) {
+            auto options = preset<HsOptions>(protocol);
+            section.read(options);
+            return Model{.name = std::string(name),
+                         .version = version,
+                         .options = options_text(options),
+                         .people = [=](const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer,
+                                       Rng rng) { return human_curve(mesh, truth, options, scorer, rng); }};
+          }};
+}
+
 }  // namespace
 
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
       row("LS", 1, kReadsNormals | kReadsFpfh, ls_saliency),
+      row("CS", 1, kReadsNormals, cs_saliency),
       row("PS", 1, kReadsFpfh, ps_saliency),
+      row_of_people("HS", 1),
       row("RS", 1, kReadsSeed, rs_saliency),
   };
   return rows;
