@@ -1,0 +1,64 @@
+// MS, mesh saliency by spectral processing: the irregularities of the log-Laplacian spectrum, brought back to
+// the surface.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "stages/core/options.h"
+#include "stages/models/model.h"
+
+namespace salbench {
+
+enum class MsScales {
+  single,  // the shape as it is
+  paper    // the changes between the shape smoothed by five Gaussians, t_k = k epsilon^2
+};
+template <>
+struct EnumNames<MsScales> {
+  static constexpr std::array<std::string_view, 2> names{"single", "paper"};
+};
+
+enum class MsWeight {
+  area,            // sums over neighbours are divided by the area of the vertex
+  inverse_square,  // neighbours count by 1 / distance^2 [song2014]
+};
+template <>
+struct EnumNames<MsWeight> {
+  static constexpr std::array<std::string_view, 2> names{"area", "inverse_square"};
+};
+
+struct MsOptions {
+  std::int32_t faces = 3000;
+  std::int32_t window = 9;
+  std::int32_t frequencies = 6;
+  std::int32_t eigenpairs = 14;
+  MsWeight weight = MsWeight::area;
+  MsScales scales = MsScales::single;
+  double epsilon = 0.004;
+
+  static MsOptions text();  // the paper's words: five scales, neighbours weighted by 1 / distance^2
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("faces", self.faces, "larger meshes are simplified to so many faces");
+    visit("window", self.window, "width of the average over the log spectrum, odd (n in the paper)");
+    visit("frequencies", self.frequencies, "lowest frequencies whose irregularity counts");
+    visit("eigenpairs", self.eigenpairs, "lowest eigenpairs that are computed");
+    visit("weight", self.weight, "what a neighbour counts");
+    visit("scales", self.scales, "shape as it is, or the changes over the paper's five smoothings");
+    visit("epsilon", self.epsilon, "smallest smoothing, standard deviation in units of R");
+  }
+};
+void check(const MsOptions& options);  // throws OptionError
+
+inline constexpr std::size_t kMsSmallestComponent = 20;  // vertices
+
+// Reads input.points and input.faces. The largest connected component of the mesh is what the model sees;
+// every other point takes the value of the nearest vertex of it. A component of under 20 vertices and a
+// failed eigensolve give 0 for all points, which nothing else does. Throws InputError where a face names no
+// point, and for coordinates that are not finite or whose squares are not. [song2014] [tasse2016]
+ScalarField ms_saliency(const ModelInput& input, const MsOptions& options);
+
+}  // namespace salbench

@@ -1,0 +1,35 @@
+// Graph Laplacians of meshes and the low end of their spectrum.
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include "stages/core/mesh_ops.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+// W (n x n, symmetric): W_ij = 1 / |p_i - p_j|^2 on edges and 0 elsewhere, in 1 / length^2. No edge
+// counts as shorter than 1e-4 of the mean one, so points may coincide. [song2014]
+SparseMatrix inverse_square_weights(std::span<const Vec3> points, const Adjacency& adjacency);
+
+// L = D - W, D the row sums of W.
+SparseMatrix graph_laplacian(const SparseMatrix& weights);
+
+// About the largest eigenvalue of the Laplacian of a triangle mesh: 1.3 times its largest degree.
+double largest_eigenvalue_estimate(const SparseMatrix& laplacian);
+
+struct Eigenpairs {
+  Eigen::VectorXd values;   // k, ascending; the first is 0
+  Eigen::MatrixXd vectors;  // n x k, orthonormal columns, each of arbitrary sign; the first is constant
+};
+
+// The k lowest eigenpairs of the Laplacian of a connected graph, repeated eigenvalues as often as they occur;
+// 1 < k < n - 1. No columns where the solver fails. The same bytes on every call.
+Eigenpairs lowest_eigenpairs(const SparseMatrix& laplacian, Eigen::Index k);
+
+}  // namespace salbench

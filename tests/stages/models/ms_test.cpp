@@ -1,0 +1,270 @@
+#include "stages/models/ms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/core/mesh_ops.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+
+ScalarField ms(const Mesh& mesh, const MsOptions& options = {}) {
+  ModelInput input;
+  input.points = mesh.vertices;
+  input.faces = mesh.faces;
+  return ms_saliency(input, options);
+}
+
+// Eigenvalues all distinct, as the fivefold ones of a sphere are not.
+Mesh ellipsoid(int levels) {
+  Mesh mesh = shapes::sphere(levels);
+  for (Vec3& v : mesh.vertices) v = v.cwiseProduct(Vec3(1, 1.4, 2.3));
+  return mesh;
+}
+
+double largest_difference(const ScalarField& a, const ScalarField& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b.at(i)));
+  return largest;
+}
+
+// The brute-force twin for meshes that need no simplification: the whole dense spectrum, all frequencies, the
+// matrix B exp|g - A| B' written out.
+ScalarField dense_saliency(const Mesh& mesh, MsWeight weight) {
+  const auto n = static_cast<Eigen::Index>(mesh.vertices.size());
+  const auto row = [](Eigen::Index i) { return static_cast<std::size_t>(i); };
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(n, n), edges = weights;
+  Eigen::VectorXd areas = Eigen::VectorXd::Zero(n);
+  for (const Triangle& face : mesh.faces) {
+    const double third = face_area_vector(mesh, face).norm() / 6;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Index i = face[k], j = face[(k + 1) % 3];
+      edges(i, j) = edges(j, i) = 1;
+      weights(i, j) = weights(j, i) = 1 / (mesh.vertices[row(i)] - mesh.vertices[row(j)]).squaredNorm();
+      areas[i] += third;
+    }
+  }
+  const Eigen::VectorXd degrees = weights.rowwise().sum();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(degrees.asDiagonal()) -
+                                                              weights);
+  Eigen::VectorXd values = solver.eigenvalues();
+  values[0] = 1e-17 * 1.3 * degrees.maxCoeff();
+  const Eigen::VectorXd logs = values.array().log();
+  Eigen::VectorXd amplified(n);
+  for (Eigen::Index f = 0; f < n; ++f) {
+    double mean = 0;
+    for (Eigen::Index k = f - 4; k <= f + 4; ++k) mean += logs[std::clamp<Eigen::Index>(k, 0, n - 1)] / 9;
+    amplified[f] = std::exp(std::abs(logs[f] - mean));
+  }
+  const Eigen::MatrixXd spread =
+      solver.eigenvectors() * amplified.asDiagonal() * solver.eigenvectors().transpose();
+  Eigen::VectorXd saliency = spread.cwiseProduct(weight == MsWeight::area ? edges : weights).rowwise().sum();
+  if (weight == MsWeight::area) saliency = saliency.cwiseQuotient(areas);
+
+  const Eigen::MatrixXd ring = edges + Eigen::MatrixXd::Identity(n, n);
+  for (int pass = 0; pass < 2; ++pass)  // on the simplified mesh and on the full one, which are the same here
+    saliency = (ring * saliency).cwiseQuotient(ring.rowwise().sum()).eval();
+  const Eigen::VectorXd result = saliency.array().log();
+  return {result.data(), result.data() + n};
+}
+
+TEST(Ms, FewEigenpairsEqualTheWholeDecomposition) {
+  for (const MsWeight weight : {MsWeight::area, MsWeight::inverse_square}) {
+    for (const Mesh& mesh : {ellipsoid(3), shapes::bumpy_sphere(3)}) {
+      MsOptions options;
+      options.weight = weight;
+      const ScalarField few = min_max_normalized(ms(mesh, options));
+      const ScalarField all = min_max_normalized(dense_saliency(mesh, weight));
+      EXPECT_LT(largest_difference(few, all), 1e-4) << name_of(weight);
+    }
+  }
+}
+
+TEST(Ms, MirroredPlacesAreEquallySalient) {
+  const Mesh mesh = ellipsoid(3);
+  const ScalarField saliency = min_max_normalized(ms(mesh));
+  for (const Vec3& mirror : {Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(1, 1, -1)}) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      const Vec3 image = mesh.vertices[i].cwiseProduct(mirror);
+      const auto twin = std::find_if(mesh.vertices.begin(), mesh.vertices.end(),
+                                     [&](const Vec3& v) { return (v - image).norm() < 1e-9; });
+      ASSERT_NE(twin, mesh.vertices.end());
+      const auto j = static_cast<std::size_t>(twin - mesh.vertices.begin());
+      ASSERT_NEAR(saliency[i], saliency[j], 1e-6) << "vertex " << i;
+    }
+  }
+}
+
+TEST(Ms, DoesNotDependOnPlaceSizeOrOrder) {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  const ScalarField expected = min_max_normalized(ms(mesh));
+  Mesh moved = mesh, small = mesh, huge = mesh, reversed;
+  for (Vec3& v : moved.vertices) v += Vec3(100, -70, 30);
+  for (Vec3& v : small.vertices) v *= 1e-100;
+  for (Vec3& v : huge.vertices) v *= 1e100;
+  EXPECT_LT(largest_difference(min_max_normalized(ms(moved)), expected), 1e-6);
+  EXPECT_LT(largest_difference(min_max_normalized(ms(small)), expected), 1e-6);
+  EXPECT_LT(largest_difference(min_max_normalized(ms(huge)), expected), 1e-6);
+
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  reversed.vertices.assign(mesh.vertices.rbegin(), mesh.vertices.rend());
+  for (const auto& [a, b, c] : mesh.faces) reversed.faces.push_back({n - 1 - a, n - 1 - b, n - 1 - c});
+  ScalarField back = min_max_normalized(ms(reversed));
+  std::reverse(back.begin(), back.end());
+  EXPECT_LT(largest_difference(back, expected), 1e-6);
+}
+
+TEST(Ms, SameBytesOnEveryCall) {
+  const Mesh mesh = shapes::bumpy_sphere(4);  // 5120 faces: simplified
+  EXPECT_EQ(ms(mesh), ms(mesh));
+  EXPECT_EQ(ms(mesh, MsOptions::text()), ms(mesh, MsOptions::text()));
+}
+
+TEST(Ms, SimplifyingAFineMeshHardlyMatters) {
+  // The same surface at 2562 and at 10242 vertices, of which both are simplified to 3000 faces.
+  const ScalarField coarse = ms(ellipsoid(4)), fine = ms(ellipsoid(5));
+  const std::size_t n = coarse.size();  // the vertices of the coarser sphere come first in the finer one
+  const Eigen::Map<const Eigen::ArrayXd> a(coarse.data(), static_cast<Eigen::Index>(n));
+  const Eigen::Map<const Eigen::ArrayXd> b(fine.data(), static_cast<Eigen::Index>(n));
+  const Eigen::ArrayXd u = a - a.mean(), v = b - b.mean();
+  EXPECT_GT((u * v).sum() / std::sqrt(u.square().sum() * v.square().sum()), 0.95);
+}
+
+TEST(Ms, LargestComponentDecidesAndTheOthersFollowIt) {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  const ScalarField alone = ms(mesh);
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  const Vec3 direction = mesh.vertices[100].normalized();
+  for (const Vec3& v : shapes::sphere(1).vertices)  // small, straight above vertex 100
+    mesh.vertices.push_back(mesh.vertices[100] + 0.05 * direction + 0.001 * v);
+  for (const auto& [a, b, c] : shapes::sphere(1).faces) mesh.faces.push_back({a + n, b + n, c + n});
+  mesh.vertices.push_back(mesh.vertices[7] + 0.01 * mesh.vertices[7].normalized());  // isolated
+  const ScalarField together = ms(mesh);
+  const double shift = together[0] - alone[0];  // of the logarithm: R, the unit, is that of the whole shape
+  for (std::size_t i = 0; i < alone.size(); ++i) ASSERT_NEAR(together[i], alone[i] + shift, 1e-9);
+  for (std::size_t i = alone.size(); i + 1 < together.size(); ++i) EXPECT_EQ(together[i], together[100]);
+  EXPECT_EQ(together.back(), together[7]);
+}
+
+TEST(Ms, ComponentBeforeTheOthersInOrderIsNotPreferred) {
+  Mesh mesh = shapes::sphere(1);
+  for (Vec3& v : mesh.vertices) v += Vec3(50, 0, 0);
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  const Mesh large = shapes::bumpy_sphere(3);
+  mesh.vertices.insert(mesh.vertices.end(), large.vertices.begin(), large.vertices.end());
+  for (const auto& [a, b, c] : large.faces) mesh.faces.push_back({a + n, b + n, c + n});
+  const ScalarField alone = ms(large), together = ms(mesh);
+  const ScalarField tail(together.begin() + n, together.end());
+  EXPECT_LT(largest_difference(min_max_normalized(tail), min_max_normalized(alone)), 1e-6);
+}
+
+TEST(Ms, MultiscaleMapDiffersFromTheSingleOneAndIsFinite) {
+  for (const Mesh& mesh : {shapes::bumpy_sphere(3), shapes::bumpy_sphere(4), shapes::grid(60)}) {
+    const ScalarField many = ms(mesh, MsOptions::text());
+    ASSERT_EQ(many.size(), mesh.vertices.size());
+    for (const double value : many) ASSERT_TRUE(std::isfinite(value));
+    EXPECT_NE(many, ms(mesh));
+  }
+}
+
+TEST(Ms, SmoothingThatReachesNoNeighbourLeavesNothingToCompare) {
+  MsOptions options = MsOptions::text();
+  options.epsilon = 1e-6;
+  EXPECT_THAT(ms(shapes::bumpy_sphere(3), options), Each(0));
+}
+
+TEST(MsDegenerate, NoPoints) { EXPECT_TRUE(ms(Mesh{}).empty()); }
+
+TEST(MsDegenerate, NoFaces) { EXPECT_THAT(ms({shapes::random_cloud(100, 1), {}}), Each(0)); }
+
+TEST(MsDegenerate, ComponentOfNineteenVertices) {
+  // A strip of triangles 0-1-2, 1-2-3, ...
+  Mesh strip;
+  for (std::int32_t i = 0; i < 19; ++i) strip.vertices.emplace_back(i, i % 2, 0.01 * i * i);
+  for (std::int32_t i = 0; i + 2 < 19; ++i) strip.faces.push_back({i, i + 1, i + 2});
+  EXPECT_THAT(ms(strip), Each(0));
+  strip.vertices.emplace_back(19, 1, 3.61);
+  strip.faces.push_back({17, 18, 19});
+  EXPECT_FALSE(is_constant(ms(strip)));
+}
+
+TEST(MsDegenerate, AllPointsInOnePlaceGiveNothingElseThanZero) {
+  Mesh mesh = shapes::sphere(2);
+  for (Vec3& v : mesh.vertices) v = Vec3(1, 2, 3);
+  EXPECT_THAT(ms(mesh), Each(0));
+}
+
+TEST(MsDegenerate, CoordinatesThatOverflowWhenSquared) {
+  Mesh mesh = shapes::bumpy_sphere(4);
+  for (Vec3& v : mesh.vertices) v *= 1e200;
+  EXPECT_THROW(ms(mesh), InputError);
+}
+
+TEST(MsDegenerate, FacesWithoutAreaAndCoincidentVertices) {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  mesh.vertices[5] = mesh.vertices[mesh.faces[0][0] == 5 ? 6 : static_cast<std::size_t>(mesh.faces[0][0])];
+  mesh.faces.push_back({3, 3, 9});
+  mesh.faces.push_back(mesh.faces[4]);
+  for (const double value : ms(mesh)) ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST(MsDegenerate, OpenAndNonManifoldSheet) {
+  Mesh mesh = shapes::grid(30);
+  mesh.faces.erase(mesh.faces.begin() + 700, mesh.faces.begin() + 740);  // a hole
+  mesh.vertices.emplace_back(0.5, 0.5, 0.3);
+  const auto fin = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
+  mesh.faces.push_back({100, 101, fin});  // the third face of an inner edge
+  std::swap(mesh.faces[9][0], mesh.faces[9][1]);
+  const ScalarField saliency = ms(mesh);
+  for (const double value : saliency) ASSERT_TRUE(std::isfinite(value));
+  EXPECT_FALSE(is_constant(saliency));
+}
+
+TEST(MsDegenerate, FaceThatNamesNoPoint) {
+  Mesh mesh = shapes::tetrahedron();
+  mesh.faces.push_back({0, 1, 4});
+  EXPECT_THROW(ms(mesh), InputError);
+  mesh.faces.back() = {0, -1, 2};
+  EXPECT_THROW(ms(mesh), InputError);
+}
+
+TEST(MsDegenerate, PointThatIsNotFinite) {
+  Mesh mesh = shapes::sphere(2);
+  mesh.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(ms(mesh), InputError);
+}
+
+TEST(MsOptionsCheck, NamesTheFieldThatIsWrong) {
+  check(MsOptions{});
+  check(MsOptions::text());
+  const auto wrong_key = [](auto&& change) -> std::string {
+    MsOptions options;
+    change(options);
+    try {
+      check(options);
+    } catch (const OptionError& error) {
+      return error.key;
+    }
+    return "";
+  };
+  EXPECT_EQ(wrong_key([](MsOptions& o) { o.faces = 99; }), "faces");
+  EXPECT_EQ(wrong_key([](MsOptions& o) { o.window = 8; }), "window");
+  EXPECT_EQ(wrong_key([](MsOptions& o) { o.window = 0; }), "window");
+  EXPECT_EQ(wrong_key([](MsOptions& o) { o.frequencies = 0; }), "frequencies");
+  EXPECT_EQ(wrong_key([](MsOptions& o) { o.eigenpairs = 9; }), "eigenpairs");
+  EXPECT_EQ(wrong_key([](MsOptions& o) { o.eigenpairs = 19; }), "eigenpairs");
+  EXPECT_EQ(wrong_key([](MsOptions& o) { o.epsilon = 0; }), "epsilon");
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,197 @@
+#include "stages/models/simplified.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/mesh_ops.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+// How many faces each edge is in.
+std::map<std::pair<std::int32_t, std::int32_t>, int> edge_uses(const Mesh& mesh) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
+  for (const auto& [a, b, c] : mesh.faces)
+    for (const auto& edge : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)}) ++uses[edge];
+  return uses;
+}
+
+int euler_characteristic(const Mesh& mesh) {
+  return static_cast<int>(mesh.vertices.size()) - static_cast<int>(edge_uses(mesh).size()) +
+         static_cast<int>(mesh.faces.size());
+}
+
+double volume(const Mesh& mesh) {
+  double sum = 0;
+  for (const Triangle& face : mesh.faces)
+    sum += face_area_vector(mesh, face).dot(mesh.vertices[static_cast<std::size_t>(face[0])]) / 6;
+  return sum;
+}
+
+std::int32_t component_count(const Mesh& mesh) {
+  const auto labels = connected_components(edge_adjacency(mesh.vertices.size(), mesh.faces));
+  return 1 + *std::max_element(labels.begin(), labels.end());
+}
+
+Mesh joined(Mesh a, const Mesh& b, const Vec3& offset) {
+  const auto n = static_cast<std::int32_t>(a.vertices.size());
+  for (const Vec3& v : b.vertices) a.vertices.push_back(v + offset);
+  for (const auto& [i, j, k] : b.faces) a.faces.push_back({i + n, j + n, k + n});
+  return a;
+}
+
+// The surface of [0, 1]^3, each side a grid.
+Mesh cube(std::int32_t cells) {
+  Mesh mesh;
+  std::map<std::array<std::int32_t, 3>, std::int32_t> vertex;
+  const auto at = [&](std::array<std::int32_t, 3> lattice) {
+    const auto [entry, fresh] = vertex.try_emplace(lattice, static_cast<std::int32_t>(mesh.vertices.size()));
+    if (fresh) mesh.vertices.push_back(Vec3(lattice[0], lattice[1], lattice[2]) / cells);
+    return entry->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool far : {false, true}) {
+      const auto corner = [&](std::int32_t u, std::int32_t v) {
+        std::array<std::int32_t, 3> lattice{};
+        lattice[axis] = far ? cells : 0;
+        lattice[(axis + 1) % 3] = far ? u : v;  // swapped on the near side, so that faces look outwards
+        lattice[(axis + 2) % 3] = far ? v : u;
+        return at(lattice);
+      };
+      for (std::int32_t u = 0; u < cells; ++u)
+        for (std::int32_t v = 0; v < cells; ++v) {
+          mesh.faces.push_back({corner(u, v), corner(u + 1, v), corner(u + 1, v + 1)});
+          mesh.faces.push_back({corner(u, v), corner(u + 1, v + 1), corner(u, v + 1)});
+        }
+    }
+  }
+  return mesh;
+}
+
+TEST(Simplified, SphereStaysASphere) {
+  const Mesh fine = shapes::sphere(4), coarse = simplified(fine, 1000);
+  EXPECT_EQ(coarse.faces.size(), 1000U);
+  EXPECT_EQ(coarse.vertices.size(), 502U);  // V = F / 2 + 2
+  EXPECT_EQ(euler_characteristic(coarse), 2);
+  for (const auto& [edge, uses] : edge_uses(coarse)) EXPECT_EQ(uses, 2);
+  for (const Vec3& v : coarse.vertices) EXPECT_NEAR(v.norm(), 1, 0.01);
+  EXPECT_NEAR(volume(coarse) / volume(fine), 1, 0.005);
+}
+
+TEST(Simplified, CubeOfManyFacesComesDownToItsCorners) {
+  const Mesh coarse = simplified(cube(8), 12);
+  ASSERT_EQ(coarse.vertices.size(), 8U);
+  ASSERT_EQ(coarse.faces.size(), 12U);
+  std::set<std::array<int, 3>> corners;
+  for (const Vec3& v : coarse.vertices) {
+    const Vec3 rounded = v.array().round();
+    EXPECT_TRUE(v.isApprox(rounded, 1e-6) || v.norm() < 1e-6) << v.transpose();
+    corners.insert(
+        {static_cast<int>(rounded.x()), static_cast<int>(rounded.y()), static_cast<int>(rounded.z())});
+  }
+  EXPECT_EQ(corners.size(), 8U);
+  EXPECT_NEAR(volume(coarse), 1, 1e-6);
+}
+
+TEST(Simplified, OpenSquareKeepsItsOutline) {
+  const Mesh coarse = simplified(shapes::grid(20), 50);
+  EXPECT_LE(coarse.faces.size(), 50U);
+  EXPECT_EQ(euler_characteristic(coarse), 1);
+  EXPECT_NEAR(surface_area(coarse), 1, 1e-6);
+  for (const Vec3& v : coarse.vertices) EXPECT_NEAR(v.z(), 0, 1e-9);
+  for (const Triangle& face : coarse.faces)
+    EXPECT_GT(face_area_vector(coarse, face).z(), 0);  // none folded over
+}
+
+TEST(Simplified, SmallMeshIsOnlyCleaned) {
+  Mesh mesh = shapes::tetrahedron();
+  mesh.vertices.insert(mesh.vertices.begin(), Vec3(9, 9, 9));  // unreferenced
+  for (auto& [a, b, c] : mesh.faces) ++a, ++b, ++c;
+  mesh.faces.push_back({2, 1, 3});  // the first face, turned over
+  mesh.faces.push_back({2, 2, 3});  // no triangle
+  const Mesh clean = simplified(mesh, 100);
+  const Mesh expected = shapes::tetrahedron();
+  EXPECT_EQ(clean.faces, expected.faces);
+  ASSERT_EQ(clean.vertices.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(clean.vertices[i].isApprox(expected.vertices[i], 1e-12));
+}
+
+TEST(Simplified, StopsWhereOnlyCollapsesThatChangeTheTopologyAreLeft) {
+  EXPECT_EQ(simplified(shapes::tetrahedron(), 1).faces.size(), 4U);
+  const Mesh coarse = simplified(joined(shapes::sphere(2), shapes::sphere(1), {5, 0, 0}), 1);
+  EXPECT_EQ(component_count(coarse), 2);
+  EXPECT_EQ(euler_characteristic(coarse), 4);
+}
+
+TEST(Simplified, BookOfThreePagesKeepsItsSpine) {
+  // Three half-planes that meet in one line: an edge with three faces is no error.
+  Mesh book;
+  const std::int32_t cells = 10;
+  for (int page = 0; page < 3; ++page) {
+    const double angle = 2 * std::numbers::pi * page / 3;
+    const Mesh flat = shapes::grid(cells);
+    std::vector<std::int32_t> index;
+    for (const Vec3& v : flat.vertices) {
+      const bool spine = v.x() == 0;
+      if (spine && page > 0) {
+        index.push_back(static_cast<std::int32_t>(std::lround(v.y() * cells)) * (cells + 1));
+        continue;
+      }
+      index.push_back(static_cast<std::int32_t>(book.vertices.size()));
+      book.vertices.emplace_back(v.x() * std::cos(angle), v.y(), v.x() * std::sin(angle));
+    }
+    for (const Triangle& face : flat.faces)
+      book.faces.push_back({index[static_cast<std::size_t>(face[0])],
+                            index[static_cast<std::size_t>(face[1])],
+                            index[static_cast<std::size_t>(face[2])]});
+  }
+  const Mesh coarse = simplified(book, 60);
+  EXPECT_LE(coarse.faces.size(), 60U);
+  EXPECT_EQ(component_count(coarse), 1);
+  EXPECT_NEAR(surface_area(coarse), 3, 1e-6);
+  int spine = 0;
+  for (const auto& [edge, uses] : edge_uses(coarse)) spine += uses == 3 ? 1 : 0;
+  EXPECT_GE(spine, 1);
+}
+
+TEST(Simplified, SurfacesThatTouchInOnePointStayConnected) {
+  // A chain: two discs held together by a single triangle between a point of each.
+  Mesh chain = joined(shapes::grid(8), shapes::grid(8), {2, 0, 0});
+  chain.vertices.emplace_back(1.5, -1, 0);
+  const auto tip = static_cast<std::int32_t>(chain.vertices.size()) - 1;
+  chain.faces.push_back({8, tip, 81});
+  ASSERT_EQ(component_count(chain), 1);
+  EXPECT_EQ(component_count(simplified(chain, 1)), 1);
+}
+
+TEST(Simplified, ScalesWithTheMesh) {
+  // By a power of two, so that nothing is rounded: the same collapses in the same order.
+  Mesh large = shapes::bumpy_sphere(3);
+  const Mesh coarse = simplified(large, 300);
+  for (Vec3& v : large.vertices) v *= 64;
+  const Mesh coarse_large = simplified(large, 300);
+  EXPECT_EQ(coarse.faces, coarse_large.faces);
+  for (std::size_t i = 0; i < coarse.vertices.size(); ++i)
+    EXPECT_TRUE(coarse_large.vertices[i].isApprox(64 * coarse.vertices[i], 1e-9));
+}
+
+TEST(Simplified, CoincidentVerticesAndFacesWithoutAreaDoNoHarm) {
+  Mesh mesh = shapes::sphere(3);
+  for (std::size_t i = 0; i < mesh.vertices.size(); i += 5) mesh.vertices[i] = mesh.vertices[i / 5 * 5 / 2];
+  const Mesh coarse = simplified(mesh, 400);
+  EXPECT_LE(coarse.faces.size(), 1280U);
+  for (const Vec3& v : coarse.vertices) ASSERT_TRUE(v.allFinite());
+}
+
+TEST(Simplified, NothingOfNothing) {
+  EXPECT_TRUE(simplified(Mesh{}, 10).vertices.empty());
+  EXPECT_TRUE(simplified(Mesh{{Vec3(1, 2, 3)}, {}}, 10).vertices.empty());
+}
+
+}  // namespace
+}  // namespace salbench

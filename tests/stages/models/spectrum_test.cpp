@@ -1,0 +1,145 @@
+#include "stages/models/spectrum.h"
+
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using Edges = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+Adjacency adjacency_of(std::size_t n, const Edges& edges) {
+  Adjacency adjacency{{0}, {}};
+  for (std::int32_t i = 0; static_cast<std::size_t>(i) < n; ++i) {
+    std::vector<std::int32_t> row;
+    for (const auto& [a, b] : edges) {
+      if (a == i) row.push_back(b);
+      if (b == i) row.push_back(a);
+    }
+    std::sort(row.begin(), row.end());
+    adjacency.neighbors.insert(adjacency.neighbors.end(), row.begin(), row.end());
+    adjacency.offsets.push_back(static_cast<std::int32_t>(adjacency.neighbors.size()));
+  }
+  return adjacency;
+}
+
+// Of edges of unit length.
+std::vector<double> path_spectrum(int n) {
+  std::vector<double> values;
+  for (int k = 0; k < n; ++k) values.push_back(2 - 2 * std::cos(std::numbers::pi * k / n));
+  return values;
+}
+
+void expect_lowest(const std::vector<Vec3>& points, const Edges& edges, std::vector<double> expected) {
+  const SparseMatrix laplacian =
+      graph_laplacian(inverse_square_weights(points, adjacency_of(points.size(), edges)));
+  const Eigenpairs pairs = lowest_eigenpairs(laplacian, 8);
+  ASSERT_EQ(pairs.values.size(), 8);
+  std::sort(expected.begin(), expected.end());
+  for (Eigen::Index k = 0; k < 8; ++k)
+    EXPECT_NEAR(pairs.values[k], expected[static_cast<std::size_t>(k)], 1e-12) << k;
+}
+
+TEST(Spectrum, PathHasTheCosinesOfHalfTurns) {
+  std::vector<Vec3> points;
+  Edges edges;
+  for (int i = 0; i < 40; ++i) points.emplace_back(i, 0, 0);
+  for (int i = 0; i + 1 < 40; ++i) edges.emplace_back(i, i + 1);
+  expect_lowest(points, edges, path_spectrum(40));
+}
+
+TEST(Spectrum, CycleHasEachValueTwice) {
+  const int n = 30;
+  std::vector<Vec3> points;
+  Edges edges;
+  std::vector<double> expected;
+  const double radius = 0.5 / std::sin(std::numbers::pi / n);  // edges of unit length
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n;
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    edges.emplace_back(i, (i + 1) % n);
+    expected.push_back(2 - 2 * std::cos(angle));
+  }
+  expect_lowest(points, edges, expected);
+}
+
+TEST(Spectrum, GridHasTheSumsOfTwoPaths) {
+  const int rows = 6, columns = 9;
+  std::vector<Vec3> points;
+  Edges edges;
+  std::vector<double> expected;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      points.emplace_back(x, y, 0);
+      if (x > 0) edges.emplace_back(y * columns + x - 1, y * columns + x);
+      if (y > 0) edges.emplace_back((y - 1) * columns + x, y * columns + x);
+      expected.push_back(path_spectrum(rows)[static_cast<std::size_t>(y)] +
+                         path_spectrum(columns)[static_cast<std::size_t>(x)]);
+    }
+  expect_lowest(points, edges, expected);
+}
+
+TEST(Spectrum, WeightsFallWithTheSquareOfTheDistance) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {2, 0, 0}, {2, 4, 0}};
+  const SparseMatrix weights = inverse_square_weights(points, adjacency_of(3, {{0, 1}, {1, 2}}));
+  EXPECT_DOUBLE_EQ(weights.coeff(0, 1), 1.0 / 4);
+  EXPECT_DOUBLE_EQ(weights.coeff(2, 1), 1.0 / 16);
+  EXPECT_EQ(weights.coeff(0, 2), 0);
+  const SparseMatrix laplacian = graph_laplacian(weights);
+  EXPECT_DOUBLE_EQ(laplacian.coeff(1, 1), 5.0 / 16);
+  EXPECT_LT((laplacian * Eigen::VectorXd::Ones(3)).norm(), 1e-15);
+}
+
+TEST(Spectrum, CoincidentPointsHaveAFiniteWeight) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 0}, {2, 0, 0}};
+  const SparseMatrix weights = inverse_square_weights(points, adjacency_of(3, {{0, 1}, {1, 2}}));
+  EXPECT_NEAR(weights.coeff(0, 1), 1e8, 1);  // the mean edge is 1
+}
+
+TEST(Spectrum, EigenpairsEqualADenseSolver) {
+  const Mesh mesh = shapes::bumpy_sphere(2);
+  const SparseMatrix laplacian = graph_laplacian(
+      inverse_square_weights(mesh.vertices, edge_adjacency(mesh.vertices.size(), mesh.faces)));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense{Eigen::MatrixXd(laplacian)};
+  const double largest = dense.eigenvalues().maxCoeff();
+  const Eigenpairs pairs = lowest_eigenpairs(laplacian, 14);
+  ASSERT_EQ(pairs.values.size(), 14);
+  EXPECT_LT((pairs.values - dense.eigenvalues().head(14)).cwiseAbs().maxCoeff(), 1e-13 * largest);
+  const Eigen::MatrixXd gram = pairs.vectors.transpose() * pairs.vectors;
+  EXPECT_LT((gram - Eigen::MatrixXd::Identity(14, 14)).cwiseAbs().maxCoeff(), 1e-10);
+  for (Eigen::Index k = 0; k < 14; ++k)
+    EXPECT_NEAR(std::abs(pairs.vectors.col(k).dot(dense.eigenvectors().col(k))), 1, 1e-8) << k;
+}
+
+TEST(Spectrum, SphereHasItsRepeatedValuesAsOftenAsTheyOccur) {
+  const Mesh mesh = shapes::sphere(2);  // 1, 3, 5, 3 + 4, ...
+  const SparseMatrix laplacian = graph_laplacian(
+      inverse_square_weights(mesh.vertices, edge_adjacency(mesh.vertices.size(), mesh.faces)));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense{Eigen::MatrixXd(laplacian)};
+  for (const Eigen::Index k : {4, 9, 14, 18}) {
+    const Eigenpairs pairs = lowest_eigenpairs(laplacian, k);
+    ASSERT_EQ(pairs.values.size(), k);
+    EXPECT_LT((pairs.values - dense.eigenvalues().head(k)).cwiseAbs().maxCoeff(),
+              1e-12 * dense.eigenvalues().maxCoeff());
+  }
+}
+
+TEST(Spectrum, SameBytesOnEveryCall) {
+  const Mesh mesh = shapes::sphere(3);  // threefold eigenvalues: the basis within them is anybody's choice
+  const SparseMatrix laplacian = graph_laplacian(
+      inverse_square_weights(mesh.vertices, edge_adjacency(mesh.vertices.size(), mesh.faces)));
+  const Eigenpairs a = lowest_eigenpairs(laplacian, 14), b = lowest_eigenpairs(laplacian, 14);
+  EXPECT_EQ(a.values, b.values);
+  EXPECT_EQ(a.vectors, b.vectors);
+}
+
+TEST(Spectrum, MatrixOfNothingButZeroHasNoPairsAndDoesNotThrow) {
+  EXPECT_EQ(lowest_eigenpairs(SparseMatrix(30, 30), 14).values.size(), 0);
+}
+
+}  // namespace
+}  // namespace salbench
