@@ -4,9 +4,17 @@
 
 namespace salbench {
 
+std::string_view wrong_with_point(const Vec3& point) {
+  constexpr double kLargest = 1e150;
+  if (!point.allFinite()) return "a coordinate is not a finite number";
+  if (point.cwiseAbs().maxCoeff() > kLargest) return "a coordinate is larger than 1e150: scale the mesh";
+  return {};
+}
+
 Vec3 read_point(TextScanner& in) {
   Vec3 point;
   for (int axis = 0; axis < 3; ++axis) point[axis] = in.number();
+  if (const std::string_view wrong = wrong_with_point(point); !wrong.empty()) in.fail(wrong);
   return point;
 }
 

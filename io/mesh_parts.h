@@ -16,6 +16,9 @@ namespace salbench {
 
 inline constexpr std::int64_t kMostVertices = std::numeric_limits<std::int32_t>::max();
 
+// What is wrong with a position; empty if nothing. Stages square distances, which must not overflow.
+std::string_view wrong_with_point(const Vec3& point);
+
 // The next three numbers of the line.
 Vec3 read_point(TextScanner& in);
 

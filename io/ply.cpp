@@ -174,7 +174,7 @@ void read_vertices(Body& body, const Element& element, std::vector<Vec3>& vertic
         skip_property(body, property);
     }
     body.end_record();
-    if (!point.allFinite()) body.fail("a coordinate is not a finite number");
+    if (const std::string_view wrong = wrong_with_point(point); !wrong.empty()) body.fail(wrong);
     vertices.push_back(point);
   }
 }
