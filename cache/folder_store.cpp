@@ -97,6 +97,7 @@ Attributes describe(const Recipe& recipe, std::string_view kind, const Digest& k
 
 struct FolderStore::Impl {
   fs::path folder;
+  Access access;
   mutable std::shared_mutex mutex;  // of stages
   std::map<std::string, StageEntries, std::less<>> stages;
 
@@ -116,13 +117,17 @@ struct FolderStore::Impl {
   }
 
   // A file whose size is not the one in its name was cut short outside of our control: not listed, so a miss.
+  // Out of the way, it is not complained about at each listing.
   void list_shard(const std::string& stage, const fs::path& shard_folder) {
     std::error_code error;
     for (const auto& file : fs::directory_iterator(shard_folder, error)) {
       const auto name = parse_artefact_name(file.path().filename().string());
       if (!name) continue;
       if (file.file_size(error) != name->size || error) {
-        spdlog::warn("{}: cut short; it will be computed again", file.path().string());
+        if (access == Access::read_write)
+          set_aside(file.path(), "cut short");
+        else
+          spdlog::warn("{}: cut short; a run will compute it again", file.path().string());
         continue;
       }
       insert(stage, *name);
@@ -151,11 +156,15 @@ struct FolderStore::Impl {
       throw StorageError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
   }
 
-  void move_aside(std::string_view stage, const Digest& key, const fs::path& file, std::string_view why) {
+  void set_aside(const fs::path& file, std::string_view why) const {
     std::error_code error;
     fs::create_directories(folder / kDamaged, error);
     fs::rename(file, folder / kDamaged / file.filename(), error);
     spdlog::warn("{}: {}; moved to {}/ and computed again", file.string(), why, (folder / kDamaged).string());
+  }
+
+  void forget(std::string_view stage, const Digest& key, const fs::path& file, std::string_view why) {
+    set_aside(file, why);
     const std::unique_lock lock(mutex);
     stages.find(stage)->second.by_key.erase(key);
   }
@@ -163,6 +172,7 @@ struct FolderStore::Impl {
 
 FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_unique<Impl>()) {
   impl_->folder = std::move(folder);
+  impl_->access = access;
   std::error_code error;
   if (fs::exists(impl_->folder, error) && !fs::is_directory(impl_->folder, error))
     throw StorageError(
@@ -204,12 +214,12 @@ std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& ke
   const fs::path path = impl_->path(stage, key, *entry);
   const auto bytes = read_bytes(path);
   if (!bytes || bytes->size() != entry->size || checksum(*bytes) != entry->checksum) {
-    impl_->move_aside(stage, key, path, bytes ? "its checksum does not fit" : "gone or unreadable");
+    impl_->forget(stage, key, path, bytes ? "its checksum does not fit" : "gone or unreadable");
     return {};
   }
   Arrays arrays = hdf5_content(*bytes, path.string()).arrays;
   if (content_digest(arrays) != entry->content) {
-    impl_->move_aside(stage, key, path, "its content is not what its name says");
+    impl_->forget(stage, key, path, "its content is not what its name says");
     return {};
   }
   return arrays;
