@@ -1,0 +1,159 @@
+"""Compares the tables and maps that scripts/fidelity has made with what was published; see there."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+data, work = Path(sys.argv[1]), Path(sys.argv[2])
+reference = data / "reference"
+figures = []
+
+
+def figure(what, value, aim, reached):
+    """One line: what was measured, the value, its aim in words, and whether it is reached (None: no aim)."""
+    figures.append((what, value, aim, {True: "hit", False: "MISS", None: ""}[None if reached is None else bool(reached)]))
+
+
+def at_most(what, value, limit):
+    figure(what, value, f"<= {limit}", value <= limit)
+
+
+def at_least(what, value, limit):
+    figure(what, value, f">= {limit}", value >= limit)
+
+
+def results(run):
+    return pd.read_csv(work / run / "results.csv", comment="#", dtype={"item": str, "view": str})
+
+
+def read_map(path):
+    return np.array(Path(path).read_text().split(), dtype=float)
+
+
+def unit(values):
+    return (values - values.min()) / (values.max() - values.min())
+
+
+def histogram_distance(ours, published, model):
+    """Kolmogorov-Smirnov distance of two mean histograms."""
+    a, b = ours[model].cumsum(), published[model].cumsum()
+    return float(np.abs(a / a.iloc[-1] - b / b.iloc[-1]).max())
+
+
+def mesh_scores():
+    ours = results("meshes").set_index(["item", "model"])
+    published = pd.read_csv(reference / "published_scores.csv", dtype={"item": str}).set_index(["item", "model"])
+    both = ours.join(published, rsuffix="_published", how="inner")
+    for model, limit in [("PS", 0.005), ("LS", 0.01), ("MS", 0.04)]:
+        rows = both.xs(model, level="model")
+        for metric in ["nss", "cc"]:
+            error = (rows[metric] - rows[f"{metric}_published"]).abs().mean()
+            at_most(f"{model}: mean |{metric.upper()} - published|, {len(rows)} meshes", error, limit)
+    complete = published.groupby(level="item").size()
+    items = complete[complete >= 4].index
+    both = both.loc[both.index.get_level_values("item").isin(items)]
+    means = both.groupby(level="model").mean(numeric_only=True)
+    for model, limit in [("LS", 0.005), ("CS", 0.005), ("PS", 0.005), ("MS", 0.02)]:
+        at_most(f"{model}: |mean AUC - published mean|, {len(items)} meshes",
+                abs(means.auc[model] - means.auc_published[model]), limit)
+    models = ["LS", "CS", "PS", "MS", "RS"]
+    for metric in ["auc", "nss", "cc"]:
+        mine = means.loc[models, metric].sort_values(ascending=False)
+        theirs = means.loc[models, f"{metric}_published"].sort_values(ascending=False)
+        figure(f"order by mean {metric.upper()}", " ".join(f"{m} {v:.3f}" for m, v in mine.items()),
+               " ".join(f"{m} {v:.3f}" for m, v in theirs.items()), list(mine.index) == list(theirs.index))
+
+
+def random_baseline():
+    rs = results("meshes").query("model == 'RS'")
+    figure("RS: mean AUC", rs.auc.mean(), "0.50 +- 0.01", abs(rs.auc.mean() - 0.5) <= 0.01)
+    for metric in ["nss", "cc"]:
+        figure(f"RS: mean {metric.upper()}", rs[metric].mean(), "0 +- 0.05", abs(rs[metric].mean()) <= 0.05)
+
+
+def cs_maps():
+    correlations = []
+    for path in sorted((reference / "CS").glob("*.val")):
+        correlations.append(stats.spearmanr(read_map(path), read_map(work / "maps/CS" / path.name))[0])
+    at_least(f"CS: Spearman with the authors' {len(correlations)} maps, median", float(np.median(correlations)), 0.99)
+    at_least("CS: the same, 10th percentile", float(np.percentile(correlations, 10)), 0.95)
+
+
+def figure_maps():
+    for name, limit in [("PS_2", 0.995), ("PS_65", 0.995), ("LS_2", 0.995), ("LS_336", 0.995), ("LS_65", 0.99),
+                        ("MS_2", 0.97), ("MS_65", 0.955)]:
+        model, item = name.split("_")
+        read = np.loadtxt(reference / f"figures/{name}.txt")
+        ours = unit(read_map(work / f"maps/{model}/{item}.val"))
+        at_least(f"{model}: Pearson with the paper's figure, mesh {item}",
+                 float(np.corrcoef(ours[read[:, 0].astype(int)], read[:, 1])[0, 1]), limit)
+
+
+def histograms():
+    for run, kind, limits in [("meshes", "meshes", {"PS": 0.02, "LS": 0.03, "MS": 0.05}),
+                              ("scans", "scans", {"CS": 0.10, "PS": 0.10})]:
+        ours = pd.read_csv(work / run / f"mean_histograms_{kind}.csv", comment="#")
+        published = pd.read_csv(reference / f"mean_histograms_{kind}.csv")
+        for model in ["LS", "CS", "PS", "MS"]:
+            distance = histogram_distance(ours, published, model)
+            if model in limits:
+                at_most(f"{model}: KS distance of the mean histogram, {kind}", distance, limits[model])
+            else:
+                figure(f"{model}: KS distance of the mean histogram, {kind}", distance, "", None)
+
+
+def scan_scores():
+    ours = results("scans")
+    published = pd.read_csv(reference / "published_scan_scores.csv", dtype={"item": str}).set_index(["item", "model"])
+    means = ours.groupby(["item", "model"])[["auc", "nss", "cc"]].mean()
+    both = means.join(published, rsuffix="_published", how="inner").groupby(level="model").mean()
+    for model in ["LS", "CS", "PS"]:
+        for metric, limit in [("auc", 0.02), ("nss", 0.10)]:
+            difference = both.loc[model, metric] - both.loc[model, f"{metric}_published"]
+            figure(f"{model}: mean {metric.upper()} of scans, 12 meshes (published {both.loc[model, metric + '_published']:.3f})",
+                   both.loc[model, metric], f"within {limit}", abs(difference) <= limit)
+    run = (work / "scans/run.yaml").read_text()
+    failed = 0 if "failed: []" in run else run.count("- {item:")
+    at_most("scans: failed items", failed, 0)
+    constant = ((ours.model == "MS") & (ours.cc == 0) & (ours.nss.fillna(0) == 0)).mean() * ours.model.nunique()
+    at_least("MS: share of scans with a map that is not constant", 1 - constant, 0.99)
+
+
+def aligned(title, table):
+    print(f"\n{title}\n{table.to_string(index=False)}")
+
+
+def eyetracking():
+    summary = pd.read_csv(work / "eyetracking/summary.csv", comment="#")
+    aligned("eye tracking: 23 meshes, and 12 scans of each",
+            summary[["dataset", "model", "metric", "n", "mean", "ci95_low", "ci95_high"]].round(4))
+
+
+def protocols():
+    published, text = results("meshes"), results("text").query("dataset == 'meshes'")
+    rows = []
+    for model in ["LS", "CS", "PS", "MS", "RS"]:
+        row = [model]
+        for table in [published, text]:
+            row += [round(float(table[table.model == model][metric].mean()), 4) for metric in ["auc", "nss", "cc"]]
+        rows.append(row)
+    aligned("the two protocols on the same meshes", pd.DataFrame(
+        rows, columns=["model", "auc published", "nss published", "cc published", "auc text", "nss text", "cc text"]))
+
+
+random_baseline()
+cs_maps()
+mesh_scores()
+figure_maps()
+histograms()
+scan_scores()
+table = pd.DataFrame(figures, columns=["figure", "measured", "aim", "verdict"])
+table.to_csv(work / "fidelity.csv", index=False)
+for what, value, aim, verdict in figures:
+    print(f"{verdict:5}{what:75}{value if isinstance(value, str) else format(value, '.4f'):>10}   {aim}")
+eyetracking()
+protocols()
+print(f"\n{(table.verdict == 'hit').sum()} hit, {(table.verdict == 'MISS').sum()} missed; table in {work / 'fidelity.csv'}")
