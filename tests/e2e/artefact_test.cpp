@@ -1,0 +1,23 @@
+// Artefacts are plain HDF5 files: another program reads them without a line of ours.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which sees Debian's h5py
+
+TEST(Artefact, PythonReadsWhatARunLeaves) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const Outcome read = run_process(
+      {kPython, SALBENCH_READ_ARTEFACT, toy.cache().string(), (toy.out() / "results.csv").string()});
+  ASSERT_EQ(read.status, 0) << read.err;
+  EXPECT_EQ(read.out, fmt::format("ok: {} artefacts, {} of them scores\n", toy.artefacts().size(), 26 * 2));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,230 @@
+// Data that cannot be used costs its own item and no other, and says in one line what is wrong where. Data
+// that is merely odd goes on, with a warning.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/table.h"
+#include "io/text_file.h"
+#include "tests/e2e/workspace.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::vector<std::string> scored_items(const Workspace& toy) {
+  return text_column(read_csv(toy.out() / "results.csv"), "item");
+}
+
+// Replaces one line of a file; lines count from 1.
+void replace_line(const fs::path& file, int line, std::string_view by) {
+  const std::string text = read_file(file);
+  std::size_t begin = 0;
+  for (int i = 1; i < line; ++i) begin = text.find('\n', begin) + 1;
+  write_text_file(file, text.substr(0, begin) + std::string(by) + text.substr(text.find('\n', begin)));
+}
+
+const char* const kMesh = "Meshes/2.off";
+const char* const kSaliency = "Distributions/2.val";
+const char* const kPicks = "RawData/2_1.pid";
+
+struct BadData {
+  const char* name;
+  void (*ruin)(const fs::path& data);
+  std::vector<std::string> said;
+};
+
+class BadItem : public testing::TestWithParam<BadData> {};
+
+TEST_P(BadItem, IsNamedInOneLineAndTheOthersAreScored) {
+  const Workspace toy(kMeshesOnly);
+  GetParam().ruin(toy.data());
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 1) << run.err;
+  const std::vector<std::string> errors = lines_with(run.err, "error: ");
+  ASSERT_THAT(errors, SizeIs(1)) << run.err;
+  EXPECT_THAT(errors[0], HasSubstr("error: 2: "));
+  for (const std::string& part : GetParam().said) EXPECT_THAT(errors[0], HasSubstr(part));
+  EXPECT_THAT(run.err, HasSubstr("1 failed:"));
+  EXPECT_THAT(scored_items(toy), ElementsAre("1", "1"));
+
+  // Mended, the item is taken up again.
+  write_toy_item(toy.data(), "2", shapes::bumpy_sphere(2, 0.35));
+  EXPECT_EQ(toy.salbench("run").status, 0);
+  EXPECT_THAT(scored_items(toy), ElementsAre("1", "1", "2", "2"));
+}
+
+// The meshes have 162 vertices and 320 faces: vertices from line 3, faces from line 165.
+const BadData kBadData[] = {
+    {"MeshIsADanglingLink",
+     [](const fs::path& data) {
+       fs::remove(data / kMesh);
+       fs::create_symlink("no such file", data / kMesh);
+     },
+     {"2.off", "cannot be read"}},
+    {"TruncatedMesh",
+     [](const fs::path& data) { fs::resize_file(data / kMesh, fs::file_size(data / kMesh) / 2); },
+     {"2.off:"}},
+    {"EmptyMeshFile", [](const fs::path& data) { fs::resize_file(data / kMesh, 0); }, {"2.off"}},
+    {"NoMeshFileAtAll",
+     [](const fs::path& data) {
+       write_text_file(data / kMesh,
+                       "\x7f"
+                       "ELF");
+     },
+     {"2.off:1"}},
+    {"IndexOutOfRange",
+     [](const fs::path& data) { replace_line(data / kMesh, 165, "3 0 1 162"); },
+     {"2.off:165", "162"}},
+    {"NegativeIndex",
+     [](const fs::path& data) { replace_line(data / kMesh, 165, "3 0 1 -1"); },
+     {"2.off:165"}},
+    {"CoordinateNotANumber",
+     [](const fs::path& data) { replace_line(data / kMesh, 3, "0 nan 0"); },
+     {"2.off:3"}},
+    {"InfiniteCoordinate",
+     [](const fs::path& data) { replace_line(data / kMesh, 4, "inf 0 0"); },
+     {"2.off:4"}},
+    {"HugeCoordinate",
+     [](const fs::path& data) { replace_line(data / kMesh, 5, "1e300 0 0"); },
+     {"2.off:5", "1e150"}},
+    {"NoFaces",
+     [](const fs::path& data) { write_text_file(data / kMesh, "OFF\n2 0 0\n0 0 0\n1 0 0\n"); },
+     {"no faces"}},
+    {"NoFaceWithAnArea",
+     [](const fs::path& data) {
+       write_text_file(data / kMesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
+     },
+     {"area"}},
+    {"SaliencyOfAnotherMesh",
+     [](const fs::path& data) { write_text_file(data / kSaliency, "0.5\n1\n"); },
+     {"2.val", "2 values", "162 vertices"}},
+    {"SaliencyNotANumber",
+     [](const fs::path& data) { replace_line(data / kSaliency, 7, "many"); },
+     {"2.val:7", "many"}},
+    {"SaliencyNan", [](const fs::path& data) { replace_line(data / kSaliency, 8, "nan"); }, {"2.val:8"}},
+    {"PickOutOfRange",
+     [](const fs::path& data) { write_text_file(data / kPicks, "3\n162\n"); },
+     {"2_1.pid:2", "162"}},
+    {"PickNotANumber",
+     [](const fs::path& data) { write_text_file(data / kPicks, "3\n4.5\n"); },
+     {"2_1.pid:2"}},
+    {"PicksAreADanglingLink",
+     [](const fs::path& data) {
+       fs::remove(data / kPicks);
+       fs::create_symlink("no such file", data / kPicks);
+     },
+     {"2_1.pid"}},
+};
+INSTANTIATE_TEST_SUITE_P(BadData, BadItem, testing::ValuesIn(kBadData),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(BadData, AnItemWithoutItsMeshIsNoted) {
+  const Workspace toy(kMeshesOnly);
+  fs::remove(toy.data() / kMesh);
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.err, HasSubstr("2"));
+  EXPECT_THAT(scored_items(toy), ElementsAre("1", "1"));
+}
+
+TEST(BadData, NothingUsableAtAllIsStillNoCrash) {
+  const Workspace toy;
+  for (const char* mesh : {"1", "2"})
+    write_text_file(toy.data() / "Meshes" / (std::string(mesh) + ".off"), "OFF\n");
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(lines_with(run.err, "error: "), SizeIs(2)) << run.err;
+  EXPECT_THAT(scored_items(toy), IsEmpty());
+}
+
+// The mesh's vertices stay as they are, and with them the ground truth.
+Mesh odd_mesh() {
+  Mesh mesh = shapes::bumpy_sphere(2, 0.35);
+  mesh.faces.push_back({5, 5, 9});      // degenerate
+  mesh.faces.push_back(mesh.faces[0]);  // twice the same
+  mesh.vertices.push_back({2, 2, 2});   // in no face
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Vec3& v : shapes::tetrahedron().vertices) mesh.vertices.push_back(0.2 * v + Vec3(3, 0, 0));
+  for (const Triangle& f : shapes::tetrahedron().faces) mesh.faces.push_back({f[0] + n, f[1] + n, f[2] + n});
+  return mesh;
+}
+
+TEST(OddData, DegenerateAndDuplicateFacesPiecesAndLooseVerticesAreWarningsOnly) {
+  const Workspace toy;
+  write_toy_item(toy.data(), "2", odd_mesh());
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 0) << run.err;
+  for (const char* what : {"1 degenerate face", "1 duplicate face", "1 isolated", "2 connected components"})
+    EXPECT_THAT(lines_with(run.err, std::string("warning: 2: ") + what), SizeIs(1)) << run.err;
+  EXPECT_THAT(scored_items(toy), SizeIs(2 * 26));
+}
+
+TEST(OddData, AParticipantWhoPickedNothingCountsForNothing) {
+  const Workspace toy(kMeshesOnly);
+  write_text_file(toy.data() / kPicks, "");
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const Table results = read_csv(toy.out() / "results.csv");
+  EXPECT_THAT(number_column(results, "auc"),
+              Each(testing::Truly([](double auc) { return auc >= 0 && auc <= 1; })));
+}
+
+TEST(OddData, WithoutAnyPickThereIsNoAucAndNoNssButACorrelation) {
+  const Workspace toy(kMeshesOnly);
+  for (int k = 0; k < 4; ++k) write_text_file(toy.data() / fmt::format("RawData/2_{}.pid", k), "");
+  const Outcome run = toy.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Table results = read_csv(toy.out() / "results.csv");
+  for (const char* column : {"auc", "auc_exact", "nss"}) {
+    EXPECT_FALSE(std::isnan(number_column(results, column)[0])) << column;
+    EXPECT_TRUE(std::isnan(number_column(results, column)[2])) << column;
+  }
+  EXPECT_FALSE(std::isnan(number_column(results, "cc")[2]));
+  EXPECT_EQ(number_column(results, "n_picks")[2], 0);
+  const Table summary = read_csv(toy.out() / "summary.csv");
+  EXPECT_THAT(number_column(summary, "n"), ElementsAre(1, 1, 1, 2, 2, 1, 1, 1, 2, 2));
+}
+
+// Two specks far apart: the camera stands close, by the small area, and its rays pass between them.
+TEST(BadData, AMeshThatNoRayMeetsKeepsItsOwnScores) {
+  const Workspace toy;
+  Mesh specks;
+  for (const double x : {-1.0, 1.0})
+    for (const Vec3& corner : {Vec3(x, 0, 0), Vec3(x, 1e-3, 0), Vec3(x, 0, 1e-3)})
+      specks.vertices.push_back(corner);
+  specks.faces = {{0, 1, 2}, {3, 4, 5}};
+  write_toy_item(toy.data(), "2", specks);
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(lines_with(run.err, "error: 2_"), AllOf(SizeIs(12), Each(HasSubstr("scan: ")))) << run.err;
+  EXPECT_THAT(scored_items(toy), SizeIs(26 + 2));
+}
+
+// On a single triangle every point looks alike: the map of PS is constant, which no metric may choke on.
+TEST(OddData, AConstantMapScoresAsDocumented) {
+  const Workspace toy(kMeshesOnly);
+  write_text_file(toy.data() / kMesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  write_text_file(toy.data() / kSaliency, "1\n0\n0.5\n");
+  for (int k = 0; k < 4; ++k) write_text_file(toy.data() / fmt::format("RawData/2_{}.pid", k), "1\n");
+  const Outcome run = toy.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Table results = read_csv(toy.out() / "results.csv");
+  ASSERT_EQ(text_column(results, "model")[2], "PS");
+  EXPECT_EQ(number_column(results, "nss")[2], 0);
+  EXPECT_EQ(number_column(results, "cc")[2], 0);
+  EXPECT_EQ(number_column(results, "lcc")[2], 0);
+  EXPECT_EQ(number_column(results, "auc_exact")[2], 0.5);
+  EXPECT_EQ(number_column(results, "auc")[2], 0.5);
+}
+
+}  // namespace
+}  // namespace salbench

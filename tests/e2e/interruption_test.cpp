@@ -1,0 +1,123 @@
+// Whatever ends a run, the next one goes on from there and comes to the same results.
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/rng.h"
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using Clock = std::chrono::steady_clock;
+
+// Waits until so many artefacts are stored, whatever the machine's speed, and then a little longer: the
+// signal falls anywhere between and in the writing of them. False where the run was over before.
+bool reaches(Process& process, const Workspace& toy, std::size_t artefacts,
+             std::chrono::microseconds longer) {
+  while (toy.artefacts().size() < artefacts) {
+    if (process.ended()) return false;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));  // a core for the program
+  }
+  std::this_thread::sleep_for(longer);
+  return !process.ended();
+}
+
+TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results(), summary = toy.summary();
+  const auto contents = toy.contents();
+
+  Rng rng(2016, "kills", "");
+  int killed = 0;
+  for (int trial = 0; trial < 12; ++trial) {
+    toy.forget_everything();
+    const std::size_t artefacts = rng.below(contents.size());
+    const std::chrono::microseconds longer(rng.below(4000));
+    SCOPED_TRACE(testing::Message() << "after " << artefacts << " artefacts and " << longer.count() << " us");
+    {
+      Process process(toy.command("run"));
+      if (reaches(process, toy, artefacts, longer)) {
+        process.send(SIGKILL);
+        killed += process.wait().status == 128 + SIGKILL ? 1 : 0;
+      }
+    }
+    const Outcome again = toy.salbench("run");
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(toy.results(), results);
+    EXPECT_EQ(toy.summary(), summary);
+    EXPECT_EQ(toy.contents(), contents);
+    EXPECT_THAT(toy.left_over(), IsEmpty());
+    EXPECT_THAT(lines_with(again.err, toy.cache().string()), IsEmpty()) << "a complaint about an artefact";
+  }
+  EXPECT_GE(killed, 9) << "the runs were too quick to be killed";
+}
+
+TEST(Interruption, KilledOverAndOverARunStillComesToItsEnd) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results();
+  const auto contents = toy.contents();
+  toy.forget_everything();
+  for (std::size_t reached = contents.size() / 8; reached < contents.size(); reached += contents.size() / 8) {
+    Process process(toy.command("run"));
+    if (reaches(process, toy, reached, {})) process.send(SIGKILL);
+    process.wait();
+  }
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_LT(toy.computed(), static_cast<int>(contents.size()) / 2) << "what was stored was not used";
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+
+// What a process that was killed while it wrote leaves behind, without the luck of hitting the moment. The
+// number is that of a process that has ended and been waited for.
+TEST(Interruption, PartsOfFilesThatAKilledRunLeftAreRemoved) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string host = run_process({"/bin/hostname"}).out;
+  const std::string dead = run_process({"/bin/sh", "-c", "echo $$"}).out;
+  const auto line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
+  toy.write("cache/tmp/" + line(host) + "." + line(dead) + ".7.part", "half an arte");
+  EXPECT_THAT(toy.left_over(), SizeIs(1));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+
+class Signal : public testing::TestWithParam<int> {};
+
+TEST_P(Signal, EndsTheRunInOrderAndTheLinePrintedResumesIt) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results();
+  toy.forget_everything();
+
+  Process process(toy.command("run"));
+  ASSERT_TRUE(reaches(process, toy, 20, {}));
+  const auto sent = Clock::now();
+  process.send(GetParam());
+  const Outcome ended = process.wait();
+  EXPECT_LT(Clock::now() - sent, std::chrono::seconds(5));
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_FALSE(std::filesystem::exists(toy.out() / "results.csv"));
+
+  const std::vector<std::string> line = lines_with(ended.err, " run ");
+  ASSERT_THAT(line, SizeIs(1)) << ended.err;
+  const Outcome resumed = run_process({"/bin/sh", "-c", line[0]});
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+INSTANTIATE_TEST_SUITE_P(Interruption, Signal, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& test) { return test.param == SIGINT ? "Interrupt" : "Terminate"; });
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,55 @@
+// The test `layers` looks at the tree itself; this one sees that it would find a breach.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/e2e/process.h"
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Layers : public testing::Test {
+ protected:
+  void SetUp() override {
+    tree_.write("stages/core/types.h", "#include <vector>\n");
+    tree_.write("stages/fpfh/fpfh.cpp", "#include \"stages/core/types.h\"\n");
+    tree_.write("stages/scan/scan.cpp", "#include \"stages/scan/scan.h\"\n#include <embree3/rtcore.h>\n");
+    tree_.write("io/off.cpp", "#include \"stages/core/types.h\"\n");
+    tree_.write("cache/key.cpp", "#include \"io/arrays.h\"\n");
+    tree_.write("pipeline/flow.cpp", "#include <tbb/flow_graph.h>\n#include \"stages/fpfh/fpfh.h\"\n");
+  }
+  Outcome check() const { return run_process({SALBENCH_LAYERS, tree_.path().string()}); }
+  void expect_breach(const std::string& path, const std::string& text, const std::string& said) const {
+    const std::filesystem::path file = tree_.write(path, text);
+    const Outcome outcome = check();
+    EXPECT_EQ(outcome.status, 1) << path;
+    EXPECT_THAT(outcome.out, HasSubstr(said));
+    std::filesystem::remove(file);
+  }
+
+  TemporaryFolder tree_;
+};
+
+TEST_F(Layers, AnOrderlyTreePasses) {
+  const Outcome outcome = check();
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out + outcome.err, IsEmpty());
+}
+
+TEST_F(Layers, EveryKindOfBreachIsNamed) {
+  expect_breach("stages/fpfh/a.cpp", "\n#include \"io/off.h\"\n", "stages/fpfh/a.cpp:2: includes io/off.h");
+  expect_breach("stages/fpfh/a.h", "#include \"stages/scan/scan.h\"\n",
+                "stages/fpfh/a.h:1: includes stages/scan");
+  expect_breach("stages/core/a.h", "#include \"stages/fpfh/fpfh.h\"\n", "stages/core may include");
+  expect_breach("io/a.h", "#include \"stages/fpfh/fpfh.h\"\n", "io may include");
+  expect_breach("io/a.h", "#include \"cache/key.h\"\n", "io may include");
+  expect_breach("cache/a.h", "#include \"pipeline/plan.h\"\n", "cache may include");
+  expect_breach("pipeline/a.h", "#include \"tests/support/shapes.h\"\n", "pipeline may include");
+  expect_breach("pipeline/a.cpp", "#include <tbb/flow_graph.h>\n", "the flow graph is already included by");
+  expect_breach("stages/scan/a.h", "#include <embree3/rtcore.h>\n", "Embree belongs in a .cpp");
+}
+
+}  // namespace
+}  // namespace salbench

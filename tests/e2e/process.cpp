@@ -1,0 +1,56 @@
+#include "tests/e2e/process.h"
+
+#include <cerrno>
+#include <csignal>
+#include <system_error>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "io/text_file.h"
+
+namespace salbench {
+
+Process::Process(const std::vector<std::string>& command) {
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  constexpr int kCreate = O_WRONLY | O_CREAT | O_TRUNC;
+  const std::string out = (outputs_ / "out").string(), err = (outputs_ / "err").string();
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), kCreate, 0666);
+  ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), kCreate, 0666);
+  const int error = ::posix_spawn(&pid_, arguments[0], &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw std::system_error(error, std::generic_category(), command[0]);
+}
+
+Process::~Process() {
+  if (reaped_) return;
+  send(SIGKILL);
+  ::waitpid(pid_, nullptr, 0);
+}
+
+void Process::send(int signal) const { ::kill(pid_, signal); }
+
+bool Process::ended() {
+  if (!reaped_) reaped_ = ::waitpid(pid_, &raw_status_, WNOHANG) == pid_;
+  return reaped_;
+}
+
+Outcome Process::wait() {
+  while (!reaped_) {
+    if (::waitpid(pid_, &raw_status_, 0) == pid_)
+      reaped_ = true;
+    else if (errno != EINTR)
+      throw std::system_error(errno, std::generic_category(), "waitpid");
+  }
+  const int status = WIFEXITED(raw_status_) ? WEXITSTATUS(raw_status_) : 128 + WTERMSIG(raw_status_);
+  return {status, read_file(outputs_ / "out"), read_file(outputs_ / "err")};
+}
+
+}  // namespace salbench

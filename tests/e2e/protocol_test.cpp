@@ -1,0 +1,83 @@
+// Both protocols, all models and a given reference, end to end.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/table.h"
+#include "io/text_file.h"
+#include "pipeline/model_catalog.h"
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const ModelRow& row : model_rows()) names.emplace_back(row.name);
+  return names;
+}
+
+// Item "1" is enough: every stage and model runs on it and on its scans.
+std::string results_of(const Workspace& toy, const std::string& protocol) {
+  toy.configure("protocol: " + protocol + "\nscan: {step_degrees: 2}\n");
+  const Outcome run = toy.salbench("run", {"--items", "1"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("protocol " + protocol));
+  EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("protocol: " + protocol + "\n"));
+  return toy.results();
+}
+
+TEST(Protocol, BothRunEveryModelAndDisagree) {
+  const Workspace toy;
+  const std::string published = results_of(toy, "published"), text = results_of(toy, "text");
+  EXPECT_NE(published, text);
+  for (const std::string& csv : {published, text}) {
+    const Table table = parse_csv(csv, "results.csv");
+    EXPECT_THAT(text_column(table, "model"), IsSupersetOf(model_names()));
+    EXPECT_THAT(number_column(table, "cc"), Each(testing::AllOf(testing::Ge(-1), testing::Le(1))));
+  }
+}
+
+// The configuration in run.yaml is complete: it repeats the run on a cache that need not compute anything.
+TEST(Protocol, TheRecordedConfigurationRepeatsTheRun) {
+  const Workspace toy(
+      "protocol: text\nseed: 9\nscan: {step_degrees: 2}\nmodels: {RS: , PS: {absolute: false}}\n");
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results(), record = read_file(toy.out() / "run.yaml");
+  std::string yaml;
+  for (const std::string& line : lines_with(record.substr(record.find("configuration:\n")), "  "))
+    yaml += line.substr(2) + "\n";
+  toy.configure(yaml);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0);
+  EXPECT_EQ(toy.results(), results);
+}
+
+TEST(Protocol, AGivenReferenceReplacesTheDataSetsOwn) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string own = toy.results();
+  std::string flat = "bin,GS\n", falling = "GS,LS\n";
+  for (int i = 0; i < 100; ++i) {
+    flat += std::to_string(i) + ",1\n";
+    falling += std::to_string(100 - i) + ",0\n";
+  }
+  const auto run_with = [&](const std::string& csv) {
+    const Outcome run = toy.salbench("run", {"--reference", toy.write("reference.csv", csv).string()});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("reference: given"));
+    return toy.results();
+  };
+  const std::string with_flat = run_with(flat), with_falling = run_with(falling);
+  EXPECT_NE(with_flat, own);
+  EXPECT_NE(with_flat, with_falling);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.results(), own);
+  EXPECT_EQ(toy.computed(), 0);
+}
+
+}  // namespace
+}  // namespace salbench

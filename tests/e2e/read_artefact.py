@@ -1,0 +1,110 @@
+"""Reads the artefacts of a run as anybody would: with h5py and pandas, knowing only the documented layout.
+
+read_artefact.py CACHE RESULTS_CSV: prints "ok: ..." or says what is wrong.
+"""
+
+import pathlib
+import sys
+
+try:
+    import h5py
+    import numpy
+    import pandas
+except ImportError as error:
+    sys.exit(f"{error}: install python3-h5py and python3-pandas (scripts/setup does)")
+
+TEXTS = ("program", "item", "kind", "stage", "options", "seed", "inputs", "key", "content", "protocol")
+
+
+def fail(path, what):
+    sys.exit(f"{path}: {what}")
+
+
+def text_of(path, thing, name):
+    """A text attribute: UTF-8 of fixed length, which h5py gives as bytes."""
+    value = thing.attrs.get(name)
+    if not isinstance(value, bytes):
+        fail(path, f"the attribute '{name}' is {value!r}, no text")
+    return value.decode()
+
+
+def check_attributes(path, file):
+    texts = {name: text_of(path, file, name) for name in TEXTS}
+    if texts["stage"] != path.parent.parent.name:
+        fail(path, "lies in another stage's folder")
+    if not texts["program"].startswith("salbench "):
+        fail(path, "another program's file")
+    if int(file.attrs["stage_version"]) < 1 or float(file.attrs["seconds"]) < 0:
+        fail(path, "stage_version or seconds is impossible")
+    for line in texts["inputs"].splitlines():
+        name, _, digest = line.rpartition(": ")
+        if not name or len(digest) != 32 or set(digest) - set("0123456789abcdef"):
+            fail(path, f"'{line}' is no input with its digest")
+    for line in texts["options"].splitlines():
+        if ": " not in line:
+            fail(path, f"'{line}' is no option")
+    for name, data in file.items():
+        if not text_of(path, data, "unit") or not text_of(path, data, "description"):
+            fail(path, f"the data set '{name}' has an empty unit or description")
+
+
+def points_of(path, file):
+    """Number of points, by the documented shapes; None for what is not per point."""
+    kind = text_of(path, file, "kind")
+    if kind == "mesh":
+        if file["faces"].shape[1:] != (3,) or file["faces"][:].max() >= len(file["vertices"]):
+            fail(path, "faces are not triples of vertex indices")
+        return len(file["vertices"])
+    if kind == "scan":
+        if file["points"].shape[1:] != (3,) or file["camera"].shape != (3,):
+            fail(path, "points are not n x 3, or the camera is not 3")
+        return len(file["points"])
+    if kind == "normals":
+        if not numpy.allclose(numpy.linalg.norm(file["normals"][:], axis=1), 1):
+            fail(path, "normals are not of unit length")
+        return len(file["normals"])
+    if kind == "descriptors":
+        if file["fpfh"].shape[1:] != (33,) or file["fpfh"].dtype != numpy.float32:
+            fail(path, "descriptors are not n x 33 floats")
+        return len(file["fpfh"])
+    if kind == "field":
+        return len(file["saliency"])
+    if kind == "ground_truth":
+        offsets = file["pick_offsets"][:]
+        if offsets[0] != 0 or offsets[-1] != len(file["picks"]) or (numpy.diff(offsets) < 0).any():
+            fail(path, "pick_offsets do not divide the picks")
+        return len(file["saliency"])
+    if kind == "scores":
+        return int(file["counts"][0])
+    if kind == "histogram" and file["density"].shape != (100,):
+        fail(path, "the histogram has not 100 bins")
+    return None
+
+
+def main():
+    cache, results_csv = pathlib.Path(sys.argv[1]), sys.argv[2]
+    results = pandas.read_csv(results_csv, dtype={"item": str, "view": "Int64"}, float_precision="round_trip")
+    names = results["item"] + results["view"].map(lambda view: "" if pandas.isna(view) else f"_{view}")
+    points = dict(zip(names, results["n_points"]))
+    checked = scored = 0
+    for path in sorted(cache.glob("*/??/*.h5")):
+        with h5py.File(path, "r") as file:
+            check_attributes(path, file)
+            n = points_of(path, file)
+            item = text_of(path, file, "item")
+            if n is not None and n != points[item]:
+                fail(path, f"{n} points, results.csv says {points[item]}")
+            if text_of(path, file, "kind") == "scores":
+                model = text_of(path, file, "stage").partition(".")[2]
+                row = results[(names == item) & (results["model"] == model)]
+                columns = ["auc", "auc_exact", "nss", "cc", "lcc"]
+                if not numpy.array_equal(row[columns].to_numpy()[0], file["scores"][:], equal_nan=True):
+                    fail(path, "other scores than in results.csv")
+                scored += 1
+            checked += 1
+    if scored != len(results):
+        sys.exit(f"{scored} artefacts of scores, {len(results)} rows of results")
+    print(f"ok: {checked} artefacts, {scored} of them scores")
+
+
+main()

@@ -1,0 +1,95 @@
+// What a run leaves behind: the tables, and a cache that makes the next run nothing to do.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/table.h"
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr std::size_t kItems = 2, kShapes = kItems * 13, kModels = 2;  // 12 scans of each mesh
+
+TEST(Results, TheTablesHaveTheDocumentedColumnsAndARowForEverythingScored) {
+  const Workspace toy;
+  const Outcome run = toy.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Table results = read_csv(toy.out() / "results.csv");
+  EXPECT_THAT(results.columns, ElementsAre("dataset", "item", "class", "view", "model", "auc", "auc_exact",
+                                           "nss", "cc", "lcc", "n_points", "n_picks"));
+  EXPECT_THAT(results.rows, SizeIs(kShapes * kModels));
+  const Table summary = read_csv(toy.out() / "summary.csv");
+  EXPECT_THAT(summary.columns,
+              ElementsAre("dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"));
+  EXPECT_THAT(summary.rows, SizeIs(2 * kModels * 5));
+  EXPECT_THAT(run.out, HasSubstr("protocol published"));
+}
+
+TEST(Results, TheSummaryIsTheMeanOfTheRows) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const Table results = read_csv(toy.out() / "results.csv");
+  const std::vector<double> cc = number_column(results, "cc");
+  ASSERT_THAT(text_column(results, "model"), ElementsAre("PS", "RS", "PS", "RS"));
+  const Table summary = read_csv(toy.out() / "summary.csv");
+  const std::vector<double> mean = number_column(summary, "mean"), n = number_column(summary, "n");
+  ASSERT_EQ(text_column(summary, "metric")[3], "cc");  // of PS on meshes, the first block
+  EXPECT_EQ(n[3], 2);
+  EXPECT_DOUBLE_EQ(mean[3], (cc[0] + cc[2]) / 2);
+}
+
+TEST(Results, ASecondRunComputesNothingAndSaysTheSame) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_GT(toy.computed(), 0);
+  const std::string results = toy.results(), summary = toy.summary();
+  const auto artefacts = toy.artefacts();
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0);
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_EQ(toy.summary(), summary);
+  EXPECT_EQ(toy.artefacts(), artefacts);  // the names carry the files' checksums
+}
+
+TEST(Results, OneAndTwoThreadsWriteTheSameBytes) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run", {"--threads", "1"}).status, 0);
+  const std::string results = toy.results(), summary = toy.summary();
+  const auto contents = toy.contents();
+  toy.forget_everything();
+  ASSERT_EQ(toy.salbench("run", {"--threads", "2"}).status, 0);
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_EQ(toy.summary(), summary);
+  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+
+TEST(Results, AnotherFolderAndAnotherCacheChangeNothing) {
+  const Workspace here, there;
+  ASSERT_EQ(here.salbench("run").status, 0);
+  ASSERT_EQ(there.salbench("run").status, 0);
+  EXPECT_EQ(here.results(), there.results());
+  EXPECT_EQ(here.contents(), there.contents());
+}
+
+TEST(Results, SelectedItemsAreTheOnlyOnes) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run", {"--items", "2"}).status, 0);
+  EXPECT_THAT(text_column(read_csv(toy.out() / "results.csv"), "item"), ElementsAre("2", "2"));
+}
+
+TEST(Results, ScoresOfSimulatedParticipantsSaySo) {
+  const Workspace toy("dataset: {participants: simulated, scans: false}\nmodels: {RS: }\n");
+  const Outcome run = toy.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (const std::string& text : {toy.results(), toy.summary()}) EXPECT_THAT(text, HasSubstr("# SIMULATED"));
+  EXPECT_THAT(run.out, HasSubstr("SIMULATED"));
+}
+
+}  // namespace
+}  // namespace salbench

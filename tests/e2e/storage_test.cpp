@@ -1,0 +1,184 @@
+// Folders that cannot be written to, disks that are full, and files in the cache that rotted.
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include "io/text_file.h"
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+TEST(Storage, FoldersThatCannotBeMadeAreNamed) {
+  const Workspace toy(kMeshesOnly);
+  const std::string file = toy.write("a file", "").string();
+  for (const std::string& folder : {file, file + "/below", std::string("/proc/nowhere/cache")}) {
+    for (const char* option : {"--cache", "--out"}) {
+      const Outcome run = toy.salbench("run", {option, folder});
+      EXPECT_EQ(run.status, 3) << option << " " << folder;
+      EXPECT_THAT(lines_with(run.err, "error: "),
+                  AllOf(SizeIs(1), Each(AllOf(HasSubstr(folder), HasSubstr(option)))));
+    }
+  }
+}
+
+TEST(Storage, ACacheOfANewerProgramIsLeftAlone) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string tag = read_file(toy.cache() / "CACHEDIR.TAG");
+  const std::size_t number = tag.rfind("format ") + 7;
+  toy.write("cache/CACHEDIR.TAG", tag.substr(0, number) + "99\n");
+  for (const char* verb : {"run", "plan", "status"}) {
+    const Outcome outcome = toy.salbench(verb);
+    EXPECT_EQ(outcome.status, 3) << verb;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("newer"), HasSubstr(toy.cache().string())));
+  }
+}
+
+// Mounted for the test; unmounted with the object.
+class SmallDisk {
+ public:
+  SmallDisk(fs::path folder, const char* options) : folder_(std::move(folder)) {
+    fs::create_directories(folder_);
+    mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, options) == 0;
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  ~SmallDisk() {
+    if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
+  }
+  bool mounted() const { return mounted_; }
+  bool resize(const char* options) const {
+    return ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, options) == 0;
+  }
+
+ private:
+  fs::path folder_;
+  bool mounted_ = false;
+};
+
+TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results();
+  fs::remove_all(toy.cache());
+  const SmallDisk disk(toy.cache(), "size=300k");
+  if (!disk.mounted()) GTEST_SKIP() << "mounting is not allowed here";
+  const Outcome full = toy.salbench("run");
+  EXPECT_EQ(full.status, 3);
+  EXPECT_THAT(lines_with(full.err, "error: "),
+              AllOf(SizeIs(1), Each(AllOf(HasSubstr(toy.cache().string()), HasSubstr("No space left")))))
+      << full.err;
+  const std::size_t kept = toy.artefacts().size();
+  EXPECT_GT(kept, 5U);
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+
+  ASSERT_TRUE(disk.resize("size=30m"));
+  const Outcome more = toy.salbench("run");
+  ASSERT_EQ(more.status, 0) << more.err;
+  EXPECT_EQ(toy.computed() + kept, toy.artefacts().size());
+  EXPECT_EQ(toy.results(), results);
+}
+
+TEST(Storage, ALimitOnFileSizesIsAFullDiskAndNoSignal) {
+  const Workspace toy;
+  std::string line = "ulimit -f 8; exec";  // 4 or 8 kB, which the larger artefacts pass
+  for (const std::string& word : toy.command("run")) line += " '" + word + "'";
+  const Outcome run = run_process({"/bin/sh", "-c", line});
+  EXPECT_EQ(run.status, 3) << run.err;
+  EXPECT_THAT(lines_with(run.err, "error: "), AllOf(SizeIs(1), Each(HasSubstr("File too large")))) << run.err;
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+
+void flip_byte(const fs::path& file, std::uintmax_t at) {
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(at));
+  const int byte = stream.get();
+  stream.seekp(static_cast<std::streamoff>(at));
+  stream.put(static_cast<char>(byte ^ 0x10));
+}
+
+class DamagedCache : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(toy_.salbench("run").status, 0);
+    results_ = toy_.results();
+    contents_ = toy_.contents();
+  }
+
+  fs::path artefact(const std::string& stage, std::size_t i) const { return toy_.artefacts(stage).at(i); }
+
+  // One line names each damaged file, everything comes out as before, and then all is well again.
+  void expect_recovery(const std::vector<fs::path>& damaged) const {
+    const Outcome run = toy_.salbench("run");
+    ASSERT_EQ(run.status, 0) << run.err;
+    for (const fs::path& file : damaged)
+      EXPECT_THAT(lines_with(run.err, file.string()), AllOf(SizeIs(1), Each(HasSubstr("warning: "))))
+          << run.err;
+    EXPECT_EQ(toy_.computed(), static_cast<int>(damaged.size()));
+    EXPECT_EQ(toy_.results(), results_);
+    EXPECT_EQ(toy_.contents(), contents_);
+    const Outcome after = toy_.salbench("run");
+    EXPECT_EQ(after.status, 0);
+    EXPECT_THAT(after.err, Not(HasSubstr(toy_.cache().string()))) << "warned again";
+    EXPECT_EQ(toy_.computed(), 0);
+  }
+
+  Workspace toy_;
+  std::string results_;
+  std::vector<std::string> contents_;
+};
+
+TEST_F(DamagedCache, TruncatedArtefactsAreComputedAgain) {
+  std::vector<fs::path> files;
+  for (const char* stage : {"mesh", "scan", "fpfh", "map.PS", "matched.RS", "scores.PS", "reference"})
+    files.push_back(artefact(stage, 0));
+  for (std::size_t i = 0; i < files.size(); ++i)  // to nothing, to a half, by one byte
+    fs::resize_file(files[i], i % 3 == 0   ? 0
+                              : i % 3 == 1 ? fs::file_size(files[i]) / 2
+                                           : fs::file_size(files[i]) - 1);
+  expect_recovery(files);
+}
+
+TEST_F(DamagedCache, FlippedBytesAreFoundWhenTheArtefactIsRead) {
+  const fs::path first = artefact("scores.PS", 3), second = artefact("scores.RS", 7);
+  flip_byte(first, 0);  // HDF5's own signature
+  flip_byte(second, fs::file_size(second) - 20);
+  expect_recovery({first, second});
+}
+
+// What is cached and not read again is not looked at; with the maps gone, the descriptors are needed.
+TEST_F(DamagedCache, ADamagedInputIsFoundByWhatReadsIt) {
+  const std::vector<fs::path> damaged = toy_.artefacts("fpfh");
+  for (const fs::path& file : damaged) flip_byte(file, fs::file_size(file) / 2);
+  fs::remove_all(toy_.cache() / "map.PS");
+  const Outcome run = toy_.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (const fs::path& file : damaged) EXPECT_THAT(lines_with(run.err, file.string()), SizeIs(1));
+  EXPECT_EQ(toy_.computed(), 2 * static_cast<int>(damaged.size()));
+  EXPECT_EQ(toy_.results(), results_);
+  EXPECT_EQ(toy_.contents(), contents_);
+}
+
+TEST_F(DamagedCache, ForeignFilesAreNoArtefacts) {
+  toy_.write("cache/mesh/readme.txt", "not ours");
+  toy_.write("cache/mesh/00/1.h5", "not ours either");
+  toy_.write("cache/loose", "a file among folders");
+  const Outcome run = toy_.salbench("run");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(toy_.computed(), 0);
+  EXPECT_EQ(toy_.results(), results_);
+}
+
+}  // namespace
+}  // namespace salbench

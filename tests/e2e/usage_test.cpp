@@ -1,0 +1,146 @@
+// Arguments and configurations: what is wrong is said in one line, and the exit status says who has to act.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TEST(Usage, HelpAndVersionAreNoErrors) {
+  const Outcome help = run_process({SALBENCH_PROGRAM, "--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.out,
+              AllOf(HasSubstr("run"), HasSubstr("plan"), HasSubstr("status"), HasSubstr("Exit status")));
+  EXPECT_THAT(
+      run_process({SALBENCH_PROGRAM, "run", "--help"}).out,
+      AllOf(HasSubstr("--data"), HasSubstr("--cache"), HasSubstr("--items"), HasSubstr("--reference")));
+  const Outcome version = run_process({SALBENCH_PROGRAM, "--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, testing::MatchesRegex("salbench [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST(Usage, WordsThatTheProgramDoesNotKnow) {
+  const Workspace toy(kMeshesOnly);
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM}).status, 2);
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "run"}).status, 2);
+  EXPECT_EQ(toy.salbench("walk").status, 2);
+  EXPECT_EQ(toy.salbench("run", {"--no-such-option"}).status, 2);
+  EXPECT_EQ(toy.salbench("run", {"--threads", "0"}).status, 2);
+  EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
+}
+
+// The one line on stderr; what is unusable from the start leaves nothing behind.
+std::string complaint(const Workspace& toy, const std::vector<std::string>& further = {}) {
+  const Outcome run = toy.salbench("run", further);
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(lines_with(run.err, ""), SizeIs(1)) << run.err;
+  EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
+  return run.err;
+}
+
+struct BadConfig {
+  const char* name;
+  const char* yaml;
+  std::vector<std::string> said;  // beside the file's name
+};
+
+class BadConfiguration : public testing::TestWithParam<BadConfig> {};
+
+TEST_P(BadConfiguration, IsRefusedWithFileAndLine) {
+  const Workspace toy(GetParam().yaml);
+  const std::string line = complaint(toy);
+  EXPECT_THAT(line, HasSubstr(toy.config().string()));
+  for (const std::string& part : GetParam().said) EXPECT_THAT(line, HasSubstr(part));
+}
+INSTANTIATE_TEST_SUITE_P(
+    Usage, BadConfiguration,
+    testing::Values(
+        BadConfig{"UnknownKey", "seed: 7\nscann: {step_degrees: 1}\n", {":2: ", "scann", "'scan'"}},
+        BadConfig{
+            "UnknownKeyOfASection", "fpfh:\n  neighbors: 9\n", {":2: ", "fpfh.neighbors", "'neighbours'"}},
+        BadConfig{"UnknownModel", "models:\n  PS:\n  RT:\n", {":3: ", "models.RT", "'RS'"}},
+        BadConfig{"UnknownProtocol", "protocol: publishd\n", {":1: ", "publishd", "published, text"}},
+        BadConfig{
+            "NegativeRadius", "fpfh: {neighbourhood: radius,\n  radius: -1}\n", {":2: ", "radius", "-1"}},
+        BadConfig{"NegativeStep", "scan: {step_degrees: -1}\n", {":1: ", "step_degrees", "-1"}},
+        BadConfig{"NotANumber", "seed: many\n", {":1: ", "seed", "many"}},
+        BadConfig{"KeyGivenTwice", "seed: 1\nscan:\nseed: 2\n", {":3: ", "seed", "twice"}},
+        BadConfig{"NothingToEvaluate", "dataset:\n  meshes: false\n  scans: false\n", {":3: ", "scans"}},
+        BadConfig{"NoModel", "models: {}\n", {":1: ", "models"}}, BadConfig{"NoYaml", "seed: [1\n", {"YAML"}},
+        BadConfig{"NotAMapping", "- seed\n", {":1: ", "mapping"}}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Usage, AConfigurationThatIsNotThere) {
+  const Workspace toy;
+  fs::remove(toy.config());
+  EXPECT_THAT(complaint(toy), AllOf(HasSubstr(toy.config().string()), HasSubstr("cannot be read")));
+}
+
+TEST(Usage, ADataFolderThatIsNotThereOrHoldsNoMesh) {
+  const Workspace toy;
+  EXPECT_THAT(complaint(toy, {"--data", "/no/such/folder"}), HasSubstr("/no/such/folder"));
+  toy.write("empty/readme.txt", "no mesh");
+  EXPECT_THAT(complaint(toy, {"--data", (toy / "empty").string()}), HasSubstr((toy / "empty").string()));
+  EXPECT_THAT(complaint(toy, {"--data", ""}), HasSubstr("--data"));
+}
+
+TEST(Usage, ItemsThatTheDataSetHasNot) {
+  const Workspace toy;
+  EXPECT_THAT(complaint(toy, {"--items", "1,7"}), AllOf(HasSubstr("--items"), HasSubstr("'7'")));
+  EXPECT_THAT(complaint(toy, {"--items", "30-40"}), HasSubstr("30-40"));
+  EXPECT_THAT(complaint(toy, {"--items", ","}), HasSubstr("no item"));
+}
+
+std::string reference_csv(const std::string& column, int bins) {
+  std::string csv = "bin," + column + "\n";
+  for (int i = 0; i < bins; ++i) csv += std::to_string(i) + ",1\n";
+  return csv;
+}
+
+TEST(Usage, AReferenceThatIsNone) {
+  const Workspace toy;
+  const auto complaint_about = [&](const std::string& csv) {
+    return complaint(toy, {"--reference", toy.write("reference.csv", csv).string()});
+  };
+  EXPECT_THAT(complaint_about(reference_csv("LS", 100)), AllOf(HasSubstr("reference.csv"), HasSubstr("GS")));
+  EXPECT_THAT(complaint_about(reference_csv("GS", 99)), AllOf(HasSubstr("reference.csv"), HasSubstr("99")));
+  EXPECT_THAT(complaint_about(reference_csv("GS", 99) + "99,-1\n"), HasSubstr("reference.csv:101"));
+  EXPECT_THAT(complaint_about(reference_csv("GS", 99) + "99,x\n"), HasSubstr("reference.csv:101"));
+  EXPECT_THAT(complaint_about(""), HasSubstr("reference.csv"));
+  EXPECT_THAT(complaint(toy, {"--reference", "/no/such.csv"}), HasSubstr("/no/such.csv"));
+}
+
+TEST(Usage, PlanAndStatusChangeNothing) {
+  const Workspace toy;
+  const Outcome plan = toy.salbench("plan"), status = toy.salbench("status");
+  EXPECT_EQ(plan.status, 0) << plan.err;
+  EXPECT_EQ(status.status, 0) << status.err;
+  EXPECT_THAT(plan.out, AllOf(HasSubstr("map.PS"), HasSubstr("jobs to do")));
+  EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
+
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const auto artefacts = toy.artefacts();
+  const std::string results = toy.results();
+  EXPECT_THAT(toy.salbench("plan").out, HasSubstr("\n0 jobs to do"));
+  EXPECT_EQ(toy.salbench("status").status, 0);
+  EXPECT_EQ(toy.artefacts(), artefacts);
+  EXPECT_EQ(toy.results(), results);
+}
+
+TEST(Usage, QuietMeansWarningsAndErrorsOnly) {
+  const Workspace toy(kMeshesOnly);
+  const Outcome run = toy.salbench("run", {"--quiet"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.out, IsEmpty());
+  for (const std::string& line : lines_with(run.err, "")) EXPECT_THAT(line, testing::StartsWith("warning: "));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,101 @@
+#include "tests/e2e/workspace.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "cache/artefact_name.h"
+#include "io/text_file.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Every artefact is synced, and waiting for a disk would be most of the time of these tests.
+const bool kInMemory = fs::is_directory("/dev/shm") && ::setenv("TMPDIR", "/dev/shm", 0) == 0;
+
+}  // namespace
+
+Workspace::Workspace() : Workspace(kToyConfig) {}
+
+Workspace::Workspace(std::string_view yaml) {
+  configure(yaml);
+  write_toy_item(data(), "1", shapes::bumpy_sphere(2));
+  write_toy_item(data(), "2", shapes::bumpy_sphere(2, 0.35));
+}
+
+std::vector<std::string> Workspace::command(const std::string& verb,
+                                            const std::vector<std::string>& further) const {
+  std::vector<std::string> words = {SALBENCH_PROGRAM, verb, config().string()};
+  const auto add_default = [&](const char* option, const std::string& value) {
+    if (std::find(further.begin(), further.end(), option) == further.end())
+      words.insert(words.end(), {option, value});
+  };
+  add_default("--data", data().string());
+  add_default("--cache", cache().string());
+  add_default("--out", out().string());
+  add_default("--threads", "2");
+  words.insert(words.end(), further.begin(), further.end());
+  return words;
+}
+
+std::string Workspace::results() const { return read_file(out() / "results.csv"); }
+std::string Workspace::summary() const { return read_file(out() / "summary.csv"); }
+
+int Workspace::computed() const {
+  constexpr std::string_view kKey = "artefacts_computed: ";
+  const std::string yaml = read_file(out() / "run.yaml");
+  return std::stoi(yaml.substr(yaml.find(kKey) + kKey.size()));
+}
+
+void Workspace::forget_everything() const {
+  fs::remove_all(cache());
+  fs::remove_all(out());
+}
+
+std::vector<fs::path> Workspace::artefacts(std::string_view stage) const {
+  std::vector<fs::path> files;
+  std::error_code missing;  // the program may be at work: what vanishes meanwhile is not there
+  for (fs::recursive_directory_iterator it(cache() / stage, missing), end; it != end; it.increment(missing))
+    if (it->path().extension() == ".h5" && it->path().parent_path().filename() != "damaged")
+      files.push_back(it->path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<std::string> Workspace::contents() const {
+  std::vector<std::string> lines;
+  for (const fs::path& file : artefacts()) {
+    const auto name = parse_artefact_name(file.filename().string());
+    const std::string stage = file.parent_path().parent_path().filename().string();
+    lines.push_back(name ? fmt::format("{}/{} {} {}", stage, name->item, name->key.hex(), name->content.hex())
+                         : "no artefact's name: " + file.string());
+  }
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
+std::vector<fs::path> Workspace::left_over() const {
+  std::vector<fs::path> files;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(cache() / "tmp", missing)) files.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(out(), missing)) {
+    const fs::path end = entry.path().extension();
+    if (end != ".csv" && end != ".yaml") files.push_back(entry.path());
+  }
+  return files;
+}
+
+std::vector<std::string> lines_with(std::string_view text, std::string_view part) {
+  std::istringstream stream{std::string(text)};
+  std::vector<std::string> found;
+  for (std::string line; std::getline(stream, line);)
+    if (line.find(part) != std::string::npos) found.push_back(line);
+  return found;
+}
+
+}  // namespace salbench

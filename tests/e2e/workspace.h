@@ -1,0 +1,60 @@
+// A folder with a small data set, a configuration, and the cache and results of the runs over them.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/e2e/process.h"
+#include "tests/io/temporary_folder.h"
+
+namespace salbench {
+
+inline constexpr const char* kMeshesOnly = "dataset: {scans: false}\nmodels: {PS: , RS: }\n";
+
+class Workspace {
+ public:
+  // The meshes "1" and "2", with ground truth, evaluated by PS and RS on themselves and on coarse scans.
+  Workspace();
+  explicit Workspace(std::string_view yaml);
+
+  // Names with a blank: nothing may depend on their absence.
+  std::filesystem::path data() const { return folder_ / "data set"; }
+  std::filesystem::path config() const { return folder_ / "toy.yaml"; }
+  std::filesystem::path cache() const { return folder_ / "cache"; }
+  std::filesystem::path out() const { return folder_ / "out"; }
+  std::filesystem::path operator/(const std::filesystem::path& name) const { return folder_ / name; }
+
+  std::filesystem::path write(const std::filesystem::path& name, std::string_view text) const {
+    return folder_.write(name, text);
+  }
+  void configure(std::string_view yaml) const { write("toy.yaml", yaml); }
+
+  // `salbench VERB CONFIG` over these folders, with further arguments that may name others.
+  std::vector<std::string> command(const std::string& verb,
+                                   const std::vector<std::string>& further = {}) const;
+  Outcome salbench(const std::string& verb, const std::vector<std::string>& further = {}) const {
+    return run_process(command(verb, further));
+  }
+
+  std::string results() const;     // the bytes of results.csv
+  std::string summary() const;     // of summary.csv
+  int computed() const;            // artefacts that the last run computed, by its run.yaml
+  void forget_everything() const;  // removes cache and results
+
+  std::vector<std::filesystem::path> artefacts(std::string_view stage = {}) const;  // files, sorted
+  // "stage/item key content" of every artefact: what the cache says, without when it was said.
+  std::vector<std::string> contents() const;
+  // Everything in the cache's scratch folder, and in the output folder what is no table.
+  std::vector<std::filesystem::path> left_over() const;
+
+ private:
+  TemporaryFolder folder_;
+};
+
+// The lines of a text that hold `part`.
+std::vector<std::string> lines_with(std::string_view text, std::string_view part);
+
+}  // namespace salbench

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# layers.sh ROOT: the folders are the layers, and includes go one way. Names every include that does not.
+set -euo pipefail
+cd "$1"
+breaches=0
+
+# path:line:included of every include of the program's sources; tests may include what they like.
+includes() {
+  local folder
+  for folder in stages io cache pipeline; do
+    [[ -d $folder ]] && grep -rnoE --include='*.h' --include='*.cpp' '^#include [<"][^>"]+[>"]' "$folder"
+  done | sed -E 's/#include [<"]([^>"]+)[>"]/\1/'
+}
+
+complain() { # path:line included why
+  echo "$1: includes $2: $3"
+  breaches=$((breaches + 1))
+}
+
+# keeps FOLDER ALLOWED: files in FOLDER include, of our own, only what matches ALLOWED.
+keeps() {
+  local where included
+  while IFS=: read -r path line included; do
+    where=$path:$line
+    [[ $path == $1/* && $included =~ ^(stages|io|cache|pipeline|tests)/ ]] || continue
+    [[ $included =~ ^($2)/ ]] || complain "$where" "$included" "$1 may include $2 only"
+  done < <(includes)
+}
+
+# hides LIBRARY HEADERS: what matches HEADERS is included by one .cpp and by no header.
+hides() {
+  local path line included home=
+  while IFS=: read -r path line included; do
+    [[ $included =~ ^($2) ]] || continue
+    [[ $path == *.cpp ]] || complain "$path:$line" "$included" "$1 belongs in a .cpp"
+    [[ -z $home || $home == "$path" ]] || complain "$path:$line" "$included" "$1 is already included by $home"
+    home=$path
+  done < <(includes)
+}
+
+for folder in stages/*/; do
+  folder=${folder%/}
+  keeps "$folder" "stages/core|$folder"
+done
+keeps io 'io|stages/core'
+keeps cache 'cache|io|stages/core'
+keeps pipeline 'pipeline|cache|io|stages/[a-z_]+'
+
+hides CGAL 'CGAL/'
+hides CLI11 'CLI/'
+hides Embree 'embree3/'
+hides HDF5 'hdf5|H5'
+hides nanoflann 'nanoflann'
+hides PCL 'pcl/'
+hides Spectra 'Spectra/'
+hides 'the flow graph' '(tbb|oneapi/tbb)/flow_graph'
+hides xxHash 'xxhash'
+hides yaml-cpp 'yaml-cpp/'
+
+[[ $breaches -eq 0 ]]
