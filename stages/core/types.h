@@ -70,4 +70,7 @@ struct Scores {
   std::int64_t n_picks = 0;  // distinct points picked
 };
 
+// Entry n - 1: how well n people predict n others, the mean over random draws of both. [tasse2016]
+using HumanCurve = std::vector<Scores>;
+
 }  // namespace salbench

@@ -1,0 +1,147 @@
+// A group's map is a sum over the picks of its participants, so each pick is smoothed once for all groups.
+#include "stages/models/hs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/core/smoothing.h"
+
+namespace salbench {
+namespace {
+
+using Group = std::span<const std::size_t>;  // distinct participants
+
+constexpr std::array kMetrics = {&Scores::auc, &Scores::auc_exact, &Scores::nss, &Scores::cc, &Scores::lcc};
+
+// The mean of each metric over where it is defined.
+class MeanOfScores {
+ public:
+  void add(const Scores& scores) {
+    for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+      const double value = scores.*kMetrics[m];
+      if (std::isnan(value)) continue;
+      sums_[m] += value;
+      ++counts_[m];
+    }
+  }
+
+  // Over the counts of `scores`, which are kept.
+  Scores with_counts_of(Scores scores) const {
+    for (std::size_t m = 0; m < kMetrics.size(); ++m)
+      scores.*kMetrics[m] = counts_[m] > 0 ? sums_[m] / counts_[m] : std::numeric_limits<double>::quiet_NaN();
+    return scores;
+  }
+
+ private:
+  std::array<double, kMetrics.size()> sums_ = {};
+  std::array<int, kMetrics.size()> counts_ = {};
+};
+
+SmoothingOptions undivided() {
+  SmoothingOptions options;
+  options.per_participant = false;
+  return options;
+}
+
+void require_participants(const GroundTruth& truth) {
+  if (truth.picks.size() < kFewestParticipants)
+    throw InputError("HS does not apply: it compares participants with each other, and of this mesh there " +
+                     (truth.picks.empty()
+                          ? std::string("are no picks")
+                          : std::string("is one list of picks, of one participant or pooled")));
+}
+
+// Any group of the participants of one mesh against any other.
+class Participants {
+ public:
+  Participants(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer)
+      : truth_(truth), scorer_(scorer), smooth_(mesh, truth.picks, undivided()) {
+    counts_.n_points = static_cast<std::int64_t>(mesh.vertices.size());
+    counts_.n_picks = static_cast<std::int64_t>(picked_points(truth).size());
+  }
+
+  std::size_t size() const { return truth_.picks.size(); }
+  const Scores& counts() const { return counts_; }
+
+  void compare(Group group, Group others, MeanOfScores& mean) const {
+    GroundTruth predicted;
+    predicted.simulated = truth_.simulated;
+    for (const std::size_t k : others) predicted.picks.push_back(truth_.picks[k]);
+    if (std::all_of(predicted.picks.begin(), predicted.picks.end(),
+                    [](const auto& own) { return own.empty(); }))
+      return;
+    predicted.saliency = smooth_(others);
+    mean.add(scorer_(smooth_(group), predicted));
+  }
+
+ private:
+  const GroundTruth& truth_;
+  const GroupScorer& scorer_;
+  PickSmoother smooth_;
+  Scores counts_;  // of the mesh; no metrics
+};
+
+std::vector<std::size_t> everyone(const Participants& participants) {
+  std::vector<std::size_t> all(participants.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+// Puts a random `count` of the elements to the front, in random order (Fisher and Yates, broken off).
+void draw_to_front(std::vector<std::size_t>& elements, std::size_t count, Rng& rng) {
+  for (std::size_t i = 0; i < count; ++i)
+    std::swap(elements[i], elements[i + rng.below(elements.size() - i)]);
+}
+
+}  // namespace
+
+void check(const HsOptions& options) {
+  if (options.draws < 1)
+    throw OptionError("draws", "must be at least 1, not " + std::to_string(options.draws));
+  if (options.largest_group < 1)
+    throw OptionError("largest_group", "must be at least 1, not " + std::to_string(options.largest_group));
+}
+
+Scores one_against_rest(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer) {
+  require_participants(truth);
+  const Participants participants(mesh, truth, scorer);
+  std::vector<std::size_t> order = everyone(participants);
+  MeanOfScores mean;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    std::swap(order.front(), order[k]);
+    participants.compare(Group(order).first(1), Group(order).subspan(1), mean);
+    std::swap(order.front(), order[k]);
+  }
+  return mean.with_counts_of(participants.counts());
+}
+
+HumanCurve human_curve(const Mesh& mesh, const GroundTruth& truth, const HsOptions& options,
+                       const GroupScorer& scorer, Rng rng) {
+  check(options);
+  require_participants(truth);
+  const Participants participants(mesh, truth, scorer);
+  const std::size_t largest =
+      std::min(static_cast<std::size_t>(options.largest_group), participants.size() / 2);
+  HumanCurve curve;
+  for (std::size_t n = 1; n <= largest; ++n) {
+    std::vector<std::size_t> order = everyone(participants);
+    MeanOfScores mean;
+    for (std::int32_t draw = 0; draw < options.draws; ++draw) {
+      draw_to_front(order, 2 * n, rng);
+      participants.compare(Group(order).first(n), Group(order).subspan(n, n), mean);
+    }
+    curve.push_back(mean.with_counts_of(participants.counts()));
+  }
+  return curve;
+}
+
+}  // namespace salbench

@@ -1,0 +1,344 @@
+#include "stages/models/hs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/core/smoothing.h"
+#include "stages/ground_truth/simulation.h"
+#include "stages/matching/matching.h"
+#include "stages/metrics/metrics.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+using PicksOfAll = std::vector<std::vector<std::int32_t>>;
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+Rng draws(std::uint64_t seed = 1) { return Rng(seed, "HS", "x"); }
+
+GroundTruth truth_of(PicksOfAll picks) { return {{}, std::move(picks), false}; }
+
+// As in a run: both maps matched to one reference, then scored.
+GroupScorer matching_scorer(const Histogram& reference) {
+  return [=](const ScalarField& map, const GroundTruth& others) {
+    return score(matched(map, reference), {matched(others.saliency, reference), others.picks, false}, {},
+                 Rng(1, "scores", "x"));
+  };
+}
+
+GroupScorer matching_scorer(const Mesh& mesh, const GroundTruth& truth) {
+  return matching_scorer(normalised_histogram(smoothed_picks(mesh, truth.picks)));
+}
+
+void expect_near(const Scores& a, const Scores& b, double tolerance) {
+  EXPECT_NEAR(a.auc, b.auc, tolerance);
+  EXPECT_NEAR(a.auc_exact, b.auc_exact, tolerance);
+  EXPECT_NEAR(a.nss, b.nss, tolerance);
+  EXPECT_NEAR(a.cc, b.cc, tolerance);
+  EXPECT_NEAR(a.lcc, b.lcc, tolerance);
+  EXPECT_EQ(a.n_points, b.n_points);
+  EXPECT_EQ(a.n_picks, b.n_picks);
+}
+
+GroundTruth simulated(const Mesh& mesh, int participants) {
+  SimulationOptions options;
+  options.participants = participants;
+  return simulated_ground_truth(mesh, options, 3, "x");
+}
+
+// Participant k picks point k of a cloud without a surface, where a pick stays at its vertex: who was in a
+// group can be read off its map.
+constexpr std::size_t kCloudSize = 23;
+const Mesh kCloud{shapes::random_cloud(kCloudSize, 1), {}};
+
+GroundTruth one_pick_each(std::size_t participants) {
+  GroundTruth truth;
+  for (std::size_t k = 0; k < participants; ++k) truth.picks.push_back({static_cast<std::int32_t>(k)});
+  return truth;
+}
+
+struct Comparison {
+  std::vector<std::size_t> group, others;
+  bool operator==(const Comparison&) const = default;
+};
+
+std::vector<std::size_t> points_of(const ScalarField& map) {
+  std::vector<std::size_t> points;
+  for (std::size_t v = 0; v < map.size(); ++v)
+    if (map[v] != 0) points.push_back(v);
+  return points;
+}
+
+GroupScorer recorder(std::vector<Comparison>& comparisons) {
+  return [&](const ScalarField& map, const GroundTruth& others) {
+    comparisons.push_back({points_of(map), points_of(others.saliency)});
+    std::vector<std::size_t> picked;
+    for (const std::int32_t v : picked_points(others)) picked.push_back(static_cast<std::size_t>(v));
+    EXPECT_EQ(picked, comparisons.back().others);
+    return Scores{};
+  };
+}
+
+std::vector<Comparison> comparisons_of_curve(std::size_t participants, const HsOptions& options, Rng rng) {
+  std::vector<Comparison> comparisons;
+  human_curve(kCloud, one_pick_each(participants), options, recorder(comparisons), rng);
+  return comparisons;
+}
+
+TEST(OneAgainstRest, EqualsItsDefinition) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  const GroundTruth truth = simulated(mesh, 6);
+  const GroupScorer scorer = matching_scorer(mesh, truth);
+  SmoothingOptions sum;
+  sum.per_participant = false;
+  Scores expected{.n_points = 2562, .n_picks = static_cast<std::int64_t>(picked_points(truth).size())};
+  for (std::size_t k = 0; k < 6; ++k) {
+    GroundTruth others{{}, truth.picks, false};
+    others.picks.erase(others.picks.begin() + static_cast<std::ptrdiff_t>(k));
+    others.saliency = smoothed_picks(mesh, others.picks, sum);
+    const Scores scores = scorer(smoothed_picks(mesh, PicksOfAll{truth.picks[k]}, sum), others);
+    expected.auc += scores.auc / 6;
+    expected.auc_exact += scores.auc_exact / 6;
+    expected.nss += scores.nss / 6;
+    expected.cc += scores.cc / 6;
+    expected.lcc += scores.lcc / 6;
+  }
+  expect_near(one_against_rest(mesh, truth, scorer), expected, 1e-12);
+}
+
+TEST(OneAgainstRest, ComparesEachWithAllTheOthers) {
+  std::vector<Comparison> comparisons;
+  one_against_rest(kCloud, one_pick_each(4), recorder(comparisons));
+  EXPECT_THAT(comparisons, ElementsAre(Comparison{{0}, {1, 2, 3}}, Comparison{{1}, {0, 2, 3}},
+                                       Comparison{{2}, {0, 1, 3}}, Comparison{{3}, {0, 1, 2}}));
+}
+
+TEST(OneAgainstRest, OfTwoWhoPickTheSameIsPerfect) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  const GroundTruth truth = truth_of({{0, 1, 2, 3}, {3, 2, 1, 0}});  // far apart: corners of the icosahedron
+  const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
+  EXPECT_DOUBLE_EQ(scores.auc_exact, 1);
+  EXPECT_NEAR(scores.cc, 1, 1e-12);
+  EXPECT_GT(scores.nss, 5);
+}
+
+TEST(OneAgainstRest, OfTwoWhoPickApartIsNoBetterThanChance) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  const GroundTruth truth = truth_of({{0, 1, 2, 3}, {4, 5, 6, 7}});
+  const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
+  EXPECT_LT(scores.auc_exact, 0.5);
+  EXPECT_LT(scores.nss, 0);
+  EXPECT_LT(scores.cc, 0);
+  EXPECT_DOUBLE_EQ(scores.lcc, -scores.cc);
+}
+
+TEST(OneAgainstRest, DoesNotDependOnTheOrderOfParticipants) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  GroundTruth truth = simulated(mesh, 7);
+  const GroupScorer scorer = matching_scorer(mesh, truth);
+  const Scores before = one_against_rest(mesh, truth, scorer);
+  std::rotate(truth.picks.begin(), truth.picks.begin() + 3, truth.picks.end());
+  std::swap(truth.picks[0], truth.picks[1]);
+  for (auto& own : truth.picks) std::reverse(own.begin(), own.end());
+  expect_near(one_against_rest(mesh, truth, scorer), before, 1e-12);
+}
+
+TEST(OneAgainstRest, AParticipantWithoutPicksScoresAsAConstantMapAndIsNotPredicted) {
+  const Mesh mesh = shapes::bumpy_sphere(3);
+  const GroundTruth truth = truth_of({{0, 1}, {}});
+  const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
+  EXPECT_DOUBLE_EQ(scores.auc, 0.5);
+  EXPECT_DOUBLE_EQ(scores.auc_exact, 0.5);
+  EXPECT_EQ(scores.nss, 0);
+  EXPECT_EQ(scores.cc, 0);
+  EXPECT_EQ(scores.n_picks, 2);
+}
+
+TEST(OneAgainstRest, WhereNobodyPickedIsUndefined) {
+  const GroundTruth truth = truth_of({{}, {}, {}});
+  const auto never = [](const ScalarField&, const GroundTruth&) -> Scores {
+    ADD_FAILURE() << "there is nothing to predict";
+    return {};
+  };
+  const Scores scores = one_against_rest(shapes::tetrahedron(), truth, never);
+  for (const double value : {scores.auc, scores.auc_exact, scores.nss, scores.cc, scores.lcc})
+    EXPECT_TRUE(std::isnan(value)) << value;
+  EXPECT_EQ(scores.n_points, 4);
+  EXPECT_EQ(scores.n_picks, 0);
+}
+
+TEST(OneAgainstRest, IsTheMeanOfEachMetricOverWhereItIsDefined) {
+  int call = 0;
+  const Scores scores =
+      one_against_rest(kCloud, one_pick_each(3), [&](const ScalarField&, const GroundTruth&) {
+        ++call;
+        return Scores{.auc = call == 2 ? kUndefined : call,
+                      .auc_exact = kUndefined,
+                      .nss = -1.0 * call,
+                      .cc = call == 1 ? 0.5 : kUndefined,
+                      .lcc = 0};
+      });
+  EXPECT_EQ(scores.auc, 2);  // of 1 and 3
+  EXPECT_TRUE(std::isnan(scores.auc_exact));
+  EXPECT_EQ(scores.nss, -2);
+  EXPECT_EQ(scores.cc, 0.5);
+  EXPECT_EQ(scores.lcc, 0);
+}
+
+TEST(HumanCurve, SetsGroupsOfEverySizeAgainstEachOther) {
+  const auto comparisons = comparisons_of_curve(23, {.draws = 5, .largest_group = 11}, draws());
+  ASSERT_THAT(comparisons, SizeIs(5 * 11));
+  for (std::size_t c = 0; c < comparisons.size(); ++c) {
+    const auto& [group, others] = comparisons[c];
+    EXPECT_THAT(group, SizeIs(c / 5 + 1));
+    EXPECT_THAT(others, SizeIs(c / 5 + 1));
+    std::set<std::size_t> both(group.begin(), group.end());
+    both.insert(others.begin(), others.end());
+    EXPECT_THAT(both, SizeIs(2 * (c / 5 + 1))) << "somebody is in both groups of comparison " << c;
+  }
+}
+
+TEST(HumanCurve, DrawsEveryPairAlikeOften) {
+  std::map<std::pair<std::size_t, std::size_t>, int> count;
+  constexpr int kDraws = 12000;
+  for (const auto& [group, others] : comparisons_of_curve(4, {.draws = kDraws, .largest_group = 1}, draws()))
+    ++count[{group.at(0), others.at(0)}];
+  EXPECT_THAT(count, SizeIs(12));
+  for (const auto& [pair, n] : count)  // 1000 expected, standard deviation 30
+    EXPECT_NEAR(n, kDraws / 12, 150) << pair.first << " against " << pair.second;
+}
+
+TEST(HumanCurve, IsAFunctionOfItsSeed) {
+  const HsOptions options{.draws = 5, .largest_group = 4};
+  EXPECT_EQ(comparisons_of_curve(23, options, draws(1)), comparisons_of_curve(23, options, draws(1)));
+  EXPECT_NE(comparisons_of_curve(23, options, draws(1)), comparisons_of_curve(23, options, draws(2)));
+}
+
+TEST(HumanCurve, BeginsAlikeHoweverFarItGoes) {
+  const auto shorter = comparisons_of_curve(23, {.draws = 5, .largest_group = 3}, draws());
+  auto longer = comparisons_of_curve(23, {.draws = 5, .largest_group = 11}, draws());
+  longer.resize(shorter.size());
+  EXPECT_EQ(longer, shorter);
+}
+
+TEST(HumanCurve, EndsWhereThereAreNoTwoGroupsLeft) {
+  const auto length = [](std::size_t participants, std::int32_t largest_group) {
+    std::vector<Comparison> comparisons;
+    return human_curve(kCloud, one_pick_each(participants), {.draws = 1, .largest_group = largest_group},
+                       recorder(comparisons), draws())
+        .size();
+  };
+  EXPECT_EQ(length(2, 11), 1U);
+  EXPECT_EQ(length(3, 11), 1U);
+  EXPECT_EQ(length(22, 11), 11U);
+  EXPECT_EQ(length(23, 11), 11U);
+  EXPECT_EQ(length(21, 11), 10U);
+  EXPECT_EQ(length(23, 4), 4U);
+}
+
+TEST(HumanCurve, IsTheMeanOverTheDraws) {
+  std::vector<double> drawn;
+  const HumanCurve curve = human_curve(
+      kCloud, one_pick_each(4), {.draws = 3, .largest_group = 11},
+      [&](const ScalarField&, const GroundTruth&) {
+        drawn.push_back(std::exp2(drawn.size()));
+        return Scores{.cc = drawn.back()};
+      },
+      draws());
+  ASSERT_THAT(curve, SizeIs(2));
+  EXPECT_DOUBLE_EQ(curve[0].cc, (1 + 2 + 4) / 3.0);
+  EXPECT_DOUBLE_EQ(curve[1].cc, (8 + 16 + 32) / 3.0);
+  EXPECT_EQ(curve[1].n_points, 23);
+  EXPECT_EQ(curve[1].n_picks, 4);
+}
+
+TEST(HumanCurve, OfTwoIsOneAgainstTheOther) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  const GroundTruth truth = truth_of({{0, 1, 2, 3, 100}, {0, 1, 2, 4}});
+  // Whoever predicts whom in a draw: the correlation is symmetric.
+  const GroupScorer scorer = matching_scorer(mesh, truth);
+  const HumanCurve curve = human_curve(mesh, truth, {}, scorer, draws());
+  ASSERT_THAT(curve, SizeIs(1));
+  EXPECT_NEAR(curve[0].cc, one_against_rest(mesh, truth, scorer).cc, 1e-12);
+}
+
+TEST(HumanCurve, MoreSimulatedPeopleAgreeBetter) {
+  const Mesh mesh = shapes::bumpy_sphere(5, 0.35);
+  const GroundTruth truth = simulated(mesh, 24);
+  const HumanCurve curve = human_curve(mesh, truth, {}, matching_scorer(mesh, truth), draws());
+  ASSERT_THAT(curve, SizeIs(11));
+  for (const std::size_t n : {2U, 4U, 6U, 8U, 10U}) EXPECT_GT(curve[n].cc, curve[n - 2].cc) << "n " << n + 1;
+}
+
+TEST(HumanCurve, LeavesOutDrawsAgainstPeopleWithoutPicks) {
+  GroundTruth truth = one_pick_each(2);
+  truth.picks.push_back({});
+  std::vector<Comparison> comparisons;
+  human_curve(kCloud, truth, {.draws = 60, .largest_group = 1}, recorder(comparisons), draws());
+  EXPECT_GT(comparisons.size(), 20U);
+  EXPECT_LT(comparisons.size(), 60U);
+  int without_picks = 0;
+  for (const auto& [group, others] : comparisons) {
+    EXPECT_THAT(others, SizeIs(1));
+    without_picks += group.empty() ? 1 : 0;
+  }
+  EXPECT_GT(without_picks, 0);  // as predictors they stay: their map is constant
+}
+
+std::string error_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(HumanPerformance, DoesNotApplyToFewerThanTwoParticipants) {
+  const auto scorer = [](const ScalarField&, const GroundTruth&) { return Scores{}; };
+  const Mesh mesh = shapes::tetrahedron();
+  for (const auto& [picks, why] : std::vector<std::pair<PicksOfAll, std::string>>{
+           {{}, "there are no picks"}, {{{0, 1, 2}}, "one list of picks, of one participant or pooled"}}) {
+    const GroundTruth truth = truth_of(picks);
+    const std::string expected = "HS does not apply";
+    const std::string rest = error_of([&] { one_against_rest(mesh, truth, scorer); });
+    const std::string curve = error_of([&] { human_curve(mesh, truth, {}, scorer, draws()); });
+    EXPECT_THAT(rest, HasSubstr(expected));
+    EXPECT_THAT(rest, HasSubstr(why));
+    EXPECT_EQ(curve, rest);
+  }
+}
+
+TEST(HumanPerformance, NamesThePickThatIsNoVertex) {
+  const auto scorer = [](const ScalarField&, const GroundTruth&) { return Scores{}; };
+  const GroundTruth truth = truth_of({{0}, {4}});
+  EXPECT_THAT(error_of([&] { one_against_rest(shapes::tetrahedron(), truth, scorer); }),
+              HasSubstr("participant 1 picked vertex 4 "));
+}
+
+TEST(HsOptions, RefuseNoDrawsAndNoGroups) {
+  for (const std::int32_t wrong : {0, -3}) {
+    EXPECT_THROW(check(HsOptions{.draws = wrong}), OptionError);
+    EXPECT_THROW(check(HsOptions{.largest_group = wrong}), OptionError);
+  }
+  EXPECT_NO_THROW(check(HsOptions{}));
+}
+
+}  // namespace
+}  // namespace salbench
