@@ -182,20 +182,56 @@ struct Layout<Histogram> {
   }
 };
 
+using ScoreRow = std::array<double, 5>;
+constexpr const char* kScoreColumns = "auc, auc_exact, nss, cc, lcc; NaN where undefined";
+constexpr const char* kCountColumns = "n_points, n_picks";
+
+ScoreRow row_from(const Scores& s) { return {s.auc, s.auc_exact, s.nss, s.cc, s.lcc}; }
+Scores scores_from(const double* s, const std::int64_t* n) {
+  return {s[0], s[1], s[2], s[3], s[4], n[0], n[1]};
+}
+
 template <>
 struct Layout<Scores> {
   static constexpr std::string_view kind = "scores";
-  static Arrays write(const Scores& s) {
-    return {column<double>("scores", {s.auc, s.auc_exact, s.nss, s.cc, s.lcc}, "1",
-                           "auc, auc_exact, nss, cc, lcc; NaN where undefined"),
-            column<std::int64_t>("counts", {s.n_points, s.n_picks}, "1", "n_points, n_picks")};
+  static Arrays write(const Scores& scores) {
+    const ScoreRow row = row_from(scores);
+    return {column<double>("scores", {row.begin(), row.end()}, "1", kScoreColumns),
+            column<std::int64_t>("counts", {scores.n_points, scores.n_picks}, "1", kCountColumns)};
   }
   static Scores read(const Arrays& arrays) {
-    const auto& s = values_of<double>(arrays, "scores");
-    const auto& n = values_of<std::int64_t>(arrays, "counts");
-    if (s.size() != 5 || n.size() != 2)
+    const auto& scores = values_of<double>(arrays, "scores");
+    const auto& counts = values_of<std::int64_t>(arrays, "counts");
+    if (scores.size() != 5 || counts.size() != 2)
       throw InputError("the data sets 'scores' and 'counts' have other sizes");
-    return {s[0], s[1], s[2], s[3], s[4], n[0], n[1]};
+    return scores_from(scores.data(), counts.data());
+  }
+};
+
+// One row a size of the groups: n = 1, 2, ...
+template <>
+struct Layout<HumanCurve> {
+  static constexpr std::string_view kind = "human_curve";
+  static Arrays write(const HumanCurve& curve) {
+    std::vector<double> scores;
+    std::vector<std::int64_t> counts;
+    for (const Scores& point : curve) {
+      const ScoreRow row = row_from(point);
+      scores.insert(scores.end(), row.begin(), row.end());
+      counts.insert(counts.end(), {point.n_points, point.n_picks});
+    }
+    return {{"scores", {curve.size(), 5}, std::move(scores), "1", kScoreColumns},
+            {"counts", {curve.size(), 2}, std::move(counts), "1", kCountColumns}};
+  }
+  static HumanCurve read(const Arrays& arrays) {
+    const auto& scores = values_of<double>(arrays, "scores");
+    const auto& counts = values_of<std::int64_t>(arrays, "counts");
+    const std::size_t n = counts.size() / 2;
+    if (scores.size() != 5 * n || counts.size() != 2 * n)
+      throw InputError("the data sets 'scores' and 'counts' have other sizes");
+    HumanCurve curve;
+    for (std::size_t i = 0; i < n; ++i) curve.push_back(scores_from(&scores[5 * i], &counts[2 * i]));
+    return curve;
   }
 };
 

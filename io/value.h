@@ -10,8 +10,8 @@
 
 namespace salbench {
 
-using Value =
-    std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram, Scores>;
+using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
+                           Scores, HumanCurve>;
 
 Arrays arrays_from(const Value& value);
 

@@ -114,6 +114,53 @@ void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, co
              }});
 }
 
+// A group's map is matched like a model's, and so is the map of the others, which stands for the ground
+// truth.
+GroupScorer group_scorer(const Histogram& reference, const MetricsOptions& options, const Rng& rng) {
+  return [=](const ScalarField& map, const GroundTruth& others) {
+    const GroundTruth matched_others{matched(others.saliency, reference), others.picks, others.simulated};
+    return score(matched(map, reference), matched_others, options, rng);
+  };
+}
+
+std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
+  if (!config.simulated())
+    return [](const DatasetItem& item) { return item.picks.size() >= kFewestParticipants; };
+  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kFewestParticipants;
+  return [enough](const DatasetItem&) { return enough; };
+}
+
+// HS has no map: its scores come from the participants, who saw meshes only.
+void add_people(ChainBuilder& chain, const Config& config, const Model& model) {
+  const std::string scores = "scores." + model.name, curve = "curve." + model.name;
+  const std::vector<Input> inputs = {chain.shape("mesh"), chain.shape("ground_truth"),
+                                     ChainBuilder::reference()};
+  const auto scorer = [options = config.metrics, scores](const StageInputs& in) {
+    return group_scorer(in.get<Histogram>(2), options, Rng(in.seed, scores, in.item));
+  };
+  chain.add({.name = scores,
+             .version = model.version,
+             .kind = "scores",
+             .options = options_text(config.metrics),
+             .inputs = inputs,
+             .seeded = true,
+             .applies = has_participants(config),
+             .run = [scorer](const StageInputs& in) -> Value {
+               return one_against_rest(in.get<Mesh>(0), in.get<GroundTruth>(1), scorer(in));
+             }});
+  chain.add({.name = curve,
+             .version = model.version,
+             .kind = "human_curve",
+             .options = model.options + options_text(config.metrics),
+             .inputs = inputs,
+             .seeded = true,
+             .applies = has_participants(config),
+             .run = [scorer, curve, people = model.people](const StageInputs& in) -> Value {
+               return people(in.get<Mesh>(0), in.get<GroundTruth>(1), scorer(in),
+                             Rng(in.seed, curve, in.item));
+             }});
+}
+
 // What both kinds of shape have in common: descriptors, models, scores.
 void add_evaluation(ChainBuilder& chain, const Parts& parts, const Config& config) {
   chain.add({.name = "fpfh",
@@ -124,7 +171,8 @@ void add_evaluation(ChainBuilder& chain, const Parts& parts, const Config& confi
              .run = [options = config.fpfh](const StageInputs& in) -> Value {
                return fpfh(points_of(*in.values[0]), in.get<Normals>(1), options);
              }});
-  for (const Model& model : config.models) add_model(chain, parts, config, model);
+  for (const Model& model : config.models)
+    if (model.is_map()) add_model(chain, parts, config, model);
 }
 
 Stage mesh_ground_truth(const ChainBuilder& chain, const Config& config) {
@@ -161,6 +209,8 @@ Chain mesh_chain(const Config& config) {
                return mesh_normals(in.get<Mesh>(0), options);
              }});
   add_evaluation(chain, kMeshParts, config);
+  for (const Model& model : config.models)
+    if (!model.is_map()) add_people(chain, config, model);
   return stages;
 }
 
@@ -213,7 +263,8 @@ Catalog make_catalog(const Config& config) {
   catalog.means.push_back(
       {"reference", 1, std::string(kMeshParts.ground_truth), std::string(kScanParts.ground_truth)});
   for (const Model& model : config.models)
-    catalog.means.push_back({"mean_histogram." + model.name, 1, "map." + model.name, "map." + model.name});
+    if (model.is_map())
+      catalog.means.push_back({"mean_histogram." + model.name, 1, "map." + model.name, "map." + model.name});
   return catalog;
 }
 

@@ -45,6 +45,7 @@ struct Stage {
   bool seeded = false;           // uses random numbers: seed and item enter the key
   bool per_view = false;         // the view enters the key
   bool after_reference = false;  // needs the whole data set's ground truth first: second pass
+  std::function<bool(const DatasetItem&)> applies = {};  // to an item and its scans; empty: to every one
   std::function<Value(const StageInputs&)> run = {};
 };
 

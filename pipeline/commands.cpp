@@ -120,6 +120,7 @@ std::string val_text(const ScalarField& field) {
 std::size_t write_maps(const Setup& setup, const Plan& plan, Runner& runner, const Arguments& arguments) {
   std::size_t written = 0;
   for (const Model& model : setup.config.models) {
+    if (!model.is_map()) continue;
     const std::string name = (arguments.matched ? "matched." : "map.") + model.name;
     const fs::path folder = fs::path(arguments.to) / model.name;
     prepare_folder(folder, "--to");

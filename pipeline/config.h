@@ -10,7 +10,6 @@
 #include "io/dataset.h"
 #include "pipeline/model_catalog.h"
 #include "pipeline/section.h"
-#include "stages/core/smoothing.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/metrics/metrics.h"

@@ -1,5 +1,5 @@
-// The table of saliency models. A new model is its file pair in stages/models and one row here; its section
-// in a configuration follows from the row.
+// The table of models. A new saliency model is its file pair in stages/models and one row here; its section
+// in a configuration follows from the row. HS has a row like the others, and is scored in its own way.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "pipeline/option_text.h"
 #include "pipeline/section.h"
+#include "stages/models/hs.h"
 #include "stages/models/model.h"
 
 namespace salbench {
@@ -23,13 +24,16 @@ enum Reads : unsigned {
   kReadsSeed = 1U << 3U,   // random numbers: the key then carries seed and item
 };
 
-// A model with its options bound.
+// A model with its options bound: a map of every shape or, as HS alone, people against people on meshes.
 struct Model {
   std::string name;
   std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
   unsigned reads = 0;
   std::string options;  // canonical text
-  std::function<ScalarField(const ModelInput&)> saliency;
+  std::function<ScalarField(const ModelInput&)> saliency = {};
+  std::function<HumanCurve(const Mesh&, const GroundTruth&, const GroupScorer&, Rng)> people = {};
+
+  bool is_map() const { return saliency != nullptr; }
 };
 
 struct ModelRow {
@@ -37,6 +41,18 @@ struct ModelRow {
   // Reads the model's section over the defaults of the protocol.
   std::function<Model(const Section& section, Protocol protocol)> bind;
 };
+
+// A row of the table, from the model's one signature.
+template <class Options>
+ModelRow model_row(std::string_view name, std::int32_t version, unsigned reads,
+                   ScalarField (*saliency)(const ModelInput&, const Options&)) {
+  return {name, [=](const Section& section, Protocol protocol) {
+            auto options = preset<Options>(protocol);
+            section.read(options);
+            return Model{std::string(name), version, reads, options_text(options),
+                         [=](const ModelInput& input) { return saliency(input, options); }};
+          }};
+}
 
 std::span<const ModelRow> model_rows();
 

@@ -91,6 +91,8 @@ std::string_view text_of(Reason reason) {
       return "no ground truth";
     case Reason::unreadable:
       return "a source file cannot be read";
+    case Reason::inapplicable:
+      return "does not apply";
     default:
       return "";
   }
@@ -126,6 +128,8 @@ std::vector<ItemRef> Context::items(bool meshes) const {
 Decision decide(const Context& context, const Plan& plan, const ItemRef& item, std::size_t index,
                 const Lookup& lookup) {
   const Stage& stage = context.chain(item)[index];
+  if (stage.applies && !stage.applies(context.source(item)))
+    return {verdict_of(Verdict::absent, Reason::inapplicable), {}};
   Recipe recipe{stage.name, stage.version, stage.options, {}, {}};
   if (stage.per_view) recipe.options += fmt::format("view: {}\n", item.view);
   if (stage.seeded) recipe.seed = fmt::format("{}/{}", context.seed, context.name(item));

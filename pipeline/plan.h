@@ -35,7 +35,8 @@ enum class Reason : std::uint8_t {
   input_pending,   // waits for `because`
   input_failed,    // `because` failed
   no_ground_truth,
-  unreadable,  // a source file cannot be read
+  unreadable,    // a source file cannot be read
+  inapplicable,  // the stage has nothing to say of the item
 };
 std::string_view text_of(Reason reason);
 

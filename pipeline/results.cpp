@@ -99,6 +99,20 @@ std::vector<ResultRow> collect_results(const Config& config, const Context& cont
   return rows;
 }
 
+std::vector<HumanCurve> collect_human_curves(const Config& config, const Context& context, const Plan& plan,
+                                             Runner& runner) {
+  std::vector<HumanCurve> curves;
+  const Chain& chain = context.catalog.mesh;
+  for (const Model& model : config.models) {
+    const std::string name = "curve." + model.name;
+    if (!has_stage(chain, name)) continue;
+    const std::size_t stage = stage_index(chain, name);
+    for (const ItemRef& item : context.items(true))
+      if (plan.jobs(item)[stage].known()) curves.push_back(std::get<HumanCurve>(runner.result(item, stage)));
+  }
+  return curves;
+}
+
 Table results_table(const std::vector<ResultRow>& rows) {
   Table table{.columns = {"dataset", "item", "class", "view", "model", "auc", "auc_exact", "nss", "cc", "lcc",
                           "n_points", "n_picks"},
@@ -168,6 +182,10 @@ void write_results(const fs::path& folder, const RunRecord& record, const std::v
   write("significance.csv", significance_table(rows));
   write("mean_histograms_meshes.csv", mean_histogram_table(record.context, record.runner, true));
   write("mean_histograms_scans.csv", mean_histogram_table(record.context, record.runner, false));
+  const auto curves = collect_human_curves(record.config, record.context, record.plan, record.runner);
+  std::error_code not_there;
+  fs::remove(folder / "human_curve.csv", not_there);  // an earlier run's would pass for one of this
+  if (!curves.empty()) write("human_curve.csv", human_curve_table(curves));
   write_text_file(folder / "run.yaml", run_yaml(record));
 }
 

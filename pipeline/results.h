@@ -47,6 +47,10 @@ std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& r
 std::vector<ResultRow> collect_results(const Config& config, const Context& context, const Plan& plan,
                                        Runner& runner);
 
+// Of the meshes that HS was computed for, in their order.
+std::vector<HumanCurve> collect_human_curves(const Config& config, const Context& context, const Plan& plan,
+                                             Runner& runner);
+
 Table results_table(const std::vector<ResultRow>& rows);
 
 // dataset, model, metric, n, mean, sd, 95 % confidence interval of the mean; undefined scores are left out of
@@ -69,7 +73,8 @@ struct RunRecord {
   double seconds = 0;
 };
 
-// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and run.yaml.
+// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and run.yaml;
+// where HS was computed, human_curve.csv.
 void write_results(const std::filesystem::path& folder, const RunRecord& record,
                    const std::vector<ResultRow>& rows);
 

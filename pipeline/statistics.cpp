@@ -1,5 +1,6 @@
 #include "pipeline/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -106,6 +107,23 @@ Table significance_table(const std::vector<ResultRow>& rows) {
     for (const DatasetAndModel& of : datasets_and_models(rows))
       if (of.dataset == dataset) models.push_back(of);
     for (const Metric& metric : kMetrics) add_significance_rows(table, models, metric, rows);
+  }
+  return table;
+}
+
+Table human_curve_table(const std::vector<HumanCurve>& curves) {
+  Table table{.columns = {"n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"}, .rows = {}};
+  std::size_t longest = 0;
+  for (const HumanCurve& curve : curves) longest = std::max(longest, curve.size());
+  for (std::size_t i = 0; i < longest; ++i) {
+    for (const Metric& metric : kMetrics) {
+      std::vector<double> values;
+      for (const HumanCurve& curve : curves)
+        if (i < curve.size()) values.push_back(curve[i].*metric.value);
+      const Summary summary = summarize(values);
+      table.rows.push_back({static_cast<std::int64_t>(i + 1), metric.name, summary.n, summary.mean,
+                            summary.sd, summary.ci_low, summary.ci_high});
+    }
   }
   return table;
 }

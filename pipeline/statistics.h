@@ -16,6 +16,10 @@ Table per_class_table(const std::vector<ResultRow>& rows);
 // Holm's correction over the pairs of one data set and metric. [wilcoxon1945] [holm1979]
 Table significance_table(const std::vector<ResultRow>& rows);
 
+// n, metric, n_meshes, mean, sd, 95 % confidence interval of the mean: how well n people predict n others,
+// over the meshes that have 2n participants; n_meshes counts those where the metric is defined. [tasse2016]
+Table human_curve_table(const std::vector<HumanCurve>& curves);
+
 // bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
 // unmatched, min-max-normalised maps. [tasse2016]
 Table mean_histogram_table(const Context& context, Runner& runner, bool meshes);

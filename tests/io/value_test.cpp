@@ -55,6 +55,26 @@ TEST(Value, ScoresKeepUndefinedMetrics) {
   EXPECT_EQ(back.n_points, 100);
 }
 
+TEST(Value, HumanCurvesKeepTheirPointsInOrder) {
+  const HumanCurve curve = {{0.5, 0.6, -1, 0.25, 0.3, 100, 7}, {std::nan(""), 0.7, 2, 0.5, 0.5, 101, 8}};
+  const HumanCurve back = round_trip(curve);
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(back[0].auc, 0.5);
+  EXPECT_EQ(back[0].lcc, 0.3);
+  EXPECT_EQ(back[0].n_picks, 7);
+  EXPECT_TRUE(std::isnan(back[1].auc));
+  EXPECT_EQ(back[1].auc_exact, 0.7);
+  EXPECT_EQ(back[1].nss, 2);
+  EXPECT_EQ(back[1].n_points, 101);
+  EXPECT_TRUE(round_trip(HumanCurve{}).empty());
+}
+
+TEST(Value, AHumanCurveCutOffIsNoCurve) {
+  Arrays arrays = arrays_from(Value(HumanCurve(3)));
+  std::get<std::vector<double>>(arrays[0].values).pop_back();
+  EXPECT_THROW(value_from("human_curve", arrays), InputError);
+}
+
 TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
   EXPECT_EQ(round_trip(ScalarField{1, 2, 3}), (ScalarField{1, 2, 3}));
   EXPECT_EQ(round_trip(Normals{{0, 0, 1}}), (Normals{{0, 0, 1}}));

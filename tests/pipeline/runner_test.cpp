@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/results.h"
+#include "pipeline/statistics.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/toy_data.h"
@@ -200,6 +201,73 @@ TEST_F(RunnerTest, AGivenReferenceReplacesTheMean) {
   const auto computed = store_.take_saved();
   EXPECT_THAT(computed, SizeIs(kAll - 2));
   EXPECT_THAT(computed, Not(Contains("reference@meshes")));
+}
+
+constexpr const char* kWithPeople = "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\n";
+
+TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
+  const auto computed = run(kWithPeople);
+  EXPECT_THAT(failures_, IsEmpty());
+  std::vector<std::string> of_people;
+  for (const std::string& job : computed)
+    if (job.find(".HS@") != std::string::npos) of_people.push_back(job);
+  EXPECT_THAT(of_people, ElementsAre("curve.HS@1", "curve.HS@2", "scores.HS@1", "scores.HS@2"));
+  EXPECT_THAT(results_, HasSubstr("\nmeshes,1,human,,HS,"));
+  EXPECT_THAT(results_, HasSubstr("\nscans,1,human,0,PS,"));
+  EXPECT_THAT(results_, Not(HasSubstr("\nscans,1,human,0,HS,")));
+  EXPECT_THAT(run(kWithPeople), IsEmpty());
+}
+
+TEST_F(RunnerTest, AnOptionOfTheHumanCurveConcernsTheCurveAlone) {
+  run(kWithPeople);
+  const auto computed = run("scan: {step_degrees: 1}\nmodels: {PS: , HS: {draws: 3}}\n");
+  EXPECT_THAT(computed, ElementsAre("curve.HS@1", "curve.HS@2"));
+}
+
+TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
+  ToyRun toy(data_.path(), store_, kWithPeople);
+  toy.run();
+  const auto curves = collect_human_curves(toy.config, toy.context, toy.plan, toy.runner);
+  ASSERT_THAT(curves, SizeIs(2));
+  const Table table = human_curve_table(curves);
+  EXPECT_THAT(table.columns, ElementsAre("n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"));
+  ASSERT_THAT(table.rows, SizeIs(2 * kMetrics.size()));  // four participants: 1 and 2 against as many
+  const auto& cc_of_two = table.rows[kMetrics.size() + 3];
+  EXPECT_EQ(cc_of_two[0], Cell(std::int64_t{2}));
+  EXPECT_EQ(cc_of_two[1], Cell("cc"));
+  EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));
+  EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]), (curves[0][1].cc + curves[1][1].cc) / 2);
+}
+
+TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
+  for (const char* participant : {"1", "2", "3"})
+    std::filesystem::remove(data_ / "RawData" / ("2_" + std::string(participant) + ".pid"));
+  ToyRun toy(data_.path(), store_, kWithPeople);
+  const auto job = [&](std::size_t family) {
+    return toy.plan.families[family].mesh[stage_index(toy.catalog.mesh, "scores.HS")];
+  };
+  EXPECT_TRUE(job(0).open());
+  EXPECT_EQ(job(1).verdict, Verdict::absent);
+  EXPECT_EQ(job(1).reason, Reason::inapplicable);
+  toy.run();
+  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  const std::string results =
+      to_csv(results_table(collect_results(toy.config, toy.context, toy.plan, toy.runner)));
+  EXPECT_THAT(results, HasSubstr("\nmeshes,1,human,,HS,"));
+  EXPECT_THAT(results, HasSubstr("\nmeshes,2,human,,PS,"));
+  EXPECT_THAT(results, Not(HasSubstr("\nmeshes,2,human,,HS,")));
+}
+
+TEST_F(RunnerTest, OfSimulatedPeopleThereMustBeTwoToo) {
+  const auto with = [](int participants) {
+    return fmt::format(
+        "dataset: {{participants: simulated, scans: false}}\nsimulation: {{participants: {}}}\n"
+        "models: {{HS: {{draws: 2}}}}\n",
+        participants);
+  };
+  EXPECT_THAT(run(with(2)), Contains("scores.HS@1"));
+  EXPECT_THAT(run(with(1)), Not(Contains("scores.HS@1")));  // though there are .pid files of four
+  EXPECT_THAT(failures_, IsEmpty());
 }
 
 // A store that is full must end the run at once, not item by item.
