@@ -5,22 +5,12 @@
 #include "stages/models/cs.h"
 #include "stages/models/hs.h"
 #include "stages/models/ls.h"
+#include "stages/models/ms.h"
 #include "stages/models/ps.h"
 #include "stages/models/rs.h"
 
 namespace salbench {
 namespace {
-
-template <class Options>
-ModelRow row(std::string_view name, std::int32_t version, unsigned reads,
-             ScalarField (*saliency)(const ModelInput&, const Options&)) {
-  return {name, [=](const Section& section, Protocol protocol) {
-            auto options = preset<Options>(protocol);
-            section.read(options);
-            return Model{std::string(name), version, reads, options_text(options),
-                         [=](const ModelInput& input) { return saliency(input, options); }};
-          }};
-}
 
 ModelRow row_of_people(std::string_view name, std::int32_t version) {
   return {name, [=](const Section& section, Protocol protocol) {
@@ -38,11 +28,12 @@ ModelRow row_of_people(std::string_view name, std::int32_t version) {
 
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
-      row("LS", 1, kReadsNormals | kReadsFpfh, ls_saliency),
-      row("CS", 1, kReadsNormals, cs_saliency),
-      row("PS", 1, kReadsFpfh, ps_saliency),
+      model_row("LS", 1, kReadsNormals | kReadsFpfh, ls_saliency),
+      model_row("CS", 1, kReadsNormals, cs_saliency),
+      model_row("PS", 1, kReadsFpfh, ps_saliency),
+      model_row("MS", 1, kReadsFaces, ms_saliency),
       row_of_people("HS", 1),
-      row("RS", 1, kReadsSeed, rs_saliency),
+      model_row("RS", 1, kReadsSeed, rs_saliency),
   };
   return rows;
 }

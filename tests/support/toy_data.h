@@ -48,7 +48,11 @@ inline constexpr const char* kToyConfig = "scan: {step_degrees: 1}\nmodels: {PS:
 struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, const std::string& yaml = kToyConfig,
          const std::string& items = "")
-      : config(read_config(Section::from_text(yaml, "toy.yaml"), "toy")),
+      : ToyRun(root, the_store, read_config(Section::from_text(yaml, "toy.yaml"), "toy"), items) {}
+
+  ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
+         const std::string& items = "")
+      : config(std::move(the_config)),
         catalog(make_catalog(config)),
         workload(make_workload(find_dataset(root, config.dataset.layout), items)),
         context{catalog, workload, config.seed},
