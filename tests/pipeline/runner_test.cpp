@@ -239,6 +239,20 @@ TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]), (curves[0][1].cc + curves[1][1].cc) / 2);
 }
 
+TEST_F(RunnerTest, AHumanCurveOfAnEarlierRunIsNotLeftBehind) {
+  TemporaryFolder out;
+  const auto run_and_write = [&](const std::string& yaml) {
+    ToyRun toy(data_.path(), store_, yaml);
+    toy.run();
+    write_results(out.path(), {toy.config, toy.context, toy.plan, toy.runner},
+                  collect_results(toy.config, toy.context, toy.plan, toy.runner));
+    return std::filesystem::exists(out / "human_curve.csv");
+  };
+  EXPECT_TRUE(run_and_write(kWithPeople));
+  EXPECT_THAT(read_file(out / "human_curve.csv"), HasSubstr("n,metric,n_meshes,mean,"));
+  EXPECT_FALSE(run_and_write(kToyConfig));
+}
+
 TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
   for (const char* participant : {"1", "2", "3"})
     std::filesystem::remove(data_ / "RawData" / ("2_" + std::string(participant) + ".pid"));
