@@ -1,0 +1,250 @@
+// Outputs may change only with a version: this is what keeps a cache honest from one commit to the next.
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/io/temporary_folder.h"
+#include "tests/pipeline/golden_table.h"
+#include "tests/support/memory_store.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// --- the rules -----------------------------------------------------------------------------------------
+
+GoldenRow sample_row(const std::string& stage, double mean = 2, std::int32_t version = 1) {
+  return {"published", stage, version, "mesh", "saliency", "0a", {10, 10, mean, 1, 2.5}};
+}
+
+const std::vector<std::pair<std::string, std::string>> kInputs = {{"published/fpfh", "published/normals"},
+                                                                  {"published/map", "published/fpfh"}};
+const std::vector<GoldenRow> kGolden = {sample_row("normals"), sample_row("fpfh"), sample_row("map")};
+
+TEST(GoldenRules, TheSameOutputIsNoChangeNorIsItsRounding) {
+  EXPECT_THAT(golden_changes(kGolden, kGolden, kInputs), IsEmpty());
+  std::vector<GoldenRow> now = kGolden;
+  now[1].fingerprint.mean += 1e-7;
+  EXPECT_THAT(golden_changes(now, kGolden, kInputs), IsEmpty());
+}
+
+TEST(GoldenRules, AnotherOutputUnderTheSameVersionIsForbidden) {
+  const std::vector<GoldenRow> now = {sample_row("normals"), sample_row("fpfh", 2.00001),
+                                      sample_row("map", 3)};
+  const auto changes = golden_changes(now, kGolden, kInputs);
+  ASSERT_THAT(changes, SizeIs(2));
+  for (const GoldenChange& change : changes) {
+    EXPECT_TRUE(change.forbidden);
+    EXPECT_THAT(change.what, HasSubstr("raise the stage's version"));
+  }
+  EXPECT_THAT(changes[0].what, HasSubstr("published/fpfh/mesh"));
+}
+
+TEST(GoldenRules, ARaisedVersionOrOtherOptionsExcuseTheStageAndWhatReadsIt) {
+  std::vector<GoldenRow> now = {sample_row("normals", 2, 2), sample_row("fpfh", 3), sample_row("map", 3)};
+  auto changes = golden_changes(now, kGolden, kInputs);
+  ASSERT_THAT(changes, SizeIs(3));
+  for (const GoldenChange& change : changes) EXPECT_FALSE(change.forbidden) << change.what;
+
+  now = {sample_row("normals", 3), sample_row("fpfh", 3), sample_row("map", 3)};
+  now[1].options = "0b";
+  changes = golden_changes(now, kGolden, kInputs);
+  ASSERT_THAT(changes, SizeIs(3));
+  EXPECT_TRUE(changes[0].forbidden);  // nothing excuses what comes before
+  EXPECT_FALSE(changes[1].forbidden);
+  EXPECT_FALSE(changes[2].forbidden);
+}
+
+TEST(GoldenRules, NewAndVanishedOutputsAreChanges) {
+  const std::vector<GoldenRow> now = {sample_row("normals"), sample_row("fpfh"), sample_row("other")};
+  const auto changes = golden_changes(now, kGolden, kInputs);
+  ASSERT_THAT(changes, SizeIs(2));
+  EXPECT_EQ(changes[0].what, "published/other/mesh/saliency is new");
+  EXPECT_EQ(changes[1].what, "published/map/mesh/saliency is no longer computed");
+}
+
+TEST(GoldenRules, AFingerprintSeesEachValueAndTheOrder) {
+  const auto print = [](const std::vector<double>& values) {
+    FingerprintMaker maker;
+    maker.add(values);
+    return maker.result();
+  };
+  const Fingerprint base = print({1, 2, 3, 4});
+  EXPECT_EQ(base.count, 4);
+  EXPECT_DOUBLE_EQ(base.mean, 2.5);
+  EXPECT_DOUBLE_EQ(base.sd, std::sqrt(1.25));
+  EXPECT_TRUE(agree(print({1, 2, 3, 4 + 1e-9}), base));
+  EXPECT_FALSE(agree(print({1, 2, 3, 4.0001}), base));
+  EXPECT_FALSE(agree(print({1, 3, 2, 4}), base));
+  EXPECT_FALSE(agree(print({1, 2, 3}), base));
+  EXPECT_FALSE(agree(print({1, 2, 3, 4, std::nan("")}), base));
+}
+
+TEST(GoldenRules, TheTableReadsBackAsItWasWritten) {
+  const auto back = golden_rows(parse_csv(to_csv(golden_table(kGolden)), "stages.csv"));
+  ASSERT_THAT(back, SizeIs(3));
+  EXPECT_THAT(golden_changes(back, kGolden, kInputs), IsEmpty());
+  EXPECT_EQ(to_csv(golden_table(back)), to_csv(golden_table(kGolden)));
+}
+
+// --- the outputs ---------------------------------------------------------------------------------------
+
+// Keeps what passes on its way into a store.
+class RecordingStore final : public Store {
+ public:
+  struct Record {
+    Recipe recipe;
+    std::string item;
+    Arrays arrays;
+  };
+
+  std::optional<Digest> find(std::string_view stage, const Digest& key) const override {
+    return store_.find(stage, key);
+  }
+  bool has_item(std::string_view stage, std::string_view item) const override {
+    return store_.has_item(stage, item);
+  }
+  std::optional<Digest> find_now(std::string_view stage, const Digest& key) override {
+    return store_.find_now(stage, key);
+  }
+  std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
+    return store_.load(stage, key);
+  }
+  Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
+              const ArtefactNote& note) override {
+    {
+      const std::lock_guard lock(mutex_);
+      records_.push_back({recipe, note.item, arrays});
+    }
+    return store_.save(recipe, kind, arrays, note);
+  }
+
+  // By stage and item, so in no order of threads.
+  std::vector<Record> records() const {
+    std::vector<Record> sorted = records_;
+    std::sort(sorted.begin(), sorted.end(), [](const Record& a, const Record& b) {
+      return a.recipe.stage != b.recipe.stage ? a.recipe.stage < b.recipe.stage
+                                              : natural_less(a.item, b.item);
+    });
+    return sorted;
+  }
+
+ private:
+  MemoryStore store_;
+  std::mutex mutex_;
+  std::vector<Record> records_;
+};
+
+struct Outputs {
+  std::vector<GoldenRow> rows;
+  std::vector<std::pair<std::string, std::string>> inputs;
+};
+
+std::string options_digest(const Recipe& recipe) {
+  Hasher hasher;
+  hasher.add(recipe.options);
+  hasher.add(recipe.seed);
+  return hasher.digest().hex().substr(0, 8);
+}
+
+// The arrays of all items of one kind are one sequence of values to the fingerprint.
+void collect(const std::string& protocol, const std::vector<RecordingStore::Record>& records,
+             Outputs& outputs) {
+  std::map<std::string, std::pair<GoldenRow, FingerprintMaker>> by_subject;
+  for (const auto& [recipe, item, arrays] : records) {
+    const bool is_scan = item == "scans" || item.find('_') != item.npos;
+    for (const Array& array : arrays) {
+      GoldenRow row{protocol,
+                    recipe.stage,
+                    recipe.stage_version,
+                    is_scan ? "scan" : "mesh",
+                    array.name,
+                    options_digest(recipe),
+                    {}};
+      const std::string subject = row.subject();
+      by_subject.try_emplace(subject, std::move(row), FingerprintMaker())
+          .first->second.second.add(array.values);
+    }
+  }
+  for (auto& [subject, entry] : by_subject) {
+    entry.first.fingerprint = entry.second.result();
+    outputs.rows.push_back(std::move(entry.first));
+  }
+}
+
+// What each stage reads. The inputs of a mean are named after items: it stands on the stages it averages.
+void collect_inputs(const std::string& protocol, const ToyRun& toy, Outputs& outputs) {
+  const std::string prefix = protocol + "/";
+  for (const Chain* chain : {&toy.catalog.mesh, &toy.catalog.scan}) {
+    for (const Stage& stage : *chain) {
+      for (const Input& input : stage.inputs) {
+        const std::string& read = input.from == Input::From::reference ? toy.catalog.means[kReference].name
+                                  : input.from == Input::From::mesh    ? toy.catalog.mesh[input.stage].name
+                                                                       : (*chain)[input.stage].name;
+        outputs.inputs.emplace_back(prefix + stage.name, prefix + read);
+      }
+    }
+  }
+  for (const MeanHistogram& mean : toy.catalog.means)
+    for (const std::string& read : {mean.of_mesh, mean.of_scan})
+      outputs.inputs.emplace_back(prefix + mean.name, prefix + read);
+}
+
+void expect_every_stage(const std::string& protocol, const Catalog& catalog, const Outputs& outputs) {
+  const auto expect_rows = [&](const std::string& stage, const char* shape) {
+    EXPECT_TRUE(std::any_of(outputs.rows.begin(), outputs.rows.end(),
+                            [&](const GoldenRow& row) {
+                              return row.protocol == protocol && row.stage == stage && row.shape == shape;
+                            }))
+        << stage << " did not run on a " << shape << ": the toy data must reach every stage";
+  };
+  for (const Stage& stage : catalog.mesh) expect_rows(stage.name, "mesh");
+  for (const Stage& stage : catalog.scan) expect_rows(stage.name, "scan");
+}
+
+// Large enough for what works on part of a shape only: the simplification of MS begins at 3000 faces.
+Outputs toy_outputs() {
+  const TemporaryFolder data;
+  write_toy_item(data.path(), "1", shapes::bumpy_sphere(4, 0.3));
+  write_toy_item(data.path(), "2", shapes::bumpy_sphere(3));
+  Outputs outputs;
+  for (const std::string protocol : {"published", "text"}) {
+    RecordingStore store;
+    ToyRun toy(data.path(), store, "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\n");
+    toy.run();
+    for (const Failure& failure : toy.runner.failures())
+      ADD_FAILURE() << toy.context.name(failure.item) << ": " << failure.stage << ": " << failure.cause;
+    collect(protocol, store.records(), outputs);
+    collect_inputs(protocol, toy, outputs);
+    expect_every_stage(protocol, toy.catalog, outputs);
+  }
+  return outputs;
+}
+
+TEST(Golden, NoOutputChangesUnderTheSameVersion) {
+  const fs::path file = SALBENCH_GOLDEN_TABLE;
+  const std::vector<GoldenRow> golden =
+      fs::exists(file) ? golden_rows(read_csv(file)) : std::vector<GoldenRow>{};
+  const Outputs outputs = toy_outputs();
+  const bool update = std::getenv("SALBENCH_UPDATE_GOLDEN") != nullptr;
+  for (const GoldenChange& change : golden_changes(outputs.rows, golden, outputs.inputs)) {
+    if (change.forbidden)
+      ADD_FAILURE() << change.what;
+    else if (!update)
+      ADD_FAILURE() << change.what << ": run scripts/golden";
+  }
+  if (update && !HasFailure()) write_text_file(file, to_csv(golden_table(outputs.rows)));
+}
+
+}  // namespace
+}  // namespace salbench
