@@ -1,0 +1,73 @@
+#include "pipeline/session.h"
+
+#include <algorithm>
+#include <thread>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "pipeline/results.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Keeps the models that `--models` names.
+void select_models(Config& config, const std::string& list) {
+  std::vector<std::string_view> known;
+  for (const Model& model : config.models) known.push_back(model.name);
+  const std::vector<std::string> wanted = split_list(list);
+  for (const std::string& name : wanted) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw ConfigError(fmt::format("--models {}: the configuration has no model '{}'; it has {}", list, name,
+                                  fmt::join(known, ", ")));
+  }
+  if (!wanted.empty())
+    std::erase_if(config.models, [&](const Model& model) {
+      return std::find(wanted.begin(), wanted.end(), model.name) == wanted.end();
+    });
+}
+
+Config configuration(const Arguments& arguments) {
+  Config config =
+      read_config(Section::from_file(arguments.config), fs::path(arguments.config).stem().string());
+  select_models(config, arguments.models);
+  if (!arguments.data.empty()) config.data = arguments.data;
+  if (!arguments.cache.empty()) config.cache = arguments.cache;
+  if (!arguments.output.empty()) config.output = arguments.output;
+  if (config.data.empty())
+    throw ConfigError(
+        fmt::format("{}: names no data set: give --data DIR, or a key 'data'", arguments.config));
+  return config;
+}
+
+}  // namespace
+
+int thread_count(const Arguments& arguments) {
+  if (arguments.threads > 0) return arguments.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+Setup::Setup(const Arguments& arguments)
+    : config(configuration(arguments)),
+      catalog(make_catalog(config)),
+      workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items)),
+      context{catalog, workload, config.seed},
+      cache(config.cache.empty() ? "salbench-cache" : config.cache),
+      output(config.output.empty() ? fs::path("salbench-out") / config.name : fs::path(config.output)) {
+  if (!arguments.reference.empty()) context.given_reference = read_reference(arguments.reference);
+  context.attributes = {{"protocol", std::string(name_of(config.protocol))}};
+  if (config.simulated()) context.attributes.emplace_back("participants", std::string(kSimulatedNote));
+  for (const std::string& note : workload.notes) spdlog::warn("{}", note);
+}
+
+Session::Session(const Arguments& arguments, const std::atomic<bool>& stop)
+    : setup(arguments),
+      store(setup.cache, Access::read_write),
+      plan(make_plan(setup.context, store)),
+      progress(arguments.quiet ? no_progress() : terminal_progress()),
+      runner(setup.context, plan, store, *progress, stop) {}
+
+}  // namespace salbench
