@@ -241,6 +241,12 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   return content;
 }
 
+std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& key) const {
+  const std::shared_lock lock(impl_->mutex);
+  const Entry* entry = impl_->entry(stage, key);
+  return entry == nullptr ? std::nullopt : std::optional(impl_->path(stage, key, *entry));
+}
+
 std::vector<FolderStore::Usage> FolderStore::usage() const {
   const std::shared_lock lock(impl_->mutex);
   std::vector<Usage> result;

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ class FolderStore final : public Store {
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override;
   Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
               const ArtefactNote& note) override;
+
+  // Where an artefact lies, for who links to it; nothing where there is none.
+  std::optional<std::filesystem::path> path(std::string_view stage, const Digest& key) const;
 
   struct Usage {
     std::string stage;

@@ -86,6 +86,8 @@ void print_status(const Setup& setup, const Plan& plan, const FolderStore& store
              setup.workload.families.size(), setup.config.models.size(), setup.cache.string());
 }
 
+}  // namespace
+
 ExitStatus interrupted_status(const Arguments& arguments) {
   fmt::print(stderr, "\ninterrupted; everything finished so far is kept. To go on:\n  {}\n",
              arguments.command_line);
@@ -96,8 +98,6 @@ ExitStatus finished_status(const Session& session) {
   print_failures(session.setup, session.runner.failures());
   return session.runner.failures().empty() ? kAllDone : kSomeFailed;
 }
-
-}  // namespace
 
 ExitStatus run_command(const Arguments& arguments, const std::atomic<bool>& stop) {
   const auto started = std::chrono::steady_clock::now();
