@@ -44,6 +44,71 @@ TEST(Hdf5File, ReadsBackWhatWasWritten) {
   expect_equal(hdf5_content(hdf5_image(content), "image"), content);
 }
 
+// A file with everything in it that a file may hold, in the order it is read back.
+Hdf5Content nested() {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  return {{{"52/fpfh/fpfh", {1, 2}, std::vector<float>{0.5F, 2}, "1", "rows"}},
+          {{"program", std::string("x")}},
+          {{"52", {{"class", std::string("cup")}, {"view", std::int64_t{3}}}},
+           {"52/empty", {{"why", std::string("nothing else implies it")}}},
+           {"52/fpfh/fpfh", {{"seconds", 0.5}}}},
+          {{"scores",
+            {{"item", "auc", "n"},
+             {{"52", 0.25, std::int64_t{7}},
+              {"größer", -kNan, std::int64_t{-1}},
+              {"", 1e-300, std::int64_t{1} << 40}}},
+            "a row an item"}},
+          {{"53/fpfh", "../cache/fpfh/a b.h5", "/"}}};
+}
+
+TEST(Hdf5File, GroupsTablesAndLinksComeBack) {
+  const Hdf5Content content = nested();
+  const Hdf5Content back = hdf5_content(hdf5_image(content), "image");
+  expect_equal(back, content);
+  ASSERT_EQ(back.attributes_of.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(back.attributes_of[i].object, content.attributes_of[i].object);
+    EXPECT_EQ(back.attributes_of[i].attributes, content.attributes_of[i].attributes);
+  }
+  ASSERT_EQ(back.tables.size(), 1U);
+  EXPECT_EQ(back.tables[0].name, "scores");
+  EXPECT_EQ(back.tables[0].description, "a row an item");
+  EXPECT_EQ(to_csv(back.tables[0].table), to_csv(content.tables[0].table));
+  ASSERT_EQ(back.links.size(), 1U);
+  EXPECT_EQ(back.links[0].name, "53/fpfh");
+  EXPECT_EQ(back.links[0].file, "../cache/fpfh/a b.h5");
+  EXPECT_EQ(back.links[0].object, "/");
+}
+
+TEST(Hdf5File, NestedContentGivesEqualBytesToo) { EXPECT_EQ(hdf5_image(nested()), hdf5_image(nested())); }
+
+TEST(Hdf5File, TablesWithoutRowsKeepTheirColumns) {
+  const Hdf5Content back = hdf5_content(hdf5_image({{}, {}, {}, {{"t", {{"a", "b"}, {}}, ""}}, {}}), "image");
+  ASSERT_EQ(back.tables.size(), 1U);
+  EXPECT_EQ(back.tables[0].table.columns, (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(back.tables[0].table.rows.empty());
+}
+
+TEST(Hdf5File, ColumnsThatMixTypesAreRefused) {
+  const Hdf5Table mixed{"t", {{"a"}, {{"x"}, {0.5}}}, ""};
+  EXPECT_THROW(hdf5_image({{}, {}, {}, {mixed}, {}}), std::logic_error);
+}
+
+TEST(Hdf5File, TwoThingsOfOneNameAreRefused) {
+  const Array a{"a", {1}, std::vector<double>{1}, "1", ""};
+  EXPECT_THROW(hdf5_image({{a, a}, {}}), std::runtime_error);
+  EXPECT_THROW(hdf5_image({{a}, {}, {}, {}, {{"a", "other.h5", "/"}}}), std::runtime_error);
+}
+
+// The mean over 4800 scans names as many inputs.
+TEST(Hdf5File, AttributesMayBeLong) {
+  const std::string inputs(250'000, 'x');
+  const Bytes image = hdf5_image({{}, {{"inputs", inputs}}});
+  EXPECT_EQ(image, hdf5_image({{}, {{"inputs", inputs}}}));
+  const Hdf5Content back = hdf5_content(image, "image");
+  EXPECT_EQ(*find_attribute(back.attributes, "inputs"), AttributeValue(inputs));
+}
+
 TEST(Hdf5File, EqualContentGivesEqualBytes) { EXPECT_EQ(hdf5_image(sample()), hdf5_image(sample())); }
 
 TEST(Hdf5File, CompressesDescriptors) { EXPECT_LT(hdf5_image(sample()).size(), 5000U * 33 * 4 * 6 / 10); }
