@@ -7,6 +7,7 @@
 
 #include "io/ground_truth_file.h"
 #include "io/mesh_file.h"
+#include "pipeline/given_maps.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"
 #include "stages/core/smoothing.h"
@@ -75,13 +76,24 @@ struct Parts {
 constexpr Parts kMeshParts{"mesh", "normals", "mesh", "ground_truth"};
 constexpr Parts kScanParts{"scan", "scan_normals", "surface", "scan_ground_truth"};
 
-void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, const Model& model) {
-  const std::string map = "map." + model.name, matched_map = "matched." + model.name;
+// A map from outside in place of a computed one. The points are read for their number alone.
+void add_given_map(ChainBuilder& chain, const Parts& parts, const Model& model, std::string stage) {
+  chain.add({.name = std::move(stage),
+             .version = model.version,
+             .kind = "field",
+             .inputs = {chain.shape(parts.points)},
+             .source = Source::map_file,
+             .run = [maps = model.given](const StageInputs& in) -> Value {
+               return maps->read(in.item, points_of(*in.values[0]).size());
+             }});
+}
+
+void add_map(ChainBuilder& chain, const Parts& parts, const Model& model, std::string stage) {
   std::vector<Input> inputs = {chain.shape(parts.points)};
   if ((model.reads & kReadsNormals) != 0) inputs.push_back(chain.shape(parts.normals));
   if ((model.reads & kReadsFaces) != 0) inputs.push_back(chain.shape(parts.surface));
   if ((model.reads & kReadsFpfh) != 0) inputs.push_back(chain.shape("fpfh"));
-  chain.add({.name = map,
+  chain.add({.name = std::move(stage),
              .version = model.version,
              .kind = "field",
              .options = model.options,
@@ -95,13 +107,25 @@ void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, co
                if ((model.reads & kReadsFpfh) != 0) input.fpfh = &in.get<Descriptors>(next++);
                return model.saliency(input);
              }});
-  chain.add({.name = matched_map,
-             .version = 1,
-             .kind = "field",
-             .inputs = {chain.shape(map), ChainBuilder::reference()},
-             .run = [](const StageInputs& in) -> Value {
-               return matched(in.get<ScalarField>(0), in.get<Histogram>(1));
-             }});
+}
+
+void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, const Model& model) {
+  const std::string map = "map." + model.name, matched_map = "matched." + model.name;
+  if (model.given && model.given->matched) {
+    add_given_map(chain, parts, model, matched_map);
+  } else {
+    if (model.given)
+      add_given_map(chain, parts, model, map);
+    else
+      add_map(chain, parts, model, map);
+    chain.add({.name = matched_map,
+               .version = 1,
+               .kind = "field",
+               .inputs = {chain.shape(map), ChainBuilder::reference()},
+               .run = [](const StageInputs& in) -> Value {
+                 return matched(in.get<ScalarField>(0), in.get<Histogram>(1));
+               }});
+  }
   chain.add({.name = "scores." + model.name,
              .version = 1,
              .kind = "scores",
@@ -263,7 +287,7 @@ Catalog make_catalog(const Config& config) {
   catalog.means.push_back(
       {"reference", 1, std::string(kMeshParts.ground_truth), std::string(kScanParts.ground_truth)});
   for (const Model& model : config.models)
-    if (model.is_map())
+    if (model.is_map() && !(model.given && model.given->matched))
       catalog.means.push_back({"mean_histogram." + model.name, 1, "map." + model.name, "map." + model.name});
   return catalog;
 }

@@ -20,7 +20,7 @@ struct Input {
   std::size_t stage = 0;  // index in that chain
 };
 
-enum class Source : std::uint8_t { none, mesh_file, truth_files };
+enum class Source : std::uint8_t { none, mesh_file, truth_files, map_file };
 
 struct StageInputs {
   std::vector<const Value*> values;  // in the order of the row's inputs

@@ -86,6 +86,10 @@ void print_status(const Setup& setup, const Plan& plan, const FolderStore& store
              setup.workload.families.size(), setup.config.models.size(), setup.cache.string());
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 }  // namespace
 
 ExitStatus interrupted_status(const Arguments& arguments) {
@@ -100,19 +104,18 @@ ExitStatus finished_status(const Session& session) {
 }
 
 ExitStatus run_command(const Arguments& arguments, const std::atomic<bool>& stop) {
-  const auto started = std::chrono::steady_clock::now();
   Session session(arguments, stop);
+  return run_session(session, arguments, stop);
+}
+
+ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
   prepare_output(setup.output);
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
-  const RunRecord record{setup.config,
-                         setup.context,
-                         session.plan,
-                         session.runner,
-                         thread_count(arguments),
-                         std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count()};
+  const RunRecord record{setup.config,   setup.context,           session.plan,
+                         session.runner, thread_count(arguments), seconds_since(session.started)};
   const std::vector<ResultRow> rows =
       collect_results(setup.config, setup.context, session.plan, session.runner);
   write_results(setup.output, record, rows);

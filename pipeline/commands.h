@@ -21,6 +21,9 @@ ExitStatus maps_command(const Arguments& arguments, const std::atomic<bool>& sto
 ExitStatus plan_command(const Arguments& arguments);
 ExitStatus status_command(const Arguments& arguments);
 
+// Carries a session out and writes the tables.
+ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop);
+
 // How a verb that computes ends: each says on stderr what the user must know.
 ExitStatus interrupted_status(const Arguments& arguments);
 ExitStatus finished_status(const Session& session);  // whether all succeeded

@@ -73,7 +73,7 @@ std::string config_yaml(const Config& config) {
   });
   yaml += "models:\n";
   for (const Model& model : config.models)
-    yaml += fmt::format("  {}:\n{}", model.name, indented(model.options, "    "));
+    if (!model.given) yaml += fmt::format("  {}:\n{}", model.name, indented(model.options, "    "));
   return yaml;
 }
 

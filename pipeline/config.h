@@ -62,7 +62,8 @@ struct Config {
 // Throws ConfigError: "file:line: key what is wrong".
 Config read_config(const Section& root, const std::string& name);
 
-// The complete configuration as YAML that read_config reads back as the same.
+// The complete configuration as YAML that read_config reads back as the same, but for models with given maps,
+// which no configuration names.
 std::string config_yaml(const Config& config);
 
 }  // namespace salbench

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "pipeline/commands.h"
+#include "pipeline/evaluate.h"
 #include "stages/core/errors.h"
 
 namespace {
@@ -77,6 +78,17 @@ int dispatch(int argc, char** argv) {
   maps->add_option("--models", arguments.models, "only these, such as LS,PS");
   maps->add_option("--to", arguments.to, "folder that the maps are written to")->required();
   maps->add_flag("--matched", arguments.matched, "after histogram matching");
+  EvaluateOptions evaluated;
+  CLI::App* evaluate = add_verb(
+      app, "evaluate", "a run that also scores saliency maps of your own, made by any program", arguments);
+  evaluate
+      ->add_option("--maps", evaluated.maps,
+                   "folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; one value a line), or an "
+                   "HDF5 file with a data set ITEM")
+      ->required();
+  evaluate->add_option("--name", evaluated.name, "what to call them in the tables")->required();
+  evaluate->add_option("--models", arguments.models, "beside these models only, such as LS,PS");
+  evaluate->add_flag("--matched", evaluated.matched, "the values are histogram-matched already");
   CLI::App* plan =
       add_verb(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
   add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
@@ -87,6 +99,7 @@ int dispatch(int argc, char** argv) {
   }
   if (run->parsed()) return run_command(arguments, interrupted);
   if (maps->parsed()) return maps_command(arguments, interrupted);
+  if (evaluate->parsed()) return evaluate_command(arguments, evaluated, interrupted);
   return plan->parsed() ? plan_command(arguments) : status_command(arguments);
 }
 

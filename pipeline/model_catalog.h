@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 
 namespace salbench {
 
+struct GivenMaps;  // pipeline/given_maps.h
+
 // What a model reads beside the points: the parts of ModelInput that are filled, and the stages it waits for.
 enum Reads : unsigned {
   kReadsPoints = 0,
@@ -24,16 +27,19 @@ enum Reads : unsigned {
   kReadsSeed = 1U << 3U,   // random numbers: the key then carries seed and item
 };
 
-// A model with its options bound: a map of every shape or, as HS alone, people against people on meshes.
+// A model with its options bound: a map of every shape, computed or given, or, as HS alone, people against
+// people on meshes.
 struct Model {
   std::string name;
   std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
   unsigned reads = 0;
-  std::string options;  // canonical text
+  std::string options = {};  // canonical text
   std::function<ScalarField(const ModelInput&)> saliency = {};
   std::function<HumanCurve(const Mesh&, const GroundTruth&, const GroupScorer&, Rng)> people = {};
 
-  bool is_map() const { return saliency != nullptr; }
+  std::shared_ptr<const GivenMaps> given = {};
+
+  bool is_map() const { return saliency != nullptr || given != nullptr; }
 };
 
 struct ModelRow {

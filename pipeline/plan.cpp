@@ -43,7 +43,7 @@ std::optional<Job> stopped_by(const Job& input, std::size_t index) {
     case Verdict::done:
       return {};
     case Verdict::absent:
-      return verdict_of(Verdict::absent, Reason::no_ground_truth, index);
+      return verdict_of(Verdict::absent, input.reason, index);
     case Verdict::failed:
     case Verdict::blocked:
       return verdict_of(Verdict::blocked, Reason::input_failed, index);
@@ -53,10 +53,13 @@ std::optional<Job> stopped_by(const Job& input, std::size_t index) {
 }
 
 // The files that a stage reads join its inputs; nothing where they allow it to go on.
-std::optional<Job> add_sources(const Family& family, const Stage& stage, Recipe& recipe) {
+std::optional<Job> add_sources(const Context& context, const ItemRef& item, const Stage& stage,
+                               Recipe& recipe) {
   if (stage.source == Source::none) return {};
-  const auto& files = family.sources(stage.source == Source::mesh_file);
-  if (files.empty()) return verdict_of(Verdict::absent, Reason::no_ground_truth);
+  const std::vector<SourceDigest>& files = sources_of(context, item, stage.source);
+  if (files.empty())
+    return verdict_of(Verdict::absent,
+                      stage.source == Source::map_file ? Reason::not_given : Reason::no_ground_truth);
   for (const SourceDigest& file : files) {
     if (!file.digest) return verdict_of(Verdict::compute, Reason::unreadable);
     recipe.inputs.emplace_back(file.name, *file.digest);
@@ -93,6 +96,8 @@ std::string_view text_of(Reason reason) {
       return "a source file cannot be read";
     case Reason::inapplicable:
       return "does not apply";
+    case Reason::not_given:
+      return "not given";
     default:
       return "";
   }
@@ -125,6 +130,18 @@ std::vector<ItemRef> Context::items(bool meshes) const {
   return result;
 }
 
+const std::vector<SourceDigest>& sources_of(const Context& context, const ItemRef& item, Source source) {
+  const Family& family = context.workload.families[item.family];
+  switch (source) {
+    case Source::mesh_file:
+      return family.mesh_file;
+    case Source::map_file:
+      return family.map_files.at(static_cast<std::size_t>(item.view + 1));
+    default:
+      return family.truth_files;
+  }
+}
+
 Decision decide(const Context& context, const Plan& plan, const ItemRef& item, std::size_t index,
                 const Lookup& lookup) {
   const Stage& stage = context.chain(item)[index];
@@ -138,8 +155,7 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
     if (auto stopped = stopped_by(input, i)) return {*stopped, {}};
     recipe.inputs.emplace_back(input_name(context, item, stage.inputs[i]), input.content);
   }
-  if (auto stopped = add_sources(context.workload.families[item.family], stage, recipe))
-    return {*stopped, {}};
+  if (auto stopped = add_sources(context, item, stage, recipe)) return {*stopped, {}};
   Job job = looked_up(recipe, lookup);
   return {job, std::move(recipe)};
 }

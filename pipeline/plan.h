@@ -37,6 +37,7 @@ enum class Reason : std::uint8_t {
   no_ground_truth,
   unreadable,    // a source file cannot be read
   inapplicable,  // the stage has nothing to say of the item
+  not_given,     // a map of such items is not among those given
 };
 std::string_view text_of(Reason reason);
 
@@ -84,6 +85,9 @@ struct Context {
   std::vector<ItemRef> items(bool meshes) const;     // of one kind, in order
   std::vector<ItemRef> family(std::size_t f) const;  // the mesh, then its scans
 };
+
+// The files that a stage reads of an item; empty where there are none of their kind.
+const std::vector<SourceDigest>& sources_of(const Context& context, const ItemRef& item, Source source);
 
 using Lookup = std::function<std::optional<Digest>(std::string_view stage, const Digest& key)>;
 

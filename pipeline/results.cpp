@@ -7,6 +7,7 @@
 
 #include "cache/files.h"
 #include "io/text_file.h"
+#include "pipeline/given_maps.h"
 #include "pipeline/statistics.h"
 #include "stages/core/errors.h"
 #include "stages/stats/summary.h"
@@ -42,6 +43,10 @@ std::string run_yaml(const RunRecord& record) {
       SALBENCH_VERSION, quoted(host_name()), record.threads, record.seconds, record.runner.computed());
   yaml += record.context.given_reference ? "reference: given by --reference\n"
                                          : "reference: mean over the items of the run\n";
+  for (const Model& model : record.config.models)
+    if (model.given)
+      yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
+                          quoted(model.given->source.string()), model.given->matched);
   yaml += fmt::format("meshes: {}\n", record.context.workload.families.size());
   yaml += "stages:  # version, artefacts this run computed, seconds summed over threads\n";
   for (const StageCount& count : count_by_stage(record.context, record.plan)) {

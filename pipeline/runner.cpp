@@ -26,8 +26,8 @@ bool has_open_job(const Context& context, const Plan& plan, const ItemRef& item,
   return false;
 }
 
-std::string unreadable_source(const Family& family, const Stage& stage) {
-  for (const SourceDigest& file : family.sources(stage.source == Source::mesh_file))
+std::string unreadable_source(const Context& context, const ItemRef& item, const Stage& stage) {
+  for (const SourceDigest& file : sources_of(context, item, stage.source))
     if (!file.digest) return file.error;
   return {};
 }
@@ -67,7 +67,7 @@ class Runner::FamilyRun {
     const Stage& stage = runner_.context_.chain(item)[index];
     if (job.reason == Reason::unreadable) {
       job.verdict = Verdict::failed;
-      runner_.record(item, stage, unreadable_source(runner_.context_.workload.families[family_], stage));
+      runner_.record(item, stage, unreadable_source(runner_.context_, item, stage));
       return;
     }
     job.reason = reason;

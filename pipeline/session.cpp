@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "pipeline/given_maps.h"
 #include "pipeline/results.h"
 #include "stages/core/errors.h"
 
@@ -30,10 +31,11 @@ void select_models(Config& config, const std::string& list) {
     });
 }
 
-Config configuration(const Arguments& arguments) {
+Config configuration(const Arguments& arguments, const std::optional<Model>& given) {
   Config config =
       read_config(Section::from_file(arguments.config), fs::path(arguments.config).stem().string());
   select_models(config, arguments.models);
+  if (given) config.models.push_back(*given);
   if (!arguments.data.empty()) config.data = arguments.data;
   if (!arguments.cache.empty()) config.cache = arguments.cache;
   if (!arguments.output.empty()) config.output = arguments.output;
@@ -50,8 +52,8 @@ int thread_count(const Arguments& arguments) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-Setup::Setup(const Arguments& arguments)
-    : config(configuration(arguments)),
+Setup::Setup(const Arguments& arguments, const std::optional<Model>& given)
+    : config(configuration(arguments, given)),
       catalog(make_catalog(config)),
       workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items)),
       context{catalog, workload, config.seed},
@@ -60,11 +62,12 @@ Setup::Setup(const Arguments& arguments)
   if (!arguments.reference.empty()) context.given_reference = read_reference(arguments.reference);
   context.attributes = {{"protocol", std::string(name_of(config.protocol))}};
   if (config.simulated()) context.attributes.emplace_back("participants", std::string(kSimulatedNote));
+  if (given) add_given_maps(workload, context, *given);
   for (const std::string& note : workload.notes) spdlog::warn("{}", note);
 }
 
-Session::Session(const Arguments& arguments, const std::atomic<bool>& stop)
-    : setup(arguments),
+Session::Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given)
+    : setup(arguments, given),
       store(setup.cache, Access::read_write),
       plan(make_plan(setup.context, store)),
       progress(arguments.quiet ? no_progress() : terminal_progress()),

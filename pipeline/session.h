@@ -2,8 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cache/folder_store.h"
@@ -34,7 +36,7 @@ int thread_count(const Arguments& arguments);
 // Everything that stands before the first job. The context refers to its neighbours, so it is never moved.
 // Throws ConfigError or InputError for what makes the command impossible.
 struct Setup {
-  explicit Setup(const Arguments& arguments);
+  explicit Setup(const Arguments& arguments, const std::optional<Model>& given = {});  // a model more
   Setup(const Setup&) = delete;
   Setup& operator=(const Setup&) = delete;
 
@@ -48,8 +50,9 @@ struct Setup {
 // A setup with its cache opened for writing, planned, and ready to run.
 struct Session {
   // Throws as Setup does, and StorageError.
-  Session(const Arguments& arguments, const std::atomic<bool>& stop);
+  Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {});
 
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   Setup setup;
   FolderStore store;
   Plan plan;

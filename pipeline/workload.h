@@ -22,9 +22,8 @@ struct SourceDigest {
 struct Family {
   DatasetItem source;  // a mesh, and its scans are its family
   std::vector<SourceDigest> mesh_file;
-  std::vector<SourceDigest> truth_files;  // empty: nothing is known about the mesh
-
-  const std::vector<SourceDigest>& sources(bool of_mesh) const { return of_mesh ? mesh_file : truth_files; }
+  std::vector<SourceDigest> truth_files;                  // empty: nothing is known about the mesh
+  std::vector<std::vector<SourceDigest>> map_files = {};  // given: of the mesh, then of its scans; or empty
 };
 
 struct Workload {

@@ -1,0 +1,43 @@
+// Saliency maps made outside of the program, which stand where a model's would be computed.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "cache/digest.h"
+#include "pipeline/model_catalog.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct Context;
+struct Workload;
+
+struct GivenMaps {
+  std::filesystem::path source;      // a folder with ITEM.val, or an HDF5 file with a data set ITEM
+  bool matched = false;              // the values are histogram-matched already: they lie in [0, 1]
+  std::set<std::string> items = {};  // that there are maps of: "52", "52_3"
+
+  // Of one of these items; both throw InputError.
+  std::function<Digest(const std::string& item)> digest = {};
+  // n_points finite numbers.
+  std::function<ScalarField(const std::string& item, std::size_t n_points)> read = {};
+
+  std::string place(const std::string& item) const;  // for a message: where the item's map is looked for
+};
+
+// Lists the folder, or reads the file. Throws ConfigError where it is neither.
+GivenMaps find_given_maps(const std::filesystem::path& source, bool matched);
+
+// A model that takes its maps from there. Throws ConfigError for a name that is taken, or is no name.
+Model given_model(const std::string& name, GivenMaps maps);
+
+// Makes the maps sources of the families. Of a kind of item, meshes or scans, that none is given of, none is
+// expected; otherwise one that is not there is its item's failure. Throws ConfigError where none is given at
+// all.
+void add_given_maps(Workload& workload, const Context& context, const Model& model);
+
+}  // namespace salbench

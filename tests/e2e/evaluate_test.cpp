@@ -1,0 +1,194 @@
+// Saliency maps from outside are scored as if the program had computed them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/ground_truth_file.h"
+#include "io/hdf5_file.h"
+#include "io/table.h"
+#include "io/text_file.h"
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr std::size_t kVertices = 162;  // of either mesh
+
+// The workspace's maps of PS, written by the program itself: what comes of them is known.
+fs::path write_maps(const Workspace& toy, const std::vector<std::string>& further = {}) {
+  std::vector<std::string> options = {"--models", "PS", "--to", (toy / "maps").string()};
+  options.insert(options.end(), further.begin(), further.end());
+  EXPECT_EQ(toy.salbench("maps", options).status, 0);
+  return toy / "maps/PS";
+}
+
+Outcome evaluate(const Workspace& toy, const fs::path& maps, std::vector<std::string> further = {}) {
+  further.insert(further.begin(), {"--maps", maps.string(), "--name", "OWN"});
+  return toy.salbench("evaluate", further);
+}
+
+void replace_first_line(const fs::path& file, const std::string& by) {
+  const std::string text = read_file(file);
+  write_text_file(file, by + text.substr(text.find('\n')));
+}
+
+// The rows of one model in a table without the model's name.
+std::vector<std::string> rows_of(const std::string& csv, const std::string& model) {
+  std::vector<std::string> rows = lines_with(csv, "," + model + ",");
+  for (std::string& row : rows) row.replace(row.find("," + model + ","), model.size() + 2, ",");
+  return rows;
+}
+
+// The scores of an item are seeded by the model's name in the splits of `auc` alone.
+std::vector<std::vector<double>> seedless_scores(const Workspace& toy, const std::string& model) {
+  const Table table = read_csv(toy.out() / "results.csv");
+  const std::vector<std::string> models = text_column(table, "model");
+  std::vector<std::vector<double>> scores;
+  for (const char* metric : {"auc_exact", "nss", "cc", "lcc", "n_points", "n_picks"}) {
+    const std::vector<double> column = number_column(table, metric);
+    std::vector<double>& of_model = scores.emplace_back();
+    for (std::size_t row = 0; row < column.size(); ++row)
+      if (models[row] == model) of_model.push_back(column[row]);
+  }
+  return scores;
+}
+
+TEST(Evaluate, MapsThatTheProgramWroteScoreAsTheyDidInside) {
+  const Workspace toy;
+  const fs::path maps = write_maps(toy);
+  const Outcome run = evaluate(toy, maps);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto own = seedless_scores(toy, "OWN");
+  ASSERT_THAT(own, Each(SizeIs(26)));
+  EXPECT_EQ(own, seedless_scores(toy, "PS"));
+  EXPECT_THAT(run.out, HasSubstr("OWN"));
+  // Every table that compares models has it.
+  for (const char* table : {"summary.csv", "per_class.csv", "significance.csv", "mean_histograms_meshes.csv"})
+    EXPECT_THAT(read_file(toy.out() / table), HasSubstr("OWN")) << table;
+  const Table histograms = read_csv(toy.out() / "mean_histograms_scans.csv");
+  EXPECT_EQ(number_column(histograms, "OWN"), number_column(histograms, "PS"));
+  EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("evaluated: {model: OWN, maps: "));
+}
+
+TEST(Evaluate, MatchedMapsAreNotMatchedAgain) {
+  const Workspace toy;
+  const fs::path maps = write_maps(toy, {"--matched"});
+  ASSERT_EQ(evaluate(toy, maps, {"--matched"}).status, 0);
+  EXPECT_EQ(seedless_scores(toy, "OWN"), seedless_scores(toy, "PS"));
+  EXPECT_THAT(toy.artefacts("map.OWN"), IsEmpty());
+  EXPECT_THAT(toy.artefacts("matched.OWN"), SizeIs(26));
+  replace_first_line(maps / "1.val", "-0.5");
+  const Outcome outside = evaluate(toy, maps, {"--matched"});
+  EXPECT_EQ(outside.status, 1);
+  EXPECT_THAT(lines_with(outside.err, "error: 1: matched.OWN: "), SizeIs(1)) << outside.err;
+  EXPECT_THAT(outside.err, AllOf(HasSubstr("-0.5"), HasSubstr("leave out --matched")));
+}
+
+TEST(Evaluate, AnHdf5FileSaysTheSameAsAFolder) {
+  const Workspace toy;
+  const fs::path maps = write_maps(toy);
+  ASSERT_EQ(evaluate(toy, maps).status, 0);
+  const auto from_folder = rows_of(toy.results(), "OWN");
+
+  Arrays arrays;
+  for (const auto& file : fs::directory_iterator(maps)) {
+    const auto lines = lines_with(read_file(file.path()), "");
+    std::vector<double> values;
+    for (const std::string& line : lines) values.push_back(std::stod(line));
+    arrays.push_back({file.path().stem().string(), {values.size()}, values, "1", ""});
+  }
+  const Bytes image = hdf5_image({arrays, {}});
+  const fs::path file = toy.write("own maps.h5", {reinterpret_cast<const char*>(image.data()), image.size()});
+  ASSERT_EQ(evaluate(toy, file).status, 0);
+  EXPECT_EQ(rows_of(toy.results(), "OWN"), from_folder);
+  EXPECT_EQ(toy.computed(), 26) << "maps read again, found equal, and no further";
+}
+
+TEST(Evaluate, OnlyWhatAChangedMapConcernsIsComputed) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string alone = toy.results();
+  const fs::path maps = write_maps(toy);
+  ASSERT_EQ(evaluate(toy, maps).status, 0);
+  EXPECT_EQ(toy.computed(), 26 * 3 + 2);  // maps, matched maps, scores; two mean histograms
+  ASSERT_EQ(evaluate(toy, maps).status, 0);
+  EXPECT_EQ(toy.computed(), 0);
+  replace_first_line(maps / "1.val", "0.125");
+  ASSERT_EQ(evaluate(toy, maps).status, 0);
+  EXPECT_EQ(toy.computed(), 3 + 1);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0);
+  EXPECT_EQ(toy.results(), alone);
+}
+
+std::string values(std::size_t n, const std::string& first = "0") {
+  std::string lines = first + "\n";
+  for (std::size_t i = 1; i < n; ++i) lines += std::to_string(i % 17) + "\n";
+  return lines;
+}
+
+TEST(Evaluate, WhatIsWrongWithOneMapIsSaidInOneLineAndTheOthersAreScored) {
+  const Workspace toy(kMeshesOnly);
+  toy.write("own/1.val", values(kVertices));
+  struct Bad {
+    std::string text;
+    std::vector<std::string> said;
+  };
+  for (const Bad& bad :
+       {Bad{values(kVertices - 1), {"2.val", "161", "162"}}, Bad{values(kVertices, "nan"), {"2.val:1"}},
+        Bad{values(kVertices, "0 1"), {"2.val:1", "more than one"}}, Bad{"", {"2.val", "has 0 values"}}}) {
+    toy.write("own/2.val", bad.text);
+    const Outcome run = evaluate(toy, toy / "own");
+    EXPECT_EQ(run.status, 1);
+    const auto lines = lines_with(run.err, "error: 2: map.OWN: ");
+    ASSERT_THAT(lines, SizeIs(1)) << run.err;
+    for (const std::string& part : bad.said) EXPECT_THAT(lines[0], HasSubstr(part));
+    EXPECT_THAT(rows_of(toy.results(), "OWN"), SizeIs(1));
+    EXPECT_THAT(rows_of(toy.results(), "PS"), SizeIs(2));
+  }
+  fs::remove(toy / "own/2.val");
+  const Outcome missing = evaluate(toy, toy / "own");
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_THAT(lines_with(missing.err, "error: 2: map.OWN: "), SizeIs(1));
+  EXPECT_THAT(missing.err, HasSubstr((toy / "own/2.val").string()));
+  toy.write("own/2.val", values(kVertices));
+  EXPECT_EQ(evaluate(toy, toy / "own").status, 0);
+}
+
+TEST(Evaluate, OfAKindThatHasNoMapNoneIsExpected) {
+  const Workspace toy;
+  for (const char* name : {"1", "2"}) toy.write("own/" + std::string(name) + ".val", values(kVertices));
+  const Outcome run = evaluate(toy, toy / "own");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(rows_of(toy.results(), "OWN"), SizeIs(2));
+  EXPECT_THAT(rows_of(toy.results(), "PS"), SizeIs(26));
+}
+
+TEST(Evaluate, NamesAndFoldersThatWillNotDo) {
+  const Workspace toy(kMeshesOnly);
+  toy.write("own/1.val", values(kVertices));
+  toy.write("empty/readme.txt", "");
+  toy.write("no.h5", "not HDF5");
+  const auto complaint = [&](const std::string& maps, const std::string& name) {
+    const Outcome run = toy.salbench("evaluate", {"--maps", (toy / maps).string(), "--name", name});
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_THAT(lines_with(run.err, ""), SizeIs(1)) << run.err;
+    EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
+    return run.err;
+  };
+  for (const char* taken : {"PS", "HS", "LS", "GS", "Avg-AUC"})
+    EXPECT_THAT(complaint("own", taken), AllOf(HasSubstr("--name"), HasSubstr(taken)));
+  for (const char* bad : {"", "a b", "../x", "ä"}) EXPECT_THAT(complaint("own", bad), HasSubstr("letters"));
+  EXPECT_THAT(complaint("empty", "OWN"), AllOf(HasSubstr("--maps"), HasSubstr("1.val")));
+  EXPECT_THAT(complaint("nowhere", "OWN"), AllOf(HasSubstr("nowhere"), HasSubstr("cannot be read")));
+  EXPECT_THAT(complaint("no.h5", "OWN"), AllOf(HasSubstr("no.h5"), HasSubstr("HDF5")));
+}
+
+}  // namespace
+}  // namespace salbench
