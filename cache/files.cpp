@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kSuffix = ".part";
+
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -49,7 +51,7 @@ std::string host_name() {
 
 std::string scratch_name() {
   static std::atomic<std::uint64_t> counter = 0;
-  return fmt::format("{}.{}.{}.part", host_name(), ::getpid(), counter++);
+  return fmt::format("{}.{}.{}{}", host_name(), ::getpid(), counter++, kSuffix);
 }
 
 void write_all(int fd, std::span<const std::byte> bytes, const fs::path& path) {
@@ -70,7 +72,8 @@ void write_synced(const fs::path& path, std::span<const std::byte> bytes) {
 }
 
 bool writer_is_alive(std::string_view name, std::string_view host) {
-  if (!name.starts_with(host) || name.size() <= host.size() || name[host.size()] != '.')
+  if (!name.starts_with(host) || name.size() <= host.size() || name[host.size()] != '.' ||
+      !name.ends_with(kSuffix))
     return true;  // not ours
   name.remove_prefix(host.size() + 1);
   pid_t pid = 0;
@@ -108,11 +111,13 @@ void write_bytes_atomically(const fs::path& scratch, const fs::path& target,
   }
 }
 
-void remove_orphans(const fs::path& scratch) {
+std::vector<fs::path> orphans(const fs::path& scratch) {
   const std::string host = host_name();
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(scratch, ignored))
-    if (!writer_is_alive(entry.path().filename().string(), host)) fs::remove(entry.path(), ignored);
+  std::vector<fs::path> found;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(scratch, missing))
+    if (!writer_is_alive(entry.path().filename().string(), host)) found.push_back(entry.path());
+  return found;
 }
 
 }  // namespace salbench

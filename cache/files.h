@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "io/hdf5_file.h"
 
@@ -18,7 +19,7 @@ std::optional<Bytes> read_bytes(const std::filesystem::path& path);
 void write_bytes_atomically(const std::filesystem::path& scratch, const std::filesystem::path& target,
                             std::span<const std::byte> bytes);
 
-// Removes from `scratch` what processes of this host left that are no longer alive.
-void remove_orphans(const std::filesystem::path& scratch);
+// What processes of this host left in `scratch` that are no longer alive.
+std::vector<std::filesystem::path> orphans(const std::filesystem::path& scratch);
 
 }  // namespace salbench

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "cache/artefact_name.h"
 #include "cache/files.h"
+#include "cache/layout.h"
+#include "cache/verify.h"
 #include "io/hdf5_file.h"
 #include "stages/core/errors.h"
 
@@ -20,13 +20,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kFormat = 1;  // raised when the layout of the folder or of its names changes
-constexpr std::string_view kTagName = "CACHEDIR.TAG";  // backup programs skip folders that hold it
-constexpr std::string_view kTagSignature = "Signature: 8a477f597d28d172789f06886806bc55";
-constexpr std::string_view kFormatLine = "# salbench cache, format ";
-constexpr std::string_view kScratch = "tmp";
-constexpr std::string_view kDamaged = "damaged";
 
 struct Entry {
   std::string item;
@@ -39,36 +32,6 @@ struct StageEntries {
   std::unordered_map<Digest, Entry> by_key;
   std::set<std::string, std::less<>> items;
 };
-
-std::string as_text(const Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-void check_format(const fs::path& folder) {
-  const auto tag = read_bytes(folder / kTagName);
-  if (!tag) return;
-  const std::string text = as_text(*tag);
-  const std::size_t line = text.find(kFormatLine);
-  const int format = line == std::string::npos ? 0 : std::atoi(text.c_str() + line + kFormatLine.size());
-  if (format > kFormat)
-    throw StorageError(
-        fmt::format("{}: written by a newer salbench (cache format {}, this one knows {}); "
-                    "use that version, or another folder with --cache",
-                    folder.string(), format, kFormat));
-}
-
-void prepare(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder / kScratch, error);
-  if (error)
-    throw StorageError(
-        fmt::format("{}: the cache folder cannot be created or written to: {}; choose another with --cache",
-                    folder.string(), error.message()));
-  remove_orphans(folder / kScratch);
-  // Writing the tag each time is the probe for a full or read-only folder, before any work is done.
-  const std::string tag = fmt::format("{}\n{}{}\n", kTagSignature, kFormatLine, kFormat);
-  write_bytes_atomically(folder / kScratch, folder / kTagName, std::as_bytes(std::span(tag)));
-}
 
 std::string attribute_inputs(const Recipe& recipe) {
   std::string text;
@@ -101,9 +64,7 @@ struct FolderStore::Impl {
   mutable std::shared_mutex mutex;  // of stages
   std::map<std::string, StageEntries, std::less<>> stages;
 
-  fs::path shard(std::string_view stage, const Digest& key) const {
-    return folder / stage / key.hex().substr(0, 2);
-  }
+  fs::path shard(std::string_view stage, const Digest& key) const { return folder / shard_of(stage, key); }
   fs::path path(std::string_view stage, const Digest& key, const Entry& entry) const {
     return shard(stage, key) /
            ArtefactName{entry.item, key, entry.content, entry.checksum, entry.size}.text();
@@ -123,14 +84,10 @@ struct FolderStore::Impl {
     for (const auto& file : fs::directory_iterator(shard_folder, error)) {
       const auto name = parse_artefact_name(file.path().filename().string());
       if (!name) continue;
-      if (file.file_size(error) != name->size || error) {
-        if (access == Access::read_write)
-          set_aside(file.path(), "cut short");
-        else
-          spdlog::warn("{}: cut short; a run will compute it again", file.path().string());
-        continue;
-      }
-      insert(stage, *name);
+      if (file.file_size(error) == name->size && !error)
+        insert(stage, *name);
+      else
+        set_aside(file.path(), "cut short");
     }
   }
 
@@ -148,7 +105,7 @@ struct FolderStore::Impl {
     std::error_code error;
     for (const auto& stage : fs::directory_iterator(folder, error)) {
       const std::string name = stage.path().filename().string();
-      if (!stage.is_directory() || name == kScratch || name == kDamaged) continue;
+      if (!stage.is_directory() || name == kScratchFolder || name == kDamagedFolder) continue;
       for (const auto& shard_folder : fs::directory_iterator(stage.path(), error))
         list_shard(name, shard_folder.path());
     }
@@ -156,11 +113,21 @@ struct FolderStore::Impl {
       throw StorageError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
   }
 
+  // What is not there any more (another process collects, or sets aside the same file) needs no warning.
   void set_aside(const fs::path& file, std::string_view why) const {
     std::error_code error;
-    fs::create_directories(folder / kDamaged, error);
-    fs::rename(file, folder / kDamaged / file.filename(), error);
-    spdlog::warn("{}: {}; moved to {}/ and computed again", file.string(), why, (folder / kDamaged).string());
+    if (access == Access::read_only) {
+      spdlog::warn("{}: {}; a run will compute it again", file.string(), why);
+      return;
+    }
+    fs::create_directories(folder / kDamagedFolder, error);
+    fs::rename(file, folder / kDamagedFolder / file.filename(), error);
+    if (!error)
+      spdlog::warn("{}: {}; moved to {}/ and computed again", file.string(), why,
+                   (folder / kDamagedFolder).string());
+    else if (error != std::errc::no_such_file_or_directory)
+      spdlog::warn("{}: {}; computed again (it cannot be moved aside: {})", file.string(), why,
+                   error.message());
   }
 
   void forget(std::string_view stage, const Digest& key, const fs::path& file, std::string_view why) {
@@ -178,7 +145,10 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
     throw StorageError(
         fmt::format("{}: is not a folder; choose another with --cache", impl_->folder.string()));
   check_format(impl_->folder);
-  if (access == Access::read_write) prepare(impl_->folder);
+  if (access == Access::read_write) {
+    prepare_cache(impl_->folder);
+    for (const fs::path& orphan : orphans(impl_->folder / kScratchFolder)) fs::remove(orphan, error);
+  }
   impl_->list_all();
 }
 
@@ -213,16 +183,15 @@ std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& ke
   if (!entry) return {};
   const fs::path path = impl_->path(stage, key, *entry);
   const auto bytes = read_bytes(path);
-  if (!bytes || bytes->size() != entry->size || checksum(*bytes) != entry->checksum) {
-    impl_->forget(stage, key, path, bytes ? "its checksum does not fit" : "gone or unreadable");
+  Inspection inspection =
+      bytes
+          ? inspect_artefact(*bytes, stage, {entry->item, key, entry->content, entry->checksum, entry->size})
+          : Inspection{{}, "gone or unreadable"};
+  if (!inspection.content) {
+    impl_->forget(stage, key, path, inspection.fault);
     return {};
   }
-  Arrays arrays = hdf5_content(*bytes, path.string()).arrays;
-  if (content_digest(arrays) != entry->content) {
-    impl_->forget(stage, key, path, "its content is not what its name says");
-    return {};
-  }
-  return arrays;
+  return std::move(inspection.content->arrays);
 }
 
 Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
@@ -233,9 +202,10 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   const ArtefactName name{item_label(note.item), key, content, checksum(image), image.size()};
   const fs::path shard = impl_->shard(recipe.stage, key);
   std::error_code error;
+  if (!fs::exists(impl_->folder / kScratchFolder, error)) prepare_cache(impl_->folder);  // removed meanwhile
   fs::create_directories(shard, error);
   if (error) throw StorageError(fmt::format("{}: cannot be created: {}", shard.string(), error.message()));
-  write_bytes_atomically(impl_->folder / kScratch, shard / name.text(), image);
+  write_bytes_atomically(impl_->folder / kScratchFolder, shard / name.text(), image);
   const std::unique_lock lock(impl_->mutex);
   impl_->insert(recipe.stage, name);
   return content;

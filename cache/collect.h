@@ -1,0 +1,58 @@
+// Garbage collection: removes the artefacts that a named scope does not need.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <vector>
+
+#include "cache/artefact_name.h"
+
+namespace salbench {
+
+// What is kept. A key that cannot be known yet is covered by keeping everything of its stage and item.
+class Needed {
+ public:
+  void add(std::string_view stage, const Digest& key);
+  void add_every_key(std::string_view stage, std::string_view item);
+  bool covers(std::string_view stage, const ArtefactName& name) const;
+
+ private:
+  struct OfStage {
+    std::unordered_set<Digest> keys;
+    std::set<std::string, std::less<>> items;  // labels
+  };
+  std::map<std::string, OfStage, std::less<>> stages_;
+};
+
+struct Amount {
+  std::size_t files = 0;
+  std::uint64_t bytes = 0;
+
+  void add(std::uint64_t size) {
+    ++files;
+    bytes += size;
+  }
+};
+
+struct Collected {
+  struct OfStage {
+    std::string stage;
+    Amount kept, removed;
+  };
+  std::vector<OfStage> stages;  // by name
+  Amount damaged;               // removed from damaged/
+  Amount unfinished;            // what killed processes of this host left in tmp/
+};
+
+// Removes what `needed` does not cover, artefacts that were moved aside, and dead temporary files; with
+// `dry_run` says only what it would remove. Files that are no artefacts are never touched. Throws
+// StorageError where the folder is no cache, or a file cannot be removed.
+Collected collect_garbage(const std::filesystem::path& folder, const Needed& needed, bool dry_run);
+
+}  // namespace salbench

@@ -1,0 +1,47 @@
+// Where things lie in a cache folder:
+//   CACHEDIR.TAG           what makes a folder a cache; holds the format
+//   <stage>/<2 digits>/    artefacts, by the first digits of the key
+//   tmp/                   files that are being written
+//   damaged/               artefacts that were moved aside
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cache/artefact_name.h"
+
+namespace salbench {
+
+inline constexpr std::string_view kScratchFolder = "tmp";
+inline constexpr std::string_view kDamagedFolder = "damaged";
+
+// The folder of an artefact, below the cache's.
+std::filesystem::path shard_of(std::string_view stage, const Digest& key);
+
+// Throws StorageError where a newer program wrote the folder; a folder without a tag passes.
+void check_format(const std::filesystem::path& folder);
+
+// Throws StorageError unless the folder is a cache that this program knows: what inspects or removes files
+// starts here, so that a mistyped folder is left alone.
+void require_cache(const std::filesystem::path& folder);
+
+// Makes the folder a cache, or finds that it cannot be written to. Throws StorageError.
+void prepare_cache(const std::filesystem::path& folder);
+
+struct ArtefactFile {
+  std::filesystem::path path;
+  std::string stage;
+  ArtefactName name;
+};
+
+struct CacheListing {
+  std::vector<ArtefactFile> artefacts;        // by path
+  std::vector<std::filesystem::path> others;  // by path: files that are neither artefacts nor the cache's own
+};
+
+// Throws StorageError where the folder cannot be listed.
+CacheListing list_cache(const std::filesystem::path& folder);
+
+}  // namespace salbench

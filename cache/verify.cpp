@@ -1,0 +1,108 @@
+#include "cache/verify.h"
+
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cache/files.h"
+#include "cache/layout.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class T>
+std::optional<T> attribute(const Attributes& attributes, std::string_view name) {
+  const AttributeValue* value = find_attribute(attributes, name);
+  const T* typed = value == nullptr ? nullptr : std::get_if<T>(value);
+  return typed == nullptr ? std::nullopt : std::optional(*typed);
+}
+
+// "name: digest" a line; the digest stands last, so that a name may hold anything but a line's end.
+std::optional<decltype(Recipe::inputs)> inputs_from(const std::string& text) {
+  constexpr std::string_view kBetween = ": ";
+  decltype(Recipe::inputs) inputs;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.rfind(kBetween);
+    if (at == std::string::npos) return {};
+    const auto digest = digest_from_hex(std::string_view(line).substr(at + kBetween.size()));
+    if (!digest) return {};
+    inputs.emplace_back(line.substr(0, at), *digest);
+  }
+  return inputs;
+}
+
+// What the attributes say otherwise than the name; empty where they agree.
+std::string contradiction(const Attributes& attributes, std::string_view stage, const ArtefactName& name) {
+  const auto recipe = recipe_from(attributes);
+  if (!recipe) return "an attribute that says what it was made of is missing";
+  if (recipe->stage != stage) return fmt::format("its attributes say that it is of stage {}", recipe->stage);
+  if (key_of(*recipe) != name.key) return "its key is not that of what it was made of";
+  if (item_label(attribute<std::string>(attributes, "item").value_or("")) != name.item)
+    return "its attributes name another item";
+  return {};
+}
+
+Inspection faulty(std::string what) { return {{}, std::move(what)}; }
+
+}  // namespace
+
+std::optional<Recipe> recipe_from(const Attributes& attributes) {
+  const auto stage = attribute<std::string>(attributes, "stage");
+  const auto version = attribute<std::int64_t>(attributes, "stage_version");
+  const auto options = attribute<std::string>(attributes, "options");
+  const auto seed = attribute<std::string>(attributes, "seed");
+  const auto inputs = inputs_from(attribute<std::string>(attributes, "inputs").value_or("?"));
+  if (!stage || !version || !options || !seed || !inputs || !std::in_range<std::int32_t>(*version)) return {};
+  return Recipe{*stage, static_cast<std::int32_t>(*version), *options, *seed, *inputs};
+}
+
+Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view stage,
+                            const ArtefactName& name) {
+  if (bytes.size() != name.size) return faulty(fmt::format("it has {} bytes of {}", bytes.size(), name.size));
+  if (checksum(bytes) != name.checksum) return faulty("its checksum does not fit");
+  try {
+    Hdf5Content content = hdf5_content(bytes, name.item);
+    if (content_digest(content.arrays) != name.content)
+      return faulty("its content is not what its name says");
+    if (std::string fault = contradiction(content.attributes, stage, name); !fault.empty())
+      return faulty(std::move(fault));
+    return {std::move(content), {}};
+  } catch (const InputError& error) {
+    return faulty(error.what());
+  }
+}
+
+Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop) {
+  require_cache(folder);
+  const CacheListing listing = list_cache(folder);
+  Verification result;
+  result.others = listing.others.size();
+  std::map<std::pair<std::string, Digest>, fs::path> sound;
+  for (const ArtefactFile& file : listing.artefacts) {
+    if (stop) break;
+    const auto bytes = read_bytes(file.path);
+    std::error_code error;
+    if (!bytes && !fs::exists(file.path, error) && !error) continue;  // removed since the listing
+    ++result.artefacts;
+    result.bytes += bytes ? bytes->size() : 0;
+    std::string fault = bytes ? inspect_artefact(*bytes, file.stage, file.name).fault : "it cannot be read";
+    if (fault.empty() && file.path.parent_path() != folder / shard_of(file.stage, file.name.key))
+      fault = "it lies in the folder of another key";
+    if (fault.empty()) {
+      const auto [first, fresh] = sound.try_emplace({file.stage, file.name.key}, file.path);
+      if (!fresh && first->second.filename() != file.path.filename() &&
+          parse_artefact_name(first->second.filename().string())->content != file.name.content)
+        fault = "another content under the key of " + first->second.filename().string();
+    }
+    if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
+  }
+  return result;
+}
+
+}  // namespace salbench

@@ -1,0 +1,49 @@
+// What can be wrong with an artefact, and a look at every one of a cache folder.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cache/artefact_name.h"
+#include "cache/key.h"
+#include "io/hdf5_file.h"
+
+namespace salbench {
+
+// What an artefact was made of, from its own attributes; nothing where one is missing or malformed.
+std::optional<Recipe> recipe_from(const Attributes& attributes);
+
+struct Inspection {
+  std::optional<Hdf5Content> content;  // of a sound artefact
+  std::string fault;                   // of any other: "its checksum does not fit"
+};
+
+// Looks at the bytes of the file `name` in the folder of `stage`: whether they are complete, pass the
+// checksum, hold the content that the name says, and attributes whose key is the name's.
+Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view stage,
+                            const ArtefactName& name);
+
+struct Fault {
+  std::filesystem::path file;
+  std::string what;
+};
+
+struct Verification {
+  std::size_t artefacts = 0;  // looked at, good and bad
+  std::uint64_t bytes = 0;    // of them
+  std::size_t others = 0;     // files that are no artefacts, not looked at
+  std::vector<Fault> faults;  // by file
+};
+
+// Reads every artefact and changes nothing; what another process removes meanwhile is passed over. Ends early
+// once `stop` is set. Throws StorageError where the folder is no cache or cannot be listed.
+Verification verify_cache(const std::filesystem::path& folder, const std::atomic<bool>& stop);
+
+}  // namespace salbench

@@ -1,0 +1,167 @@
+#include "cache/verify.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cache/files.h"
+#include "cache/folder_store.h"
+#include "cache/layout.h"
+#include "stages/core/errors.h"
+#include "tests/io/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const std::atomic<bool> kGoOn = false;
+
+class VerifyTest : public testing::Test {
+ protected:
+  static Recipe recipe(int k) {
+    return {"fpfh",
+            2,
+            "k: " + std::to_string(k) + "\n",
+            "2016/52",
+            {{"mesh: of clay", {1, 2}}, {"normals", {3, 4}}}};
+  }
+  void SetUp() override {
+    FolderStore store(folder_.path(), Access::read_write);
+    for (int k = 0; k < 3; ++k) save(store, recipe(k), k);
+  }
+  static void save(FolderStore& store, const Recipe& what, double value) {
+    store.save(what, "field", {{"saliency", {2}, std::vector<double>{value, 1}, "1", "two values"}},
+               {.item = "52", .seconds = 0.5, .attributes = {}});
+  }
+  fs::path file(int k) const {
+    return *FolderStore(folder_.path(), Access::read_only).path("fpfh", key_of(recipe(k)));
+  }
+  static void rewrite(const fs::path& path, const Bytes& bytes) {
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
+  // Stores `bytes` under a name whose size and checksum are theirs: only what they say can be wrong.
+  void disguise(int k, const Bytes& bytes, const ArtefactName& as) const {
+    ArtefactName name = as;
+    name.checksum = checksum(bytes);
+    name.size = bytes.size();
+    fs::remove(file(k));
+    fs::create_directories(folder_ / shard_of("fpfh", name.key));
+    rewrite(folder_ / shard_of("fpfh", name.key) / name.text(), bytes);
+  }
+  ArtefactName name(int k) const { return *parse_artefact_name(file(k).filename().string()); }
+  Verification verify() const { return verify_cache(folder_.path(), kGoOn); }
+  // The one fault there is.
+  std::string fault() const {
+    const Verification result = verify();
+    EXPECT_THAT(result.faults, SizeIs(1));
+    return result.faults.empty() ? "" : result.faults.front().what;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(VerifyTest, ASoundCacheIsCountedAndHasNoFault) {
+  folder_.write("fpfh/readme.txt", "not an artefact");
+  folder_.write("loose", "nor this");
+  folder_.write("damaged/" + name(0).text(), "moved aside before");
+  const Verification result = verify();
+  EXPECT_EQ(result.artefacts, 3U);
+  EXPECT_EQ(result.bytes, fs::file_size(file(0)) + fs::file_size(file(1)) + fs::file_size(file(2)));
+  EXPECT_EQ(result.others, 2U);
+  EXPECT_THAT(result.faults, IsEmpty());
+}
+
+TEST_F(VerifyTest, AttributesGiveBackTheRecipe) {
+  const auto bytes = *read_bytes(file(1));
+  const auto read = recipe_from(hdf5_content(bytes, "artefact").attributes);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->inputs, recipe(1).inputs);
+  EXPECT_EQ(key_of(*read), key_of(recipe(1)));
+  EXPECT_FALSE(recipe_from({{"stage", "fpfh"}}));
+}
+
+TEST_F(VerifyTest, NamesEachBadArtefactAndMovesNone) {
+  const fs::path short_one = file(0), flipped_one = file(2);
+  fs::resize_file(short_one, fs::file_size(short_one) - 1);
+  Bytes bytes = *read_bytes(flipped_one);
+  bytes[bytes.size() / 2] ^= std::byte{1};
+  rewrite(flipped_one, bytes);
+  const Verification result = verify();
+  EXPECT_EQ(result.artefacts, 3U);
+  EXPECT_THAT(result.faults,
+              testing::UnorderedElementsAre(
+                  AllOf(Field(&Fault::file, short_one), Field(&Fault::what, HasSubstr("bytes of"))),
+                  AllOf(Field(&Fault::file, flipped_one), Field(&Fault::what, HasSubstr("checksum")))));
+  EXPECT_TRUE(fs::exists(short_one) && fs::exists(flipped_one));
+}
+
+TEST_F(VerifyTest, AFileThatIsNoHdf5IsNamedWhateverItsChecksum) {
+  disguise(0, Bytes(100, std::byte{'x'}), name(0));
+  EXPECT_THAT(fault(), HasSubstr("HDF5"));
+  FolderStore store(folder_.path(), Access::read_write);
+  EXPECT_FALSE(store.load("fpfh", key_of(recipe(0)))) << "a miss, not the end of the run";
+  EXPECT_THAT(verify().faults, IsEmpty());
+}
+
+TEST_F(VerifyTest, AnArtefactUnderTheContentOfAnotherIsNamed) {
+  ArtefactName wrong = name(0);
+  wrong.content = name(1).content;
+  disguise(0, *read_bytes(file(0)), wrong);
+  EXPECT_THAT(fault(), HasSubstr("content is not what its name says"));
+}
+
+TEST_F(VerifyTest, AnArtefactUnderTheKeyOfAnotherIsNamedAndNotUsed) {
+  ArtefactName wrong = name(0);
+  wrong.key = key_of(recipe(7));
+  disguise(0, *read_bytes(file(0)), wrong);
+  EXPECT_THAT(fault(), HasSubstr("key"));
+  EXPECT_FALSE(FolderStore(folder_.path(), Access::read_only).load("fpfh", wrong.key));
+}
+
+TEST_F(VerifyTest, AnArtefactInTheWrongFolderIsNamed) {
+  const fs::path from = file(0), other_shard = folder_ / "fpfh" / "zz", other_stage = folder_ / "map.PS";
+  fs::create_directories(other_shard);
+  fs::rename(from, other_shard / from.filename());
+  EXPECT_THAT(fault(), HasSubstr("folder of another key"));
+  fs::create_directories(other_stage / from.parent_path().filename());
+  fs::rename(other_shard / from.filename(), other_stage / from.parent_path().filename() / from.filename());
+  EXPECT_THAT(fault(), HasSubstr("stage fpfh"));
+}
+
+TEST_F(VerifyTest, TwoContentsUnderOneKeyAreNamed) {
+  FolderStore store(folder_.path(), Access::read_write);
+  save(store, recipe(0), 99);
+  EXPECT_THAT(fault(), HasSubstr("another content"));
+}
+
+TEST_F(VerifyTest, AFolderThatIsNoCacheIsRefused) {
+  TemporaryFolder other;
+  EXPECT_THROW(verify_cache(other.path(), kGoOn), StorageError);
+  EXPECT_THROW(verify_cache(other / "missing", kGoOn), StorageError);
+  other.write("CACHEDIR.TAG", "Signature: 8a477f597d28d172789f06886806bc55\n# of another program\n");
+  EXPECT_THROW(verify_cache(other.path(), kGoOn), StorageError);
+}
+
+TEST_F(VerifyTest, StopsWhenAsked) {
+  const std::atomic<bool> stop = true;
+  EXPECT_EQ(verify_cache(folder_.path(), stop).artefacts, 0U);
+}
+
+TEST_F(VerifyTest, AReadOnlyStoreLeavesADamagedArtefactWhereItIs) {
+  const fs::path path = file(0);
+  Bytes bytes = *read_bytes(path);
+  bytes.back() ^= std::byte{1};
+  rewrite(path, bytes);
+  EXPECT_FALSE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key_of(recipe(0))));
+  EXPECT_TRUE(fs::exists(path));
+  EXPECT_FALSE(fs::exists(folder_ / "damaged"));
+}
+
+}  // namespace
+}  // namespace salbench
