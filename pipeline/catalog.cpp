@@ -96,7 +96,7 @@ void add_map(ChainBuilder& chain, const Parts& parts, const Model& model, std::s
   chain.add({.name = std::move(stage),
              .version = model.version,
              .kind = "field",
-             .options = model.options,
+             .options = {{"models." + model.name, model.options}},
              .inputs = std::move(inputs),
              .seeded = (model.reads & kReadsSeed) != 0,
              .run = [model](const StageInputs& in) -> Value {
@@ -129,7 +129,7 @@ void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, co
   chain.add({.name = "scores." + model.name,
              .version = 1,
              .kind = "scores",
-             .options = options_text(config.metrics),
+             .options = {{"metrics", options_text(config.metrics)}},
              .inputs = {chain.shape(matched_map), chain.shape(parts.ground_truth)},
              .seeded = true,
              .run = [options = config.metrics, name = model.name](const StageInputs& in) -> Value {
@@ -165,7 +165,7 @@ void add_people(ChainBuilder& chain, const Config& config, const Model& model) {
   chain.add({.name = scores,
              .version = model.version,
              .kind = "scores",
-             .options = options_text(config.metrics),
+             .options = {{"metrics", options_text(config.metrics)}},
              .inputs = inputs,
              .seeded = true,
              .applies = has_participants(config),
@@ -175,7 +175,7 @@ void add_people(ChainBuilder& chain, const Config& config, const Model& model) {
   chain.add({.name = curve,
              .version = model.version,
              .kind = "human_curve",
-             .options = model.options + options_text(config.metrics),
+             .options = {{"models." + model.name, model.options}, {"metrics", options_text(config.metrics)}},
              .inputs = inputs,
              .seeded = true,
              .applies = has_participants(config),
@@ -190,7 +190,7 @@ void add_evaluation(ChainBuilder& chain, const Parts& parts, const Config& confi
   chain.add({.name = "fpfh",
              .version = 1,
              .kind = "descriptors",
-             .options = options_text(config.fpfh),
+             .options = {{"fpfh", options_text(config.fpfh)}},
              .inputs = {chain.shape(parts.points), chain.shape(parts.normals)},
              .run = [options = config.fpfh](const StageInputs& in) -> Value {
                return fpfh(points_of(*in.values[0]), in.get<Normals>(1), options);
@@ -204,7 +204,7 @@ Stage mesh_ground_truth(const ChainBuilder& chain, const Config& config) {
     return {.name = "ground_truth",
             .version = 1,
             .kind = "ground_truth",
-            .options = options_text(config.simulation),
+            .options = {{"simulation", options_text(config.simulation)}},
             .inputs = {chain.shape("mesh")},
             .seeded = true,
             .run = [options = config.simulation](const StageInputs& in) -> Value {
@@ -227,7 +227,7 @@ Chain mesh_chain(const Config& config) {
   chain.add({.name = "normals",
              .version = 1,
              .kind = "normals",
-             .options = options_text(config.normals),
+             .options = {{"normals", options_text(config.normals)}},
              .inputs = {chain.shape("mesh")},
              .run = [options = config.normals](const StageInputs& in) -> Value {
                return mesh_normals(in.get<Mesh>(0), options);
@@ -245,7 +245,7 @@ Chain scan_chain(const Config& config, const Chain& of_mesh) {
   chain.add({.name = "scan",
              .version = 1,
              .kind = "scan",
-             .options = options_text(config.scan),
+             .options = {{"scan", options_text(config.scan)}},
              .inputs = {chain.mesh("mesh")},
              .per_view = true,
              .run = [options = config.scan](const StageInputs& in) -> Value {
@@ -261,7 +261,7 @@ Chain scan_chain(const Config& config, const Chain& of_mesh) {
   chain.add({.name = "scan_normals",
              .version = 1,
              .kind = "normals",
-             .options = options_text(config.scan_normals),
+             .options = {{"scan_normals", options_text(config.scan_normals)}},
              .inputs = {chain.shape("scan")},
              .run = [options = config.scan_normals](const StageInputs& in) -> Value {
                return scan_normals(in.get<Scan>(0), options);
@@ -269,7 +269,7 @@ Chain scan_chain(const Config& config, const Chain& of_mesh) {
   chain.add({.name = "surface",
              .version = 1,
              .kind = "faces",
-             .options = options_text(config.surface),
+             .options = {{"surface", options_text(config.surface)}},
              .inputs = {chain.shape("scan"), chain.shape("scan_normals")},
              .run = [options = config.surface](const StageInputs& in) -> Value {
                return partial_mesh(in.get<Scan>(0), in.get<Normals>(1), options);
@@ -295,6 +295,14 @@ Catalog make_catalog(const Config& config) {
 Histogram histogram_of(const Value& value) {
   if (const auto* truth = std::get_if<GroundTruth>(&value)) return normalised_histogram(truth->saliency);
   return normalised_histogram(std::get<ScalarField>(value));
+}
+
+std::string option_path(const Stage& stage, std::string_view key) {
+  const std::string line = fmt::format("\n{}: ", key);
+  for (const OptionLines& options : stage.options)
+    if (("\n" + options.text).find(line) != std::string::npos)
+      return fmt::format("{}.{}", options.section, key);
+  return std::string(key);
 }
 
 bool has_stage(const Chain& chain, std::string_view name) {

@@ -35,11 +35,17 @@ struct StageInputs {
   }
 };
 
+// Canonical text of an options struct, with the path of its section in the configuration.
+struct OptionLines {
+  std::string section;  // "fpfh", "models.PS"
+  std::string text;     // one `key: value` a line
+};
+
 struct Stage {
   std::string name;          // folder in the cache; the same for meshes and scans where the work is the same
   std::int32_t version = 1;  // raised when the output changes; tests/pipeline/golden_test.cpp watches
-  std::string_view kind = {};  // layout of its result (io/value.h)
-  std::string options = {};    // canonical text of what it depends on
+  std::string_view kind = {};             // layout of its result (io/value.h)
+  std::vector<OptionLines> options = {};  // what it depends on
   std::vector<Input> inputs = {};
   Source source = Source::none;
   bool seeded = false;           // uses random numbers: seed and item enter the key
@@ -68,6 +74,10 @@ inline constexpr std::size_t kReference = 0;  // in Catalog::means
 Histogram histogram_of(const Value& value);  // of a ground truth's saliency, or of a map
 
 Catalog make_catalog(const Config& config);
+
+// Where an option of the stage stands in the configuration: "fpfh.radius"; the key itself where it stands
+// nowhere.
+std::string option_path(const Stage& stage, std::string_view key);
 
 // Index of a stage in a chain. Throws std::out_of_range.
 std::size_t stage_index(const Chain& chain, std::string_view name);

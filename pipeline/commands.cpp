@@ -10,6 +10,7 @@
 
 #include "io/table.h"
 #include "io/text_file.h"
+#include "pipeline/causes.h"
 #include "pipeline/results.h"
 #include "pipeline/session.h"
 #include "stages/core/errors.h"
@@ -24,13 +25,15 @@ Cell as_cell(std::size_t count) { return static_cast<std::int64_t>(count); }
 void print_counts(const Setup& setup, const Plan& plan) {
   Table table{.columns = {"stage", "cached", "to compute", "waiting", "not applicable", "failed", "why"},
               .rows = {}};
+  Causes causes(setup.context, plan, setup.cache, kOpenedForCounting);
+  const Why why = [&](const ItemRef& item, std::size_t stage) { return causes.group(item, stage); };
   std::size_t open = 0;
-  for (const StageCount& count : count_by_stage(setup.context, plan)) {
-    std::string why;
+  for (const StageCount& count : count_by_stage(setup.context, plan, why)) {
+    std::string reasons;
     for (const auto& [reason, n] : count.reasons)
-      why += fmt::format("{}{}: {}", why.empty() ? "" : "; ", reason, n);
+      reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", reason, n);
     table.rows.push_back({count.stage, as_cell(count.cached), as_cell(count.compute), as_cell(count.wait),
-                          as_cell(count.absent), as_cell(count.failed), why});
+                          as_cell(count.absent), as_cell(count.failed), reasons});
     open += count.compute + count.wait;
   }
   fmt::print("{}\n", aligned(table));
@@ -114,10 +117,18 @@ ExitStatus run_session(Session& session, const Arguments& arguments, const std::
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
-  const RunRecord record{setup.config,   setup.context,           session.plan,
-                         session.runner, thread_count(arguments), seconds_since(session.started)};
   const std::vector<ResultRow> rows =
       collect_results(setup.config, setup.context, session.plan, session.runner);
+  Causes causes(setup.context, session.plan, setup.cache, kOpenedForCounting);
+  const RunRecord record{setup.config,
+                         setup.context,
+                         session.plan,
+                         session.runner,
+                         thread_count(arguments),
+                         seconds_since(session.started),
+                         [&](const ItemRef& item, std::size_t stage) {
+                           return session.plan.jobs(item)[stage].computed() ? causes.group(item, stage) : "";
+                         }};
   write_results(setup.output, record, rows);
   if (!arguments.quiet) {
     if (setup.config.simulated()) fmt::print("{}\n", kSimulatedNote);

@@ -6,6 +6,7 @@
 
 #include "pipeline/commands.h"
 #include "pipeline/evaluate.h"
+#include "pipeline/explain.h"
 #include "stages/core/errors.h"
 
 namespace {
@@ -26,6 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
   salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
   salbench plan configs/shrec07.yaml --data SchellingData         what a run would compute, and why
+  salbench explain configs/shrec07.yaml 52_3 --data SchellingData what differs from what the cache has
   salbench status configs/shrec07.yaml --data SchellingData       what is there already
 
 Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
@@ -91,6 +93,12 @@ int dispatch(int argc, char** argv) {
   evaluate->add_flag("--matched", evaluated.matched, "the values are histogram-matched already");
   CLI::App* plan =
       add_verb(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
+  ExplainOptions explained;
+  CLI::App* explain =
+      add_verb(app, "explain",
+               "tell of each artefact of an item whether it is cached, and if not what differs", arguments);
+  explain->add_option("ITEM", explained.item, "a mesh (52) or a scan of it (52_3)")->required();
+  explain->add_option("STAGE", explained.stage, "this stage only");
   add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
   try {
     app.parse(argc, argv);
@@ -100,6 +108,7 @@ int dispatch(int argc, char** argv) {
   if (run->parsed()) return run_command(arguments, interrupted);
   if (maps->parsed()) return maps_command(arguments, interrupted);
   if (evaluate->parsed()) return evaluate_command(arguments, evaluated, interrupted);
+  if (explain->parsed()) return explain_command(arguments, explained);
   return plan->parsed() ? plan_command(arguments) : status_command(arguments);
 }
 

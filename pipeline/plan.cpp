@@ -25,17 +25,6 @@ const Job& input_job(const Plan& plan, const ItemRef& item, const Input& input) 
   }
 }
 
-const std::string& input_name(const Context& context, const ItemRef& item, const Input& input) {
-  switch (input.from) {
-    case Input::From::mesh:
-      return context.catalog.mesh[input.stage].name;
-    case Input::From::reference:
-      return context.catalog.means[kReference].name;
-    default:
-      return context.chain(item)[input.stage].name;
-  }
-}
-
 // Takes over the verdict of an input that is not known; nothing where it is.
 std::optional<Job> stopped_by(const Job& input, std::size_t index) {
   switch (input.verdict) {
@@ -80,6 +69,17 @@ Job looked_up(const Recipe& recipe, const Lookup& lookup) {
 
 }  // namespace
 
+const std::string& input_name(const Context& context, const ItemRef& item, const Input& input) {
+  switch (input.from) {
+    case Input::From::mesh:
+      return context.catalog.mesh[input.stage].name;
+    case Input::From::reference:
+      return context.catalog.means[kReference].name;
+    default:
+      return context.chain(item)[input.stage].name;
+  }
+}
+
 std::string_view text_of(Reason reason) {
   switch (reason) {
     case Reason::never_computed:
@@ -94,6 +94,8 @@ std::string_view text_of(Reason reason) {
       return "no ground truth";
     case Reason::unreadable:
       return "a source file cannot be read";
+    case Reason::damaged:
+      return "damaged";
     case Reason::inapplicable:
       return "does not apply";
     case Reason::not_given:
@@ -147,7 +149,8 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
   const Stage& stage = context.chain(item)[index];
   if (stage.applies && !stage.applies(context.source(item)))
     return {verdict_of(Verdict::absent, Reason::inapplicable), {}};
-  Recipe recipe{stage.name, stage.version, stage.options, {}, {}};
+  Recipe recipe{stage.name, stage.version, {}, {}, {}};
+  for (const OptionLines& options : stage.options) recipe.options += options.text;
   if (stage.per_view) recipe.options += fmt::format("view: {}\n", item.view);
   if (stage.seeded) recipe.seed = fmt::format("{}/{}", context.seed, context.name(item));
   for (std::size_t i = 0; i < stage.inputs.size(); ++i) {
@@ -216,7 +219,7 @@ Plan make_plan(const Context& context, const Index& index) {
   return plan;
 }
 
-std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan) {
+std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan, const Why& why) {
   std::vector<StageCount> counts;
   std::vector<std::map<std::string, std::size_t>> reasons;
   std::map<std::string, std::size_t> row_of;
@@ -248,11 +251,7 @@ std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan)
           default:
             ++count.failed;
         }
-        if (job.known()) continue;
-        std::string why(text_of(job.reason));
-        if (job.reason == Reason::input_pending || job.reason == Reason::input_failed)
-          why += " " + input_name(context, item, chain[s].inputs[job.because]);
-        ++reasons[row->second][why];
+        if (const std::string words = why ? why(item, s) : ""; !words.empty()) ++reasons[row->second][words];
       }
     }
   }

@@ -36,6 +36,7 @@ enum class Reason : std::uint8_t {
   input_failed,    // `because` failed
   no_ground_truth,
   unreadable,    // a source file cannot be read
+  damaged,       // the artefact is cut short or fails its checksum
   inapplicable,  // the stage has nothing to say of the item
   not_given,     // a map of such items is not among those given
 };
@@ -49,6 +50,7 @@ struct Job {
 
   bool known() const { return verdict == Verdict::cached || verdict == Verdict::done; }
   bool open() const { return verdict == Verdict::wait || verdict == Verdict::compute; }
+  bool computed() const { return verdict == Verdict::done || reason == Reason::damaged; }  // after a run
 };
 
 // One mesh (view = -1) or one scan of it.
@@ -102,14 +104,19 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
 Decision decide_mean(const Context& context, const Plan& plan, std::size_t mean, bool meshes,
                      const Lookup& lookup);
 
+// What a key calls an input: the name of the stage that makes it.
+const std::string& input_name(const Context& context, const ItemRef& item, const Input& input);
+
 Plan make_plan(const Context& context, const Index& index);
 
 // What there is to do, counted by stage for `salbench plan` and `status`.
 struct StageCount {
   std::string stage;
   std::size_t cached = 0, compute = 0, wait = 0, absent = 0, failed = 0;
-  std::vector<std::pair<std::string, std::size_t>> reasons;  // for what is not cached; most frequent first
+  std::vector<std::pair<std::string, std::size_t>> reasons;  // most frequent first
 };
-std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan);
+// Words for the reason of one job, the same for all that are to be counted together; empty: not counted.
+using Why = std::function<std::string(const ItemRef& item, std::size_t stage)>;
+std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan, const Why& why = {});
 
 }  // namespace salbench

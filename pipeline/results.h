@@ -71,6 +71,7 @@ struct RunRecord {
   Runner& runner;
   int threads = 1;
   double seconds = 0;
+  Why why = {};  // of what was computed; empty: not recorded
 };
 
 // results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and run.yaml;

@@ -88,11 +88,13 @@ class Runner::FamilyRun {
     ValuePtr& slot = values_[static_cast<std::size_t>(item.view + 1)][index];
     if (slot) return slot;
     const Stage& stage = runner_.context_.chain(item)[index];
-    const Job& job = runner_.plan_.jobs(item)[index];
-    if (const auto arrays = runner_.store_.load(stage.name, job.key))
+    Job& job = runner_.plan_.jobs(item)[index];
+    if (const auto arrays = runner_.store_.load(stage.name, job.key)) {
       slot = std::make_shared<const Value>(value_from(stage.kind, *arrays));
-    else
+    } else {
+      job.reason = Reason::damaged;
       recompute(item, index, job.content);
+    }
     return slot;
   }
 

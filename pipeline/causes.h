@@ -1,0 +1,61 @@
+// Why a job is not simply a hit, down to the component of its key: held against the nearest artefact in the
+// cache, the one of the same stage and item with the fewest components that differ. Changes nothing.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cache/recipes.h"
+#include "pipeline/plan.h"
+
+namespace salbench {
+
+struct Cause {
+  Reason reason = Reason::none;                    // none: a hit
+  std::vector<RecipeDifference> differences = {};  // where changed: from the nearest artefact to the job
+  std::filesystem::path file = {};                 // the nearest artefact, or the damaged one, or the hit
+  std::string fault = {};                          // where damaged
+};
+
+class Causes {
+ public:
+  static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
+
+  // The references must outlive it. At most `limit` artefacts a stage are opened; jobs beyond are `changed`
+  // without differences.
+  Causes(const Context& context, const Plan& plan, std::filesystem::path cache, std::size_t limit = kNoLimit);
+
+  // Before a run or after it: of what was computed, why. With `verify`, hits are read and checked too.
+  Cause of(const ItemRef& item, std::size_t stage, bool verify = false);
+
+  // One line for one job: "fpfh.radius 0.02 -> 0.03", "mesh file 52.off changed", with the first cause of
+  // what it waits for and of inputs that changed.
+  std::string line(const ItemRef& item, std::size_t stage, const Cause& cause);
+
+  // The same words for every job with the same cause, to be counted.
+  std::string group(const ItemRef& item, std::size_t stage);
+
+ private:
+  struct Product;  // what an input is the product of
+  Product product(const ItemRef& item, const Input& input) const;
+  std::string waits(const ItemRef& item, std::size_t stage);
+  std::string waits_for_mean(bool meshes);
+  std::string origin(const ItemRef& item, const Input& input, const std::string& before);
+  std::string origin_of_mean(const Recipe& before, const Recipe& now) const;
+  std::string difference_line(const ItemRef& item, const Stage& stage, const RecipeDifference& difference);
+  const Recipe* read(const ArtefactFile& file);
+
+  const Context& context_;
+  const Plan& plan_;
+  RecipeBook book_;
+  std::size_t limit_;
+  std::map<std::string, std::size_t> opened_;                       // by stage
+  std::map<std::filesystem::path, std::optional<Recipe>> recipes_;  // read so far; nothing of unsound files
+};
+
+inline constexpr std::size_t kOpenedForCounting = 100;  // artefacts a stage, where causes are only counted
+
+}  // namespace salbench

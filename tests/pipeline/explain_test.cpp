@@ -1,0 +1,282 @@
+// Every component of a key, changed alone, is the one that is named.
+#include "pipeline/explain.h"
+
+#include <fstream>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/results.h"
+#include "stages/core/errors.h"
+#include "tests/io/temporary_folder.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::SizeIs;
+using testing::StartsWith;
+
+constexpr const char* kMeshes = "dataset: {scans: false}\nmodels: {PS: , RS: }\n";
+constexpr const char* kOtherPs = "dataset: {scans: false}\nmodels: {PS: {absolute: true}, RS: }\n";
+
+using Counts = std::vector<std::pair<std::string, std::size_t>>;
+
+class ExplainTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
+    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
+  }
+
+  fs::path cache() const { return cache_ / "cache"; }
+
+  // Reasons of what the run computed, as run.yaml counts them.
+  Counts run(const std::string& yaml = kMeshes, const std::string& stage = "mesh") const {
+    FolderStore store(cache(), Access::read_write);
+    ToyRun toy(data_.path(), store, yaml);
+    toy.run();
+    collect_results(toy.config, toy.context, toy.plan, toy.runner);
+    Causes causes(toy.context, toy.plan, cache(), kOpenedForCounting);
+    return counts(toy, stage, [&](const ItemRef& item, std::size_t s) {
+      return toy.plan.jobs(item)[s].computed() ? causes.group(item, s) : "";
+    });
+  }
+
+  // Reasons as `salbench plan` counts them.
+  Counts planned(const std::string& yaml, const std::string& stage,
+                 std::size_t limit = kOpenedForCounting) const {
+    FolderStore store(cache(), Access::read_only);
+    const ToyRun toy(data_.path(), store, yaml);
+    Causes causes(toy.context, toy.plan, cache(), limit);
+    return counts(toy, stage, [&](const ItemRef& item, std::size_t s) { return causes.group(item, s); });
+  }
+
+  static Counts counts(const ToyRun& toy, const std::string& stage, const Why& why) {
+    for (const StageCount& count : count_by_stage(toy.context, toy.plan, why))
+      if (count.stage == stage) return count.reasons;
+    ADD_FAILURE() << "no stage " << stage;
+    return {};
+  }
+
+  using Change = std::function<void(Catalog&)>;
+  std::vector<Explanation> explained(const std::string& yaml, const std::string& item,
+                                     const std::string& stage = "", const Change& change = {}) const {
+    FolderStore store(cache(), Access::read_only);
+    ToyRun toy(data_.path(), store, yaml);
+    if (change) {
+      change(toy.catalog);
+      toy.plan = make_plan(toy.context, store);
+    }
+    return explain(toy.context, toy.plan, cache(), {item, stage});
+  }
+
+  // "state: why" of one stage of the mesh "1".
+  std::string asked(const std::string& stage, const std::string& yaml = kMeshes,
+                    const std::string& item = "1", const Change& change = {}) const {
+    const auto found = explained(yaml, item, stage, change);
+    EXPECT_THAT(found, SizeIs(1));
+    return found.front().state + ": " + found.front().why;
+  }
+
+  fs::path artefact(const std::string& stage, const std::string& item) const {
+    for (const auto& entry : fs::recursive_directory_iterator(cache() / stage))
+      if (entry.path().filename().string().starts_with(item + ".")) return entry.path();
+    ADD_FAILURE() << "no artefact of " << stage << " and " << item;
+    return {};
+  }
+  static void damage(const fs::path& file) {
+    std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+    stream.seekg(100);
+    const char byte = static_cast<char>(stream.get());
+    stream.seekp(100);
+    stream.put(static_cast<char>(byte ^ 0x10));
+  }
+  void edit_mesh() const {
+    Mesh edited = shapes::bumpy_sphere(2);
+    edited.vertices[0] *= 1.01;
+    write_text_file(data_ / "Meshes/1.off", off_text(edited));
+  }
+
+  TemporaryFolder data_, cache_;
+};
+
+TEST_F(ExplainTest, AHitNeedsNoReason) {
+  run();
+  const auto all = explained(kMeshes, "1");
+  EXPECT_THAT(all, SizeIs(4 + 2 * 3));
+  EXPECT_THAT(all, Each(AllOf(Field(&Explanation::state, "cached"), Field(&Explanation::why, ""))));
+  EXPECT_EQ(all[0].file, artefact("mesh", "1"));
+}
+
+TEST_F(ExplainTest, OfWhatWasNeverComputedThereIsNoArtefact) {
+  EXPECT_EQ(asked("mesh"), "to compute: no artefact of this stage and item");
+  EXPECT_EQ(asked("normals"), "waiting: waits for mesh: no artefact of this stage and item");
+  EXPECT_FALSE(fs::exists(cache()));
+}
+
+TEST_F(ExplainTest, AnOptionIsNamedWithItsPathAndBothValues) {
+  run();
+  EXPECT_EQ(asked("map.PS", kOtherPs), "to compute: models.PS.absolute false -> true");
+  EXPECT_EQ(asked("matched.PS", kOtherPs), "waiting: waits for map.PS: models.PS.absolute false -> true");
+  EXPECT_EQ(asked("scores.PS", kOtherPs),
+            "waiting: waits for matched.PS, waits for map.PS: models.PS.absolute false -> true");
+  EXPECT_EQ(asked("map.RS", kOtherPs), "cached: ");
+  EXPECT_EQ(asked("scores.RS", std::string(kMeshes) + "metrics: {splits: 7, thresholds: 50}\n"),
+            "to compute: metrics.splits 100 -> 7, metrics.thresholds 20 -> 50");
+}
+
+TEST_F(ExplainTest, OptionsOfTwoSectionsKeepTheirPaths) {
+  const std::string people = "dataset: {scans: false}\nmodels: {HS: {draws: 2}}\n";
+  run(people);
+  EXPECT_EQ(asked("curve.HS", "dataset: {scans: false}\nmetrics: {splits: 7}\nmodels: {HS: {draws: 3}}\n"),
+            "to compute: models.HS.draws 2 -> 3, metrics.splits 100 -> 7");
+}
+
+TEST_F(ExplainTest, ARaisedStageVersionIsNamed) {
+  run();
+  const Change raise = [](Catalog& catalog) { catalog.mesh[stage_index(catalog.mesh, "fpfh")].version = 2; };
+  EXPECT_EQ(asked("fpfh", kMeshes, "1", raise), "to compute: stage version 1 -> 2");
+  EXPECT_EQ(asked("map.PS", kMeshes, "1", raise), "waiting: waits for fpfh: stage version 1 -> 2");
+  EXPECT_EQ(asked("map.RS", kMeshes, "1", raise), "cached: ");
+}
+
+TEST_F(ExplainTest, AnotherSeedIsNamed) {
+  run();
+  const std::string reseeded = std::string(kMeshes) + "seed: 7\n";
+  EXPECT_EQ(asked("map.RS", reseeded), "to compute: seed 2016/1 -> 7/1");
+  EXPECT_THAT(planned(reseeded, "map.RS"), ElementsAre(Pair("seed 2016 -> 7", 2)));
+}
+
+TEST_F(ExplainTest, AnEditedMeshIsNamedByItsFile) {
+  run();
+  edit_mesh();
+  EXPECT_EQ(asked("mesh"), "to compute: mesh file 1.off changed");
+  EXPECT_EQ(asked("map.PS"), "waiting: waits for mesh: mesh file 1.off changed");
+  EXPECT_EQ(asked("mesh", kMeshes, "2"), "cached: ");
+  EXPECT_THAT(planned(kMeshes, "mesh"), ElementsAre(Pair("mesh file .off changed", 1)));
+}
+
+TEST_F(ExplainTest, AChangedInputIsTracedToWhatChangedIt) {
+  run();
+  edit_mesh();
+  run("dataset: {scans: false}\nmodels: {PS: }\n");  // the new mesh is now in the cache, a map of it is not
+  EXPECT_EQ(asked("map.RS"), "to compute: input mesh changed (mesh file 1.off changed)");
+  EXPECT_THAT(planned(kMeshes, "map.RS"), ElementsAre(Pair("input mesh changed", 1)));
+}
+
+TEST_F(ExplainTest, AChangedReferenceIsTracedToTheItemsItIsTheMeanOf) {
+  run();
+  std::string values;
+  for (int i = 0; i < 162; ++i) values += fmt::format("{}\n", i);
+  write_text_file(data_ / "Distributions/1.val", values);
+  run("dataset: {scans: false}\nmodels: {PS: }\n");
+  EXPECT_EQ(asked("matched.RS", kMeshes, "2"), "to compute: input reference changed (that of 1 changed)");
+}
+
+TEST_F(ExplainTest, AnEditedGroundTruthIsNamedByItsFile) {
+  run();
+  write_text_file(data_ / "RawData/1_3.pid", "0\n5\n");
+  EXPECT_EQ(asked("ground_truth"), "to compute: picks 3 changed");
+  EXPECT_EQ(asked("matched.PS", kMeshes, "2"),
+            "waiting: waits for reference, waits for ground_truth of 1: picks 3 changed");
+  EXPECT_EQ(asked("map.PS"), "cached: ");
+  fs::remove(data_ / "RawData/1_3.pid");
+  EXPECT_EQ(asked("ground_truth"), "to compute: picks 3 removed");
+  fs::remove(data_ / "Distributions/1.val");
+  EXPECT_EQ(asked("ground_truth"), "to compute: saliency file removed, picks 3 removed");
+}
+
+TEST_F(ExplainTest, OfADeletedArtefactThereIsNone) {
+  run();
+  fs::remove(artefact("normals", "1"));
+  EXPECT_EQ(asked("normals"), "to compute: no artefact of this stage and item");
+  EXPECT_EQ(asked("map.PS"),
+            "waiting: waits for fpfh, waits for normals: no artefact of this stage and item");
+  EXPECT_EQ(asked("normals", kMeshes, "2"), "cached: ");
+  EXPECT_THAT(run(kMeshes, "normals"), ElementsAre(Pair("not in the cache", 1)));
+}
+
+TEST_F(ExplainTest, ADamagedArtefactIsNamed) {
+  run();
+  const fs::path file = artefact("fpfh", "1");
+  damage(file);
+  EXPECT_EQ(asked("fpfh"), "damaged: " + file.string() + ": its checksum does not fit");
+  EXPECT_EQ(asked("map.PS"), "cached: ");  // what was made of it is sound
+  fs::remove(artefact("map.PS", "1"));
+  EXPECT_THAT(run(kMeshes, "fpfh"), ElementsAre(Pair("damaged", 1)));
+  EXPECT_EQ(asked("fpfh"), "cached: ");
+}
+
+TEST_F(ExplainTest, ATruncatedArtefactIsNamedWhereItLiesAndWhereItWasMoved) {
+  run();
+  const fs::path file = artefact("mesh", "1");
+  fs::resize_file(file, 10);
+  EXPECT_THAT(asked("mesh"), AllOf(StartsWith("damaged: " + file.string() + ": it has 10 bytes of ")));
+  EXPECT_THAT(planned(kMeshes, "mesh"), ElementsAre(Pair("damaged", 1)));
+  { const FolderStore moves_it_aside(cache(), Access::read_write); }
+  EXPECT_EQ(asked("mesh"),
+            "damaged: " + (cache() / "damaged" / file.filename()).string() + ": a run moved it aside");
+  EXPECT_THAT(run(kMeshes, "mesh"), ElementsAre(Pair("damaged", 1)));
+}
+
+TEST_F(ExplainTest, TheNearestArtefactIsTheOneHeldAgainst) {
+  run();
+  run(std::string(kMeshes) + "seed: 3\nmetrics: {splits: 7}\n");
+  const std::string splits_eight = std::string(kMeshes) + "metrics: {splits: 8}\n";
+  EXPECT_EQ(asked("scores.PS", splits_eight), "to compute: metrics.splits 100 -> 8");
+  EXPECT_EQ(asked("scores.PS", splits_eight + "seed: 3\n"), "to compute: metrics.splits 7 -> 8");
+}
+
+TEST_F(ExplainTest, ScansWaitForTheirMesh) {
+  run(kToyConfig);
+  edit_mesh();
+  EXPECT_EQ(asked("scan", kToyConfig, "1_3"), "waiting: waits for mesh of 1: mesh file 1.off changed");
+  EXPECT_EQ(asked("scan", "scan: {step_degrees: 2}\nmodels: {PS: }\n", "2_3"),
+            "to compute: scan.step_degrees 1 -> 2");
+  EXPECT_THAT(planned("scan: {step_degrees: 2}\nmodels: {PS: }\n", "scan"),
+              ElementsAre(Pair("scan.step_degrees 1 -> 2", 12), Pair("waits for mesh", 12)));
+}
+
+TEST_F(ExplainTest, ARunSaysWhyItComputed) {
+  EXPECT_THAT(run(kMeshes, "map.PS"), ElementsAre(Pair("not in the cache", 2)));
+  EXPECT_THAT(run(kMeshes, "map.PS"), IsEmpty());
+  EXPECT_THAT(run(kOtherPs, "matched.PS"), ElementsAre(Pair("input map.PS changed", 2)));
+  EXPECT_THAT(run(std::string(kMeshes) + "metrics: {splits: 7}\n", "scores.RS"),
+              ElementsAre(Pair("metrics.splits 100 -> 7", 2)));
+}
+
+TEST_F(ExplainTest, CountingOpensNoMoreArtefactsThanItMay) {
+  run();
+  EXPECT_THAT(planned(kOtherPs, "map.PS"), ElementsAre(Pair("models.PS.absolute false -> true", 2)));
+  EXPECT_THAT(planned(kOtherPs, "map.PS", 1),
+              testing::UnorderedElementsAre(Pair("models.PS.absolute false -> true", 1),
+                                            Pair("options, inputs, seed or version changed", 1)));
+}
+
+TEST_F(ExplainTest, WordsThatNameNothingAreRefused) {
+  const auto complaint = [&](const std::string& item, const std::string& stage) -> std::string {
+    try {
+      explained(kMeshes, item, stage);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_THAT(complaint("3", ""), HasSubstr("no item '3'"));
+  EXPECT_THAT(complaint("1_0", ""), HasSubstr("no item '1_0'"));  // no scans in this configuration
+  EXPECT_THAT(complaint("1", "map.PSS"), EndsWith("did you mean 'map.PS'?"));
+}
+
+}  // namespace
+}  // namespace salbench
