@@ -7,6 +7,7 @@
 #include "pipeline/commands.h"
 #include "pipeline/evaluate.h"
 #include "pipeline/explain.h"
+#include "pipeline/maintenance.h"
 #include "stages/core/errors.h"
 
 namespace {
@@ -49,6 +50,19 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
       "--reference", arguments.reference,
       "match to this histogram (CSV with a column GS of 100 bins), not to the data set's own mean");
   verb->add_flag("--quiet", arguments.quiet, "neither progress nor tables; warnings and errors only");
+  return verb;
+}
+
+// A verb that looks after a cache: of the configurations it names, or of one.
+CLI::App* add_maintenance(CLI::App& app, const std::string& name, const std::string& what,
+                          Arguments& arguments) {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->add_option("--data", arguments.data, "folder of the data set");
+  verb->add_option("--cache", arguments.cache,
+                   "folder of the artefacts (default: cache in CONFIG, or salbench-cache)");
+  verb->add_option("--items", arguments.items, "as of the run: only these meshes and their scans");
+  verb->add_option("--reference", arguments.reference, "as of the run: match to this histogram");
+  verb->add_flag("--quiet", arguments.quiet, "name what is wrong, and nothing else");
   return verb;
 }
 
@@ -100,6 +114,22 @@ int dispatch(int argc, char** argv) {
   explain->add_option("ITEM", explained.item, "a mesh (52) or a scan of it (52_3)")->required();
   explain->add_option("STAGE", explained.stage, "this stage only");
   add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
+  VerifyOptions verified;
+  CLI::App* verify = add_maintenance(
+      app, "verify", "read every artefact of a cache and name each bad one; changes nothing", arguments);
+  verify->add_option("CONFIG", verified.configs, "configuration files, or none with --cache");
+  verify->add_flag("--deep", verified.deep, "also compute a sample of the cached jobs again, and compare");
+  verify->add_option("--sample", verified.sample, "how many (default: 20)")->check(CLI::PositiveNumber);
+  GcOptions collected;
+  CLI::App* gc =
+      add_maintenance(app, "gc", "remove from a cache what no run of these configurations needs", arguments);
+  gc->add_option("CONFIG", collected.configs, "every configuration whose artefacts are kept")->required();
+  gc->add_flag("--dry-run", collected.dry_run, "only say what would be removed");
+  std::string accepted_stage;
+  CLI::App* accept = add_maintenance(
+      app, "accept", "take results of a stage's earlier versions for those of its present one", arguments);
+  accept->add_option("CONFIG", arguments.config, "configuration file")->required();
+  accept->add_option("STAGE", accepted_stage, "such as fpfh or map.LS")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -109,6 +139,9 @@ int dispatch(int argc, char** argv) {
   if (maps->parsed()) return maps_command(arguments, interrupted);
   if (evaluate->parsed()) return evaluate_command(arguments, evaluated, interrupted);
   if (explain->parsed()) return explain_command(arguments, explained);
+  if (verify->parsed()) return verify_command(arguments, verified, interrupted);
+  if (gc->parsed()) return gc_command(arguments, collected);
+  if (accept->parsed()) return accept_command(arguments, accepted_stage, interrupted);
   return plan->parsed() ? plan_command(arguments) : status_command(arguments);
 }
 
