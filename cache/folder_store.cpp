@@ -211,6 +211,8 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   return content;
 }
 
+std::unique_ptr<Claim> FolderStore::claim(std::string_view work) { return claim_in(impl_->folder, work); }
+
 std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& key) const {
   const std::shared_lock lock(impl_->mutex);
   const Entry* entry = impl_->entry(stage, key);

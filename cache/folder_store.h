@@ -31,6 +31,8 @@ class FolderStore final : public Store {
   Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
               const ArtefactNote& note) override;
 
+  std::unique_ptr<Claim> claim(std::string_view work) override;
+
   // Where an artefact lies, for who links to it; nothing where there is none.
   std::optional<std::filesystem::path> path(std::string_view stage, const Digest& key) const;
 

@@ -111,12 +111,28 @@ ExitStatus run_command(const Arguments& arguments, const std::atomic<bool>& stop
   return run_session(session, arguments, stop);
 }
 
+namespace {
+
+// No tables: what they compare is in the other shares.
+ExitStatus finish_shard(const Session& session, const RunRecord& record, const Arguments& arguments) {
+  const Setup& setup = session.setup;
+  write_shard_record(setup.output, record);
+  if (!arguments.quiet)
+    fmt::print("shard {}: {} meshes, {} artefacts computed; when all shards are done, the same line without "
+               "--shard writes the tables\n",
+               setup.context.shard->text(), setup.workload.families.size(), session.runner.computed());
+  return finished_status(session);
+}
+
+}  // namespace
+
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
-  prepare_output(setup.output);
+  setup.context.shard ? prepare_folder(setup.output, "--out") : prepare_output(setup.output);
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
+  if (setup.context.shard) return finish_shard(session, record, arguments);
   const std::vector<ResultRow> rows =
       collect_results(setup.config, setup.context, session.plan, session.runner);
   Causes causes(setup.context, session.plan, setup.cache, kOpenedForCounting);

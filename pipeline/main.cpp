@@ -89,6 +89,8 @@ int dispatch(int argc, char** argv) {
   Arguments arguments;
   arguments.command_line = joined(argc, argv);
   CLI::App* run = add_verb(app, "run", "compute what is missing and write the tables", arguments);
+  constexpr const char* kShard = "only share I of N of the items; a run without it then merges the shares";
+  run->add_option("--shard", arguments.shard, kShard)->type_name("I/N");
   CLI::App* maps =
       add_verb(app, "maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value a line", arguments);
   maps->add_option("--models", arguments.models, "only these, such as LS,PS");
@@ -113,6 +115,7 @@ int dispatch(int argc, char** argv) {
                "tell of each artefact of an item whether it is cached, and if not what differs", arguments);
   explain->add_option("ITEM", explained.item, "a mesh (52) or a scan of it (52_3)")->required();
   explain->add_option("STAGE", explained.stage, "this stage only");
+  plan->add_option("--shard", arguments.shard, kShard)->type_name("I/N");
   add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
   VerifyOptions verified;
   CLI::App* verify = add_maintenance(

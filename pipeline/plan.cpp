@@ -100,6 +100,8 @@ std::string_view text_of(Reason reason) {
       return "does not apply";
     case Reason::not_given:
       return "not given";
+    case Reason::needs_all:
+      return "needs the mean over all shards";
     default:
       return "";
   }
@@ -153,12 +155,15 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
   for (const OptionLines& options : stage.options) recipe.options += options.text;
   if (stage.per_view) recipe.options += fmt::format("view: {}\n", item.view);
   if (stage.seeded) recipe.seed = fmt::format("{}/{}", context.seed, context.name(item));
+  std::optional<Job> stopped;  // by what is absent, where anything is: there is nothing to wait for then
   for (std::size_t i = 0; i < stage.inputs.size(); ++i) {
     const Job& input = input_job(plan, item, stage.inputs[i]);
-    if (auto stopped = stopped_by(input, i)) return {*stopped, {}};
+    const std::optional<Job> by_this = stopped_by(input, i);
+    if (by_this && (!stopped || by_this->verdict == Verdict::absent)) stopped = by_this;
     recipe.inputs.emplace_back(input_name(context, item, stage.inputs[i]), input.content);
   }
-  if (auto stopped = add_sources(context, item, stage, recipe)) return {*stopped, {}};
+  if (stopped) return {*stopped, {}};
+  if (const auto no_source = add_sources(context, item, stage, recipe)) return {*no_source, {}};
   Job job = looked_up(recipe, lookup);
   return {job, std::move(recipe)};
 }
@@ -172,6 +177,7 @@ Decision decide_mean(const Context& context, const Plan& plan, std::size_t index
     job.content = content_digest(arrays_from(*context.given_reference));
     return {job, {}};
   }
+  if (context.shard) return {verdict_of(Verdict::absent, Reason::needs_all), {}};
   const Chain& chain = meshes ? context.catalog.mesh : context.catalog.scan;
   const std::string& averaged = meshes ? mean.of_mesh : mean.of_scan;
   if (!has_stage(chain, averaged)) return {verdict_of(Verdict::absent, Reason::none), {}};

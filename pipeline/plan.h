@@ -39,6 +39,7 @@ enum class Reason : std::uint8_t {
   damaged,       // the artefact is cut short or fails its checksum
   inapplicable,  // the stage has nothing to say of the item
   not_given,     // a map of such items is not among those given
+  needs_all,     // the mean over the whole data set, of which this is a share
 };
 std::string_view text_of(Reason reason);
 
@@ -80,6 +81,7 @@ struct Context {
   std::uint64_t seed = 0;
   std::optional<Histogram> given_reference = {};  // in place of the data set's own mean
   Attributes attributes = {};                     // written to every artefact
+  std::optional<Shard> shard = {};                // the workload is a share: no mean is taken over it
 
   const Chain& chain(const ItemRef& item) const { return item.is_mesh() ? catalog.mesh : catalog.scan; }
   const DatasetItem& source(const ItemRef& item) const { return workload.families[item.family].source; }

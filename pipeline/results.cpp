@@ -35,14 +35,19 @@ std::string host_name() {
   return name;
 }
 
+std::string_view reference_line(const Context& context) {
+  if (context.given_reference) return "given by --reference";
+  return context.shard ? "none, the run was over a share of the items" : "mean over the items of the run";
+}
+
 std::string run_yaml(const RunRecord& record) {
   std::string yaml;
   if (record.config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
   yaml += fmt::format(
       "program: salbench {}\nhost: {}\nthreads: {}\nseconds: {:.3f}\nartefacts_computed: {}\n",
       SALBENCH_VERSION, quoted(host_name()), record.threads, record.seconds, record.runner.computed());
-  yaml += record.context.given_reference ? "reference: given by --reference\n"
-                                         : "reference: mean over the items of the run\n";
+  if (record.context.shard) yaml += fmt::format("shard: {}\n", record.context.shard->text());
+  yaml += fmt::format("reference: {}\n", reference_line(record.context));
   for (const Model& model : record.config.models)
     if (model.given)
       yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
@@ -178,6 +183,11 @@ void prepare_folder(const fs::path& folder, std::string_view option) {
 void prepare_output(const fs::path& folder) {
   prepare_folder(folder, "--out");
   write_text_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
+}
+
+void write_shard_record(const fs::path& folder, const RunRecord& record) {
+  const Shard& shard = *record.context.shard;
+  write_text_file(folder / fmt::format("shard_{}_of_{}.yaml", shard.index, shard.count), run_yaml(record));
 }
 
 void write_results(const fs::path& folder, const RunRecord& record, const std::vector<ResultRow>& rows) {

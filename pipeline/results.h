@@ -64,6 +64,7 @@ Histogram read_reference(const std::string& path);
 void prepare_folder(const std::filesystem::path& folder, std::string_view option);
 void prepare_output(const std::filesystem::path& folder);  // of a run: also tells that one is under way
 
+// What a run was and did: configuration, versions, timings, failures.
 struct RunRecord {
   const Config& config;
   const Context& context;
@@ -73,6 +74,9 @@ struct RunRecord {
   double seconds = 0;
   Why why = {};  // of what was computed; empty: not recorded
 };
+
+// Of a run over a share, beside those of the other shares: shard_2_of_4.yaml.
+void write_shard_record(const std::filesystem::path& folder, const RunRecord& record);
 
 // results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and run.yaml;
 // where HS was computed, human_curve.csv.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -17,6 +18,8 @@ namespace salbench {
 namespace {
 
 using ValuePtr = std::shared_ptr<const Value>;
+
+constexpr std::chrono::milliseconds kLookAgain(50);  // whether another process has given up a claim
 
 bool has_open_job(const Context& context, const Plan& plan, const ItemRef& item, bool after_reference) {
   const Chain& chain = context.chain(item);
@@ -158,7 +161,11 @@ void Runner::run(int threads) {
   if (stop_) return;
   means_.resize(plan_.means.size());
   for (std::size_t index = 0; index < means_.size(); ++index)
-    for (const bool meshes : {true, false}) means_[index][meshes ? 0 : 1] = make_mean(index, meshes);
+    for (const bool meshes : {true, false}) {
+      const auto claim = wait_for_claim(context_.catalog.means[index].name + (meshes ? " meshes" : " scans"));
+      if (stop_) return;
+      means_[index][meshes ? 0 : 1] = make_mean(index, meshes);
+    }
   run_pass(threads, true);
   std::stable_sort(failures_.begin(), failures_.end(), [&](const Failure& a, const Failure& b) {
     if (a.item.family != b.item.family) return a.item.family < b.item.family;
@@ -168,45 +175,83 @@ void Runner::run(int threads) {
   });
 }
 
-void Runner::run_pass(int threads, bool after_reference) {
-  const std::vector<std::size_t> shared = shared_stages(context_.catalog);
-  std::vector<std::vector<ItemRef>> work;  // by family: the items with something to do
-  std::size_t items = 0;
+Runner::Work Runner::open_work(bool after_reference) const {
+  Work work;
   for (std::size_t f = 0; f < plan_.families.size(); ++f) {
     std::vector<ItemRef> open;
     for (const ItemRef& item : context_.family(f))
       if (has_open_job(context_, plan_, item, after_reference)) open.push_back(item);
-    items += open.size();
     if (!open.empty()) work.push_back(std::move(open));
   }
-  if (work.empty()) return;
+  return work;
+}
 
-  std::vector<std::unique_ptr<FamilyRun>> alive(work.size());
+// What other processes have claimed is left to the end, and by then is mostly found in the cache. Nothing is
+// held while waiting for them, so that two processes never wait for each other.
+void Runner::run_pass(int threads, bool after_reference) {
+  Work left = open_work(after_reference);
+  if (left.empty()) return;
+  std::size_t items = 0;
+  for (const auto& family : left) items += family.size();
+  progress_.begin(after_reference ? "matching and scoring" : "maps", items);
+  while (!left.empty() && !stop_) {
+    Work claimed_by_others = work_through(left, threads, after_reference);
+    if (claimed_by_others.size() == left.size()) std::this_thread::sleep_for(kLookAgain);
+    left = std::move(claimed_by_others);
+  }
+  progress_.end();
+}
+
+Runner::Work Runner::work_through(const Work& work, int threads, bool after_reference) {
+  struct Alive {
+    std::unique_ptr<Claim> claim;
+    std::unique_ptr<FamilyRun> family;
+  };
+  std::vector<Alive> alive(work.size());
+  std::vector<char> claimed_by_others(work.size(), 0);
+  const std::vector<std::size_t> shared = shared_stages(context_.catalog);
   const auto advance_item = [&](FamilyRun& family, const ItemRef& item) {
     const Chain& chain = context_.chain(item);
     for (std::size_t s = 0; s < chain.size() && !stop_; ++s)
       if (chain[s].after_reference == after_reference) family.advance(item, s);
   };
-  progress_.begin(after_reference ? "matching and scoring" : "maps", items);
-  const FlowBodies bodies{.open =
-                              [&](int w) {
-                                const auto index = static_cast<std::size_t>(w);
-                                const std::size_t f = work[index].front().family;
-                                alive[index] = std::make_unique<FamilyRun>(*this, f);
-                                for (const std::size_t s : shared)
-                                  if (!after_reference) alive[index]->advance({f, -1}, s);
-                                return static_cast<int>(work[index].size());
-                              },
-                          .part =
-                              [&](int w, int part) {
-                                const auto index = static_cast<std::size_t>(w);
-                                advance_item(*alive[index], work[index][static_cast<std::size_t>(part)]);
-                                if (!stop_) progress_.item_done();
-                              },
-                          .close = [&](int w) { alive[static_cast<std::size_t>(w)].reset(); }};
+  const auto open = [&](int w) {
+    const auto index = static_cast<std::size_t>(w);
+    const std::size_t f = work[index].front().family;
+    alive[index].claim = claim_of(f);
+    claimed_by_others[index] = alive[index].claim == nullptr;
+    if (claimed_by_others[index] != 0) return 0;
+    alive[index].family = std::make_unique<FamilyRun>(*this, f);
+    for (const std::size_t s : shared)
+      if (!after_reference) alive[index].family->advance({f, -1}, s);
+    return static_cast<int>(work[index].size());
+  };
+  const auto part = [&](int w, int p) {
+    const auto index = static_cast<std::size_t>(w);
+    advance_item(*alive[index].family, work[index][static_cast<std::size_t>(p)]);
+    if (!stop_) progress_.item_done();
+  };
+  const auto close = [&](int w) { alive[static_cast<std::size_t>(w)] = {}; };
   stream_families(static_cast<int>(work.size()), {.threads = threads, .families_alive = threads + 1}, stop_,
-                  bodies);
-  progress_.end();
+                  {open, part, close});
+  Work left;
+  for (std::size_t w = 0; w < work.size(); ++w)
+    if (claimed_by_others[w] != 0) left.push_back(work[w]);
+  return left;
+}
+
+// By the mesh's content: meshes of one name in two data sets are not the same work.
+std::unique_ptr<Claim> Runner::claim_of(std::size_t family) const {
+  const auto& digest = context_.workload.families[family].mesh_file.front().digest;
+  return store_.claim("family " + (digest ? digest->hex() : context_.name({family, -1})));
+}
+
+std::unique_ptr<Claim> Runner::wait_for_claim(const std::string& work) const {
+  while (!stop_) {
+    if (auto claim = store_.claim(work)) return claim;
+    std::this_thread::sleep_for(kLookAgain);
+  }
+  return nullptr;
 }
 
 // Serial and in the order of the items: sums of doubles depend on their order.

@@ -50,7 +50,12 @@ class Runner {
 
  private:
   class FamilyRun;
+  using Work = std::vector<std::vector<ItemRef>>;  // by family: the items with something to do
+  Work open_work(bool after_reference) const;
   void run_pass(int threads, bool after_reference);
+  Work work_through(const Work& work, int threads, bool after_reference);  // returns what others have claimed
+  std::unique_ptr<Claim> claim_of(std::size_t family) const;
+  std::unique_ptr<Claim> wait_for_claim(const std::string& work) const;
   std::shared_ptr<const Value> make_mean(std::size_t index, bool meshes);
   void record(const ItemRef& item, const Stage& stage, const std::string& cause);
   void record(const std::string& stage, double seconds);

@@ -45,6 +45,10 @@ Config configuration(const Arguments& arguments, const std::optional<Model>& giv
   return config;
 }
 
+std::optional<Shard> shard_of(const Arguments& arguments) {
+  return arguments.shard.empty() ? std::nullopt : std::optional(parse_shard(arguments.shard));
+}
+
 }  // namespace
 
 int thread_count(const Arguments& arguments) {
@@ -55,11 +59,13 @@ int thread_count(const Arguments& arguments) {
 Setup::Setup(const Arguments& arguments, const std::optional<Model>& given)
     : config(configuration(arguments, given)),
       catalog(make_catalog(config)),
-      workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items)),
+      workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items,
+                             shard_of(arguments))),
       context{catalog, workload, config.seed},
       cache(config.cache.empty() ? "salbench-cache" : config.cache),
       output(config.output.empty() ? fs::path("salbench-out") / config.name : fs::path(config.output)) {
   if (!arguments.reference.empty()) context.given_reference = read_reference(arguments.reference);
+  context.shard = shard_of(arguments);
   context.attributes = {{"protocol", std::string(name_of(config.protocol))}};
   if (config.simulated()) context.attributes.emplace_back("participants", std::string(kSimulatedNote));
   if (given) add_given_maps(workload, context, *given);

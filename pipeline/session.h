@@ -23,6 +23,7 @@ struct Arguments {
   std::string config;
   std::string data, cache, output;
   std::string items;      // "1-20,52,125"
+  std::string shard;      // of `run` and `plan`: "2/4"
   std::string reference;  // CSV file with a reference histogram in column GS
   std::string models;     // of `maps`: "LS,PS"; empty: all of the configuration
   std::string to;         // of `maps`: folder that is written to

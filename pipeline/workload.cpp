@@ -87,15 +87,18 @@ std::vector<std::string> split_list(const std::string& list) {
   return parts;
 }
 
-Workload make_workload(const Dataset& dataset, const std::string& selection) {
+Workload make_workload(const Dataset& dataset, const std::string& selection,
+                       const std::optional<Shard>& shard) {
   std::set<std::string> present;
   for (const DatasetItem& item : dataset.items) present.insert(item.name);
   const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
   if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
 
+  std::vector<DatasetItem> items = dataset.items;
+  std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
   Workload workload{{}, dataset.notes};
-  for (const DatasetItem& item : dataset.items)
-    if (names.contains(item.name)) workload.families.push_back(make_family(item));
+  for (const DatasetItem& item : shard ? share_of(items, *shard) : items)
+    workload.families.push_back(make_family(item));
   return workload;
 }
 

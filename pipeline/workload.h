@@ -9,6 +9,7 @@
 
 #include "cache/digest.h"
 #include "io/dataset.h"
+#include "pipeline/shard.h"
 
 namespace salbench {
 
@@ -33,8 +34,9 @@ struct Workload {
 
 std::vector<std::string> split_list(const std::string& list);  // at commas, without blanks and empty parts
 
-// Reads and digests the files of the items that `selection` names ("1-20,52,125"; empty: all). Throws
-// ConfigError where it names an item that is not there.
-Workload make_workload(const Dataset& dataset, const std::string& selection);
+// Reads and digests the files of the items that `selection` names ("1-20,52,125"; empty: all), or of one share
+// of them. Throws ConfigError where it names an item that is not there.
+Workload make_workload(const Dataset& dataset, const std::string& selection,
+                       const std::optional<Shard>& shard = {});
 
 }  // namespace salbench

@@ -1,0 +1,51 @@
+// All claims are locks on single bytes of one empty file, the byte chosen by the digest of the work's name:
+// there is nothing to write, to clean up or to find left behind. The locks are those of the open file
+// (F_OFD_SETLK), not of the process: they hold between threads too, and closing another descriptor of the
+// file does not drop them.
+#include "cache/claim.h"
+
+#include <cerrno>
+#include <limits>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "cache/digest.h"
+#include "cache/layout.h"
+
+namespace salbench {
+namespace {
+
+class LockedByte final : public Claim {
+ public:
+  explicit LockedByte(int fd) : fd_(fd) {}
+  ~LockedByte() override {
+    if (fd_ >= 0) ::close(fd_);
+  }
+
+ private:
+  int fd_;
+};
+
+off_t byte_of(std::string_view work) {
+  Hasher hasher;
+  hasher.add(work);
+  return static_cast<off_t>(hasher.digest().low & (std::numeric_limits<off_t>::max() >> 1));
+}
+
+}  // namespace
+
+std::unique_ptr<Claim> claim_in(const std::filesystem::path& cache, std::string_view work) {
+  const int fd = ::open((cache / kClaimsFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  auto claim = std::make_unique<LockedByte>(fd);
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = byte_of(work);
+  lock.l_len = 1;
+  const bool taken = fd >= 0 && ::fcntl(fd, F_OFD_SETLK, &lock) != 0 && (errno == EAGAIN || errno == EACCES);
+  if (taken) return nullptr;
+  return claim;
+}
+
+}  // namespace salbench

@@ -1,0 +1,60 @@
+#include "cache/claim.h"
+
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/io/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+TEST(Claim, IsOneProcessesAndEndsWithTheObject) {
+  const TemporaryFolder cache;
+  auto mine = claim_in(cache.path(), "family 1");
+  EXPECT_NE(mine, nullptr);
+  EXPECT_EQ(claim_in(cache.path(), "family 1"), nullptr);
+  const auto other = claim_in(cache.path(), "family 2");
+  EXPECT_NE(other, nullptr);
+  EXPECT_EQ(claim_in(cache.path(), "family 1"), nullptr) << "dropped when another descriptor was closed";
+  mine.reset();
+  EXPECT_NE(claim_in(cache.path(), "family 1"), nullptr);
+}
+
+TEST(Claim, IsOfOneCache) {
+  const TemporaryFolder here, there;
+  const auto claim = claim_in(here.path(), "family 1");
+  EXPECT_NE(claim_in(there.path(), "family 1"), nullptr);
+}
+
+TEST(Claim, DiesWithItsProcess) {
+  const TemporaryFolder cache;
+  int held[2];
+  ASSERT_EQ(::pipe(held), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto claim = claim_in(cache.path(), "family 1");
+    const char byte = claim ? 'y' : 'n';
+    if (::write(held[1], &byte, 1) != 1) ::_exit(1);
+    for (;;) ::pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(held[0], &byte, 1), 1);
+  EXPECT_EQ(byte, 'y');
+  EXPECT_EQ(claim_in(cache.path(), "family 1"), nullptr);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_NE(claim_in(cache.path(), "family 1"), nullptr);
+  for (const int end : held) ::close(end);
+}
+
+TEST(Claim, WhereThereCanBeNoLocksEverythingIsGranted) {
+  EXPECT_NE(claim_in("/no/such/folder", "family 1"), nullptr);
+  EXPECT_NE(claim_in("/no/such/folder", "family 1"), nullptr);
+}
+
+}  // namespace
+}  // namespace salbench

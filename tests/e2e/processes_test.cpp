@@ -1,0 +1,172 @@
+// Several processes over one cache: they share the work, and what comes of it is what one process makes.
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cache/claim.h"
+#include "cache/digest.h"
+#include "io/text_file.h"
+#include "tests/e2e/workspace.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+constexpr int kProcesses = 4;
+
+std::string out_of(const Workspace& toy, int process) {
+  return (toy / ("out" + std::to_string(process))).string();
+}
+
+void add_more_meshes(const Workspace& toy) {
+  for (int k = 3; k <= 6; ++k)
+    write_toy_item(toy.data(), std::to_string(k), shapes::bumpy_sphere(2, 0.05 * k));
+}
+
+int computed_by(const fs::path& record) {
+  const auto line = lines_with(read_file(record), "artefacts_computed: ");
+  return std::stoi(line.at(0).substr(line[0].find(' ')));
+}
+
+TEST(Processes, FourAtOnceDoTheWorkOfOneAndComeToTheSameBytes) {
+  const Workspace toy;
+  add_more_meshes(toy);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results(), summary = toy.summary();
+  const auto contents = toy.contents();
+  toy.forget_everything();
+
+  std::vector<std::unique_ptr<Process>> processes;
+  for (int p = 0; p < kProcesses; ++p)
+    processes.push_back(
+        std::make_unique<Process>(toy.command("run", {"--threads", "1", "--out", out_of(toy, p)})));
+  int computed = 0;
+  for (int p = 0; p < kProcesses; ++p) {
+    const Outcome run = processes[static_cast<std::size_t>(p)]->wait();
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(read_file(fs::path(out_of(toy, p)) / "results.csv"), results);
+    EXPECT_EQ(read_file(fs::path(out_of(toy, p)) / "summary.csv"), summary);
+    computed += computed_by(fs::path(out_of(toy, p)) / "run.yaml");
+  }
+  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_EQ(computed, static_cast<int>(contents.size())) << "some artefact was computed twice";
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+
+// This test stands for the other process: it holds what the first mesh's family is claimed by.
+TEST(Processes, WhatAnotherOneHasClaimedIsLeftUntilItGivesItUp) {
+  const Workspace toy;
+  fs::create_directories(toy.cache());
+  auto claim = claim_in(toy.cache(), "family " + file_digest(toy.data() / "Meshes/1.off").hex());
+  ASSERT_NE(claim, nullptr);
+  Process run(toy.command("run"));
+  // All that can be had of the second mesh: two maps of it and of each scan.
+  const auto maps = [&] { return toy.artefacts("map.PS").size() + toy.artefacts("map.RS").size(); };
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (maps() < 26 && std::chrono::steady_clock::now() < give_up)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_FALSE(run.ended());
+  EXPECT_THAT(toy.contents(), SizeIs(4 + 2 + 12 * 7)) << "of the second mesh, before matching";
+  for (const std::string& line : toy.contents()) EXPECT_THAT(line, HasSubstr("/2"));
+  claim.reset();
+  const Outcome outcome = run.wait();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(toy.computed(), static_cast<int>(toy.contents().size()));
+}
+
+TEST(Processes, AKilledOneHoldsUpNoOther) {
+  const Workspace toy;
+  add_more_meshes(toy);
+  Process victim(toy.command("run", {"--threads", "1", "--out", out_of(toy, 1)}));
+  while (toy.artefacts().empty() && !victim.ended())
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  Process survivor(toy.command("run", {"--threads", "1", "--out", out_of(toy, 2)}));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  victim.send(SIGKILL);
+  const Outcome run = survivor.wait();
+  EXPECT_EQ(run.status, 0) << run.err;
+  const std::string results = read_file(fs::path(out_of(toy, 2)) / "results.csv");
+  toy.forget_everything();
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.results(), results);
+}
+
+TEST(Processes, AnInterruptedOneDoesNotWaitForOthers) {
+  const Workspace toy;
+  fs::create_directories(toy.cache());
+  std::vector<std::unique_ptr<Claim>> claims;
+  for (const char* mesh : {"1", "2"})
+    claims.push_back(claim_in(
+        toy.cache(), "family " + file_digest(toy.data() / "Meshes" / (std::string(mesh) + ".off")).hex()));
+  Process run(toy.command("run"));
+  while (!fs::exists(toy.out() / "run.yaml") && !run.ended())
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  run.send(SIGINT);
+  EXPECT_EQ(run.wait().status, 130);
+  EXPECT_THAT(toy.artefacts(), IsEmpty());
+}
+
+TEST(Shards, TogetherDoTheWorkOfOneRunWhichThenOnlyMatchesAndScores) {
+  const Workspace toy;
+  add_more_meshes(toy);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results();
+  const auto contents = toy.contents();
+  toy.forget_everything();
+
+  int computed = 0;
+  for (const char* shard : {"1/3", "2/3", "3/3"}) {
+    const Outcome run = toy.salbench("run", {"--shard", shard});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::string name = "shard_" + std::string(1, shard[0]) + "_of_3.yaml";
+    EXPECT_THAT(read_file(toy.out() / name), HasSubstr("shard: " + std::string(shard) + "\n"));
+    EXPECT_GE(computed_by(toy.out() / name), 6 + 12 * 7) << "at least one mesh and its scans";
+    computed += computed_by(toy.out() / name);
+    EXPECT_THAT(toy.salbench("plan", {"--shard", shard}).out, HasSubstr("\n0 jobs to do"));
+  }
+  EXPECT_FALSE(fs::exists(toy.out() / "results.csv") || fs::exists(toy.out() / "run.yaml"));
+  EXPECT_THAT(toy.contents(), Each(Not(HasSubstr("matched."))));
+  EXPECT_EQ(computed, static_cast<int>(toy.contents().size()));
+
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed() + computed, static_cast<int>(contents.size()));
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_EQ(toy.contents(), contents);
+}
+
+TEST(Shards, WithAGivenReferenceLeaveNothingButTheTablesToDo) {
+  const Workspace toy;
+  std::string csv = "GS\n";
+  for (int bin = 0; bin < 100; ++bin) csv += "1\n";
+  const std::string reference = toy.write("reference.csv", csv).string();
+  for (const char* shard : {"1/2", "2/2"})
+    ASSERT_EQ(toy.salbench("run", {"--shard", shard, "--reference", reference}).status, 0);
+  EXPECT_THAT(toy.artefacts("scores.PS"), SizeIs(26));
+  ASSERT_EQ(toy.salbench("run", {"--reference", reference}).status, 0);
+  EXPECT_EQ(toy.computed(), 4) << "the mean histograms of two models, of meshes and of scans";
+}
+
+TEST(Shards, AreWrittenIOfN) {
+  const Workspace toy;
+  for (const char* bad : {"3/2", "0/2", "2", "a/b"}) {
+    const Outcome run = toy.salbench("run", {"--shard", bad});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_THAT(run.err, HasSubstr("--shard"));
+  }
+  EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
+}
+
+}  // namespace
+}  // namespace salbench
