@@ -6,6 +6,7 @@
 
 #include "pipeline/commands.h"
 #include "pipeline/evaluate.h"
+#include "pipeline/export.h"
 #include "pipeline/explain.h"
 #include "pipeline/maintenance.h"
 #include "stages/core/errors.h"
@@ -27,6 +28,7 @@ constexpr const char* kExamples = R"(Examples:
   salbench run configs/shrec07.yaml --data SchellingData          the whole benchmark; run it again to resume
   salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
   salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
+  salbench export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5
   salbench plan configs/shrec07.yaml --data SchellingData         what a run would compute, and why
   salbench explain configs/shrec07.yaml 52_3 --data SchellingData what differs from what the cache has
   salbench status configs/shrec07.yaml --data SchellingData       what is there already
@@ -107,6 +109,16 @@ int dispatch(int argc, char** argv) {
   evaluate->add_option("--name", evaluated.name, "what to call them in the tables")->required();
   evaluate->add_option("--models", arguments.models, "beside these models only, such as LS,PS");
   evaluate->add_flag("--matched", evaluated.matched, "the values are histogram-matched already");
+  ExportOptions exported;
+  CLI::App* exports =
+      add_verb(app, "export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
+               arguments);
+  exports->add_option("--stage", exported.stages,
+                      "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*");
+  exports->add_option("--models", arguments.models, "only these, such as LS,PS");
+  exports->add_option("--to", arguments.to, "the HDF5 file, or the folder of the shapes")->required();
+  exports->add_option("--format", exported.format, "h5 (default), or a shape an item: csv, ply, vtp");
+  exports->add_flag("--link", exported.link, "refer to the artefacts in the cache, do not copy them");
   CLI::App* plan =
       add_verb(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
   ExplainOptions explained;
@@ -141,6 +153,7 @@ int dispatch(int argc, char** argv) {
   if (run->parsed()) return run_command(arguments, interrupted);
   if (maps->parsed()) return maps_command(arguments, interrupted);
   if (evaluate->parsed()) return evaluate_command(arguments, evaluated, interrupted);
+  if (exports->parsed()) return export_command(arguments, exported, interrupted);
   if (explain->parsed()) return explain_command(arguments, explained);
   if (verify->parsed()) return verify_command(arguments, verified, interrupted);
   if (gc->parsed()) return gc_command(arguments, collected);
