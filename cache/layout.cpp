@@ -79,7 +79,8 @@ CacheListing list_cache(const fs::path& folder) {
   try {
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
-      if (name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile) continue;
+      if (name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile)
+        continue;
       if (entry.is_directory())
         list_stage(entry.path(), listing);
       else

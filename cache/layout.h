@@ -16,7 +16,7 @@ namespace salbench {
 
 inline constexpr std::string_view kScratchFolder = "tmp";
 inline constexpr std::string_view kDamagedFolder = "damaged";
-inline constexpr std::string_view kClaimsFile = "claims";     // empty; see claim.cpp
+inline constexpr std::string_view kClaimsFile = "claims";  // empty; see claim.cpp
 
 // The folder of an artefact, below the cache's.
 std::filesystem::path shard_of(std::string_view stage, const Digest& key);

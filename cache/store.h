@@ -42,8 +42,8 @@ class Store : public Index {
   // Complete on return, or not there at all. Throws StorageError.
   virtual Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
                       const ArtefactNote& note) = 0;
-  // Of the processes that share the store, one at a time has a claim; nothing where another has it. A store of
-  // one process alone grants them all.
+  // Of the processes that share the store, one at a time has a claim; nothing where another has it. A store
+  // of one process alone grants them all.
   virtual std::unique_ptr<Claim> claim(std::string_view work) {
     static_cast<void>(work);
     return std::make_unique<Claim>();

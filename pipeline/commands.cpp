@@ -118,9 +118,10 @@ ExitStatus finish_shard(const Session& session, const RunRecord& record, const A
   const Setup& setup = session.setup;
   write_shard_record(setup.output, record);
   if (!arguments.quiet)
-    fmt::print("shard {}: {} meshes, {} artefacts computed; when all shards are done, the same line without "
-               "--shard writes the tables\n",
-               setup.context.shard->text(), setup.workload.families.size(), session.runner.computed());
+    fmt::print(
+        "shard {}: {} meshes, {} artefacts computed; when all shards are done, the same line without "
+        "--shard writes the tables\n",
+        setup.context.shard->text(), setup.workload.families.size(), session.runner.computed());
   return finished_status(session);
 }
 
@@ -132,9 +133,6 @@ ExitStatus run_session(Session& session, const Arguments& arguments, const std::
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
-  if (setup.context.shard) return finish_shard(session, record, arguments);
-  const std::vector<ResultRow> rows =
-      collect_results(setup.config, setup.context, session.plan, session.runner);
   Causes causes(setup.context, session.plan, setup.cache, kOpenedForCounting);
   const RunRecord record{setup.config,
                          setup.context,
@@ -145,6 +143,9 @@ ExitStatus run_session(Session& session, const Arguments& arguments, const std::
                          [&](const ItemRef& item, std::size_t stage) {
                            return session.plan.jobs(item)[stage].computed() ? causes.group(item, stage) : "";
                          }};
+  if (setup.context.shard) return finish_shard(session, record, arguments);
+  const std::vector<ResultRow> rows =
+      collect_results(setup.config, setup.context, session.plan, session.runner);
   write_results(setup.output, record, rows);
   if (!arguments.quiet) {
     if (setup.config.simulated()) fmt::print("{}\n", kSimulatedNote);

@@ -6,8 +6,8 @@
 
 #include "pipeline/commands.h"
 #include "pipeline/evaluate.h"
-#include "pipeline/export.h"
 #include "pipeline/explain.h"
+#include "pipeline/export.h"
 #include "pipeline/maintenance.h"
 #include "stages/core/errors.h"
 

@@ -34,8 +34,8 @@ struct Workload {
 
 std::vector<std::string> split_list(const std::string& list);  // at commas, without blanks and empty parts
 
-// Reads and digests the files of the items that `selection` names ("1-20,52,125"; empty: all), or of one share
-// of them. Throws ConfigError where it names an item that is not there.
+// Reads and digests the files of the items that `selection` names ("1-20,52,125"; empty: all), or of one
+// share of them. Throws ConfigError where it names an item that is not there.
 Workload make_workload(const Dataset& dataset, const std::string& selection,
                        const std::optional<Shard>& shard = {});
 
