@@ -49,9 +49,12 @@ def main():
     with h5py.File(sys.argv[1], "r") as file:
         if "participants" in file.attrs:
             print(text(file.attrs["participants"]))
-        table = saliency_at_picks(file).groupby(["dataset", "model"])
-    means = table[["at picks", "elsewhere"]].mean()
-    means["items"] = table.size()
+        table = saliency_at_picks(file)
+    if table.empty:
+        sys.exit(f"{sys.argv[1]}: holds no map of an item whose points people picked")
+    groups = table.groupby(["dataset", "model"])
+    means = groups[["at picks", "elsewhere"]].mean()
+    means["items"] = groups.size()
     print(means.reset_index().to_string(index=False, float_format="%.4f"))
 
 
