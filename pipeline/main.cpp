@@ -121,13 +121,13 @@ int dispatch(int argc, char** argv) {
   exports->add_flag("--link", exported.link, "refer to the artefacts in the cache, do not copy them");
   CLI::App* plan =
       add_verb(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
+  plan->add_option("--shard", arguments.shard, kShard)->type_name("I/N");
   ExplainOptions explained;
   CLI::App* explain =
       add_verb(app, "explain",
                "tell of each artefact of an item whether it is cached, and if not what differs", arguments);
   explain->add_option("ITEM", explained.item, "a mesh (52) or a scan of it (52_3)")->required();
   explain->add_option("STAGE", explained.stage, "this stage only");
-  plan->add_option("--shard", arguments.shard, kShard)->type_name("I/N");
   add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
   VerifyOptions verified;
   CLI::App* verify = add_maintenance(
@@ -154,10 +154,10 @@ int dispatch(int argc, char** argv) {
   if (maps->parsed()) return maps_command(arguments, interrupted);
   if (evaluate->parsed()) return evaluate_command(arguments, evaluated, interrupted);
   if (exports->parsed()) return export_command(arguments, exported, interrupted);
-  if (explain->parsed()) return explain_command(arguments, explained);
   if (verify->parsed()) return verify_command(arguments, verified, interrupted);
   if (gc->parsed()) return gc_command(arguments, collected);
   if (accept->parsed()) return accept_command(arguments, accepted_stage, interrupted);
+  if (explain->parsed()) return explain_command(arguments, explained);
   return plan->parsed() ? plan_command(arguments) : status_command(arguments);
 }
 

@@ -150,6 +150,13 @@ def aligned(title, table):
     print(f"\n{title}\n{table.to_string(index=False)}")
 
 
+def smoothed_picks():
+    with h5py.File(work / "picks.h5") as export:
+        worst = max(float(np.abs(export[f"{path.stem}/ground_truth/saliency"][:] - read_map(path)).max())
+                    for path in (data / "SchellingData/Distributions").glob("*.val"))
+    at_most("smoothed picks: largest difference to the .val of 19 meshes", worst, 1e-5)
+
+
 def eyetracking():
     summary = pd.read_csv(work / "eyetracking/summary.csv", comment="#")
     aligned("eye tracking: 23 meshes, and 12 scans of each",
@@ -174,10 +181,11 @@ mesh_scores()
 figure_maps()
 histograms()
 scan_scores()
+smoothed_picks()
 table = pd.DataFrame(figures, columns=["figure", "measured", "aim", "verdict"])
 table.to_csv(work / "fidelity.csv", index=False)
 for what, value, aim, verdict in figures:
-    print(f"{verdict:5}{what:75}{value if isinstance(value, str) else format(value, '.4f'):>10}   {aim}")
+    print(f"{verdict:5}{what:75}{value if isinstance(value, str) else format(value, '.4g'):>10}   {aim}")
 eyetracking()
 protocols()
 print(f"\n{(table.verdict == 'hit').sum()} hit, {(table.verdict == 'MISS').sum()} missed; table in {work / 'fidelity.csv'}")

@@ -1,6 +1,7 @@
 #include "stages/core/support.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "stages/core/check.h"
@@ -38,6 +39,20 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
 
 SupportRadius grown_support_radius(std::span<const Vec3> points, double factor) {
   return grown_support_radius(points, KdTree(points), factor);
+}
+
+double median_spacing(std::span<const Vec3> points, const KdTree& tree) {
+  std::vector<double> squared;
+  squared.reserve(points.size());
+  std::vector<Neighbor> near;
+  for (const Vec3& p : points) {
+    tree.nearest(p, 2, near);
+    squared.push_back(near.back().distance_squared);
+  }
+  if (squared.empty()) return 0;
+  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
+  std::nth_element(squared.begin(), middle, squared.end());
+  return std::sqrt(*middle);
 }
 
 }  // namespace salbench

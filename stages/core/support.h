@@ -14,6 +14,9 @@ inline constexpr std::int32_t kFewestNeighbors = 6;  // on average, the point it
 // Mean over the points of how many others lie at distance <= radius; n > 0, `tree` is over `points`.
 double mean_neighbor_count(std::span<const Vec3> points, const KdTree& tree, double radius);
 
+// Median distance of a point to its nearest other one; 0 of fewer than two points. `tree` is over `points`.
+double median_spacing(std::span<const Vec3> points, const KdTree& tree);
+
 struct SupportRadius {
   double radius = 0;            // in the shape's unit
   std::int32_t neighbours = 0;  // mean number of others within it, truncated

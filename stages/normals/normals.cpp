@@ -98,21 +98,6 @@ Normals hoppe_mesh_normals(const std::vector<Vec3>& points, const MeshNormalsOpt
   return normals;
 }
 
-// Median distance of a point to its nearest other one; 0 of fewer than two points.
-double median_spacing(std::span<const Vec3> points, const KdTree& tree) {
-  std::vector<double> squared;
-  squared.reserve(points.size());
-  std::vector<Neighbor> near;
-  for (const Vec3& p : points) {
-    tree.nearest(p, 2, near);
-    squared.push_back(near.back().distance_squared);
-  }
-  if (squared.empty()) return 0;
-  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
-  std::nth_element(squared.begin(), middle, squared.end());
-  return std::sqrt(*middle);
-}
-
 void require_between(const char* key, double value, double low, double high) {
   if (!(value >= low && value <= high))
     throw OptionError{key, fmt::format("must be in [{}, {}], not {}", low, high, value)};

@@ -21,6 +21,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbors.h"
+#include "stages/core/support.h"
 
 namespace salbench {
 namespace {
@@ -36,20 +37,6 @@ void silence_pcl() {
     return true;
   }();
   static_cast<void>(silenced);
-}
-
-double median_spacing(const std::vector<Vec3>& points) {
-  const KdTree tree(points);
-  std::vector<double> squared;
-  squared.reserve(points.size());
-  std::vector<Neighbor> near;
-  for (const Vec3& p : points) {
-    tree.nearest(p, 2, near);
-    squared.push_back(near.back().distance_squared);
-  }
-  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
-  std::nth_element(squared.begin(), middle, squared.end());
-  return std::sqrt(*middle);
 }
 
 Cloud::Ptr cloud_in_spacings(const std::vector<Vec3>& points, const Normals& normals, double spacing) {
@@ -113,7 +100,7 @@ void check(const SurfaceOptions& options) {
 Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options) {
   CHECK_EQ(normals.size(), scan.points.size());
   if (scan.points.size() < 3) return {};
-  const double spacing = median_spacing(scan.points);
+  const double spacing = median_spacing(scan.points, KdTree(scan.points));
   if (!(spacing > 0)) return {};
 
   silence_pcl();

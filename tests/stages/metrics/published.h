@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -10,7 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "stages/core/field.h"
 #include "stages/core/types.h"
+#include "stages/matching/matching.h"
+#include "stages/metrics/metrics.h"
 
 namespace salbench::published {
 
@@ -76,6 +80,44 @@ inline Scores scores(const path& folder, int mesh, const std::string& model) {
     }
   }
   return found;
+}
+
+// Mean distance to the published scores over the meshes that have them, maps matched to the published
+// reference.
+struct MeanErrors {
+  double nss = 0, cc = 0;
+  int meshes = 0;
+};
+
+template <class MapOf>
+MeanErrors mean_errors(const path& folder, const std::string& model, const MapOf& map_of) {
+  const Histogram histogram = reference_histogram(folder);
+  MeanErrors errors;
+  for (const int mesh : kMeshes) {
+    const Scores expected = scores(folder, mesh, model);
+    if (std::isnan(expected.nss)) continue;
+    const GroundTruth truth = ground_truth(folder, mesh);
+    const ScalarField map = matched(map_of(folder, mesh), histogram);
+    errors.nss += std::abs(nss(map, picked_points(truth)) - expected.nss);
+    errors.cc += std::abs(cc(map, min_max_normalized(truth.saliency)) - expected.cc);
+    ++errors.meshes;
+  }
+  errors.nss /= errors.meshes;
+  errors.cc /= errors.meshes;
+  return errors;
+}
+
+// Pearson correlation with a map that was read back from the paper's figure, over the vertices it shows.
+inline double correlation_with_figure(const path& folder, const std::string& model, int mesh,
+                                      const ScalarField& map) {
+  const auto figure =
+      numbers(folder / "reference" / "figures" / (model + "_" + std::to_string(mesh) + ".txt"));
+  ScalarField ours, theirs;
+  for (std::size_t i = 0; i + 1 < figure.size(); i += 2) {
+    ours.push_back(map.at(static_cast<std::size_t>(figure[i])));
+    theirs.push_back(figure[i + 1]);
+  }
+  return cc(ours, theirs);
 }
 
 }  // namespace salbench::published

@@ -11,6 +11,7 @@
 #include "stages/fpfh/fpfh.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"
+#include "stages/normals/normals.h"
 #include "tests/stages/metrics/published.h"
 #include "tests/support/data.h"
 #include "tests/support/shapes.h"
@@ -102,19 +103,9 @@ TEST(PsSaliency, IsNothingWhereAllDescriptorsAreEqual) {
 
 // ---- The authors' own results, with the normals and descriptors of the `published` protocol.
 
-Normals area_weighted_normals(const Mesh& mesh) {
-  Normals normals(mesh.vertices.size(), Vec3::Zero());
-  const auto at = [&](std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
-  for (const auto& [a, b, c] : mesh.faces)
-    for (const std::int32_t corner : {a, b, c})
-      normals[static_cast<std::size_t>(corner)] += (at(b) - at(a)).cross(at(c) - at(a));
-  for (Vec3& normal : normals) normal.normalize();
-  return normals;
-}
-
 ScalarField real_saliency(const published::path& data, int item) {
   const Mesh mesh = read_mesh(data / "SchellingData" / "Meshes" / (std::to_string(item) + ".off"));
-  const Descriptors descriptors = fpfh(mesh.vertices, area_weighted_normals(mesh), FpfhOptions{});
+  const Descriptors descriptors = fpfh(mesh.vertices, mesh_normals(mesh), FpfhOptions{});
   ModelInput input;
   input.points = mesh.vertices;
   input.fpfh = &descriptors;
@@ -124,39 +115,18 @@ ScalarField real_saliency(const published::path& data, int item) {
 TEST(PsSaliency, ScoresWhatTheAuthorsPublished) {
   const auto data = real_data();
   if (!data) GTEST_SKIP() << kNoRealData;
-  const Histogram reference = published::reference_histogram(*data);
-  double nss_error = 0, cc_error = 0;
-  int compared = 0;
-  for (const int mesh : published::kMeshes) {
-    const Scores expected = published::scores(*data, mesh, "PS");
-    if (std::isnan(expected.nss)) continue;  // PS is published for twelve of them
-    const Scores actual = score(matched(real_saliency(*data, mesh), reference),
-                                published::ground_truth(*data, mesh), {}, Rng(1, "PS", ""));
-    nss_error += std::abs(actual.nss - expected.nss);
-    cc_error += std::abs(actual.cc - expected.cc);
-    ++compared;
-  }
-  ASSERT_EQ(compared, 12);
-  RecordProperty("mean_nss_error", std::to_string(nss_error / compared));
-  RecordProperty("mean_cc_error", std::to_string(cc_error / compared));
-  EXPECT_LE(nss_error / compared, 0.005);
-  EXPECT_LE(cc_error / compared, 0.005);
+  const published::MeanErrors errors = published::mean_errors(*data, "PS", real_saliency);
+  EXPECT_EQ(errors.meshes, 12);
+  EXPECT_LE(errors.nss, 0.005);
+  EXPECT_LE(errors.cc, 0.005);
 }
 
 TEST(PsSaliency, IsTheMapOfThePapersFigure) {
   const auto data = real_data();
   if (!data) GTEST_SKIP() << kNoRealData;
-  for (const int item : {2, 65}) {
-    const auto figure =
-        published::numbers(*data / "reference" / "figures" / ("PS_" + std::to_string(item) + ".txt"));
-    const ScalarField saliency = real_saliency(*data, item);
-    ScalarField ours, theirs;  // at the vertices that the figure shows
-    for (std::size_t i = 0; i + 1 < figure.size(); i += 2) {
-      ours.push_back(saliency[static_cast<std::size_t>(figure[i])]);
-      theirs.push_back(figure[i + 1]);
-    }
-    EXPECT_GE(cc(ours, theirs), 0.995) << "mesh " << item;
-  }
+  for (const int mesh : {2, 65})
+    EXPECT_GE(published::correlation_with_figure(*data, "PS", mesh, real_saliency(*data, mesh)), 0.995)
+        << mesh;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/normals/normals.h"
+#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -165,20 +166,13 @@ TEST(PcaNormals, DegenerateShapesGetUnitNormals) {
 }
 
 TEST(MeshNormalsOptions, NameTheFieldThatIsWrong) {
-  const auto key_of = [](MeshNormalsOptions options) -> std::string {
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "";
-  };
-  EXPECT_EQ(key_of({}), "");
-  EXPECT_EQ(key_of({.neighbours = 2}), "neighbours");
-  EXPECT_EQ(key_of({.neighbours = -1}), "neighbours");
-  EXPECT_EQ(key_of({.support = 0}), "support");
-  EXPECT_EQ(key_of({.most_neighbours = 2}), "most_neighbours");
-  EXPECT_EQ(key_of({.orientation_neighbours = 1}), "orientation_neighbours");
+  using Options = MeshNormalsOptions;
+  EXPECT_EQ(wrong_field(Options{}), "");
+  EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
+  EXPECT_EQ(wrong_field(Options{.neighbours = -1}), "neighbours");
+  EXPECT_EQ(wrong_field(Options{.support = 0}), "support");
+  EXPECT_EQ(wrong_field(Options{.most_neighbours = 2}), "most_neighbours");
+  EXPECT_EQ(wrong_field(Options{.orientation_neighbours = 1}), "orientation_neighbours");
 }
 
 }  // namespace

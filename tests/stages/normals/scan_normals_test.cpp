@@ -6,6 +6,7 @@
 #include "stages/core/errors.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
+#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -101,19 +102,12 @@ TEST(ScanNormals, EmptyScanHasNoneAndBrokenOneIsRefused) {
 }
 
 TEST(ScanNormalsOptions, NameTheFieldThatIsWrong) {
-  const auto key_of = [](ScanNormalsOptions options) -> std::string {
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "";
-  };
-  EXPECT_EQ(key_of({}), "");
-  EXPECT_EQ(key_of({.neighbours = 2}), "neighbours");
-  EXPECT_EQ(key_of({.orientation_neighbours = 0}), "orientation_neighbours");
-  EXPECT_EQ(key_of({.gap = 0.5}), "gap");
-  EXPECT_EQ(key_of({.steepest_degrees = 91}), "steepest_degrees");
+  using Options = ScanNormalsOptions;
+  EXPECT_EQ(wrong_field(Options{}), "");
+  EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
+  EXPECT_EQ(wrong_field(Options{.orientation_neighbours = 0}), "orientation_neighbours");
+  EXPECT_EQ(wrong_field(Options{.gap = 0.5}), "gap");
+  EXPECT_EQ(wrong_field(Options{.steepest_degrees = 91}), "steepest_degrees");
 }
 
 }  // namespace

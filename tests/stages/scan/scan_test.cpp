@@ -13,6 +13,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbors.h"
+#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -254,19 +255,12 @@ TEST(SimulateScan, RefusesWhatCannotBeSeen) {
 }
 
 TEST(ScanOptions, NameTheFieldThatIsWrong) {
-  const auto key_of = [](ScanOptions options) -> std::string {
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "";
-  };
-  EXPECT_EQ(key_of({}), "");
-  EXPECT_EQ(key_of({.distance = 0}), "distance");
-  EXPECT_EQ(key_of({.distance = std::nan("")}), "distance");
-  EXPECT_EQ(key_of({.step_degrees = 0.001}), "step_degrees");
-  EXPECT_EQ(key_of({.step_degrees = 90}), "step_degrees");
+  using Options = ScanOptions;
+  EXPECT_EQ(wrong_field(Options{}), "");
+  EXPECT_EQ(wrong_field(Options{.distance = 0}), "distance");
+  EXPECT_EQ(wrong_field(Options{.distance = std::nan("")}), "distance");
+  EXPECT_EQ(wrong_field(Options{.step_degrees = 0.001}), "step_degrees");
+  EXPECT_EQ(wrong_field(Options{.step_degrees = 90}), "step_degrees");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "tests/support/data.h"
+#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -175,21 +176,14 @@ TEST(PartialMesh, CoversRealScans) {
 }
 
 TEST(SurfaceOptions, NameTheFieldThatIsWrong) {
-  const auto key_of = [](SurfaceOptions options) -> std::string {
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "";
-  };
-  EXPECT_EQ(key_of({}), "");
-  EXPECT_EQ(key_of({.reach = 0}), "reach");
-  EXPECT_EQ(key_of({.longest_edge = std::nan("")}), "longest_edge");
-  EXPECT_EQ(key_of({.neighbours = 2}), "neighbours");
-  EXPECT_EQ(key_of({.steepest_degrees = 0}), "steepest_degrees");
-  EXPECT_EQ(key_of({.smallest_angle = 61}), "smallest_angle");
-  EXPECT_EQ(key_of({.largest_angle = 59}), "largest_angle");
+  using Options = SurfaceOptions;
+  EXPECT_EQ(wrong_field(Options{}), "");
+  EXPECT_EQ(wrong_field(Options{.reach = 0}), "reach");
+  EXPECT_EQ(wrong_field(Options{.longest_edge = std::nan("")}), "longest_edge");
+  EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
+  EXPECT_EQ(wrong_field(Options{.steepest_degrees = 0}), "steepest_degrees");
+  EXPECT_EQ(wrong_field(Options{.smallest_angle = 61}), "smallest_angle");
+  EXPECT_EQ(wrong_field(Options{.largest_angle = 59}), "largest_angle");
 }
 
 }  // namespace

@@ -1,0 +1,21 @@
+// The field that check() finds wrong in an options struct; empty where it finds none.
+#pragma once
+
+#include <string>
+
+#include "stages/core/errors.h"
+#include "stages/core/options.h"
+
+namespace salbench {
+
+template <class Options>
+std::string wrong_field(const Options& options) {
+  try {
+    check(options);
+  } catch (const OptionError& error) {
+    return error.key;
+  }
+  return "";
+}
+
+}  // namespace salbench
