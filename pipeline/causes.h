@@ -56,6 +56,6 @@ class Causes {
   std::map<std::filesystem::path, std::optional<Recipe>> recipes_;  // read so far; nothing of unsound files
 };
 
-inline constexpr std::size_t kOpenedForCounting = 100;  // artefacts a stage, where causes are only counted
+inline constexpr std::size_t kOpenedForCounting = 300;  // artefacts a stage, where causes are only counted
 
 }  // namespace salbench
