@@ -17,6 +17,9 @@ target_compile_options(salbench_settings INTERFACE
 if(SALBENCH_SANITIZE)
   add_compile_options(-fsanitize=${SALBENCH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SALBENCH_SANITIZE})
+  # Under a sanitizer Eigen would take its own aligned malloc, while Debian's PCL takes the system's: what one
+  # allocates the other frees.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 find_program(CCACHE ccache)
