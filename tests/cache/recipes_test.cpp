@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
-#include "tests/io/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {

@@ -7,7 +7,7 @@
 #include "cache/folder_store.h"
 #include "cache/layout.h"
 #include "stages/core/errors.h"
-#include "tests/io/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {

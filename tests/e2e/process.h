@@ -6,7 +6,7 @@
 
 #include <sys/types.h>
 
-#include "tests/io/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/e2e/process.h"
-#include "tests/io/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 

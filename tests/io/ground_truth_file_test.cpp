@@ -8,8 +8,8 @@
 
 #include "io/mesh_file.h"
 #include "stages/core/errors.h"
-#include "tests/io/temporary_folder.h"
 #include "tests/support/data.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"
-#include "tests/io/temporary_folder.h"
 #include "tests/support/data.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {

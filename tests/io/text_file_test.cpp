@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "tests/io/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "pipeline/results.h"
 #include "stages/core/mesh_ops.h"
-#include "tests/io/temporary_folder.h"
 #include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {

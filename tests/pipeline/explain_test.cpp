@@ -9,7 +9,7 @@
 
 #include "pipeline/results.h"
 #include "stages/core/errors.h"
-#include "tests/io/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {

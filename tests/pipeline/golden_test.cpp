@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/io/temporary_folder.h"
 #include "tests/pipeline/golden_table.h"
 #include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {

@@ -10,7 +10,7 @@
 #include "cache/files.h"
 #include "cache/layout.h"
 #include "stages/core/errors.h"
-#include "tests/io/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
