@@ -74,10 +74,11 @@ Digest file_digest(const std::filesystem::path& path) {
     throw InputError(
         fmt::format("{}: cannot be read; check that it exists and its permissions", path.string()));
   Hasher hasher;
-  std::vector<char> block(1U << 20U);
+  constexpr std::size_t kBlock = 1U << 20U;  // part of the digest: each block is a field
+  const auto block = std::make_unique_for_overwrite<char[]>(kBlock);  // most files are far smaller
   while (file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    hasher.add(std::string_view(block.data(), static_cast<std::size_t>(file.gcount())));
+    file.read(block.get(), kBlock);
+    hasher.add(std::string_view(block.get(), static_cast<std::size_t>(file.gcount())));
   }
   if (file.bad()) throw InputError(fmt::format("{}: reading failed half-way", path.string()));
   return hasher.digest();

@@ -149,11 +149,13 @@ std::string Causes::line(const ItemRef& item, std::size_t index, const Cause& ca
 }
 
 std::string Causes::group(const ItemRef& item, std::size_t index) {
+  const Job& job = plan_.jobs(item)[index];
+  if (job.verdict == Verdict::cached && job.reason == Reason::none)
+    return {};  // without looking for its file
   const Stage& stage = context_.chain(item)[index];
   const Cause cause = of(item, index);
   if (cause.reason == Reason::input_pending || cause.reason == Reason::input_failed)
-    return fmt::format("{} {}", text_of(cause.reason),
-                       input_name(context_, item, stage.inputs[plan_.jobs(item)[index].because]));
+    return fmt::format("{} {}", text_of(cause.reason), input_name(context_, item, stage.inputs[job.because]));
   if (cause.differences.empty()) return std::string(text_of(cause.reason));
   std::vector<std::string> parts;
   for (const RecipeDifference& difference : cause.differences)

@@ -1,0 +1,84 @@
+// Fills a cache with every artefact that a run of CONFIG over DATA would leave, without the days that the
+// real computations take: the program's own engine runs, and only the bodies of the stages are replaced, by
+// made-up values of a few bytes. Keys and names are those of a real cache, so that `salbench plan` and a
+// rerun with nothing to do can be measured at the size of the whole benchmark. The scores in it mean nothing.
+//   perf_full_cache CONFIG DATA CACHE
+#include <algorithm>
+#include <iostream>
+
+#include "pipeline/session.h"
+#include "stages/core/rng.h"
+
+namespace salbench {
+namespace {
+
+Scores made_up_scores(Rng& rng) {
+  Scores scores{
+      .auc = rng.uniform(), .auc_exact = rng.uniform(), .nss = rng.normal(), .cc = rng.normal() / 3};
+  scores.lcc = std::abs(scores.cc);
+  scores.n_points = 5000;
+  scores.n_picks = 60;
+  return scores;
+}
+
+// A valid value of the kind; fields are told from each other by stage and item.
+Value made_up(std::string_view kind, Rng rng) {
+  const Vec3 point(rng.uniform(), rng.uniform(), rng.uniform());
+  const ScalarField field = {rng.uniform(), rng.uniform(), 1};
+  if (kind == "mesh") return Mesh{{point, Vec3::Zero(), Vec3::UnitX()}, {{0, 1, 2}}};
+  if (kind == "scan") return Scan{{point}, Vec3::UnitZ()};
+  if (kind == "normals") return Normals{point.normalized()};
+  if (kind == "faces") return Faces{{0, 1, 2}};
+  if (kind == "descriptors")
+    return Descriptors{std::vector<float>(kFpfhBins, static_cast<float>(point.x())), 1, 0};
+  if (kind == "field") return field;
+  if (kind == "ground_truth") return GroundTruth{field, {{0, 1}, {2}}};
+  if (kind == "scores") return made_up_scores(rng);
+  if (kind == "human_curve") {
+    HumanCurve curve;
+    for (int n = 0; n < 11; ++n) curve.push_back(made_up_scores(rng));
+    return curve;
+  }
+  throw std::invalid_argument("no made-up value for a result of kind " + std::string(kind));
+}
+
+void replace_bodies(Chain& chain) {
+  for (Stage& stage : chain)
+    stage.run = [name = stage.name, kind = stage.kind](const StageInputs& inputs) {
+      return made_up(kind, Rng(inputs.seed, name, inputs.item));
+    };
+}
+
+void fill(const Arguments& arguments) {
+  const std::atomic<bool> stop = false;
+  Setup setup(arguments);
+  replace_bodies(setup.catalog.mesh);
+  replace_bodies(setup.catalog.scan);
+  FolderStore store(setup.cache, Access::read_write);
+  Plan plan = make_plan(setup.context, store);
+  const auto progress = no_progress();
+  Runner runner(setup.context, plan, store, *progress, stop);
+  runner.run(thread_count(arguments));
+  for (const Failure& failure : runner.failures())
+    std::cerr << setup.context.name(failure.item) << ": " << failure.stage << ": " << failure.cause << '\n';
+  std::cout << setup.workload.families.size() << " meshes, " << runner.computed() << " artefacts\n";
+}
+
+}  // namespace
+}  // namespace salbench
+
+int main(int argc, char** argv) try {
+  if (argc != 4) {
+    std::cerr << "usage: perf_full_cache CONFIG DATA CACHE\n";
+    return 2;
+  }
+  salbench::Arguments arguments;
+  arguments.config = argv[1];
+  arguments.data = argv[2];
+  arguments.cache = argv[3];
+  salbench::fill(arguments);
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << error.what() << '\n';
+  return 1;
+}
