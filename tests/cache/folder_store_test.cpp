@@ -159,12 +159,7 @@ TEST_F(FolderStoreTest, UnusableFoldersAreToldApart) {
 TEST_F(FolderStoreTest, ANewerCacheFormatIsRefused) {
   { FolderStore store = open(); }
   std::ofstream(folder_ / "CACHEDIR.TAG") << "# salbench cache, format 999\n";
-  try {
-    open();
-    FAIL() << "a newer format was accepted";
-  } catch (const StorageError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("newer"));
-  }
+  EXPECT_THAT([&] { open(); }, testing::ThrowsMessage<StorageError>(testing::HasSubstr("newer")));
 }
 
 // A limit on the size of files stands in for a full disk: write() fails in the same place.

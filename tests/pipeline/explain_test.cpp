@@ -265,17 +265,12 @@ TEST_F(ExplainTest, CountingOpensNoMoreArtefactsThanItMay) {
 }
 
 TEST_F(ExplainTest, WordsThatNameNothingAreRefused) {
-  const auto complaint = [&](const std::string& item, const std::string& stage) -> std::string {
-    try {
-      explained(kMeshes, item, stage);
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "nothing";
+  const auto expect_refusal = [&](const std::string& item, const std::string& stage, const auto& words) {
+    EXPECT_THAT([&] { explained(kMeshes, item, stage); }, testing::ThrowsMessage<ConfigError>(words));
   };
-  EXPECT_THAT(complaint("3", ""), HasSubstr("no item '3'"));
-  EXPECT_THAT(complaint("1_0", ""), HasSubstr("no item '1_0'"));  // no scans in this configuration
-  EXPECT_THAT(complaint("1", "map.PSS"), EndsWith("did you mean 'map.PS'?"));
+  expect_refusal("3", "", HasSubstr("no item '3'"));
+  expect_refusal("1_0", "", HasSubstr("no item '1_0'"));  // no scans in this configuration
+  expect_refusal("1", "map.PSS", EndsWith("did you mean 'map.PS'?"));
 }
 
 }  // namespace

@@ -264,12 +264,9 @@ TEST_F(AcceptTest, ADamagedResultIsNotAccepted) {
 TEST_F(AcceptTest, AStageThatThereIsNotIsNamedWithThoseThatThereAre) {
   FolderStore cache = store();
   const ToyRun toy(data_.path(), cache);
-  try {
-    accept_stage(toy.context, "fphf", cache, kGoOn);
-    FAIL() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("'fphf'"), HasSubstr("fpfh"), HasSubstr("map.PS")));
-  }
+  EXPECT_THAT([&] { accept_stage(toy.context, "fphf", cache, kGoOn); },
+              testing::ThrowsMessage<ConfigError>(
+                  testing::AllOf(HasSubstr("'fphf'"), HasSubstr("fpfh"), HasSubstr("map.PS"))));
 }
 
 }  // namespace

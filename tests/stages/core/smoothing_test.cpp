@@ -194,14 +194,13 @@ TEST(SmoothedPicks, NeedParticipants) {
 }
 
 TEST(SmoothedPicks, NameThePickThatIsNoVertex) {
-  for (const std::int32_t wrong : {4, -1}) {
-    try {
-      smoothed_picks(shapes::tetrahedron(), PicksOfAll{{0}, {2, wrong}});
-      FAIL() << "took pick " << wrong;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("participant 1 picked vertex " + std::to_string(wrong) + " "));
-    }
-  }
+  for (const std::int32_t wrong : {4, -1})
+    EXPECT_THAT(
+        [&] {
+          smoothed_picks(shapes::tetrahedron(), PicksOfAll{{0}, {2, wrong}});
+        },
+        testing::ThrowsMessage<InputError>(
+            HasSubstr("participant 1 picked vertex " + std::to_string(wrong) + " ")));
 }
 
 TEST(SmoothingOptions, RefuseWidthsThatAreNone) {

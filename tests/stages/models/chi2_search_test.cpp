@@ -132,14 +132,12 @@ TEST(Chi2Search, LeavesOutOnlyBinsThatAreNeverFilled) {
 
 TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
   for (const float wrong :
-       {-1.F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    try {
-      Chi2Search search(one_bin({1, 2, wrong}));
-      FAIL() << wrong;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr("descriptor of point 2"));
-    }
-  }
+       {-1.F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+    EXPECT_THAT(
+        [&] {
+          Chi2Search(one_bin({1, 2, wrong}));
+        },
+        testing::ThrowsMessage<InputError>(testing::HasSubstr("descriptor of point 2")));
 }
 
 TEST(Chi2Kernel, EveryVariantGivesTheSameBytes) {

@@ -15,6 +15,7 @@
 #include "stages/core/support.h"
 #include "stages/models/cs_clusters.h"
 #include "stages/normals/normals.h"
+#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -58,23 +59,13 @@ CsOptions options_for(std::int32_t clusters) {
 }
 
 TEST(CsOptions, RejectWhatCannotBeUsed) {
-  const auto key_of = [](auto change) -> std::string {
-    CsOptions options;
-    change(options);
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "";
-  };
-  EXPECT_EQ(key_of([](CsOptions&) {}), "");
-  EXPECT_EQ(key_of([](CsOptions& o) { o.radius = 0; }), "radius");
-  EXPECT_EQ(key_of([](CsOptions& o) { o.radius = std::numeric_limits<double>::infinity(); }), "radius");
-  EXPECT_EQ(key_of([](CsOptions& o) { o.clusters = 0; }), "clusters");
-  EXPECT_EQ(key_of([](CsOptions& o) { o.rounds = -1; }), "rounds");
-  EXPECT_EQ(key_of([](CsOptions& o) { o.descriptor_weight = std::nan(""); }), "descriptor_weight");
-  EXPECT_EQ(key_of([](CsOptions& o) { o.distribution_weight = 1.5; }), "distribution_weight");
+  EXPECT_EQ(wrong_field(CsOptions{}), "");
+  EXPECT_EQ(wrong_field(CsOptions{.radius = 0}), "radius");
+  EXPECT_EQ(wrong_field(CsOptions{.radius = std::numeric_limits<double>::infinity()}), "radius");
+  EXPECT_EQ(wrong_field(CsOptions{.clusters = 0}), "clusters");
+  EXPECT_EQ(wrong_field(CsOptions{.rounds = -1}), "rounds");
+  EXPECT_EQ(wrong_field(CsOptions{.descriptor_weight = std::nan("")}), "descriptor_weight");
+  EXPECT_EQ(wrong_field(CsOptions{.distribution_weight = 1.5}), "distribution_weight");
 }
 
 TEST(CsOptions, OfTheTextAskForAHundredClusters) {

@@ -10,6 +10,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
+#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -279,12 +280,7 @@ TEST(LsSaliency, SomeCoincidentPointsDoNoHarm) {
 }
 
 void expect_input_error(const Shape& shape, const char* words) {
-  try {
-    shape.ls();
-    FAIL() << words;
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr(words));
-  }
+  EXPECT_THAT([&] { shape.ls(); }, testing::ThrowsMessage<InputError>(testing::HasSubstr(words)));
 }
 
 TEST(LsSaliency, NamesWhatIsWrongWithAShape) {
@@ -304,23 +300,13 @@ TEST(LsSaliency, NamesWhatIsWrongWithAShape) {
 }
 
 TEST(LsOptions, NamesTheOptionThatIsWrong) {
-  const auto wrong_key = [](auto&& change) -> std::string {
-    LsOptions options;
-    change(options);
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "none";
-  };
-  EXPECT_EQ(wrong_key([](LsOptions& o) { o.selected_share = 1.5; }), "selected_share");
-  EXPECT_EQ(wrong_key([](LsOptions& o) { o.foci_share = -0.1; }), "foci_share");
-  EXPECT_EQ(wrong_key([](LsOptions& o) { o.high_share = std::nan(""); }), "high_share");
-  EXPECT_EQ(wrong_key([](LsOptions& o) { o.foci_sigma = 0; }), "foci_sigma");
-  EXPECT_EQ(wrong_key([](LsOptions& o) { o.high_radius = -1; }), "high_radius");
-  EXPECT_EQ(wrong_key([](LsOptions& o) { o.high_weight = std::nan(""); }), "high_weight");
-  EXPECT_EQ(wrong_key([](LsOptions& o) { o = LsOptions::text(); }), "none");
+  EXPECT_EQ(wrong_field(LsOptions{.selected_share = 1.5}), "selected_share");
+  EXPECT_EQ(wrong_field(LsOptions{.foci_share = -0.1}), "foci_share");
+  EXPECT_EQ(wrong_field(LsOptions{.foci_sigma = 0}), "foci_sigma");
+  EXPECT_EQ(wrong_field(LsOptions{.high_share = std::nan("")}), "high_share");
+  EXPECT_EQ(wrong_field(LsOptions{.high_radius = -1}), "high_radius");
+  EXPECT_EQ(wrong_field(LsOptions{.high_weight = std::nan("")}), "high_weight");
+  EXPECT_EQ(wrong_field(LsOptions::text()), "");
 }
 
 }  // namespace

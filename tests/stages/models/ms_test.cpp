@@ -11,6 +11,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
+#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -245,25 +246,15 @@ TEST(MsDegenerate, PointThatIsNotFinite) {
 }
 
 TEST(MsOptionsCheck, NamesTheFieldThatIsWrong) {
-  check(MsOptions{});
-  check(MsOptions::text());
-  const auto wrong_key = [](auto&& change) -> std::string {
-    MsOptions options;
-    change(options);
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "";
-  };
-  EXPECT_EQ(wrong_key([](MsOptions& o) { o.faces = 99; }), "faces");
-  EXPECT_EQ(wrong_key([](MsOptions& o) { o.window = 8; }), "window");
-  EXPECT_EQ(wrong_key([](MsOptions& o) { o.window = 0; }), "window");
-  EXPECT_EQ(wrong_key([](MsOptions& o) { o.frequencies = 0; }), "frequencies");
-  EXPECT_EQ(wrong_key([](MsOptions& o) { o.eigenpairs = 9; }), "eigenpairs");
-  EXPECT_EQ(wrong_key([](MsOptions& o) { o.eigenpairs = 19; }), "eigenpairs");
-  EXPECT_EQ(wrong_key([](MsOptions& o) { o.epsilon = 0; }), "epsilon");
+  EXPECT_EQ(wrong_field(MsOptions{}), "");
+  EXPECT_EQ(wrong_field(MsOptions::text()), "");
+  EXPECT_EQ(wrong_field(MsOptions{.faces = 99}), "faces");
+  EXPECT_EQ(wrong_field(MsOptions{.window = 8}), "window");
+  EXPECT_EQ(wrong_field(MsOptions{.window = 0}), "window");
+  EXPECT_EQ(wrong_field(MsOptions{.frequencies = 0}), "frequencies");
+  EXPECT_EQ(wrong_field(MsOptions{.eigenpairs = 9}), "eigenpairs");
+  EXPECT_EQ(wrong_field(MsOptions{.eigenpairs = 19}), "eigenpairs");
+  EXPECT_EQ(wrong_field(MsOptions{.epsilon = 0}), "epsilon");
 }
 
 }  // namespace
