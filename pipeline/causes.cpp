@@ -163,6 +163,51 @@ std::string Causes::group(const ItemRef& item, std::size_t index) {
   return joined(parts);
 }
 
+// What a mean was taken over is counted: "3 map.LS changed, 1 map.LS added".
+std::string Causes::group_of_mean(std::size_t index, bool meshes) {
+  const Job& job = plan_.means[index][meshes ? 0 : 1];
+  const MeanHistogram& mean = context_.catalog.means[index];
+  const std::string& averaged = meshes ? mean.of_mesh : mean.of_scan;
+  if (job.verdict == Verdict::wait) return fmt::format("{} {}", text_of(job.reason), averaged);
+  const Recipe now = decide_mean(context_, plan_, index, meshes, kNowhere).recipe;
+  if (job.verdict == Verdict::cached || now.stage.empty()) return std::string(text_of(job.reason));
+
+  const Digest key = key_of(now);
+  if (book_.set_aside(key) != nullptr) return std::string(text_of(Reason::damaged));
+  std::optional<std::vector<RecipeDifference>> nearest;
+  for (const ArtefactFile& file : book_.artefacts(mean.name, meshes ? "meshes" : "scans")) {
+    const Recipe* before = file.name.key == key ? nullptr : read(file);
+    if (before == nullptr) continue;
+    auto found = differences(*before, now);
+    if (!nearest || found.size() < nearest->size()) nearest = std::move(found);
+  }
+  if (!nearest) return std::string(text_of(Reason::never_computed));
+  std::map<std::string, std::size_t> fates;
+  std::vector<std::string> parts;
+  for (const RecipeDifference& difference : *nearest) {
+    if (difference.part == Part::input)
+      ++fates[fate(difference)];
+    else
+      parts.push_back(fmt::format("stage version {} -> {}", difference.before, difference.after));
+  }
+  for (const auto& [what, items] : fates) parts.push_back(fmt::format("{} {} {}", items, averaged, what));
+  return joined(parts);
+}
+
+Why Causes::words() {
+  return {[this](const ItemRef& item, std::size_t stage) { return group(item, stage); },
+          [this](std::size_t mean, bool meshes) { return group_of_mean(mean, meshes); }};
+}
+
+Why Causes::words_of_computed() {
+  return {[this](const ItemRef& item, std::size_t stage) {
+            return plan_.jobs(item)[stage].computed() ? group(item, stage) : "";
+          },
+          [this](std::size_t mean, bool meshes) {
+            return plan_.means[mean][meshes ? 0 : 1].computed() ? group_of_mean(mean, meshes) : "";
+          }};
+}
+
 std::string Causes::difference_line(const ItemRef& item, const Stage& stage,
                                     const RecipeDifference& difference) {
   if (difference.part == Part::seed)

@@ -37,6 +37,9 @@ class Causes {
 
   // The same words for every job with the same cause, to be counted.
   std::string group(const ItemRef& item, std::size_t stage);
+  std::string group_of_mean(std::size_t mean, bool meshes);
+  Why words();              // the two of them, while this lives
+  Why words_of_computed();  // after a run: nothing of jobs that it found or left
 
  private:
   struct Product;  // what an input is the product of

@@ -26,9 +26,8 @@ void print_counts(const Setup& setup, const Plan& plan) {
   Table table{.columns = {"stage", "cached", "to compute", "waiting", "not applicable", "failed", "why"},
               .rows = {}};
   Causes causes(setup.context, plan, setup.cache, kOpenedForCounting);
-  const Why why = [&](const ItemRef& item, std::size_t stage) { return causes.group(item, stage); };
   std::size_t open = 0;
-  for (const StageCount& count : count_by_stage(setup.context, plan, why)) {
+  for (const StageCount& count : count_by_stage(setup.context, plan, causes.words())) {
     std::string reasons;
     for (const auto& [reason, n] : count.reasons)
       reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", reason, n);
@@ -140,9 +139,7 @@ ExitStatus run_session(Session& session, const Arguments& arguments, const std::
                          session.runner,
                          thread_count(arguments),
                          seconds_since(session.started),
-                         [&](const ItemRef& item, std::size_t stage) {
-                           return session.plan.jobs(item)[stage].computed() ? causes.group(item, stage) : "";
-                         }};
+                         causes.words_of_computed()};
   if (setup.context.shard) return finish_shard(session, record, arguments);
   const std::vector<ResultRow> rows =
       collect_results(setup.config, setup.context, session.plan, session.runner);

@@ -225,48 +225,72 @@ Plan make_plan(const Context& context, const Index& index) {
   return plan;
 }
 
+namespace {
+
+// The rows of a count, in the order in which their names first come up.
+class Counter {
+ public:
+  void add(const std::string& stage, std::int32_t version, const Job& job, const std::string& reason) {
+    const auto [row, fresh] = row_of_.try_emplace(stage, counts_.size());
+    if (fresh) {
+      counts_.push_back({.stage = stage, .version = version, .reasons = {}});
+      reasons_.emplace_back();
+    }
+    ++tally(counts_[row->second], job.verdict);
+    if (!reason.empty()) ++reasons_[row->second][reason];
+  }
+
+  std::vector<StageCount> counts() && {
+    for (std::size_t row = 0; row < counts_.size(); ++row) {
+      auto& reasons = counts_[row].reasons;
+      reasons.assign(reasons_[row].begin(), reasons_[row].end());
+      std::stable_sort(reasons.begin(), reasons.end(),
+                       [](const auto& a, const auto& b) { return a.second > b.second; });
+    }
+    return std::move(counts_);
+  }
+
+ private:
+  static std::size_t& tally(StageCount& count, Verdict verdict) {
+    switch (verdict) {
+      case Verdict::cached:
+      case Verdict::done:
+        return count.cached;
+      case Verdict::compute:
+        return count.compute;
+      case Verdict::wait:
+        return count.wait;
+      case Verdict::absent:
+        return count.absent;
+      default:
+        return count.failed;
+    }
+  }
+
+  std::vector<StageCount> counts_;
+  std::vector<std::map<std::string, std::size_t>> reasons_;
+  std::map<std::string, std::size_t> row_of_;
+};
+
+}  // namespace
+
 std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan, const Why& why) {
-  std::vector<StageCount> counts;
-  std::vector<std::map<std::string, std::size_t>> reasons;
-  std::map<std::string, std::size_t> row_of;
+  Counter counter;
   for (std::size_t f = 0; f < plan.families.size(); ++f) {
     for (const ItemRef& item : context.family(f)) {
       const Chain& chain = context.chain(item);
-      for (std::size_t s = 0; s < chain.size(); ++s) {
-        const auto [row, fresh] = row_of.try_emplace(chain[s].name, counts.size());
-        if (fresh) {
-          counts.push_back({chain[s].name, 0, 0, 0, 0, 0, {}});
-          reasons.emplace_back();
-        }
-        StageCount& count = counts[row->second];
-        const Job& job = plan.jobs(item)[s];
-        switch (job.verdict) {
-          case Verdict::cached:
-          case Verdict::done:
-            ++count.cached;
-            break;
-          case Verdict::compute:
-            ++count.compute;
-            break;
-          case Verdict::wait:
-            ++count.wait;
-            break;
-          case Verdict::absent:
-            ++count.absent;
-            break;
-          default:
-            ++count.failed;
-        }
-        if (const std::string words = why ? why(item, s) : ""; !words.empty()) ++reasons[row->second][words];
-      }
+      for (std::size_t s = 0; s < chain.size(); ++s)
+        counter.add(chain[s].name, chain[s].version, plan.jobs(item)[s],
+                    why.of_stage ? why.of_stage(item, s) : "");
     }
   }
-  for (std::size_t row = 0; row < counts.size(); ++row) {
-    counts[row].reasons.assign(reasons[row].begin(), reasons[row].end());
-    std::stable_sort(counts[row].reasons.begin(), counts[row].reasons.end(),
-                     [](const auto& a, const auto& b) { return a.second > b.second; });
+  for (std::size_t m = 0; m < plan.means.size(); ++m) {
+    const MeanHistogram& mean = context.catalog.means[m];
+    for (const bool meshes : {true, false})
+      counter.add(mean.name, mean.version, plan.means[m][meshes ? 0 : 1],
+                  why.of_mean ? why.of_mean(m, meshes) : "");
   }
-  return counts;
+  return std::move(counter).counts();
 }
 
 }  // namespace salbench

@@ -111,14 +111,18 @@ const std::string& input_name(const Context& context, const ItemRef& item, const
 
 Plan make_plan(const Context& context, const Index& index);
 
-// What there is to do, counted by stage for `salbench plan` and `status`.
+// What there is to do, counted by stage for `salbench plan` and `status`; the means stand last.
 struct StageCount {
-  std::string stage;
+  std::string stage;  // or mean
+  std::int32_t version = 0;
   std::size_t cached = 0, compute = 0, wait = 0, absent = 0, failed = 0;
   std::vector<std::pair<std::string, std::size_t>> reasons;  // most frequent first
 };
 // Words for the reason of one job, the same for all that are to be counted together; empty: not counted.
-using Why = std::function<std::string(const ItemRef& item, std::size_t stage)>;
+struct Why {
+  std::function<std::string(const ItemRef& item, std::size_t stage)> of_stage;
+  std::function<std::string(std::size_t mean, bool meshes)> of_mean;
+};
 std::vector<StageCount> count_by_stage(const Context& context, const Plan& plan, const Why& why = {});
 
 }  // namespace salbench

@@ -56,15 +56,13 @@ std::string run_yaml(const RunRecord& record) {
   yaml +=
       "stages:  # version, artefacts this run computed, seconds summed over threads, reasons with counts\n";
   for (const StageCount& count : count_by_stage(record.context, record.plan, record.why)) {
-    const Chain& chain = has_stage(record.context.catalog.mesh, count.stage) ? record.context.catalog.mesh
-                                                                             : record.context.catalog.scan;
     const auto timing = record.runner.timings().find(count.stage);
     const StageTiming spent = timing == record.runner.timings().end() ? StageTiming{} : timing->second;
     std::string why;
     for (const auto& [reason, n] : count.reasons)
       why += fmt::format("{}{}: {}", why.empty() ? "" : ", ", quoted(reason), n);
     yaml += fmt::format("  {}: {{version: {}, computed: {}, seconds: {:.3f}, why: {{{}}}}}\n", count.stage,
-                        chain[stage_index(chain, count.stage)].version, spent.computed, spent.seconds, why);
+                        count.version, spent.computed, spent.seconds, why);
   }
   yaml += record.runner.failures().empty() ? "failed: []\n" : "failed:\n";
   for (const Failure& failure : record.runner.failures())

@@ -48,9 +48,7 @@ class ExplainTest : public testing::Test {
     toy.run();
     collect_results(toy.config, toy.context, toy.plan, toy.runner);
     Causes causes(toy.context, toy.plan, cache(), kOpenedForCounting);
-    return counts(toy, stage, [&](const ItemRef& item, std::size_t s) {
-      return toy.plan.jobs(item)[s].computed() ? causes.group(item, s) : "";
-    });
+    return counts(toy, stage, causes.words_of_computed());
   }
 
   // Reasons as `salbench plan` counts them.
@@ -59,7 +57,7 @@ class ExplainTest : public testing::Test {
     FolderStore store(cache(), Access::read_only);
     const ToyRun toy(data_.path(), store, yaml);
     Causes causes(toy.context, toy.plan, cache(), limit);
-    return counts(toy, stage, [&](const ItemRef& item, std::size_t s) { return causes.group(item, s); });
+    return counts(toy, stage, causes.words());
   }
 
   static Counts counts(const ToyRun& toy, const std::string& stage, const Why& why) {
@@ -254,6 +252,17 @@ TEST_F(ExplainTest, ARunSaysWhyItComputed) {
   EXPECT_THAT(run(kOtherPs, "matched.PS"), ElementsAre(Pair("input map.PS changed", 2)));
   EXPECT_THAT(run(std::string(kMeshes) + "metrics: {splits: 7}\n", "scores.RS"),
               ElementsAre(Pair("metrics.splits 100 -> 7", 2)));
+}
+
+TEST_F(ExplainTest, AMeanSaysWhatItIsTakenOver) {
+  EXPECT_THAT(run(kMeshes, "mean_histogram.PS"), ElementsAre(Pair("not in the cache", 1)));
+  EXPECT_THAT(planned(kMeshes, "mean_histogram.PS"), IsEmpty());
+  EXPECT_THAT(planned(kOtherPs, "mean_histogram.PS"), ElementsAre(Pair("waits for map.PS", 1)));
+  EXPECT_THAT(run(kOtherPs, "mean_histogram.PS"), ElementsAre(Pair("2 map.PS changed", 1)));
+  fs::resize_file(artefact("reference", "meshes"), 10);
+  EXPECT_THAT(run(kMeshes, "reference"), ElementsAre(Pair("damaged", 1)));
+  write_toy_item(data_.path(), "3", shapes::bumpy_sphere(2, 0.1));
+  EXPECT_THAT(run(kMeshes, "reference"), ElementsAre(Pair("1 ground_truth added", 1)));
 }
 
 TEST_F(ExplainTest, CountingOpensNoMoreArtefactsThanItMay) {
