@@ -84,8 +84,9 @@ void print_status(const Setup& setup, const Plan& plan, const FolderStore& store
                           as_cell(count.cached + count.compute + count.wait), as_cell(used.artefacts),
                           static_cast<double>(used.bytes) / 1e6});
   }
-  fmt::print("{}\ndata set: {} meshes, {} models; cache: {}\n", aligned(table, 1),
-             setup.workload.families.size(), setup.config.models.size(), setup.cache.string());
+  fmt::print("{}\ndata set: {} meshes, {} models; cache: {}; results: {}\n", aligned(table, 1),
+             setup.workload.families.size(), setup.config.models.size(), setup.cache.string(),
+             setup.output.string());
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {

@@ -123,6 +123,7 @@ TEST(Usage, PlanAndStatusChangeNothing) {
   EXPECT_EQ(plan.status, 0) << plan.err;
   EXPECT_EQ(status.status, 0) << status.err;
   EXPECT_THAT(plan.out, AllOf(HasSubstr("map.PS"), HasSubstr("jobs to do")));
+  EXPECT_THAT(status.out, HasSubstr("; results: " + toy.out().string() + "\n"));
   EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
 
   ASSERT_EQ(toy.salbench("run").status, 0);
