@@ -23,6 +23,11 @@ using ply::Encoding;
 using ply::Property;
 using ply::Type;
 
+std::string singular_of(const Element& element) {
+  const bool is_known = element.name == "vertex" || element.name == "face";
+  return is_known ? element.name : fmt::format("element {}", in_quotes(element.name));
+}
+
 std::string plural_of(const Element& element) {
   if (element.name == "vertex") return "vertices";
   if (element.name == "face") return "faces";
@@ -98,8 +103,8 @@ class BinaryBody {
                       name_, bytes_.size()));
   }
   [[noreturn]] void fail(std::string_view what) const {
-    throw InputError(fmt::format("{}: {} {} (counted from 1), before byte {}: {}", name_, element_->name,
-                                 records_begun_, file_size_ - bytes_.size(), what));
+    throw InputError(fmt::format("{}: {} {} (counted from 1), before byte {}: {}", name_,
+                                 singular_of(*element_), records_begun_, file_size_ - bytes_.size(), what));
   }
 
  private:

@@ -189,6 +189,13 @@ TEST(Ply, NamesElementAndByteOfWhatIsWrongInBinary) {
   expect_refusal(file + "more", "there are 4 bytes after the last element");
 }
 
+TEST(Ply, QuotesTheNameOfAnElementThatItDoesNotKnow) {
+  expect_refusal(
+      "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty char x\nproperty char y\n"
+      "property char z\nelement a\ab 1\nproperty list char char s\nend_header\n\xff",
+      "x.ply: element \"a?b\" 1 (counted from 1), before byte 153: -1 is no length of a list");
+}
+
 TEST(Ply, AbsurdCountsNeedNeitherMemoryNorTime) {
   expect_refusal(triangle_with("vertex 3", "vertex 1000000000000"),
                  "1000000000000 vertices: at most 2147483647");
