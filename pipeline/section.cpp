@@ -1,5 +1,6 @@
 #include "pipeline/section.h"
 
+#include <algorithm>
 #include <numeric>
 #include <set>
 
@@ -31,17 +32,24 @@ struct Section::Impl {
 
 namespace {
 
+// Keys and values of YAML may hold line ends and control characters, and a message is one line of text.
+[[noreturn]] void fail_at(const std::string& file, int line, std::string what) {
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+  std::replace_if(what.begin(), what.end(), is_control, '?');
+  throw ConfigError(fmt::format("{}:{}: {}", file, line, what));
+}
+
 void check_mapping(const YAML::Node& node, const std::string& file, const std::string& path) {
   if (node.IsNull()) return;
-  const std::string where =
-      fmt::format("{}:{}: {}", file, node.Mark().line + 1, path.empty() ? "the file" : path);
-  if (!node.IsMap()) throw ConfigError(where + " must be a mapping of keys to values");
+  const std::string what = path.empty() ? "the file" : path;
+  const int line = node.Mark().line + 1;
+  if (!node.IsMap()) fail_at(file, line, what + " must be a mapping of keys to values");
   std::set<std::string> seen;
   for (const auto& entry : node) {
-    if (!entry.first.IsScalar()) throw ConfigError(where + " has a key that is not a plain word");
-    if (!seen.insert(entry.first.Scalar()).second)
-      throw ConfigError(fmt::format("{}:{}: the key '{}' is given twice", file, entry.first.Mark().line + 1,
-                                    entry.first.Scalar()));
+    if (!entry.first.IsScalar()) fail_at(file, line, what + " has a key that is not a plain word");
+    const std::string& key = entry.first.Scalar();
+    if (!seen.insert(key).second)
+      fail_at(file, entry.first.Mark().line + 1, fmt::format("the key '{}' is given twice", key));
   }
 }
 
@@ -53,7 +61,7 @@ YAML::Node parse(const std::string& file, const auto& load) {
   } catch (const YAML::BadFile&) {
     throw ConfigError(fmt::format("{}: cannot be read; check the path and its permissions", file));
   } catch (const YAML::Exception& error) {
-    throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", file, error.mark.line + 1, error.msg));
+    fail_at(file, error.mark.line + 1, "not valid YAML: " + error.msg);
   }
 }
 
@@ -115,8 +123,7 @@ std::optional<std::string> Section::text(std::string_view key) const {
 }
 
 void Section::fail(std::string_view key, std::string_view what) const {
-  throw ConfigError(
-      fmt::format("{}:{}: {} {}", impl_->file, impl_->line_of(key), impl_->full_key(key), what));
+  fail_at(impl_->file, impl_->line_of(key), fmt::format("{} {}", impl_->full_key(key), what));
 }
 
 void Section::reject_unknown(const std::vector<std::string_view>& known) const {

@@ -82,6 +82,14 @@ TEST(Section, ErrorsNameFileLineKeyAndTheNearestValidKey) {
   EXPECT_THAT(error_of("a: [1\nb: 2"), HasSubstr("not valid YAML"));
 }
 
+TEST(Section, ErrorsStayOnOneLineWhateverTheyQuote) {
+  EXPECT_THAT(error_of("sample: {\"a\\nb\": 1}"), HasSubstr("x.yaml:1: sample.a?b is not a known key"));
+  EXPECT_THAT(error_of("sample: {count: \"1\\n2\"}"), HasSubstr("sample.count is '1?2', not a whole number"));
+  EXPECT_THAT(error_of("{\"\\a\": 1, \"\\a\": 2}"), HasSubstr("the key '?' is given twice"));
+  EXPECT_THAT(error_of("sample: \"\\\x01\""),
+              HasSubstr("x.yaml:1: not valid YAML: unknown escape character: ?"));
+}
+
 TEST(Section, AMissingFileIsAnError) { EXPECT_THROW(Section::from_file("/no/such/file.yaml"), ConfigError); }
 
 TEST(OptionsText, ReadsBackToTheBit) {
