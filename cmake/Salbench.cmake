@@ -22,6 +22,10 @@ if(SALBENCH_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
+if(SALBENCH_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)  # what leads libFuzzer: which branches were taken
+endif()
+
 find_program(CCACHE ccache)
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})

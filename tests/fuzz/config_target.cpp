@@ -1,0 +1,30 @@
+#include <string>
+
+#include "pipeline/config.h"
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "tests/fuzz/message.h"
+#include "tests/fuzz/targets.h"
+
+namespace salbench {
+namespace {
+
+std::string read_and_written(const std::string& yaml, const std::string& file) {
+  return config_yaml(read_config(Section::from_text(yaml, file), "name"));
+}
+
+}  // namespace
+
+void fuzz_config(std::string_view bytes) {
+  const std::string file = "folder/file.yaml";
+  std::string written;
+  try {
+    written = read_and_written(std::string(bytes), file);
+  } catch (const ConfigError& error) {
+    check_message(error.what(), file);
+    return;
+  }
+  CHECK_EQ(read_and_written(written, "written by salbench"), written);
+}
+
+}  // namespace salbench

@@ -1,0 +1,46 @@
+// The corpora without libFuzzer, under any compiler.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "io/text_file.h"
+#include "tests/fuzz/message.h"
+#include "tests/fuzz/targets.h"
+
+namespace salbench {
+namespace {
+
+// Each file and each of its beginnings, in memory of just that size for AddressSanitizer to guard.
+void replay(const std::filesystem::path& folder, void (*target)(std::string_view)) {
+  int n_files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(SALBENCH_CORPUS / folder)) {
+    const std::string bytes = read_file(file.path());
+    for (std::size_t length = 0; length <= bytes.size(); ++length) {
+      const std::vector<char> beginning(bytes.data(), bytes.data() + length);
+      ASSERT_NO_THROW(target({beginning.data(), length}))
+          << file.path() << ", the first " << length << " bytes";
+    }
+    ++n_files;
+  }
+  EXPECT_GE(n_files, 10);
+}
+
+TEST(FuzzCorpus, Off) { replay("off", fuzz_off); }
+TEST(FuzzCorpus, Obj) { replay("obj", fuzz_obj); }
+TEST(FuzzCorpus, Ply) { replay("ply", fuzz_ply); }
+TEST(FuzzCorpus, Val) { replay("val", fuzz_val); }
+TEST(FuzzCorpus, Pid) { replay("pid", fuzz_pid); }
+TEST(FuzzCorpus, Config) { replay("config", fuzz_config); }
+
+TEST(FuzzMessage, IsOneLineThatNamesTheFile) {
+  EXPECT_NO_THROW(check_message("a.off:3: \"x\" is not a number", "a.off"));
+  EXPECT_THROW(check_message("a.off:3: two\nlines", "a.off"), std::logic_error);
+  EXPECT_THROW(check_message("a.off:3: a bell\a", "a.off"), std::logic_error);
+  EXPECT_THROW(check_message("b.off:3: another file", "a.off"), std::logic_error);
+  EXPECT_THROW(check_message("", "a.off"), std::logic_error);
+}
+
+}  // namespace
+}  // namespace salbench

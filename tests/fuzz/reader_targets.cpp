@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "io/ground_truth_file.h"
+#include "io/mesh_file.h"
+#include "io/shape_file.h"
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_check.h"
+#include "tests/fuzz/message.h"
+#include "tests/fuzz/targets.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::string_view kFile = "folder/file";
+
+// What the reader makes of the bytes; nothing where it refuses them in the way that it should.
+template <class Read>
+auto read_or_refuse(Read read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    check_message(error.what(), kFile);
+    return {};
+  }
+}
+
+void check_indices_and_coordinates(const Mesh& mesh) {
+  for (const Vec3& vertex : mesh.vertices) CHECK_EQ(vertex.allFinite(), true);
+  for (const Triangle& face : mesh.faces) {
+    for (const std::int32_t index : face) {
+      CHECK_LE(0, index);
+      CHECK_LT(static_cast<std::size_t>(index), mesh.vertices.size());
+    }
+  }
+}
+
+void check_inverse(const Mesh& mesh) {
+  const Mesh back = parse_ply(shape_text({.points = mesh.vertices, .faces = mesh.faces}, ShapeFormat::ply),
+                              "written by salbench");
+  CHECK_EQ(back.vertices == mesh.vertices, true);
+  CHECK_EQ(back.faces == mesh.faces, true);
+}
+
+void check_faces_are_counted(const Mesh& mesh) {
+  try {
+    const CheckedMesh checked = check_mesh(mesh);
+    const auto n_faces = static_cast<std::int64_t>(mesh.faces.size());
+    CHECK_EQ(checked.mesh.vertices == mesh.vertices, true);
+    CHECK_EQ(static_cast<std::int64_t>(checked.mesh.faces.size()) + checked.report.degenerate_faces +
+                 checked.report.duplicate_faces,
+             n_faces);
+    for (const std::string& warning : warnings(checked.report)) check_one_line(warning);
+  } catch (const InputError& error) {
+    check_one_line(error.what());
+  }
+}
+
+void check_mesh_reader(Mesh (*parse)(std::string_view, std::string_view), std::string_view bytes) {
+  const auto mesh = read_or_refuse([&] { return parse(bytes, kFile); });
+  if (!mesh) return;
+  check_indices_and_coordinates(*mesh);
+  check_inverse(*mesh);
+  check_faces_are_counted(*mesh);
+}
+
+std::size_t count_words(std::string_view text) {
+  std::istringstream words{std::string(text)};
+  std::size_t n = 0;
+  for (std::string word; words >> word;) ++n;
+  return n;
+}
+
+}  // namespace
+
+void fuzz_off(std::string_view bytes) { check_mesh_reader(parse_off, bytes); }
+void fuzz_obj(std::string_view bytes) { check_mesh_reader(parse_obj, bytes); }
+void fuzz_ply(std::string_view bytes) { check_mesh_reader(parse_ply, bytes); }
+
+void fuzz_val(std::string_view bytes) {
+  const auto read = [&](std::size_t n_vertices) {
+    return read_or_refuse([&] { return parse_saliency(bytes, kFile, n_vertices); });
+  };
+  const std::size_t n_vertices = count_words(bytes);  // one value a line, and no more words
+  const auto values = read(n_vertices);
+  if (!values) return;
+  CHECK_EQ(values->size(), n_vertices);
+  for (const double value : *values) CHECK_EQ(std::isfinite(value), true);
+  CHECK_EQ(read(n_vertices + 1).has_value(), false);
+}
+
+void fuzz_pid(std::string_view bytes) {
+  const auto read = [&](std::size_t n_vertices) {
+    return read_or_refuse([&] { return parse_picks(bytes, kFile, n_vertices); });
+  };
+  constexpr std::size_t kVertices = 20'000;
+  const auto picks = read(kVertices);
+  if (!picks || picks->empty()) return;
+  for (const std::int32_t pick : *picks) {
+    CHECK_LE(0, pick);
+    CHECK_LT(static_cast<std::size_t>(pick), kVertices);
+  }
+  const auto last = static_cast<std::size_t>(*std::max_element(picks->begin(), picks->end()));
+  CHECK_EQ(read(last + 1) == picks, true);
+  CHECK_EQ(read(last).has_value(), false);
+}
+
+}  // namespace salbench

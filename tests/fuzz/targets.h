@@ -1,0 +1,21 @@
+// What the readers owe to any bytes at all: they read them, or throw the one exception that they document.
+// Each function throws std::logic_error, or lets another exception through, where that does not hold.
+// libFuzzer calls them with ever new bytes (scripts/fuzz), a test with the corpora.
+#pragma once
+
+#include <string_view>
+
+namespace salbench {
+
+// A mesh has vertices for its faces, finite coordinates, comes back the same from the PLY file that it is
+// written to, and is checked without dropping a face that is not counted.
+void fuzz_off(std::string_view bytes);
+void fuzz_obj(std::string_view bytes);
+void fuzz_ply(std::string_view bytes);
+
+void fuzz_val(std::string_view bytes);  // finite values, and for no more than one number of vertices
+void fuzz_pid(std::string_view bytes);  // vertices of the mesh, and of no smaller one
+
+void fuzz_config(std::string_view bytes);  // a configuration that is read back from its own text as the same
+
+}  // namespace salbench
