@@ -248,8 +248,10 @@ void check(const MsOptions& options) {
   must(options.faces >= 100, "faces", ">= 100", options.faces);
   must(options.window >= 1 && options.window % 2 == 1, "window", "odd and > 0", options.window);
   must(options.frequencies >= 1, "frequencies", ">= 1", options.frequencies);
-  const auto needed = options.frequencies + options.window / 2;
-  const auto most = static_cast<std::int32_t>(kMsSmallestComponent) - 2;
+  const auto needed = std::int64_t{options.frequencies} + options.window / 2;
+  const auto most = static_cast<std::int64_t>(kMsSmallestComponent) - 2;
+  must(needed <= most, "frequencies",
+       ("such that frequencies + window / 2 <= " + std::to_string(most)).c_str(), options.frequencies);
   must(options.eigenpairs >= needed && options.eigenpairs <= most, "eigenpairs",
        ("between frequencies + window / 2 = " + std::to_string(needed) + " and " + std::to_string(most))
            .c_str(),

@@ -252,6 +252,10 @@ TEST(MsOptionsCheck, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(MsOptions{.window = 8}), "window");
   EXPECT_EQ(wrong_field(MsOptions{.window = 0}), "window");
   EXPECT_EQ(wrong_field(MsOptions{.frequencies = 0}), "frequencies");
+  EXPECT_EQ(wrong_field(MsOptions{.window = 27}), "frequencies");
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  EXPECT_EQ(wrong_field(MsOptions{.frequencies = kMost}), "frequencies");
+  EXPECT_EQ(wrong_field(MsOptions{.window = kMost, .frequencies = kMost}), "frequencies");
   EXPECT_EQ(wrong_field(MsOptions{.eigenpairs = 9}), "eigenpairs");
   EXPECT_EQ(wrong_field(MsOptions{.eigenpairs = 19}), "eigenpairs");
   EXPECT_EQ(wrong_field(MsOptions{.epsilon = 0}), "epsilon");
