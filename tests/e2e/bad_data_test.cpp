@@ -42,6 +42,7 @@ struct BadData {
   void (*ruin)(const fs::path& data);
   std::vector<std::string> said;
 };
+void PrintTo(const BadData& param, std::ostream* out) { *out << param.name; }
 
 class BadItem : public testing::TestWithParam<BadData> {};
 

@@ -50,6 +50,7 @@ struct BadConfig {
   const char* yaml;
   std::vector<std::string> said;  // beside the file's name
 };
+void PrintTo(const BadConfig& param, std::ostream* out) { *out << param.name; }
 
 class BadConfiguration : public testing::TestWithParam<BadConfig> {};
 
