@@ -15,6 +15,8 @@
 namespace salbench {
 namespace {
 
+constexpr const char* kUnfinished = ".salbench-part";
+
 std::string reason(int error) { return std::system_category().message(error); }
 
 class FileDescriptor {
@@ -78,7 +80,7 @@ std::string read_file(const std::filesystem::path& path) {
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {
   // Unique among the threads of all processes, so two writers of one path never share a temporary file.
-  const std::string temporary = fmt::format("{}.{}.tmp", path.string(), ::gettid());
+  const std::string temporary = fmt::format("{}.{}{}", path.string(), ::gettid(), kUnfinished);
   const auto fail = [&](int error) {
     ::unlink(temporary.c_str());
     throw StorageError(fmt::format("{}: cannot be written: {}", path.string(), reason(error)));
@@ -88,6 +90,12 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
       std::rename(temporary.c_str(), path.c_str()) != 0)
     fail(errno);
   sync_folder_of(path);
+}
+
+void remove_unfinished(const std::filesystem::path& folder) {
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, gone))
+    if (entry.path().extension() == kUnfinished) std::filesystem::remove(entry.path(), gone);
 }
 
 }  // namespace salbench

@@ -14,4 +14,8 @@ std::string read_file(const std::filesystem::path& path);
 // a crash. The folder must exist. Throws StorageError with the system's reason.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
+// Removes what write_text_file left in a folder where a process was killed in the middle of it. Not to be
+// called while another process writes there.
+void remove_unfinished(const std::filesystem::path& folder);
+
 }  // namespace salbench

@@ -180,6 +180,7 @@ void prepare_folder(const fs::path& folder, std::string_view option) {
 
 void prepare_output(const fs::path& folder) {
   prepare_folder(folder, "--out");
+  remove_unfinished(folder);
   write_text_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
 }
 

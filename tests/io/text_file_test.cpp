@@ -1,10 +1,13 @@
 #include "io/text_file.h"
 
-#include <fstream>
+#include <csignal>
 #include <iterator>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
@@ -32,6 +35,28 @@ TEST(TextFile, LeavesNoTemporaryFileBehind) {
   EXPECT_THROW(write_text_file(folder / "taken", "text"), StorageError);
   using Entries = std::filesystem::directory_iterator;
   EXPECT_EQ(std::distance(Entries(folder.path()), Entries()), 2);
+}
+
+TEST(TextFile, OfAWriterThatWasKilledNothingStays) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "x.csv", "text");
+  const pid_t writer = ::fork();
+  if (writer == 0) {  // of a text that is too long for a limit that kills
+    const rlimit limit{4096, 4096}, no_core{0, 0};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::signal(SIGXFSZ, SIG_DFL);
+    write_text_file(folder / "x.csv", std::string(100'000, 'x'));
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  using Entries = std::filesystem::directory_iterator;
+  EXPECT_EQ(std::distance(Entries(folder.path()), Entries()), 2);
+  remove_unfinished(folder.path());
+  EXPECT_EQ(std::distance(Entries(folder.path()), Entries()), 1);
+  EXPECT_EQ(read_file(folder / "x.csv"), "text");
 }
 
 TEST(TextFile, SaysWhyAFileCannotBeWritten) {
