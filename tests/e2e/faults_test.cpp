@@ -141,6 +141,41 @@ TEST(Faults, RunsKilledAtSeededMomentsComeToTheSameResults) {
   EXPECT_GT(at_work, 0);  // how many depends on what else the machine does
 }
 
+// Every moment at which a file comes into being, hit from either side: what has its name is not computed
+// again, and of what has not, nothing is used.
+TEST(Faults, RunsKilledAtEachRenameLoseNothingThatHadItsName) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results(), summary = toy.summary();
+  const auto contents = toy.contents();
+  int kills = 0;
+  const auto is_killed = [&](int at, const char* side) {
+    toy.forget_everything();
+    std::vector<std::string> command = toy.command("run", {"--threads", "1"});
+    command.insert(command.begin(), {"/usr/bin/env", "LD_PRELOAD=" SALBENCH_KILL_AT_RENAME,
+                                     fmt::format("SALBENCH_KILL_AT={} {}", at, side),
+                                     "ASAN_OPTIONS=verify_asan_link_order=0"});
+    const Outcome run = run_process(command);
+    EXPECT_THAT(run.status, testing::AnyOf(0, 128 + SIGKILL)) << run.err;
+    return run.status != 0;
+  };
+  for (const char* side : {"before", "after"}) {
+    for (int at = 1; is_killed(at, side); ++at, ++kills) {
+      SCOPED_TRACE(fmt::format("{} rename {}", side, at));
+      const std::size_t stored = toy.contents().size();
+      const Outcome again = toy.salbench("run");
+      ASSERT_EQ(again.status, 0) << again.err;
+      EXPECT_EQ(toy.computed(), static_cast<int>(contents.size() - stored));
+      EXPECT_EQ(toy.results(), results);
+      EXPECT_EQ(toy.summary(), summary);
+      EXPECT_EQ(toy.contents(), contents);
+      EXPECT_THAT(toy.left_over(), testing::IsEmpty());
+    }
+  }
+  fmt::print("killed before and after each of {} renames\n", kills / 2);
+  EXPECT_GT(kills / 2, static_cast<int>(contents.size()));  // the artefacts' and the tables'
+}
+
 // --- accidents --------------------------------------------------------------------------------------------
 
 TEST(Faults, ACacheRemovedDuringARunCostsTheWorkAndNothingElse) {

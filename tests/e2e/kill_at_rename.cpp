@@ -1,0 +1,22 @@
+// Loaded into the program by LD_PRELOAD: kills it at its Nth rename, the moment at which a file comes into
+// being.
+//   SALBENCH_KILL_AT="N before"    the file is whole and has its temporary name
+//   SALBENCH_KILL_AT="N after"     it has its name, and the program does not know yet
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <string_view>
+
+#include <dlfcn.h>
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  static const auto real_rename =
+      reinterpret_cast<int (*)(const char*, const char*)>(::dlsym(RTLD_NEXT, "rename"));
+  static std::atomic<int> count = 0;
+  const char* when = std::getenv("SALBENCH_KILL_AT");
+  const bool now = when != nullptr && ++count == std::atoi(when);
+  if (now && std::string_view(when).ends_with("before")) std::raise(SIGKILL);
+  const int result = real_rename(from, to);
+  if (now) std::raise(SIGKILL);
+  return result;
+}
