@@ -26,6 +26,10 @@ std::string fate(const RecipeDifference& difference) {
   return difference.after.empty() ? "removed" : "changed";
 }
 
+std::string version_text(const RecipeDifference& difference) {
+  return fmt::format("stage version {} -> {}", difference.before, difference.after);
+}
+
 const Input* input_named(const Context& context, const ItemRef& item, const Stage& stage,
                          const std::string& name) {
   for (const Input& input : stage.inputs)
@@ -49,7 +53,7 @@ std::string group_text(const Context& context, const ItemRef& item, const Stage&
   };
   switch (difference.part) {
     case Part::version:
-      return fmt::format("stage version {} -> {}", difference.before, difference.after);
+      return version_text(difference);
     case Part::option:
       return fmt::format("{} {} -> {}", option_path(stage, difference.name), or_none(difference.before),
                          or_none(difference.after));
@@ -112,13 +116,17 @@ Cause Causes::of(const ItemRef& item, std::size_t index, bool verify) {
     if (hit) return {job.reason};
   }
 
+  return nearest(files, decision.recipe, key);
+}
+
+Cause Causes::nearest(const std::vector<ArtefactFile>& files, const Recipe& now, const Digest& key) {
   Cause nearest{Reason::never_computed};
   for (const ArtefactFile& file : files) {
     if (file.name.key == key) continue;
-    if (opened_[stage.name] >= limit_) return {Reason::changed};
+    if (opened_[file.stage] >= limit_) return {Reason::changed};
     const Recipe* recipe = read(file);
     if (recipe == nullptr) continue;
-    auto found = differences(*recipe, decision.recipe);
+    auto found = differences(*recipe, now);
     if (nearest.reason == Reason::never_computed || found.size() < nearest.differences.size())
       nearest = {Reason::changed, std::move(found), file.path};
   }
@@ -174,21 +182,15 @@ std::string Causes::group_of_mean(std::size_t index, bool meshes) {
 
   const Digest key = key_of(now);
   if (book_.set_aside(key) != nullptr) return std::string(text_of(Reason::damaged));
-  std::optional<std::vector<RecipeDifference>> nearest;
-  for (const ArtefactFile& file : book_.artefacts(mean.name, meshes ? "meshes" : "scans")) {
-    const Recipe* before = file.name.key == key ? nullptr : read(file);
-    if (before == nullptr) continue;
-    auto found = differences(*before, now);
-    if (!nearest || found.size() < nearest->size()) nearest = std::move(found);
-  }
-  if (!nearest) return std::string(text_of(Reason::never_computed));
+  const Cause cause = nearest(book_.artefacts(mean.name, meshes ? "meshes" : "scans"), now, key);
+  if (cause.differences.empty()) return std::string(text_of(cause.reason));
   std::map<std::string, std::size_t> fates;
   std::vector<std::string> parts;
-  for (const RecipeDifference& difference : *nearest) {
+  for (const RecipeDifference& difference : cause.differences) {
     if (difference.part == Part::input)
       ++fates[fate(difference)];
     else
-      parts.push_back(fmt::format("stage version {} -> {}", difference.before, difference.after));
+      parts.push_back(version_text(difference));
   }
   for (const auto& [what, items] : fates) parts.push_back(fmt::format("{} {} {}", items, averaged, what));
   return joined(parts);
@@ -280,7 +282,7 @@ std::string Causes::origin_of_mean(const Recipe& before, const Recipe& now) cons
   for (const RecipeDifference& difference : differences(before, now))
     lines.push_back(difference.part == Part::input
                         ? fmt::format("that of {} {}", difference.name, fate(difference))
-                        : fmt::format("stage version {} -> {}", difference.before, difference.after));
+                        : version_text(difference));
   return joined(lines);
 }
 

@@ -49,6 +49,7 @@ class Causes {
   std::string origin(const ItemRef& item, const Input& input, const std::string& before);
   std::string origin_of_mean(const Recipe& before, const Recipe& now) const;
   std::string difference_line(const ItemRef& item, const Stage& stage, const RecipeDifference& difference);
+  Cause nearest(const std::vector<ArtefactFile>& files, const Recipe& now, const Digest& key);
   const Recipe* read(const ArtefactFile& file);
 
   const Context& context_;

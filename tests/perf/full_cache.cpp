@@ -1,9 +1,10 @@
-// Fills a cache with every artefact that a run of CONFIG over DATA would leave, without the days that the
-// real computations take: the program's own engine runs, and only the bodies of the stages are replaced, by
-// made-up values of a few bytes. Keys and names are those of a real cache, so that `salbench plan` and a
+// Fills a cache with every artefact that a run of CONFIG over DATA would leave, without the real
+// computations: the program's own engine runs, and only the bodies of the stages are replaced, by made-up
+// values of a few bytes. Keys and names are those of a real cache, so that `salbench plan` and a
 // rerun with nothing to do can be measured at the size of the whole benchmark. The scores in it mean nothing.
 //   perf_full_cache CONFIG DATA CACHE
-#include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <iostream>
 
 #include "pipeline/session.h"
