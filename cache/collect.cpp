@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "cache/files.h"
 #include "cache/layout.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -12,23 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What vanished meanwhile counts as nothing.
+// A file that disappeared in the meantime is ignored.
 void remove_file(const fs::path& file, bool dry_run, Amount& amount) {
+  const auto size = size_of_file(file);
+  if (!size) return;
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error == std::errc::no_such_file_or_directory) return;
-  if (!dry_run && !error) fs::remove(file, error);
-  if (error) throw StorageError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
-  amount.add(size);
-}
-
-std::vector<fs::path> set_aside_artefacts(const fs::path& damaged) {
-  std::vector<fs::path> files;
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(damaged, missing))
-    if (parse_artefact_name(entry.path().filename().string()) && entry.is_regular_file())
-      files.push_back(entry.path());
-  return files;
+  if (!dry_run) fs::remove(file, error);
+  if (error)
+    throw StorageError(fmt::format("{}: cannot be removed: {}", file.string(), system_reason(error.value())));
+  amount.add(*size);
 }
 
 }  // namespace
@@ -45,10 +37,12 @@ bool Needed::covers(std::string_view stage, const ArtefactName& name) const {
          (found->second.keys.contains(name.key) || found->second.items.contains(name.item));
 }
 
-Collected collect_garbage(const fs::path& folder, const Needed& needed, bool dry_run) {
+Collected collect_garbage(const fs::path& folder, const Needed& needed, bool dry_run, Progress& progress) {
   require_cache(folder);
   Collected result;
-  for (const ArtefactFile& file : list_cache(folder).artefacts) {
+  const std::vector<ArtefactFile> artefacts = list_cache(folder).artefacts;
+  progress.begin("collecting", artefacts.size());
+  for (const ArtefactFile& file : artefacts) {
     if (result.stages.empty() || result.stages.back().stage != file.stage)
       result.stages.push_back({file.stage, {}, {}});
     Collected::OfStage& stage = result.stages.back();
@@ -56,10 +50,14 @@ Collected collect_garbage(const fs::path& folder, const Needed& needed, bool dry
       stage.kept.add(file.name.size);
     else
       remove_file(file.path, dry_run, stage.removed);
+    progress.item_done();
   }
-  for (const fs::path& file : set_aside_artefacts(folder / kDamagedFolder))
-    remove_file(file, dry_run, result.damaged);
-  for (const fs::path& file : orphans(folder / kScratchFolder)) remove_file(file, dry_run, result.unfinished);
+  progress.end();
+  for (const FolderEntry& entry : list_folder(folder / kDamagedFolder))
+    if (!entry.is_folder && parse_artefact_name(entry.path.filename().native()))
+      remove_file(entry.path, dry_run, result.damaged);
+  visit_abandoned(folder / kScratchFolder,
+                  [&](const fs::path& file) { remove_file(file, dry_run, result.unfinished); });
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cache/artefact_name.h"
+#include "stages/core/progress.h"
 
 namespace salbench {
 
@@ -47,12 +48,13 @@ struct Collected {
   };
   std::vector<OfStage> stages;  // by name
   Amount damaged;               // removed from damaged/
-  Amount unfinished;            // what killed processes of this host left in tmp/
+  Amount unfinished;            // what killed processes left in tmp/
 };
 
 // Removes what `needed` does not cover, artefacts that were moved aside, and dead temporary files; with
 // `dry_run` says only what it would remove. Files that are no artefacts are never touched. Throws
 // StorageError where the folder is no cache, or a file cannot be removed.
-Collected collect_garbage(const std::filesystem::path& folder, const Needed& needed, bool dry_run);
+Collected collect_garbage(const std::filesystem::path& folder, const Needed& needed, bool dry_run,
+                          Progress& progress);
 
 }  // namespace salbench

@@ -4,7 +4,6 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,8 +44,8 @@ class Hasher {
   std::unique_ptr<State> state_;
 };
 
-Digest content_digest(const Arrays& arrays);            // names, types, shapes and values; no units, no prose
-Digest file_digest(const std::filesystem::path& path);  // of the bytes; throws InputError if unreadable
+Digest content_digest(const Arrays& arrays);  // names, types, shapes and values; no units, no prose
+Digest file_digest(std::string_view bytes);   // of all bytes of a file
 std::uint64_t checksum(std::span<const std::byte> bytes);  // 64 bits, of a whole file image
 
 }  // namespace salbench

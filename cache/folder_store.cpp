@@ -10,9 +10,9 @@
 #include <spdlog/spdlog.h>
 
 #include "cache/artefact_name.h"
-#include "cache/files.h"
 #include "cache/layout.h"
 #include "cache/verify.h"
+#include "io/file.h"
 #include "io/hdf5_file.h"
 #include "stages/core/errors.h"
 
@@ -77,20 +77,6 @@ struct FolderStore::Impl {
     return found == entries->second.by_key.end() ? nullptr : &found->second;
   }
 
-  // A file whose size is not the one in its name was cut short outside of our control: not listed, so a miss.
-  // Out of the way, it is not complained about at each listing.
-  void list_shard(const std::string& stage, const fs::path& shard_folder) {
-    std::error_code error;
-    for (const auto& file : fs::directory_iterator(shard_folder, error)) {
-      const auto name = parse_artefact_name(file.path().filename().string());
-      if (!name) continue;
-      if (file.file_size(error) == name->size && !error)
-        insert(stage, *name);
-      else
-        set_aside(file.path(), "cut short");
-    }
-  }
-
   void insert(const std::string& stage, const ArtefactName& name) {
     StageEntries& entries = stages[stage];
     const auto [entry, fresh] =
@@ -101,19 +87,22 @@ struct FolderStore::Impl {
     entries.items.insert(name.item);
   }
 
-  void list_all() {
-    std::error_code error;
-    for (const auto& stage : fs::directory_iterator(folder, error)) {
-      const std::string name = stage.path().filename().string();
-      if (!stage.is_directory() || name == kScratchFolder || name == kDamagedFolder) continue;
-      for (const auto& shard_folder : fs::directory_iterator(stage.path(), error))
-        list_shard(name, shard_folder.path());
-    }
-    if (error && error != std::errc::no_such_file_or_directory)
-      throw StorageError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  // A file whose size is not the one in its name was cut short outside of our control: not listed, so a miss.
+  // Out of the way, it is not complained about at each listing.
+  bool is_complete(const fs::path& file, const ArtefactName& name) const {
+    const auto size = size_of_file(file);
+    if (size && *size != name.size)
+      set_aside(file, fmt::format("truncated: {} of {} bytes", *size, name.size));
+    return size == name.size;
   }
 
-  // What is not there any more (another process collects, or sets aside the same file) needs no warning.
+  void list_all() {
+    for (const std::string& stage : list_stages(folder))
+      for (const ArtefactFile& file : list_stage(folder, stage).artefacts)
+        if (is_complete(file.path, file.name)) insert(stage, file.name);
+  }
+
+  // A file that is gone (another process collects, or quarantines the same file) needs no warning.
   void set_aside(const fs::path& file, std::string_view why) const {
     std::error_code error;
     if (access == Access::read_only) {
@@ -130,8 +119,28 @@ struct FolderStore::Impl {
                    error.message());
   }
 
-  void forget(std::string_view stage, const Digest& key, const fs::path& file, std::string_view why) {
-    set_aside(file, why);
+  // What `parse` makes of an artefact's bytes, with a fault if there is one: the file is then quarantined. A
+  // file that is gone is a miss; one that the system does not let us read is an error, not damage.
+  template <class Result, class Parse>
+  std::optional<Result> read(std::string_view stage, const Digest& key, const Parse& parse) {
+    std::optional<Entry> found;
+    {
+      const std::shared_lock lock(mutex);
+      if (const Entry* known = entry(stage, key)) found = *known;
+    }
+    if (!found) return {};
+    const ArtefactName name{found->item, key, found->content, found->checksum, found->size};
+    const fs::path file = shard(stage, key) / name.text();
+    if (auto bytes = read_bytes(file)) {
+      auto [result, fault] = parse(std::move(*bytes), name);
+      if (fault.empty()) return std::move(result);
+      set_aside(file, fault);
+    }
+    forget(stage, key);
+    return {};
+  }
+
+  void forget(std::string_view stage, const Digest& key) {
     const std::unique_lock lock(mutex);
     stages.find(stage)->second.by_key.erase(key);
   }
@@ -147,7 +156,7 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
   check_format(impl_->folder);
   if (access == Access::read_write) {
     prepare_cache(impl_->folder);
-    for (const fs::path& orphan : orphans(impl_->folder / kScratchFolder)) fs::remove(orphan, error);
+    visit_abandoned(impl_->folder / kScratchFolder, [&](const fs::path& file) { fs::remove(file, error); });
   }
   impl_->list_all();
 }
@@ -166,32 +175,30 @@ bool FolderStore::has_item(std::string_view stage, std::string_view item) const 
   return entries != impl_->stages.end() && entries->second.items.contains(item_label(item));
 }
 
+// The names are read without the lock: on a network file system that takes its time.
 std::optional<Digest> FolderStore::find_now(std::string_view stage, const Digest& key) {
   if (const auto content = find(stage, key)) return content;
-  const std::unique_lock lock(impl_->mutex);
-  impl_->list_shard(std::string(stage), impl_->shard(stage, key));
-  const Entry* entry = impl_->entry(stage, key);
-  return entry == nullptr ? std::nullopt : std::optional(entry->content);
+  for (const ArtefactName& name : find_artefacts(impl_->folder, stage, key)) {
+    if (!impl_->is_complete(impl_->shard(stage, key) / name.text(), name)) continue;
+    const std::unique_lock lock(impl_->mutex);
+    impl_->insert(std::string(stage), name);
+  }
+  return find(stage, key);
+}
+
+std::optional<Bytes> FolderStore::image(std::string_view stage, const Digest& key) {
+  return impl_->read<Bytes>(stage, key, [](Bytes bytes, const ArtefactName& name) {
+    std::string fault = damage(bytes, name);
+    return std::pair(std::move(bytes), std::move(fault));
+  });
 }
 
 std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& key) {
-  std::optional<Entry> entry;
-  {
-    const std::shared_lock lock(impl_->mutex);
-    if (const Entry* found = impl_->entry(stage, key)) entry = *found;
-  }
-  if (!entry) return {};
-  const fs::path path = impl_->path(stage, key, *entry);
-  const auto bytes = read_bytes(path);
-  Inspection inspection =
-      bytes
-          ? inspect_artefact(*bytes, stage, {entry->item, key, entry->content, entry->checksum, entry->size})
-          : Inspection{{}, "gone or unreadable"};
-  if (!inspection.content) {
-    impl_->forget(stage, key, path, inspection.fault);
-    return {};
-  }
-  return std::move(inspection.content->arrays);
+  return impl_->read<Arrays>(stage, key, [&](const Bytes& bytes, const ArtefactName& name) {
+    Inspection inspection = inspect_artefact(bytes, stage, name);
+    return std::pair(inspection.content ? std::move(inspection.content->arrays) : Arrays(),
+                     std::move(inspection.fault));
+  });
 }
 
 Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
@@ -203,9 +210,10 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   const fs::path shard = impl_->shard(recipe.stage, key);
   std::error_code error;
   if (!fs::exists(impl_->folder / kScratchFolder, error)) prepare_cache(impl_->folder);  // removed meanwhile
-  fs::create_directories(shard, error);
-  if (error) throw StorageError(fmt::format("{}: cannot be created: {}", shard.string(), error.message()));
-  write_bytes_atomically(impl_->folder / kScratchFolder, shard / name.text(), image);
+  make_folder(shard, "choose another cache with --cache");
+  UnfinishedFile file(impl_->folder / kScratchFolder);
+  file.append(image);
+  file.finish(shard / name.text());
   const std::unique_lock lock(impl_->mutex);
   impl_->insert(recipe.stage, name);
   return content;

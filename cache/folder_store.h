@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cache/store.h"
+#include "io/file.h"
 
 namespace salbench {
 
@@ -32,6 +33,9 @@ class FolderStore final : public Store {
               const ArtefactNote& note) override;
 
   std::unique_ptr<Claim> claim(std::string_view work) override;
+
+  // The bytes of an artefact as they are stored, checked against their checksum; nothing as in load.
+  std::optional<Bytes> image(std::string_view stage, const Digest& key);
 
   // Where an artefact lies, for who links to it; nothing where there is none.
   std::optional<std::filesystem::path> path(std::string_view stage, const Digest& key) const;

@@ -1,11 +1,11 @@
 #include "cache/layout.h"
 
-#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 #include <fmt/format.h>
 
-#include "cache/files.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -23,17 +23,29 @@ std::string tag_text(const fs::path& folder) {
   return tag ? std::string(reinterpret_cast<const char*>(tag->data()), tag->size()) : std::string();
 }
 
-void list_stage(const fs::path& folder, CacheListing& listing) {
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_directory()) continue;
-    const fs::path within = entry.path().lexically_relative(folder);
-    const auto name = parse_artefact_name(entry.path().filename().string());
-    const bool in_a_shard = std::distance(within.begin(), within.end()) == 2;
-    if (name && in_a_shard)
-      listing.artefacts.push_back({entry.path(), folder.filename().string(), *name});
+bool is_own(const std::string& name) {
+  return name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile;
+}
+
+// Artefacts lie one folder below their stage's; whatever lies elsewhere is not ours.
+void list_below(const fs::path& folder, const std::string& stage, int depth, CacheListing& listing) {
+  constexpr int kShardDepth = 1;
+  for (FolderEntry& entry : list_folder(folder)) {
+    if (entry.is_folder) {
+      list_below(entry.path, stage, depth + 1, listing);
+      continue;
+    }
+    const auto name = parse_artefact_name(entry.path.filename().native());
+    if (name && depth == kShardDepth)
+      listing.artefacts.push_back({std::move(entry.path), stage, *name});
     else
-      listing.others.push_back(entry.path());
+      listing.others.push_back(std::move(entry.path));
   }
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T> more) {
+  to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
 }  // namespace
@@ -63,36 +75,45 @@ void require_cache(const fs::path& folder) {
 }
 
 void prepare_cache(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder / kScratchFolder, error);
-  if (error)
-    throw StorageError(
-        fmt::format("{}: the cache folder cannot be created or written to: {}; choose another with --cache",
-                    folder.string(), error.message()));
+  make_folder(folder / kScratchFolder, "choose another cache with --cache");
   // Writing the tag each time is the probe for a full or read-only folder, before any work is done.
   const std::string tag = fmt::format("{}\n{}{}\n", kTagSignature, kFormatLine, kFormat);
-  write_bytes_atomically(folder / kScratchFolder, folder / kTagName, std::as_bytes(std::span(tag)));
+  UnfinishedFile file(folder / kScratchFolder);
+  file.append(std::as_bytes(std::span(tag)));
+  file.finish(folder / kTagName);
+}
+
+std::vector<std::string> list_stages(const fs::path& folder) {
+  std::vector<std::string> stages;
+  for (const FolderEntry& entry : list_folder(folder))
+    if (entry.is_folder && !is_own(entry.path.filename())) stages.push_back(entry.path.filename());
+  return stages;
+}
+
+CacheListing list_stage(const fs::path& folder, const std::string& stage) {
+  CacheListing listing;
+  list_below(folder / stage, stage, 0, listing);
+  return listing;
 }
 
 CacheListing list_cache(const fs::path& folder) {
   CacheListing listing;
-  try {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      if (name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile)
-        continue;
-      if (entry.is_directory())
-        list_stage(entry.path(), listing);
-      else
-        listing.others.push_back(entry.path());
-    }
-  } catch (const fs::filesystem_error& error) {
-    throw StorageError(fmt::format("{}: cannot be listed: {}", folder.string(), error.code().message()));
+  for (const FolderEntry& entry : list_folder(folder))
+    if (!entry.is_folder && !is_own(entry.path.filename())) listing.others.push_back(entry.path);
+  for (const std::string& stage : list_stages(folder)) {
+    CacheListing of_stage = list_stage(folder, stage);
+    append(listing.artefacts, std::move(of_stage.artefacts));
+    append(listing.others, std::move(of_stage.others));
   }
-  std::sort(listing.artefacts.begin(), listing.artefacts.end(),
-            [](const ArtefactFile& a, const ArtefactFile& b) { return a.path < b.path; });
-  std::sort(listing.others.begin(), listing.others.end());
   return listing;
+}
+
+std::vector<ArtefactName> find_artefacts(const fs::path& folder, std::string_view stage, const Digest& key) {
+  std::vector<ArtefactName> found;
+  for (const FolderEntry& entry : list_folder(folder / shard_of(stage, key)))
+    if (const auto name = parse_artefact_name(entry.path.filename().native()); name && name->key == key)
+      found.push_back(*name);
+  return found;
 }
 
 }  // namespace salbench

@@ -42,7 +42,14 @@ struct CacheListing {
   std::vector<std::filesystem::path> others;  // by path: files that are neither artefacts nor the cache's own
 };
 
-// Throws StorageError where the folder cannot be listed.
+// All three throw StorageError where a folder cannot be listed to its end; a missing folder is empty.
+std::vector<std::string> list_stages(const std::filesystem::path& folder);
+CacheListing list_stage(const std::filesystem::path& folder, const std::string& stage);
 CacheListing list_cache(const std::filesystem::path& folder);
+
+// The artefacts that lie under one key, whose content may differ if a stage is not deterministic. Reads names
+// and nothing else.
+std::vector<ArtefactName> find_artefacts(const std::filesystem::path& folder, std::string_view stage,
+                                         const Digest& key);
 
 }  // namespace salbench

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "cache/files.h"
 #include "cache/verify.h"
+#include "io/file.h"
 
 namespace salbench {
 namespace {
@@ -63,33 +63,25 @@ std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& af
 
 RecipeReading read_recipe(const ArtefactFile& file) {
   const auto bytes = read_bytes(file.path);
-  if (!bytes) return {{}, "gone or unreadable"};
+  if (!bytes) return {{}, "gone"};
   const Inspection inspection = inspect_artefact(*bytes, file.stage, file.name);
   if (!inspection.content) return {{}, inspection.fault};
   return {recipe_from(inspection.content->attributes), {}};
 }
 
 RecipeBook::RecipeBook(fs::path folder) : folder_(std::move(folder)) {
-  std::error_code not_there;
-  for (const auto& entry : fs::directory_iterator(folder_ / kDamagedFolder, not_there))
-    if (const auto name = parse_artefact_name(entry.path().filename().string()))
-      set_aside_.emplace(name->key, entry.path());
+  for (FolderEntry& entry : list_folder(folder_ / kDamagedFolder))
+    if (const auto name = parse_artefact_name(entry.path.filename().native()))
+      set_aside_.emplace(name->key, std::move(entry.path));
 }
 
 const std::vector<ArtefactFile>& RecipeBook::artefacts(const std::string& stage, std::string_view item) {
   static const std::vector<ArtefactFile> none;
   const auto [listed, fresh] = stages_.try_emplace(stage);
   ByItem& by_item = listed->second;
-  if (fresh) {
-    std::error_code not_there;
-    for (const auto& shard : fs::directory_iterator(folder_ / stage, not_there))
-      for (const auto& entry : fs::directory_iterator(shard.path(), not_there))
-        if (const auto name = parse_artefact_name(entry.path().filename().string()))
-          by_item[name->item].push_back({entry.path(), stage, *name});
-    for (auto& [label, files] : by_item)
-      std::sort(files.begin(), files.end(),
-                [](const ArtefactFile& a, const ArtefactFile& b) { return a.path < b.path; });
-  }
+  if (fresh)
+    for (ArtefactFile& file : list_stage(folder_, stage).artefacts)
+      by_item[file.name.item].push_back(std::move(file));
   const auto found = by_item.find(item_label(item));
   return found == by_item.end() ? none : found->second;
 }

@@ -28,7 +28,7 @@ std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& af
 
 struct RecipeReading {
   std::optional<Recipe> recipe;  // of a sound artefact, from its root attributes
-  std::string fault;             // of any other: "its checksum does not fit"
+  std::string fault;             // of any other: "checksum mismatch"
 };
 RecipeReading read_recipe(const ArtefactFile& file);
 

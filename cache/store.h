@@ -37,7 +37,8 @@ class Store : public Index {
   // As find, but also sees what other processes have stored meanwhile.
   virtual std::optional<Digest> find_now(std::string_view stage, const Digest& key) = 0;
   // The arrays; nothing where the artefact is missing, short or fails its checksum. A bad file is moved aside
-  // with a warning that names it, and is a miss from then on.
+  // with a warning that names it, and is a miss from then on. Throws StorageError if the system does not let
+  // it be read, which says nothing about the file.
   virtual std::optional<Arrays> load(std::string_view stage, const Digest& key) = 0;
   // Complete on return, or not there at all. Throws StorageError.
   virtual Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,

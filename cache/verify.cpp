@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "cache/files.h"
 #include "cache/layout.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -50,6 +50,21 @@ std::string contradiction(const Attributes& attributes, std::string_view stage, 
 
 Inspection faulty(std::string what) { return {{}, std::move(what)}; }
 
+// Describes what is wrong with one artefact, and counts it; empty for a sound one and one that is gone.
+std::string fault_of(const ArtefactFile& file, const fs::path& folder, Verification& result) try {
+  const auto bytes = read_bytes(file.path);
+  if (!bytes) return {};
+  ++result.artefacts;
+  result.bytes += bytes->size();
+  std::string fault = inspect_artefact(*bytes, file.stage, file.name).fault;
+  if (fault.empty() && file.path.parent_path() != folder / shard_of(file.stage, file.name.key))
+    fault = "it lies in the folder of another key";
+  return fault;
+} catch (const StorageError& error) {
+  ++result.artefacts;
+  return error.what();
+}
+
 }  // namespace
 
 std::optional<Recipe> recipe_from(const Attributes& attributes) {
@@ -62,10 +77,14 @@ std::optional<Recipe> recipe_from(const Attributes& attributes) {
   return Recipe{*stage, static_cast<std::int32_t>(*version), *options, *seed, *inputs};
 }
 
+std::string damage(std::span<const std::byte> bytes, const ArtefactName& name) {
+  if (bytes.size() != name.size) return fmt::format("truncated: {} of {} bytes", bytes.size(), name.size);
+  return checksum(bytes) == name.checksum ? "" : "checksum mismatch";
+}
+
 Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view stage,
                             const ArtefactName& name) {
-  if (bytes.size() != name.size) return faulty(fmt::format("it has {} bytes of {}", bytes.size(), name.size));
-  if (checksum(bytes) != name.checksum) return faulty("its checksum does not fit");
+  if (std::string fault = damage(bytes, name); !fault.empty()) return faulty(std::move(fault));
   try {
     Hdf5Content content = hdf5_content(bytes, name.item);
     if (content_digest(content.arrays) != name.content)
@@ -78,30 +97,25 @@ Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view s
   }
 }
 
-Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop) {
+Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop, Progress& progress) {
   require_cache(folder);
   const CacheListing listing = list_cache(folder);
   Verification result;
   result.others = listing.others.size();
-  std::map<std::pair<std::string, Digest>, fs::path> sound;
+  std::map<std::pair<std::string, Digest>, const ArtefactFile*> sound;
+  progress.begin("verifying", listing.artefacts.size());
   for (const ArtefactFile& file : listing.artefacts) {
     if (stop) break;
-    const auto bytes = read_bytes(file.path);
-    std::error_code error;
-    if (!bytes && !fs::exists(file.path, error) && !error) continue;  // removed since the listing
-    ++result.artefacts;
-    result.bytes += bytes ? bytes->size() : 0;
-    std::string fault = bytes ? inspect_artefact(*bytes, file.stage, file.name).fault : "it cannot be read";
-    if (fault.empty() && file.path.parent_path() != folder / shard_of(file.stage, file.name.key))
-      fault = "it lies in the folder of another key";
+    std::string fault = fault_of(file, folder, result);
     if (fault.empty()) {
-      const auto [first, fresh] = sound.try_emplace({file.stage, file.name.key}, file.path);
-      if (!fresh && first->second.filename() != file.path.filename() &&
-          parse_artefact_name(first->second.filename().string())->content != file.name.content)
-        fault = "another content under the key of " + first->second.filename().string();
+      const auto [first, fresh] = sound.try_emplace({file.stage, file.name.key}, &file);
+      if (!fresh && first->second->name.content != file.name.content)
+        fault = "another content under the key of " + first->second->path.filename().string();
     }
     if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
+    progress.item_done();
   }
+  progress.end();
   return result;
 }
 

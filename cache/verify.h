@@ -14,15 +14,19 @@
 #include "cache/artefact_name.h"
 #include "cache/key.h"
 #include "io/hdf5_file.h"
+#include "stages/core/progress.h"
 
 namespace salbench {
 
 // What an artefact was made of, from its own attributes; nothing where one is missing or malformed.
 std::optional<Recipe> recipe_from(const Attributes& attributes);
 
+// Describes how the bytes differ from those that were written under this name; empty if they are the same.
+std::string damage(std::span<const std::byte> bytes, const ArtefactName& name);
+
 struct Inspection {
   std::optional<Hdf5Content> content;  // of a sound artefact
-  std::string fault;                   // of any other: "its checksum does not fit"
+  std::string fault;                   // of any other: "checksum mismatch"
 };
 
 // Looks at the bytes of the file `name` in the folder of `stage`: whether they are complete, pass the
@@ -44,6 +48,7 @@ struct Verification {
 
 // Reads every artefact and changes nothing; what another process removes meanwhile is passed over. Ends early
 // once `stop` is set. Throws StorageError where the folder is no cache or cannot be listed.
-Verification verify_cache(const std::filesystem::path& folder, const std::atomic<bool>& stop);
+Verification verify_cache(const std::filesystem::path& folder, const std::atomic<bool>& stop,
+                          Progress& progress);
 
 }  // namespace salbench

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "io/text_file.h"
+#include "io/file.h"
 #include "io/text_scanner.h"
 
 namespace salbench {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/arrays.h"
+#include "io/file.h"
 #include "io/table.h"
 
 namespace salbench {
@@ -41,8 +42,6 @@ struct Hdf5Content {
   std::vector<Hdf5Table> tables = {};
   std::vector<Hdf5Link> links = {};
 };
-
-using Bytes = std::vector<std::byte>;
 
 // The bytes of a complete HDF5 file: fixed little-endian types, UTF-8 attributes, `unit` and `description` on
 // every data set, no time stamps; shuffle + deflate where arrays are large and mostly zeros. Equal content

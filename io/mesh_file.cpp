@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "io/text_file.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

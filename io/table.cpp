@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "io/text_file.h"
+#include "io/file.h"
 #include "io/text_scanner.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "io/file.h"
 #include "io/table.h"
-#include "io/text_file.h"
 #include "pipeline/causes.h"
 #include "pipeline/results.h"
 #include "pipeline/session.h"
@@ -60,13 +60,13 @@ std::size_t write_maps(const Setup& setup, const Plan& plan, Runner& runner, con
     if (!model.is_map()) continue;
     const std::string name = (arguments.matched ? "matched." : "map.") + model.name;
     const fs::path folder = fs::path(arguments.to) / model.name;
-    prepare_folder(folder, "--to");
+    make_folder(folder, "choose another with --to");
     for (std::size_t f = 0; f < setup.workload.families.size(); ++f) {
       for (const ItemRef& item : setup.context.family(f)) {
         const Chain& chain = setup.context.chain(item);
         if (!has_stage(chain, name) || !plan.jobs(item)[stage_index(chain, name)].known()) continue;
         const Value map = runner.result(item, stage_index(chain, name));
-        write_text_file(folder / (setup.context.name(item) + ".val"), val_text(std::get<ScalarField>(map)));
+        write_file(folder / (setup.context.name(item) + ".val"), val_text(std::get<ScalarField>(map)));
         ++written;
       }
     }
@@ -129,7 +129,7 @@ ExitStatus finish_shard(const Session& session, const RunRecord& record, const A
 
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
-  setup.context.shard ? prepare_folder(setup.output, "--out") : prepare_output(setup.output);
+  setup.context.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 

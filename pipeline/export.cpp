@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "cache/artefact_name.h"
+#include "io/file.h"
 #include "io/shape_file.h"
-#include "io/text_file.h"
 #include "pipeline/export_file.h"
 #include "pipeline/option_text.h"
 #include "pipeline/results.h"
@@ -93,14 +93,13 @@ bool write_shape(Session& session, const ItemRef& item, ShapeFormat format, cons
     std::visit(Addition{shape, chain[s].name}, values.back());
   }
   if (shape.points.empty()) return false;
-  write_text_file(folder / fmt::format("{}.{}", context.name(item), name_of(format)),
-                  shape_text(shape, format));
+  write_file(folder / fmt::format("{}.{}", context.name(item), name_of(format)), shape_text(shape, format));
   return true;
 }
 
 std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames& stages,
                          const fs::path& folder) {
-  prepare_folder(folder, "--to");
+  make_folder(folder, "choose another with --to");
   std::size_t written = 0;
   for (std::size_t f = 0; f < session.setup.workload.families.size(); ++f)
     for (const ItemRef& item : session.setup.context.family(f))
@@ -110,12 +109,12 @@ std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames&
 
 // --- one file ---------------------------------------------------------------------------------------------
 
-void write_file(Session& session, const StageNames& stages, const fs::path& file, bool link) {
+void write_archive(Session& session, const StageNames& stages, const fs::path& file, bool link) {
   const fs::path folder = fs::absolute(file).parent_path();
-  prepare_folder(folder, "--to");
+  make_folder(folder, "choose another with --to");
   const Bytes image =
       hdf5_image(export_content(session, stages, link ? std::optional(folder) : std::nullopt));
-  write_text_file(file, {reinterpret_cast<const char*>(image.data()), image.size()});
+  write_file(file, {reinterpret_cast<const char*>(image.data()), image.size()});
 }
 
 }  // namespace
@@ -138,7 +137,7 @@ ExitStatus export_command(const Arguments& arguments, const ExportOptions& optio
     const std::size_t written = write_shapes(session, format, stages, arguments.to);
     if (!arguments.quiet) fmt::print("{} shapes written to {}\n", written, arguments.to);
   } else {
-    write_file(session, stages, arguments.to, options.link);
+    write_archive(session, stages, arguments.to, options.link);
     if (!arguments.quiet) fmt::print("exported to {}\n", arguments.to);
   }
   return finished_status(session);

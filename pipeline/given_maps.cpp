@@ -6,9 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "cache/files.h"
+#include "io/file.h"
 #include "io/hdf5_file.h"
-#include "io/text_file.h"
 #include "io/text_scanner.h"
 #include "pipeline/plan.h"
 #include "stages/core/errors.h"
@@ -74,7 +73,9 @@ GivenMaps maps_in_folder(const fs::path& folder) {
     if (file.path().extension() == ".val") maps.items.insert(file.path().stem().string());
   if (error)
     throw ConfigError(fmt::format("--maps {}: cannot be listed: {}", folder.string(), error.message()));
-  maps.digest = [folder](const std::string& item) { return file_digest(folder / (item + ".val")); };
+  maps.digest = [folder](const std::string& item) {
+    return file_digest(read_file(folder / (item + ".val")));
+  };
   maps.read = [folder](const std::string& item, std::size_t) { return read_val(folder / (item + ".val")); };
   return maps;
 }

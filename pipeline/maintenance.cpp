@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "cache/files.h"
 #include "cache/layout.h"
+#include "io/file.h"
 #include "io/table.h"
 #include "io/value.h"
 #include "stages/core/errors.h"
@@ -166,7 +166,7 @@ void print_faults(const std::vector<Fault>& faults) {
 }
 
 std::size_t verify_folder(const fs::path& folder, bool quiet, const std::atomic<bool>& stop) {
-  const Verification result = verify_cache(folder, stop);
+  const Verification result = verify_cache(folder, stop, *progress_of(quiet));
   print_faults(result.faults);
   if (!quiet)
     fmt::print("{}: {} artefacts, {:.1f} MB: {} bad{}\n", folder.string(), result.artefacts,
@@ -296,7 +296,7 @@ ExitStatus gc_command(const Arguments& arguments, const GcOptions& options) {
     const FolderStore store(folder, Access::read_only);
     waiting += add_needed(setup.context, make_plan(setup.context, store), needed);
   }
-  const Collected collected = collect_garbage(folder, needed, options.dry_run);
+  const Collected collected = collect_garbage(folder, needed, options.dry_run, *progress_of(arguments.quiet));
   if (!arguments.quiet) print_collected(collected, waiting, options.dry_run);
   return kAllDone;
 }

@@ -72,16 +72,11 @@ class TerminalProgress final : public Progress {
   Clock::time_point started_, shown_;
 };
 
-class NoProgress final : public Progress {
- public:
-  void begin(const std::string&, std::size_t) override {}
-  void item_done() override {}
-  void end() override {}
-};
-
 }  // namespace
 
 std::unique_ptr<Progress> terminal_progress() { return std::make_unique<TerminalProgress>(); }
-std::unique_ptr<Progress> no_progress() { return std::make_unique<NoProgress>(); }
+std::unique_ptr<Progress> progress_of(bool quiet) {
+  return quiet ? std::make_unique<NoProgress>() : terminal_progress();
+}
 
 }  // namespace salbench

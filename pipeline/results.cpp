@@ -5,8 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "cache/files.h"
-#include "io/text_file.h"
+#include "io/file.h"
 #include "pipeline/given_maps.h"
 #include "pipeline/statistics.h"
 #include "stages/core/errors.h"
@@ -170,29 +169,21 @@ Histogram read_reference(const std::string& path) {
   }
 }
 
-void prepare_folder(const fs::path& folder, std::string_view option) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw StorageError(fmt::format("{}: the folder cannot be created: {}; choose another with {}",
-                                   folder.string(), error.message(), option));
-}
-
 void prepare_output(const fs::path& folder) {
-  prepare_folder(folder, "--out");
-  remove_unfinished(folder);
-  write_text_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
+  make_folder(folder, "choose another with --out");
+  visit_abandoned(folder, [](const fs::path& file) { fs::remove(file); });
+  write_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
 }
 
 void write_shard_record(const fs::path& folder, const RunRecord& record) {
   const Shard& shard = *record.context.shard;
-  write_text_file(folder / fmt::format("shard_{}_of_{}.yaml", shard.index, shard.count), run_yaml(record));
+  write_file(folder / fmt::format("shard_{}_of_{}.yaml", shard.index, shard.count), run_yaml(record));
 }
 
 void write_results(const fs::path& folder, const RunRecord& record, const std::vector<ResultRow>& rows) {
   const std::string head = record.config.simulated() ? fmt::format("# {}\n", kSimulatedNote) : "";
   const auto write = [&](const char* name, const Table& table) {
-    write_text_file(folder / name, head + to_csv(table));
+    write_file(folder / name, head + to_csv(table));
   };
   write("results.csv", results_table(rows));
   write("summary.csv", summary_table(rows));
@@ -204,7 +195,7 @@ void write_results(const fs::path& folder, const RunRecord& record, const std::v
   std::error_code not_there;
   fs::remove(folder / "human_curve.csv", not_there);  // an earlier run's would pass for one of this
   if (!curves.empty()) write("human_curve.csv", human_curve_table(curves));
-  write_text_file(folder / "run.yaml", run_yaml(record));
+  write_file(folder / "run.yaml", run_yaml(record));
 }
 
 }  // namespace salbench

@@ -60,9 +60,8 @@ Table summary_table(const std::vector<ResultRow>& rows);
 // A histogram of 100 bins from the column GS of a CSV file. Throws ConfigError.
 Histogram read_reference(const std::string& path);
 
-// Makes the folder, or throws StorageError naming the option that chooses another.
-void prepare_folder(const std::filesystem::path& folder, std::string_view option);
-void prepare_output(const std::filesystem::path& folder);  // of a run: also tells that one is under way
+// Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
+void prepare_output(const std::filesystem::path& folder);
 
 // What a run was and did: configuration, versions, timings, failures.
 struct RunRecord {

@@ -76,7 +76,7 @@ Session::Session(const Arguments& arguments, const std::atomic<bool>& stop, cons
     : setup(arguments, given),
       store(setup.cache, Access::read_write),
       plan(make_plan(setup.context, store)),
-      progress(arguments.quiet ? no_progress() : terminal_progress()),
+      progress(progress_of(arguments.quiet)),
       runner(setup.context, plan, store, *progress, stop) {}
 
 }  // namespace salbench

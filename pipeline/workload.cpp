@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -53,7 +54,7 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
 
 SourceDigest digest_of(std::string name, const std::filesystem::path& path) {
   try {
-    return {std::move(name), file_digest(path), {}};
+    return {std::move(name), file_digest(read_file(path)), {}};
   } catch (const InputError& error) {
     return {std::move(name), {}, error.what()};
   }

@@ -12,6 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+NoProgress progress;
+
 class CollectTest : public testing::Test {
  protected:
   static Recipe recipe(const std::string& stage, int k) {
@@ -39,7 +41,7 @@ TEST_F(CollectTest, RemovesWhatIsNotNeededAndCountsItByStage) {
   scope.add("fpfh", key_of(recipe("fpfh", 1)));
   scope.add("map.XX", key_of(recipe("fpfh", 1)));  // a key counts for its own stage alone
   const std::uint64_t old_size = fs::file_size(old), unused_size = fs::file_size(unused);
-  const Collected result = collect_garbage(folder_.path(), scope, false);
+  const Collected result = collect_garbage(folder_.path(), scope, false, progress);
   EXPECT_TRUE(fs::exists(needed));
   EXPECT_FALSE(fs::exists(old));
   EXPECT_FALSE(fs::exists(unused));
@@ -56,9 +58,9 @@ TEST_F(CollectTest, ADryRunSaysTheSameAndRemovesNothing) {
   const fs::path file = save("fpfh", "1", 1);
   const fs::path damaged = folder_.write("damaged/" + file.filename().string(), "rotten");
   const fs::path dead = folder_.write("tmp/" + host() + ".4194304.0.part", "x");  // above any pid
-  const Collected dry = collect_garbage(folder_.path(), {}, true);
+  const Collected dry = collect_garbage(folder_.path(), {}, true, progress);
   EXPECT_TRUE(fs::exists(file) && fs::exists(damaged) && fs::exists(dead));
-  const Collected real = collect_garbage(folder_.path(), {}, false);
+  const Collected real = collect_garbage(folder_.path(), {}, false, progress);
   EXPECT_FALSE(fs::exists(file) || fs::exists(damaged) || fs::exists(dead));
   for (const Collected& result : {dry, real}) {
     EXPECT_EQ(result.stages.at(0).removed.files, 1U);
@@ -73,7 +75,7 @@ TEST_F(CollectTest, WhereKeysAreUnknownEverythingOfTheStageAndItemStays) {
   const fs::path other_item = save("fpfh", "2", 3), other_stage = save("scan", "bull horn", 4);
   Needed scope;
   scope.add_every_key("fpfh", "bull horn");
-  collect_garbage(folder_.path(), scope, false);
+  collect_garbage(folder_.path(), scope, false, progress);
   EXPECT_TRUE(fs::exists(a) && fs::exists(b));
   EXPECT_FALSE(fs::exists(other_item) || fs::exists(other_stage));
 }
@@ -89,7 +91,7 @@ TEST_F(CollectTest, WhatIsNoArtefactIsNeverTouched) {
       folder_.write("tmp/another-host.1.0.part", "x"),
       folder_.write("tmp/" + host() + ".4194304.mine", "x"),
       folder_.write("tmp/" + host() + "." + std::to_string(::getpid()) + ".9.part", "x")};
-  collect_garbage(folder_.path(), {}, false);
+  collect_garbage(folder_.path(), {}, false, progress);
   for (const fs::path& file : foreign) EXPECT_TRUE(fs::exists(file)) << file;
   EXPECT_TRUE(fs::exists(folder_ / "CACHEDIR.TAG"));
 }
@@ -98,13 +100,13 @@ TEST_F(CollectTest, AFolderThatIsNoCacheIsRefused) {
   const TemporaryFolder other;
   const fs::path file = save("fpfh", "1", 1);
   const fs::path copy = other.write("damaged/" + file.filename().string(), "x");
-  EXPECT_THROW(collect_garbage(other.path(), {}, false), StorageError);
+  EXPECT_THROW(collect_garbage(other.path(), {}, false, progress), StorageError);
   EXPECT_TRUE(fs::exists(copy));
 }
 
 TEST_F(CollectTest, AStoreThatIsOpenSeesAMissAndStoresItAgain) {
   const fs::path file = save("fpfh", "1", 1);
-  collect_garbage(folder_.path(), {}, false);
+  collect_garbage(folder_.path(), {}, false, progress);
   EXPECT_FALSE(store_.load("fpfh", key_of(recipe("fpfh", 1))));
   EXPECT_EQ(save("fpfh", "1", 1), file);
   EXPECT_TRUE(fs::exists(file));

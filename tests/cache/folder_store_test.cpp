@@ -8,7 +8,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "cache/files.h"
+#include "io/file.h"
 #include "io/hdf5_file.h"
 #include "stages/core/errors.h"
 
@@ -133,19 +133,56 @@ TEST_F(FolderStoreTest, ReadOnlyAccessChangesNothing) {
   EXPECT_FALSE(fs::exists(missing));
 }
 
-TEST_F(FolderStoreTest, OrphansOfDeadProcessesAreRemovedAndOfLiveOnesKept) {
+TEST_F(FolderStoreTest, OpeningItRemovesWhatDeadWritersLeftAndNothingThatIsBeingWritten) {
   { FolderStore store = open(); }
-  char host[256] = {};
-  ::gethostname(host, sizeof host - 1);
-  const fs::path dead = folder_ / "tmp" / (std::string(host) + ".4194304.0.part");  // above any pid
-  const fs::path alive =
-      folder_ / "tmp" / (std::string(host) + "." + std::to_string(::getpid()) + ".99.part");
-  const fs::path elsewhere = folder_ / "tmp" / "another-host.1.0.part";
-  for (const fs::path& path : {dead, alive, elsewhere}) std::ofstream(path) << "x";
+  const UnfinishedFile alive(folder_ / "tmp");
+  const fs::path dead = folder_ / "tmp" / "0123456789abcdef.salbench-part";
+  std::ofstream(dead) << "x";
   { FolderStore store = open(); }
   EXPECT_FALSE(fs::exists(dead));
-  EXPECT_TRUE(fs::exists(alive));
-  EXPECT_TRUE(fs::exists(elsewhere));
+  EXPECT_TRUE(fs::exists(alive.path()));
+}
+
+// Takes every file descriptor but a few that the process may have.
+class FewOpenFiles {
+ public:
+  explicit FewOpenFiles(rlim_t left) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const int next = ::dup(STDIN_FILENO);  // the lowest that is free
+    ::close(next);
+    const rlimit few{static_cast<rlim_t>(next) + left, before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &few);
+  }
+  FewOpenFiles(const FewOpenFiles&) = delete;
+  FewOpenFiles& operator=(const FewOpenFiles&) = delete;
+  ~FewOpenFiles() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(FolderStoreTest, AnErrorOfTheSystemIsNoDamage) {
+  FolderStore store = open();
+  const Digest content = save(store);
+  {
+    const FewOpenFiles none(0);
+    EXPECT_THAT([&] { store.load("fpfh", key_of(recipe())); },
+                testing::ThrowsMessage<StorageError>(testing::AllOf(testing::HasSubstr("Too many open files"),
+                                                                    testing::HasSubstr("--threads"))));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "damaged"));
+  EXPECT_EQ(store.find("fpfh", key_of(recipe())), content);
+  EXPECT_TRUE(store.load("fpfh", key_of(recipe())));
+}
+
+TEST_F(FolderStoreTest, TheBytesOfAnArtefactAreCheckedBeforeTheyAreHandedOut) {
+  FolderStore store = open();
+  save(store);
+  const fs::path file = only_artefact();
+  EXPECT_EQ(store.image("fpfh", key_of(recipe())), read_bytes(file));
+  fs::resize_file(file, fs::file_size(file) - 1);
+  EXPECT_FALSE(store.image("fpfh", key_of(recipe())));
+  EXPECT_TRUE(fs::exists(folder_ / "damaged" / file.filename()));
 }
 
 TEST_F(FolderStoreTest, UnusableFoldersAreToldApart) {

@@ -102,7 +102,7 @@ TEST_F(RecipeBookTest, ShortFilesAreListedAndNotBelieved) {
   ASSERT_THAT(book.artefacts("fpfh", "52"), SizeIs(1));
   const auto reading = read_recipe(book.artefacts("fpfh", "52").front());
   EXPECT_FALSE(reading.recipe);
-  EXPECT_THAT(reading.fault, testing::StartsWith("it has 9 bytes of "));
+  EXPECT_THAT(reading.fault, testing::StartsWith("truncated: 9 of "));
   EXPECT_EQ(book.set_aside(key_of(recipe())), nullptr);
   { const FolderStore moves_it_aside(folder_.path(), Access::read_write); }
   RecipeBook after(folder_.path());

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cache/files.h"
 #include "cache/folder_store.h"
 #include "cache/layout.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -20,6 +20,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 const std::atomic<bool> kGoOn = false;
+NoProgress progress;
 
 class VerifyTest : public testing::Test {
  protected:
@@ -55,7 +56,7 @@ class VerifyTest : public testing::Test {
     rewrite(folder_ / shard_of("fpfh", name.key) / name.text(), bytes);
   }
   ArtefactName name(int k) const { return *parse_artefact_name(file(k).filename().string()); }
-  Verification verify() const { return verify_cache(folder_.path(), kGoOn); }
+  Verification verify() const { return verify_cache(folder_.path(), kGoOn, progress); }
   // The one fault there is.
   std::string fault() const {
     const Verification result = verify();
@@ -96,7 +97,7 @@ TEST_F(VerifyTest, NamesEachBadArtefactAndMovesNone) {
   EXPECT_EQ(result.artefacts, 3U);
   EXPECT_THAT(result.faults,
               testing::UnorderedElementsAre(
-                  AllOf(Field(&Fault::file, short_one), Field(&Fault::what, HasSubstr("bytes of"))),
+                  AllOf(Field(&Fault::file, short_one), Field(&Fault::what, HasSubstr("truncated: "))),
                   AllOf(Field(&Fault::file, flipped_one), Field(&Fault::what, HasSubstr("checksum")))));
   EXPECT_TRUE(fs::exists(short_one) && fs::exists(flipped_one));
 }
@@ -142,15 +143,15 @@ TEST_F(VerifyTest, TwoContentsUnderOneKeyAreNamed) {
 
 TEST_F(VerifyTest, AFolderThatIsNoCacheIsRefused) {
   TemporaryFolder other;
-  EXPECT_THROW(verify_cache(other.path(), kGoOn), StorageError);
-  EXPECT_THROW(verify_cache(other / "missing", kGoOn), StorageError);
+  EXPECT_THROW(verify_cache(other.path(), kGoOn, progress), StorageError);
+  EXPECT_THROW(verify_cache(other / "missing", kGoOn, progress), StorageError);
   other.write("CACHEDIR.TAG", "Signature: 8a477f597d28d172789f06886806bc55\n# of another program\n");
-  EXPECT_THROW(verify_cache(other.path(), kGoOn), StorageError);
+  EXPECT_THROW(verify_cache(other.path(), kGoOn, progress), StorageError);
 }
 
 TEST_F(VerifyTest, StopsWhenAsked) {
   const std::atomic<bool> stop = true;
-  EXPECT_EQ(verify_cache(folder_.path(), stop).artefacts, 0U);
+  EXPECT_EQ(verify_cache(folder_.path(), stop, progress).artefacts, 0U);
 }
 
 TEST_F(VerifyTest, AReadOnlyStoreLeavesADamagedArtefactWhereItIs) {

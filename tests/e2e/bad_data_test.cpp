@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/file.h"
 #include "io/table.h"
-#include "io/text_file.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/toy_data.h"
 
@@ -30,7 +30,7 @@ void replace_line(const fs::path& file, int line, std::string_view by) {
   const std::string text = read_file(file);
   std::size_t begin = 0;
   for (int i = 1; i < line; ++i) begin = text.find('\n', begin) + 1;
-  write_text_file(file, text.substr(0, begin) + std::string(by) + text.substr(text.find('\n', begin)));
+  write_file(file, text.substr(0, begin) + std::string(by) + text.substr(text.find('\n', begin)));
 }
 
 const char* const kMesh = "Meshes/2.off";
@@ -78,9 +78,9 @@ const BadData kBadData[] = {
     {"EmptyMeshFile", [](const fs::path& data) { fs::resize_file(data / kMesh, 0); }, {"2.off"}},
     {"NoMeshFileAtAll",
      [](const fs::path& data) {
-       write_text_file(data / kMesh,
-                       "\x7f"
-                       "ELF");
+       write_file(data / kMesh,
+                  "\x7f"
+                  "ELF");
      },
      {"2.off:1"}},
     {"IndexOutOfRange",
@@ -99,26 +99,22 @@ const BadData kBadData[] = {
      [](const fs::path& data) { replace_line(data / kMesh, 5, "1e300 0 0"); },
      {"2.off:5", "1e150"}},
     {"NoFaces",
-     [](const fs::path& data) { write_text_file(data / kMesh, "OFF\n2 0 0\n0 0 0\n1 0 0\n"); },
+     [](const fs::path& data) { write_file(data / kMesh, "OFF\n2 0 0\n0 0 0\n1 0 0\n"); },
      {"no faces"}},
     {"NoFaceWithAnArea",
-     [](const fs::path& data) {
-       write_text_file(data / kMesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n");
-     },
+     [](const fs::path& data) { write_file(data / kMesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n"); },
      {"area"}},
     {"SaliencyOfAnotherMesh",
-     [](const fs::path& data) { write_text_file(data / kSaliency, "0.5\n1\n"); },
+     [](const fs::path& data) { write_file(data / kSaliency, "0.5\n1\n"); },
      {"2.val", "2 values", "162 vertices"}},
     {"SaliencyNotANumber",
      [](const fs::path& data) { replace_line(data / kSaliency, 7, "many"); },
      {"2.val:7", "many"}},
     {"SaliencyNan", [](const fs::path& data) { replace_line(data / kSaliency, 8, "nan"); }, {"2.val:8"}},
     {"PickOutOfRange",
-     [](const fs::path& data) { write_text_file(data / kPicks, "3\n162\n"); },
+     [](const fs::path& data) { write_file(data / kPicks, "3\n162\n"); },
      {"2_1.pid:2", "162"}},
-    {"PickNotANumber",
-     [](const fs::path& data) { write_text_file(data / kPicks, "3\n4.5\n"); },
-     {"2_1.pid:2"}},
+    {"PickNotANumber", [](const fs::path& data) { write_file(data / kPicks, "3\n4.5\n"); }, {"2_1.pid:2"}},
     {"PicksAreADanglingLink",
      [](const fs::path& data) {
        fs::remove(data / kPicks);
@@ -141,7 +137,7 @@ TEST(BadData, AnItemWithoutItsMeshIsNoted) {
 TEST(BadData, NothingUsableAtAllIsStillNoCrash) {
   const Workspace toy;
   for (const char* mesh : {"1", "2"})
-    write_text_file(toy.data() / "Meshes" / (std::string(mesh) + ".off"), "OFF\n");
+    write_file(toy.data() / "Meshes" / (std::string(mesh) + ".off"), "OFF\n");
   const Outcome run = toy.salbench("run");
   EXPECT_EQ(run.status, 1);
   EXPECT_THAT(lines_with(run.err, "error: "), SizeIs(2)) << run.err;
@@ -172,7 +168,7 @@ TEST(OddData, DegenerateAndDuplicateFacesPiecesAndLooseVerticesAreWarningsOnly) 
 
 TEST(OddData, AParticipantWhoPickedNothingCountsForNothing) {
   const Workspace toy(kMeshesOnly);
-  write_text_file(toy.data() / kPicks, "");
+  write_file(toy.data() / kPicks, "");
   ASSERT_EQ(toy.salbench("run").status, 0);
   const Table results = read_csv(toy.out() / "results.csv");
   EXPECT_THAT(number_column(results, "auc"),
@@ -181,7 +177,7 @@ TEST(OddData, AParticipantWhoPickedNothingCountsForNothing) {
 
 TEST(OddData, WithoutAnyPickThereIsNoAucAndNoNssButACorrelation) {
   const Workspace toy(kMeshesOnly);
-  for (int k = 0; k < 4; ++k) write_text_file(toy.data() / fmt::format("RawData/2_{}.pid", k), "");
+  for (int k = 0; k < 4; ++k) write_file(toy.data() / fmt::format("RawData/2_{}.pid", k), "");
   const Outcome run = toy.salbench("run");
   ASSERT_EQ(run.status, 0) << run.err;
   const Table results = read_csv(toy.out() / "results.csv");
@@ -213,9 +209,9 @@ TEST(BadData, AMeshThatNoRayMeetsKeepsItsOwnScores) {
 // On a single triangle every point looks alike: the map of PS is constant, which no metric may choke on.
 TEST(OddData, AConstantMapScoresAsDocumented) {
   const Workspace toy(kMeshesOnly);
-  write_text_file(toy.data() / kMesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  write_text_file(toy.data() / kSaliency, "1\n0\n0.5\n");
-  for (int k = 0; k < 4; ++k) write_text_file(toy.data() / fmt::format("RawData/2_{}.pid", k), "1\n");
+  write_file(toy.data() / kMesh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  write_file(toy.data() / kSaliency, "1\n0\n0.5\n");
+  for (int k = 0; k < 4; ++k) write_file(toy.data() / fmt::format("RawData/2_{}.pid", k), "1\n");
   const Outcome run = toy.salbench("run");
   ASSERT_EQ(run.status, 0) << run.err;
   const Table results = read_csv(toy.out() / "results.csv");

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/file.h"
 #include "io/ground_truth_file.h"
 #include "io/hdf5_file.h"
 #include "io/table.h"
-#include "io/text_file.h"
 #include "tests/e2e/workspace.h"
 
 namespace salbench {
@@ -35,7 +35,7 @@ Outcome evaluate(const Workspace& toy, const fs::path& maps, std::vector<std::st
 
 void replace_first_line(const fs::path& file, const std::string& by) {
   const std::string text = read_file(file);
-  write_text_file(file, by + text.substr(text.find('\n')));
+  write_file(file, by + text.substr(text.find('\n')));
 }
 
 // The rows of one model in a table without the model's name.

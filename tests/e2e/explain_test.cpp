@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/text_file.h"
+#include "io/file.h"
 #include "tests/e2e/workspace.h"
 
 namespace salbench {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cache/files.h"
+#include "io/file.h"
 #include "io/hdf5_file.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/toy_data.h"

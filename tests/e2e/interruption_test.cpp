@@ -7,8 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cache/claim.h"
-#include "cache/digest.h"
 #include "stages/core/rng.h"
 #include "tests/e2e/workspace.h"
 
@@ -34,8 +32,7 @@ bool reaches(Process& process, const Workspace& toy, std::size_t artefacts,
 
 // Of the second mesh, by another process, which is the test: a run can then not come to its end by itself.
 std::unique_ptr<Claim> claim_of_second_mesh(const Workspace& toy) {
-  fs::create_directories(toy.cache());
-  return claim_in(toy.cache(), "family " + file_digest(toy.data() / "Meshes/2.off").hex());
+  return toy.claim_family("2");
 }
 constexpr std::size_t kBesideSecondMesh = 4 + 2 + 12 * 7;  // artefacts that such a run can store
 
@@ -91,16 +88,13 @@ TEST(Interruption, KilledOverAndOverARunStillComesToItsEnd) {
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
 
-// What a process that was killed while it wrote leaves behind, without the luck of hitting the moment. The
-// number is that of a process that has ended and been waited for.
+// What a process that was killed while it wrote leaves behind, without the luck of hitting the moment.
 TEST(Interruption, PartsOfFilesThatAKilledRunLeftAreRemoved) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const std::string host = run_process({"/bin/hostname"}).out;
-  const std::string dead = run_process({"/bin/sh", "-c", "echo $$"}).out;
-  const auto line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
-  toy.write("cache/tmp/" + line(host) + "." + line(dead) + ".7.part", "half an arte");
-  EXPECT_THAT(toy.left_over(), SizeIs(1));
+  toy.write("cache/tmp/00c0ffee00c0ffee.salbench-part", "half an arte");
+  toy.write("out/00c0ffee00c0ffee.salbench-part", "half a ta");
+  EXPECT_THAT(toy.left_over(), SizeIs(2));
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }

@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "io/text_file.h"
+#include "io/file.h"
 
 namespace salbench {
 

@@ -7,9 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cache/claim.h"
-#include "cache/digest.h"
-#include "io/text_file.h"
+#include "io/file.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/toy_data.h"
 
@@ -67,8 +65,7 @@ TEST(Processes, FourAtOnceDoTheWorkOfOneAndComeToTheSameBytes) {
 // This test stands for the other process: it holds what the first mesh's family is claimed by.
 TEST(Processes, WhatAnotherOneHasClaimedIsLeftUntilItGivesItUp) {
   const Workspace toy;
-  fs::create_directories(toy.cache());
-  auto claim = claim_in(toy.cache(), "family " + file_digest(toy.data() / "Meshes/1.off").hex());
+  auto claim = toy.claim_family("1");
   ASSERT_NE(claim, nullptr);
   Process run(toy.command("run"));
   // All that can be had of the second mesh: two maps of it and of each scan.
@@ -105,11 +102,8 @@ TEST(Processes, AKilledOneHoldsUpNoOther) {
 
 TEST(Processes, AnInterruptedOneDoesNotWaitForOthers) {
   const Workspace toy;
-  fs::create_directories(toy.cache());
   std::vector<std::unique_ptr<Claim>> claims;
-  for (const char* mesh : {"1", "2"})
-    claims.push_back(claim_in(
-        toy.cache(), "family " + file_digest(toy.data() / "Meshes" / (std::string(mesh) + ".off")).hex()));
+  for (const char* mesh : {"1", "2"}) claims.push_back(toy.claim_family(mesh));
   Process run(toy.command("run"));
   while (!fs::exists(toy.out() / "run.yaml") && !run.ended())
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

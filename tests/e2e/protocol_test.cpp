@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/file.h"
 #include "io/table.h"
-#include "io/text_file.h"
 #include "pipeline/model_catalog.h"
 #include "tests/e2e/workspace.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
-#include "io/text_file.h"
+#include "io/file.h"
 #include "tests/e2e/workspace.h"
 
 namespace salbench {

@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 
 #include "cache/artefact_name.h"
-#include "io/text_file.h"
+#include "cache/digest.h"
+#include "io/file.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
@@ -41,6 +42,11 @@ std::vector<std::string> Workspace::command(const std::string& verb,
   add_default("--threads", "2");
   words.insert(words.end(), further.begin(), further.end());
   return words;
+}
+
+std::unique_ptr<Claim> Workspace::claim_family(const std::string& mesh) const {
+  fs::create_directories(cache());
+  return claim_in(cache(), "family " + file_digest(read_file(data() / "Meshes" / (mesh + ".off"))).hex());
 }
 
 std::string Workspace::results() const { return read_file(out() / "results.csv"); }

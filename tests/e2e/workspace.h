@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cache/claim.h"
 #include "tests/e2e/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -38,6 +39,9 @@ class Workspace {
   Outcome salbench(const std::string& verb, const std::vector<std::string>& further = {}) const {
     return run_process(command(verb, further));
   }
+
+  // What the program claims while it works on a mesh and its scans, held by the test in its place.
+  std::unique_ptr<Claim> claim_family(const std::string& mesh) const;
 
   std::string results() const;     // the bytes of results.csv
   std::string summary() const;     // of summary.csv

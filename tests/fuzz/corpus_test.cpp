@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/text_file.h"
+#include "io/file.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/targets.h"
 

@@ -57,7 +57,7 @@ void fill(const Arguments& arguments) {
   replace_bodies(setup.catalog.scan);
   FolderStore store(setup.cache, Access::read_write);
   Plan plan = make_plan(setup.context, store);
-  const auto progress = no_progress();
+  const auto progress = std::make_unique<NoProgress>();
   Runner runner(setup.context, plan, store, *progress, stop);
   runner.run(thread_count(arguments));
   for (const Failure& failure : runner.failures())

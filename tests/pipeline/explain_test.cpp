@@ -103,7 +103,7 @@ class ExplainTest : public testing::Test {
   void edit_mesh() const {
     Mesh edited = shapes::bumpy_sphere(2);
     edited.vertices[0] *= 1.01;
-    write_text_file(data_ / "Meshes/1.off", off_text(edited));
+    write_file(data_ / "Meshes/1.off", off_text(edited));
   }
 
   TemporaryFolder data_, cache_;
@@ -177,14 +177,14 @@ TEST_F(ExplainTest, AChangedReferenceIsTracedToTheItemsItIsTheMeanOf) {
   run();
   std::string values;
   for (int i = 0; i < 162; ++i) values += fmt::format("{}\n", i);
-  write_text_file(data_ / "Distributions/1.val", values);
+  write_file(data_ / "Distributions/1.val", values);
   run("dataset: {scans: false}\nmodels: {PS: }\n");
   EXPECT_EQ(asked("matched.RS", kMeshes, "2"), "to compute: input reference changed (that of 1 changed)");
 }
 
 TEST_F(ExplainTest, AnEditedGroundTruthIsNamedByItsFile) {
   run();
-  write_text_file(data_ / "RawData/1_3.pid", "0\n5\n");
+  write_file(data_ / "RawData/1_3.pid", "0\n5\n");
   EXPECT_EQ(asked("ground_truth"), "to compute: picks 3 changed");
   EXPECT_EQ(asked("matched.PS", kMeshes, "2"),
             "waiting: waits for reference, waits for ground_truth of 1: picks 3 changed");
@@ -209,7 +209,7 @@ TEST_F(ExplainTest, ADamagedArtefactIsNamed) {
   run();
   const fs::path file = artefact("fpfh", "1");
   damage(file);
-  EXPECT_EQ(asked("fpfh"), "damaged: " + file.string() + ": its checksum does not fit");
+  EXPECT_EQ(asked("fpfh"), "damaged: " + file.string() + ": checksum mismatch");
   EXPECT_EQ(asked("map.PS"), "cached: ");  // what was made of it is sound
   fs::remove(artefact("map.PS", "1"));
   EXPECT_THAT(run(kMeshes, "fpfh"), ElementsAre(Pair("damaged", 1)));
@@ -220,7 +220,7 @@ TEST_F(ExplainTest, ATruncatedArtefactIsNamedWhereItLiesAndWhereItWasMoved) {
   run();
   const fs::path file = artefact("mesh", "1");
   fs::resize_file(file, 10);
-  EXPECT_THAT(asked("mesh"), AllOf(StartsWith("damaged: " + file.string() + ": it has 10 bytes of ")));
+  EXPECT_THAT(asked("mesh"), AllOf(StartsWith("damaged: " + file.string() + ": truncated: 10 of ")));
   EXPECT_THAT(planned(kMeshes, "mesh"), ElementsAre(Pair("damaged", 1)));
   { const FolderStore moves_it_aside(cache(), Access::read_write); }
   EXPECT_EQ(asked("mesh"),

@@ -243,7 +243,7 @@ TEST(Golden, NoOutputChangesUnderTheSameVersion) {
     else if (!update)
       ADD_FAILURE() << change.what << ": run scripts/golden";
   }
-  if (update && !HasFailure()) write_text_file(file, to_csv(golden_table(outputs.rows)));
+  if (update && !HasFailure()) write_file(file, to_csv(golden_table(outputs.rows)));
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cache/files.h"
 #include "cache/layout.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
@@ -22,6 +22,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 const std::atomic<bool> kGoOn = false;
+NoProgress progress;
 constexpr const char* kPs = "dataset: {scans: false}\nmodels: {PS: }\n";
 constexpr const char* kRs = "dataset: {scans: false}\nmodels: {RS: }\n";
 
@@ -48,7 +49,7 @@ class MaintenanceTest : public testing::Test {
       const ToyRun toy(data_.path(), cache, yaml);
       unknown += add_needed(toy.context, toy.plan, needed);
     }
-    collect_garbage(cache_.path(), needed, false);
+    collect_garbage(cache_.path(), needed, false, progress);
     return unknown;
   }
   std::vector<std::string> artefacts() const {
@@ -105,7 +106,7 @@ TEST_F(MaintenanceTest, ResultsOfAnItemWhoseFileCannotBeReadAreKept) {
   toy.plan = make_plan(toy.context, cache);
   Needed needed;
   EXPECT_GT(add_needed(toy.context, toy.plan, needed), 0U);
-  collect_garbage(cache_.path(), needed, false);
+  collect_garbage(cache_.path(), needed, false, progress);
   EXPECT_EQ(artefacts().size(), all);
 }
 
@@ -194,7 +195,7 @@ TEST_F(AcceptTest, AResultOfAnEarlierVersionIsTakenForThePresentOne) {
   EXPECT_EQ(second.valid, kShapes);
   EXPECT_EQ(second.accepted, 0U);
   EXPECT_EQ(files("fpfh"), 2 * kShapes) << "those of the earlier version stay";
-  EXPECT_THAT(verify_cache(cache_.path(), kGoOn).faults, IsEmpty());
+  EXPECT_THAT(verify_cache(cache_.path(), kGoOn, progress).faults, IsEmpty());
   EXPECT_EQ(run_raised({"fpfh"}), 0U) << "what depends on them is valid too";
 }
 

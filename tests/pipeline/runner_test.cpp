@@ -146,7 +146,7 @@ TEST_F(RunnerTest, AnEditedMeshConcernsItsFamilyAndTheReference) {
   run();
   Mesh edited = shapes::bumpy_sphere(2);
   edited.vertices[0] *= 1.01;
-  write_text_file(data_ / "Meshes/1.off", off_text(edited));
+  write_file(data_ / "Meshes/1.off", off_text(edited));
   const auto computed = run();
   for (const std::string& job : computed)
     EXPECT_THAT(job, testing::AnyOf(HasSubstr("@1"), HasSubstr("reference@"), HasSubstr("mean_histogram."),
@@ -157,10 +157,10 @@ TEST_F(RunnerTest, AnEditedMeshConcernsItsFamilyAndTheReference) {
 
 TEST_F(RunnerTest, ANewlyWrittenButEqualFileConcernsNothing) {
   run();
-  write_text_file(data_ / "Meshes/1.off", off_text(shapes::bumpy_sphere(2)));
+  write_file(data_ / "Meshes/1.off", off_text(shapes::bumpy_sphere(2)));
   EXPECT_THAT(run(), IsEmpty());
   // Another spelling of the same mesh: read again, found equal, and no further.
-  write_text_file(data_ / "Meshes/1.off", "# a comment\n" + off_text(shapes::bumpy_sphere(2)));
+  write_file(data_ / "Meshes/1.off", "# a comment\n" + off_text(shapes::bumpy_sphere(2)));
   EXPECT_THAT(run(), ElementsAre("mesh@1"));
 }
 
@@ -171,7 +171,7 @@ TEST_F(RunnerTest, AnotherSeedConcernsWhatIsRandom) {
 }
 
 TEST_F(RunnerTest, AFailingItemStopsNoOther) {
-  write_text_file(data_ / "Meshes/3.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
+  write_file(data_ / "Meshes/3.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
   ToyRun toy(data_.path(), store_);
   toy.run();
   ASSERT_THAT(toy.runner.failures(), SizeIs(1));
@@ -185,7 +185,7 @@ TEST_F(RunnerTest, AFailingItemStopsNoOther) {
 
 TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
   std::filesystem::create_directories(data_ / "Meshes");
-  write_text_file(data_ / "Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.1)));
+  write_file(data_ / "Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.1)));
   const auto computed = run();
   EXPECT_THAT(computed, SizeIs(kAll + (kMeshJobs - 1 - 2) + 12 * (kScanJobs - 1 - 2)));
   EXPECT_THAT(failures_, IsEmpty());
@@ -195,7 +195,7 @@ TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
 
 TEST_F(RunnerTest, WithoutAnyGroundTruthMapsAreAllThereIs) {
   TemporaryFolder plain;
-  write_text_file(plain / "a.off", off_text(shapes::sphere(2)));
+  write_file(plain / "a.off", off_text(shapes::sphere(2)));
   ToyRun toy(plain.path(), store_);
   toy.run();
   EXPECT_THAT(toy.runner.failures(), IsEmpty());

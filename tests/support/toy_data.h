@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "io/dataset.h"
-#include "io/text_file.h"
+#include "io/file.h"
 #include "pipeline/config.h"
 #include "pipeline/plan.h"
 #include "pipeline/runner.h"
@@ -30,14 +30,14 @@ inline void write_toy_item(const std::filesystem::path& root, const std::string&
   const GroundTruth truth = simulated_ground_truth(mesh, {.participants = 4, .picks = 5}, 1, name);
   for (const char* folder : {"Meshes", "Distributions", "RawData"})
     std::filesystem::create_directories(root / folder);
-  write_text_file(root / "Meshes" / (name + ".off"), off_text(mesh));
+  write_file(root / "Meshes" / (name + ".off"), off_text(mesh));
   std::string values;
   for (const double v : truth.saliency) values += fmt::format("{}\n", v);
-  write_text_file(root / "Distributions" / (name + ".val"), values);
+  write_file(root / "Distributions" / (name + ".val"), values);
   for (std::size_t k = 0; k < truth.picks.size(); ++k) {
     std::string picks;
     for (const std::int32_t i : truth.picks[k]) picks += fmt::format("{}\n", i);
-    write_text_file(root / "RawData" / fmt::format("{}_{}.pid", name, k), picks);
+    write_file(root / "RawData" / fmt::format("{}_{}.pid", name, k), picks);
   }
 }
 
@@ -58,7 +58,7 @@ struct ToyRun {
         context{catalog, workload, config.seed},
         store(the_store),
         plan(make_plan(context, store)),
-        progress(no_progress()),
+        progress(std::make_unique<NoProgress>()),
         runner(context, plan, store, *progress, stop) {}
   ToyRun(const ToyRun&) = delete;
   ToyRun& operator=(const ToyRun&) = delete;

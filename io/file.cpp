@@ -1,0 +1,244 @@
+// A writer creates its file, locks it, and checks that it still has its name; a clean-up locks a file before
+// it removes it. So neither can take the other's. The locks are those of the open file (F_OFD_SETLK): they
+// hold between threads too, and end with the last descriptor.
+#include "io/file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kUnfinished = ".salbench-part";
+
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags) {
+    do fd_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    while (fd_ < 0 && errno == EINTR);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_ = -1;
+};
+
+[[noreturn]] void fail(const fs::path& path, std::string_view what, int error) {
+  throw StorageError(fmt::format("{}: cannot be {}: {}", path.string(), what, system_reason(error)));
+}
+
+bool lacks_resources(int error) {
+  return error == EMFILE || error == ENFILE || error == ENOMEM || error == ENOBUFS;
+}
+
+// A file that the user named: not usable, unless it is the system that has no room to open anything.
+[[noreturn]] void fail_input(const fs::path& path, int error) {
+  if (lacks_resources(error)) fail(path, "read", error);
+  throw InputError(fmt::format("{}: cannot be read: {}", path.string(), system_reason(error)));
+}
+
+// Fills as much of the buffer as the file has; returns an error number, or 0.
+template <class Buffer>
+int read_all(int fd, Buffer& buffer) {
+  std::size_t filled = 0;
+  while (filled < buffer.size()) {
+    const ssize_t got = ::read(fd, buffer.data() + filled, buffer.size() - filled);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno;
+    if (got == 0) break;  // shortened in the meantime
+    filled += static_cast<std::size_t>(got);
+  }
+  buffer.resize(filled);
+  return 0;
+}
+
+// Takes the lock of an unfinished file; an error number, or 0.
+int lock(int fd) {
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  whole.l_whence = SEEK_SET;
+  return ::fcntl(fd, F_OFD_SETLK, &whole) == 0 ? 0 : errno;
+}
+
+bool is_held(int error) { return error == EAGAIN || error == EACCES; }
+
+// 64 bits from the system: host names and process numbers repeat from container to container.
+std::string unfinished_name() {
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof number, 0) != sizeof number)
+    throw StorageError("the system gives no random number: " + system_reason(errno));
+  return fmt::format("{:016x}{}", number, kUnfinished);
+}
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
+
+// A rename is durable once its folder is. Not every file system can do this, and the file is complete
+// without.
+void sync_folder(const fs::path& folder) {
+  const Descriptor fd(folder, O_RDONLY | O_DIRECTORY);
+  if (fd.get() >= 0) ::fsync(fd.get());
+}
+
+bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
+
+}  // namespace
+
+std::string system_reason(int error) {
+  const auto advice = [&]() -> std::string_view {
+    switch (error) {
+      case EMFILE:
+        return "use fewer --threads, or raise the limit (ulimit -n)";
+      case ENFILE:
+        return "close other programs, or use fewer --threads";
+      case ENOMEM:
+      case ENOBUFS:
+        return "use fewer --threads, or close other programs";
+      case ENOSPC:
+      case EDQUOT:
+        return "free some space, or choose another folder";
+      case EFBIG:
+        return "raise the limit on the size of files (ulimit -f)";
+      case EACCES:
+      case EPERM:
+        return "check its permissions";
+      case EROFS:
+        return "choose another folder";
+      case EIO:
+      case ESTALE:
+        return "the disk or the network file system failed; check it and run again";
+      default:
+        return "";
+    }
+  }();
+  return std::system_category().message(error) + (advice.empty() ? "" : "; ") + std::string(advice);
+}
+
+std::string read_file(const fs::path& path) {
+  const Descriptor file(path, O_RDONLY | O_NONBLOCK);  // the opening of a pipe would wait for its writer
+  struct stat status {};
+  if (file.get() < 0 || ::fstat(file.get(), &status) != 0) fail_input(path, errno);
+  if (S_ISDIR(status.st_mode))
+    throw InputError(fmt::format("{}: is a folder, where a file is expected", path.string()));
+  if (!S_ISREG(status.st_mode)) throw InputError(fmt::format("{}: is not a regular file", path.string()));
+  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+  if (const int error = read_all(file.get(), bytes); error != 0) fail_input(path, error);
+  return bytes;
+}
+
+std::optional<Bytes> read_bytes(const fs::path& path) {
+  constexpr int kTries =
+      2;  // a network file system finds a name stale, and looks again, when it was replaced
+  for (int tries_left = kTries;; --tries_left) {
+    const Descriptor file(path, O_RDONLY | O_NONBLOCK);
+    struct stat status {};
+    int error = file.get() < 0 || ::fstat(file.get(), &status) != 0 ? errno : 0;
+    Bytes bytes(error == 0 && S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : 0);
+    if (error == 0) error = read_all(file.get(), bytes);
+    if (error == 0) return bytes;
+    if (is_missing(error)) return {};
+    if (error != ESTALE || tries_left == 1) fail(path, "read", error);
+  }
+}
+
+UnfinishedFile::UnfinishedFile(const fs::path& folder) {
+  for (;;) {
+    path_ = folder / unfinished_name();
+    Descriptor file(path_, O_RDWR | O_CREAT | O_EXCL);
+    if (file.get() < 0 && errno == EEXIST) continue;
+    if (file.get() < 0) fail(folder, "written to", errno);
+    struct stat status {};
+    const bool taken =
+        is_held(lock(file.get())) || (::fstat(file.get(), &status) == 0 && status.st_nlink == 0);
+    if (taken) continue;  // a clean-up was quicker, and removes it
+    fd_ = file.release();
+    return;
+  }
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (fd_ < 0) return;
+  ::unlink(path_.c_str());
+  ::close(fd_);
+}
+
+void UnfinishedFile::append(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_.parent_path(), "written to", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void UnfinishedFile::finish(const fs::path& target) {
+  if (::fsync(fd_) != 0) fail(target, "written", errno);
+  if (std::rename(path_.c_str(), target.c_str()) != 0) fail(target, "written", errno);
+  ::close(std::exchange(fd_, -1));
+}
+
+void write_file(const fs::path& path, std::string_view text) {
+  UnfinishedFile file(folder_of(path));
+  file.append(std::as_bytes(std::span(text)));
+  file.finish(path);
+  sync_folder(folder_of(path));
+}
+
+void visit_abandoned(const fs::path& folder, const std::function<void(const fs::path&)>& visit) {
+  for (const FolderEntry& entry : list_folder(folder)) {
+    if (entry.is_folder || !entry.path.filename().string().ends_with(kUnfinished)) continue;
+    const Descriptor file(entry.path, O_RDWR | O_NONBLOCK | O_NOFOLLOW);
+    if (file.get() >= 0 && lock(file.get()) == 0) visit(entry.path);  // held until it is removed
+  }
+}
+
+std::vector<FolderEntry> list_folder(const fs::path& folder) {
+  std::vector<FolderEntry> entries;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const bool is_folder = it->is_directory(error);
+    const bool leads_nowhere = is_missing(error.value()) || error.value() == ELOOP;
+    if (error && !leads_nowhere) break;
+    entries.push_back({it->path(), is_folder});
+  }
+  if (error && !is_missing(error.value())) fail(folder, "listed", error.value());
+  std::sort(entries.begin(), entries.end(),
+            [](const FolderEntry& a, const FolderEntry& b) { return a.path.native() < b.path.native(); });
+  return entries;
+}
+
+void make_folder(const fs::path& folder, std::string_view advice) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw StorageError(
+        fmt::format("{}: the folder cannot be created: {}; {}", folder.string(), error.message(), advice));
+}
+
+std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!error) return size;
+  if (is_missing(error.value())) return {};
+  fail(path, "looked at", error.value());
+}
+}  // namespace salbench

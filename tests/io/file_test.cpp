@@ -1,0 +1,133 @@
+#include "io/file.h"
+
+#include <csignal>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "stages/core/errors.h"
+#include "tests/support/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(File, ReturnsTheBytesThatWereWritten) {
+  const TemporaryFolder folder;
+  const std::string bytes("a\r\nb\0\xff\n", 7);
+  write_file(folder / "x.csv", bytes);
+  EXPECT_EQ(read_file(folder / "x.csv"), bytes);
+  write_file(folder / "x.csv", "");
+  EXPECT_EQ(read_file(folder / "x.csv"), "");
+}
+
+TEST(File, LeavesNoTemporaryFileBehind) {
+  const TemporaryFolder folder;
+  write_file(folder / "x.csv", "old");
+  write_file(folder / "x.csv", "new");
+  std::filesystem::create_directory(folder / "taken");
+  EXPECT_THROW(write_file(folder / "taken", "text"), StorageError);
+  using Entries = std::filesystem::directory_iterator;
+  EXPECT_EQ(std::distance(Entries(folder.path()), Entries()), 2);
+}
+
+TEST(File, OfAWriterThatWasKilledNothingStays) {
+  const TemporaryFolder folder;
+  write_file(folder / "x.csv", "text");
+  const pid_t writer = ::fork();
+  if (writer == 0) {  // of a text that is too long for a limit that kills
+    const rlimit limit{4096, 4096}, no_core{0, 0};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::signal(SIGXFSZ, SIG_DFL);
+    write_file(folder / "x.csv", std::string(100'000, 'x'));
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(writer, &status, 0), writer);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  using Entries = std::filesystem::directory_iterator;
+  EXPECT_EQ(std::distance(Entries(folder.path()), Entries()), 2);
+  visit_abandoned(folder.path(), [](const std::filesystem::path& file) { std::filesystem::remove(file); });
+  EXPECT_EQ(std::distance(Entries(folder.path()), Entries()), 1);
+  EXPECT_EQ(read_file(folder / "x.csv"), "text");
+}
+
+TEST(File, SaysWhyAFileCannotBeWritten) {
+  const TemporaryFolder folder;
+  EXPECT_THAT([&] { write_file(folder / "no_such_folder" / "x.csv", "text"); },
+              ThrowsMessage<StorageError>(HasSubstr("no_such_folder: cannot be written to: No such file")));
+}
+
+TEST(File, SaysWhyAFileCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_THAT([&] { read_file(folder / "absent.off"); },
+              ThrowsMessage<InputError>(HasSubstr("absent.off: cannot be read: No such file")));
+  EXPECT_THAT([&] { read_file(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("is a folder")));
+  EXPECT_THAT([] { read_file("/dev/null"); }, ThrowsMessage<InputError>(HasSubstr("not a regular file")));
+}
+
+// Two containers may have the same host name and number their processes alike: names must not depend on
+// either.
+TEST(File, TwoWritersOfOneNumberNeverShareATemporaryFile) {
+  const TemporaryFolder folder;
+  const UnfinishedFile first(folder.path());
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const UnfinishedFile second(folder.path());
+    ::_exit(second.path() != first.path() && std::filesystem::exists(first.path()) ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
+TEST(File, WhatALivingWriterHoldsIsNotAbandoned) {
+  const TemporaryFolder folder;
+  std::vector<std::filesystem::path> abandoned;
+  const auto look = [&] {
+    abandoned.clear();
+    visit_abandoned(folder.path(), [&](const std::filesystem::path& file) { abandoned.push_back(file); });
+  };
+  {
+    UnfinishedFile file(folder.path());
+    look();
+    EXPECT_TRUE(abandoned.empty());
+    file.finish(folder / "done");
+    look();
+    EXPECT_TRUE(abandoned.empty());
+  }
+  const std::filesystem::path left = folder.write("0000000000000000.salbench-part", "x");
+  look();
+  EXPECT_EQ(abandoned, std::vector{left});
+}
+
+TEST(File, APipeIsRefusedAndNeverWaitedFor) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "x.off").c_str(), 0600), 0);
+  EXPECT_THAT([&] { read_file(folder / "x.off"); },
+              ThrowsMessage<InputError>(HasSubstr("x.off: is not a regular file")));
+}
+
+TEST(File, ListsAFolderByNameAndTellsFoldersApart) {
+  const TemporaryFolder folder;
+  folder.write("b", "");
+  folder.write("c/d", "");
+  std::filesystem::create_symlink("nowhere", folder / "a");
+  std::vector<std::pair<std::string, bool>> entries;
+  for (const FolderEntry& entry : list_folder(folder.path()))
+    entries.emplace_back(entry.path.filename(), entry.is_folder);
+  EXPECT_EQ(entries, (std::vector<std::pair<std::string, bool>>{{"a", false}, {"b", false}, {"c", true}}));
+  EXPECT_TRUE(list_folder(folder / "absent").empty());
+  EXPECT_TRUE(list_folder(folder / "b").empty()) << "a file is no folder";
+}
+
+}  // namespace
+}  // namespace salbench
