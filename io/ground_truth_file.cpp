@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "io/file.h"
 #include "io/text_scanner.h"
+#include "stages/core/check.h"
 
 namespace salbench {
 namespace {
@@ -14,19 +14,27 @@ void expect_end_of_line(TextScanner& in) {
   if (!in.peek_word().empty()) in.fail("the line has more than one value");
 }
 
-}  // namespace
-
-ScalarField parse_saliency(std::string_view text, std::string_view name, std::size_t n_vertices) {
-  TextScanner in(text, name);
+ScalarField all_values(TextScanner& in) {
   ScalarField values;
-  values.reserve(n_vertices);
   while (in.next_filled_line()) {
     values.push_back(in.number());
     expect_end_of_line(in);
   }
+  return values;
+}
+
+}  // namespace
+
+ScalarField parse_values(std::string_view text, std::string_view name) {
+  TextScanner in(text, name);
+  return all_values(in);
+}
+
+ScalarField parse_saliency(std::string_view text, std::string_view name, std::size_t n_vertices) {
+  TextScanner in(text, name);
+  ScalarField values = all_values(in);
   if (values.size() != n_vertices)
-    in.fail(fmt::format("the file has {} values, the mesh {} vertices: they do not belong together",
-                        values.size(), n_vertices));
+    in.fail(fmt::format("the file has {} values, but the mesh has {} vertices", values.size(), n_vertices));
   return values;
 }
 
@@ -44,18 +52,15 @@ std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view na
   return picks;
 }
 
-ScalarField read_saliency(const std::filesystem::path& path, std::size_t n_vertices) {
-  return parse_saliency(read_file(path), path.string(), n_vertices);
-}
-
-std::vector<std::int32_t> read_picks(const std::filesystem::path& path, std::size_t n_vertices) {
-  return parse_picks(read_file(path), path.string(), n_vertices);
-}
-
-GroundTruth read_ground_truth(const DatasetItem& item, std::size_t n_vertices) {
+GroundTruth parse_ground_truth(const DatasetItem& item, std::span<const std::string_view> texts,
+                               std::size_t n_vertices) {
+  const bool has_saliency = !item.saliency.empty();
+  CHECK_EQ(texts.size(), item.picks.size() + (has_saliency ? 1 : 0));
   GroundTruth truth;
-  if (!item.saliency.empty()) truth.saliency = read_saliency(item.saliency, n_vertices);
-  for (const auto& path : item.picks) truth.picks.push_back(read_picks(path, n_vertices));
+  if (has_saliency) truth.saliency = parse_saliency(texts.front(), item.saliency.string(), n_vertices);
+  for (std::size_t k = 0; k < item.picks.size(); ++k)
+    truth.picks.push_back(
+        parse_picks(texts[texts.size() - item.picks.size() + k], item.picks[k].string(), n_vertices));
   if (std::all_of(truth.picks.begin(), truth.picks.end(), [](const auto& picks) { return picks.empty(); }))
     truth.picks.clear();
   return truth;

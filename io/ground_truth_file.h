@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -13,16 +13,18 @@ namespace salbench {
 
 // All throw InputError, one line "PATH:LINE: what is wrong". Blank lines are passed over.
 
-// n_vertices finite numbers, one a line (.val).
-ScalarField read_saliency(const std::filesystem::path& path, std::size_t n_vertices);
+ScalarField parse_values(std::string_view text, std::string_view name);  // finite numbers, one per line
+
+// n_vertices of them (.val).
 ScalarField parse_saliency(std::string_view text, std::string_view name, std::size_t n_vertices);
 
-// 0-based vertex indices, one a line (.pid), in the file's order. A participant who marked nothing is real
+// 0-based vertex indices, one per line (.pid), in the file's order. A participant who marked nothing is real
 // data.
-std::vector<std::int32_t> read_picks(const std::filesystem::path& path, std::size_t n_vertices);
 std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, std::size_t n_vertices);
 
-// Both of an item; empty where it has no such files. If no participant marked anything, there are no picks.
-GroundTruth read_ground_truth(const DatasetItem& item, std::size_t n_vertices);
+// All of an item, from the texts of its files: first the saliency's, if there is such a file, then the
+// participants'. If no participant marked anything, there are no picks.
+GroundTruth parse_ground_truth(const DatasetItem& item, std::span<const std::string_view> texts,
+                               std::size_t n_vertices);
 
 }  // namespace salbench

@@ -32,14 +32,15 @@ const Format* format_of(const std::filesystem::path& path) {
 
 bool has_mesh_extension(const std::filesystem::path& path) { return format_of(path) != nullptr; }
 
-Mesh read_mesh(const std::filesystem::path& path) {
+Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path) {
   const Format* format = format_of(path);
   if (format == nullptr)
     throw InputError(
         fmt::format("{}: is not named as a mesh: convert it to .off, .obj or .ply", path.string()));
-  const std::string bytes = read_file(path);
   if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty, copy it again", path.string()));
   return format->parse(bytes, path.string());
 }
+
+Mesh read_mesh(const std::filesystem::path& path) { return parse_mesh(read_file(path), path); }
 
 }  // namespace salbench

@@ -16,6 +16,7 @@ namespace salbench {
 // unreadable, cut short, or no mesh: every count, index and coordinate is checked. Binary formats name the
 // element and the byte instead of the line.
 Mesh read_mesh(const std::filesystem::path& path);
+Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path);  // the bytes of that file
 
 bool has_mesh_extension(const std::filesystem::path& path);  // .off .obj .ply
 

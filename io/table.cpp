@@ -191,6 +191,8 @@ Table parse_csv(std::string_view text, std::string_view name) {
   Table table;
   table.name = name;
   auto header = reader.next_row();
+  for (; header && header->size() == 1 && header->front().starts_with('#'); header = reader.next_row())
+    table.remark = header->front().substr(std::min<std::size_t>(2, header->front().size()));
   if (!header)
     throw InputError(fmt::format("{}: the file is empty, where a line of column names is expected", name));
   table.columns = std::move(*header);

@@ -17,14 +17,16 @@ struct Table {
   std::vector<std::vector<Cell>> rows;  // each as long as columns
   std::string name = {};                // of the file it was read from, for messages
   std::vector<std::size_t> lines = {};  // of a table read from a file: the line on which each row begins
+  std::string remark = {};              // and what stands above the names of its columns, after a '#'
 };
 
 // Lines end in '\n'; doubles in the fewest digits that read back to the same value; NaN is an empty field;
 // fields are quoted where they must be.
 std::string to_csv(const Table& table);
 
-// The first line names the columns; every cell is read as text. Throws InputError, one line "PATH:LINE: what
-// is wrong", for a line with another number of fields, a quote that does not close, or a column named twice.
+// The first line names the columns, but for lines above it that begin with '#' and have one field; every cell
+// is read as text. Throws InputError, one line "PATH:LINE: what is wrong", for a line with another number of
+// fields, a quote that does not close, or a column named twice.
 Table read_csv(const std::filesystem::path& path);
 Table parse_csv(std::string_view text, std::string_view name);
 

@@ -20,7 +20,7 @@ namespace {
 // --- the functions of the rows -------------------------------------------------------------------------
 
 Value load_mesh(const StageInputs& in) {
-  CheckedMesh checked = check_mesh(read_mesh(in.source->mesh));
+  CheckedMesh checked = check_mesh(parse_mesh(in.files.at(0).text(), in.source->mesh));
   for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", in.item, warning);
   return std::move(checked.mesh);
 }
@@ -28,7 +28,9 @@ Value load_mesh(const StageInputs& in) {
 // Picks alone are enough: the saliency is then made from them, as the study's authors did. [chen2012]
 Value load_ground_truth(const StageInputs& in) {
   const Mesh& mesh = in.get<Mesh>(0);
-  GroundTruth truth = read_ground_truth(*in.source, mesh.vertices.size());
+  std::vector<std::string_view> texts;
+  for (const SourceData& file : in.files) texts.push_back(file.text());
+  GroundTruth truth = parse_ground_truth(*in.source, texts, mesh.vertices.size());
   if (truth.saliency.empty() && truth.picks.empty())
     throw InputError(
         fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty .pid files",
@@ -84,7 +86,7 @@ void add_given_map(ChainBuilder& chain, const Parts& parts, const Model& model, 
              .inputs = {chain.shape(parts.points)},
              .source = Source::map_file,
              .run = [maps = model.given](const StageInputs& in) -> Value {
-               return maps->read(in.item, points_of(*in.values[0]).size());
+               return maps->checked(in.files.at(0), in.item, points_of(*in.values[0]).size());
              }});
 }
 

@@ -10,6 +10,7 @@
 #include "io/dataset.h"
 #include "io/value.h"
 #include "pipeline/config.h"
+#include "pipeline/source.h"
 
 namespace salbench {
 
@@ -24,6 +25,7 @@ enum class Source : std::uint8_t { none, mesh_file, truth_files, map_file };
 
 struct StageInputs {
   std::vector<const Value*> values;  // in the order of the row's inputs
+  std::vector<SourceData> files;     // of the row's source, as they were read for this job
   const DatasetItem* source = nullptr;
   std::uint64_t seed = 0;
   std::string item;  // "52", "52_3"

@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "io/table.h"
 #include "pipeline/causes.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/results.h"
 #include "pipeline/session.h"
 #include "stages/core/errors.h"
@@ -95,15 +96,22 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
+std::string interrupted_text(const Arguments& arguments) {
+  return fmt::format("\ninterrupted; everything finished so far is kept. To go on:\n  {}\n",
+                     arguments.command_line);
+}
+
 ExitStatus interrupted_status(const Arguments& arguments) {
-  fmt::print(stderr, "\ninterrupted; everything finished so far is kept. To go on:\n  {}\n",
-             arguments.command_line);
+  fmt::print(stderr, "{}", interrupted_text(arguments));
   return kInterrupted;
 }
 
 ExitStatus finished_status(const Session& session) {
-  print_failures(session.setup, session.runner.failures());
-  return session.runner.failures().empty() ? kAllDone : kSomeFailed;
+  const std::vector<Failure>& failures = session.runner.failures();
+  print_failures(session.setup, failures);
+  if (std::any_of(failures.begin(), failures.end(), [](const Failure& f) { return f.defect; }))
+    return kDefect;
+  return failures.empty() ? kAllDone : kSomeFailed;
 }
 
 ExitStatus run_command(const Arguments& arguments, const std::atomic<bool>& stop) {
@@ -130,7 +138,10 @@ ExitStatus finish_shard(const Session& session, const RunRecord& record, const A
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
   setup.context.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
-  session.runner.run(thread_count(arguments));
+  {
+    const OrderlyEnd orderly;
+    session.runner.run(thread_count(arguments));
+  }
   if (stop) return interrupted_status(arguments);
 
   Causes causes(setup.context, session.plan, setup.cache, kOpenedForCounting);
@@ -156,6 +167,7 @@ ExitStatus run_session(Session& session, const Arguments& arguments, const std::
 
 ExitStatus maps_command(const Arguments& arguments, const std::atomic<bool>& stop) {
   Session session(arguments, stop);
+  const OrderlyEnd orderly;
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
   const std::size_t written = write_maps(session.setup, session.plan, session.runner, arguments);

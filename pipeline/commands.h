@@ -12,6 +12,7 @@ enum ExitStatus {
   kSomeFailed = 1,
   kUnusableArguments = 2,  // or configuration
   kUnusableStorage = 3,    // cache or output folder
+  kDefect = 70,            // of the program, or memory ran out; as in sysexits.h
   kInterrupted = 130,
 };
 
@@ -25,6 +26,7 @@ ExitStatus status_command(const Arguments& arguments);
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop);
 
 // How a verb that computes ends: each says on stderr what the user must know.
+std::string interrupted_text(const Arguments& arguments);
 ExitStatus interrupted_status(const Arguments& arguments);
 ExitStatus finished_status(const Session& session);  // whether all succeeded
 

@@ -68,6 +68,9 @@ Config read_config(const Section& root, const std::string& name) {
 
 std::string config_yaml(const Config& config) {
   std::string yaml = fmt::format("protocol: {}\nseed: {}\n", name_of(config.protocol), config.seed);
+  for (const auto& [key, folder] : {std::pair("data", &config.data), std::pair("cache", &config.cache),
+                                    std::pair("output", &config.output)})
+    if (!folder->empty()) yaml += fmt::format("{}: {}\n", key, yaml_quoted(*folder));
   for_each_section(config, [&](std::string_view key, const auto& options) {
     yaml += fmt::format("{}:\n{}", key, indented(options_text(options), "  "));
   });

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
+#include "io/ground_truth_file.h"
 #include "io/hdf5_file.h"
 #include "io/text_scanner.h"
 #include "pipeline/plan.h"
@@ -35,15 +36,9 @@ void check_name(std::string_view name) {
                                   in_quotes(name)));
 }
 
-ScalarField read_val(const fs::path& path) {
-  const std::string text = read_file(path);
-  TextScanner in(text, path.string());
-  ScalarField values;
-  while (in.next_filled_line()) {
-    values.push_back(in.number());
-    if (!in.peek_word().empty()) in.fail("the line has more than one value");
-  }
-  return values;
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
 }
 
 ScalarField as_field(const Array& array) {
@@ -51,62 +46,43 @@ ScalarField as_field(const Array& array) {
                     array.values);
 }
 
-void check_map(const ScalarField& map, std::size_t n_points, bool matched, const std::string& place) {
-  if (map.size() != n_points)
-    throw InputError(fmt::format("{}: has {} values, the item {} points: they do not belong together", place,
-                                 map.size(), n_points));
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    if (!std::isfinite(map[i]))
-      throw InputError(fmt::format("{}: value {} (from 0) is {}, not a finite number", place, i, map[i]));
-    if (matched && !(map[i] >= 0 && map[i] <= 1))
-      throw InputError(
-          fmt::format("{}: value {} (from 0) is {}: a matched map lies in [0, 1]; leave out "
-                      "--matched to have it matched",
-                      place, i, map[i]));
-  }
-}
-
 GivenMaps maps_in_folder(const fs::path& folder) {
   GivenMaps maps{.source = folder};
-  std::error_code error;
-  for (const auto& file : fs::directory_iterator(folder, error))
-    if (file.path().extension() == ".val") maps.items.insert(file.path().stem().string());
-  if (error)
-    throw ConfigError(fmt::format("--maps {}: cannot be listed: {}", folder.string(), error.message()));
-  maps.digest = [folder](const std::string& item) {
-    return file_digest(read_file(folder / (item + ".val")));
+  for (const FolderEntry& entry : list_folder(folder))
+    if (entry.path.extension() == ".val") maps.items.insert(entry.path.stem().string());
+  maps.read = [folder](const std::string& item) -> SourceData {
+    std::string text = read_file(folder / (item + ".val"));
+    return {file_digest(text), std::move(text)};
   };
-  maps.read = [folder](const std::string& item, std::size_t) { return read_val(folder / (item + ".val")); };
   return maps;
 }
 
-// The file is read once; of two items the maps are told apart by their own values, so that a file with a map
-// more leaves the others as they are.
-GivenMaps maps_in_file(const fs::path& file) {
-  const auto bytes = read_bytes(file);
-  if (!bytes) throw ConfigError(fmt::format("--maps {}: cannot be read", file.string()));
+// Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
+GivenMaps maps_in_file(const fs::path& path) {
   std::shared_ptr<const Arrays> arrays;
   try {
-    arrays = std::make_shared<const Arrays>(hdf5_content(*bytes, file.string()).arrays);
+    const std::string bytes = read_file(path);
+    arrays =
+        std::make_shared<const Arrays>(hdf5_content(std::as_bytes(std::span(bytes)), path.string()).arrays);
   } catch (const InputError& error) {
     throw ConfigError(fmt::format("--maps {}", error.what()));
   }
-  GivenMaps maps{.source = file};
+  GivenMaps maps{.source = path};
   for (const Array& array : *arrays) maps.items.insert(array.name);
-  maps.digest = [arrays](const std::string& item) { return content_digest({*find_array(*arrays, item)}); };
-  maps.read = [arrays](const std::string& item, std::size_t) { return as_field(*find_array(*arrays, item)); };
+  maps.read = [arrays](const std::string& item) -> SourceData {
+    const Array& array = *find_array(*arrays, item);
+    return {content_digest({array}), as_field(array)};
+  };
   return maps;
 }
 
-SourceDigest source_of(const GivenMaps& maps, const std::string& item) {
-  constexpr const char* kInKey = "map file";
-  if (!maps.items.contains(item))
-    return {kInKey, {}, fmt::format("{}: there is none, and of others there is", maps.place(item))};
-  try {
-    return {kInKey, maps.digest(item), {}};
-  } catch (const InputError& error) {
-    return {kInKey, {}, error.what()};
-  }
+SourceFile source_of(const std::shared_ptr<const GivenMaps>& maps, const std::string& item) {
+  std::string place = maps->place(item);
+  return source_file("map file", place, [maps, item, place] {
+    if (!maps->items.contains(item))
+      throw InputError(fmt::format("{}: there is none, although there are maps of other items", place));
+    return maps->read(item);
+  });
 }
 
 bool any_given(const Context& context, const Model& model, bool meshes) {
@@ -119,18 +95,32 @@ bool any_given(const Context& context, const Model& model, bool meshes) {
 }  // namespace
 
 std::string GivenMaps::place(const std::string& item) const {
-  return fs::is_directory(source) ? (source / (item + ".val")).string()
-                                  : fmt::format("{}: data set {}", source.string(), item);
+  return is_folder(source) ? (source / (item + ".val")).string()
+                           : fmt::format("{}: data set {}", source.string(), item);
+}
+
+ScalarField GivenMaps::checked(const SourceData& data, const std::string& item, std::size_t n_points) const {
+  const std::string where = place(item);
+  const auto* values = std::get_if<ScalarField>(&data.content);
+  ScalarField map = values != nullptr ? *values : parse_values(data.text(), where);
+  if (map.size() != n_points)
+    throw InputError(fmt::format("{}: {} values, but the shape has {} points", where, map.size(), n_points));
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (!std::isfinite(map[i]))
+      throw InputError(
+          fmt::format("{}: value {} (0-based) is {}, expected a finite number", where, i, map[i]));
+    if (matched && !(map[i] >= 0 && map[i] <= 1))
+      throw InputError(
+          fmt::format("{}: value {} (0-based) is {}: a matched map lies in [0, 1]; leave out "
+                      "--matched to have it matched",
+                      where, i, map[i]));
+  }
+  return map;
 }
 
 GivenMaps find_given_maps(const fs::path& source, bool matched) {
-  GivenMaps maps = fs::is_directory(source) ? maps_in_folder(source) : maps_in_file(source);
+  GivenMaps maps = is_folder(source) ? maps_in_folder(source) : maps_in_file(source);
   maps.matched = matched;
-  maps.read = [maps](const std::string& item, std::size_t n_points) {
-    ScalarField map = maps.read(item, n_points);
-    check_map(map, n_points, maps.matched, maps.place(item));
-    return map;
-  };
   return maps;
 }
 
@@ -148,7 +138,7 @@ void add_given_maps(Workload& workload, const Context& context, const Model& mod
   for (std::size_t f = 0; f < workload.families.size(); ++f)
     for (const ItemRef& item : context.family(f)) {
       auto& files = workload.families[f].map_files.emplace_back();
-      if (item.is_mesh() ? meshes : scans) files.push_back(source_of(maps, context.name(item)));
+      if (item.is_mesh() ? meshes : scans) files.push_back(source_of(model.given, context.name(item)));
     }
 }
 

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "cache/digest.h"
 #include "pipeline/model_catalog.h"
+#include "pipeline/source.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -21,15 +21,15 @@ struct GivenMaps {
   bool matched = false;              // the values are histogram-matched already: they lie in [0, 1]
   std::set<std::string> items = {};  // that there are maps of: "52", "52_3"
 
-  // Of one of these items; both throw InputError.
-  std::function<Digest(const std::string& item)> digest = {};
-  // n_points finite numbers.
-  std::function<ScalarField(const std::string& item, std::size_t n_points)> read = {};
+  // Of one of these items. Throws InputError.
+  std::function<SourceData(const std::string& item)> read = {};
+  // What was read, as a map of n_points finite numbers. Throws InputError.
+  ScalarField checked(const SourceData& data, const std::string& item, std::size_t n_points) const;
 
   std::string place(const std::string& item) const;  // for a message: where the item's map is looked for
 };
 
-// Lists the folder, or reads the file. Throws ConfigError where it is neither.
+// Lists the folder, or the data sets of the file. Throws ConfigError where it is neither.
 GivenMaps find_given_maps(const std::filesystem::path& source, bool matched);
 
 // A model that takes its maps from there. Throws ConfigError for a name that is taken, or is no name.

@@ -1,28 +1,22 @@
 #include <csignal>
+#include <filesystem>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "io/file.h"
 #include "pipeline/commands.h"
 #include "pipeline/evaluate.h"
 #include "pipeline/explain.h"
 #include "pipeline/export.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/maintenance.h"
 #include "stages/core/errors.h"
 
 namespace {
 
 using namespace salbench;
-
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free);  // what a signal handler may touch
-
-// The first signal asks for an orderly end; a second one ends the program at once, which the cache survives.
-void on_signal(int signal) {
-  interrupted = true;
-  std::signal(signal, SIG_DFL);
-}
 
 constexpr const char* kExamples = R"(Examples:
   salbench run configs/shrec07.yaml --data SchellingData          the whole benchmark; run it again to resume
@@ -34,7 +28,8 @@ constexpr const char* kExamples = R"(Examples:
   salbench status configs/shrec07.yaml --data SchellingData       what is there already
 
 Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
-3 cache or output folder unusable; 130 interrupted, the line that resumes was printed.)";
+3 cache or output folder unusable; 70 a defect of the program, or memory ran out;
+130 interrupted, the line that resumes was printed.)";
 
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, Arguments& arguments) {
   CLI::App* verb = app.add_subcommand(name, what);
@@ -150,13 +145,15 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kAllDone : kUnusableArguments;
   }
-  if (run->parsed()) return run_command(arguments, interrupted);
-  if (maps->parsed()) return maps_command(arguments, interrupted);
-  if (evaluate->parsed()) return evaluate_command(arguments, evaluated, interrupted);
-  if (exports->parsed()) return export_command(arguments, exported, interrupted);
-  if (verify->parsed()) return verify_command(arguments, verified, interrupted);
+  handle_interrupts(interrupted_text(arguments));
+  const std::atomic<bool>& stop = interrupted();
+  if (run->parsed()) return run_command(arguments, stop);
+  if (maps->parsed()) return maps_command(arguments, stop);
+  if (evaluate->parsed()) return evaluate_command(arguments, evaluated, stop);
+  if (exports->parsed()) return export_command(arguments, exported, stop);
+  if (verify->parsed()) return verify_command(arguments, verified, stop);
   if (gc->parsed()) return gc_command(arguments, collected);
-  if (accept->parsed()) return accept_command(arguments, accepted_stage, interrupted);
+  if (accept->parsed()) return accept_command(arguments, accepted_stage, stop);
   if (explain->parsed()) return explain_command(arguments, explained);
   return plan->parsed() ? plan_command(arguments) : status_command(arguments);
 }
@@ -167,9 +164,18 @@ int guarded(int argc, char** argv) {
   } catch (const StorageError& error) {
     spdlog::error("{}", error.what());
     return kUnusableStorage;
-  } catch (const std::exception& error) {
+  } catch (const std::filesystem::filesystem_error& error) {
+    spdlog::error("{}: {}", error.path1().string(), system_reason(error.code().value()));
+    return kUnusableStorage;
+  } catch (const ConfigError& error) {
     spdlog::error("{}", error.what());
     return kUnusableArguments;
+  } catch (const InputError& error) {
+    spdlog::error("{}", error.what());
+    return kUnusableArguments;
+  } catch (...) {
+    spdlog::error("{}", current_defect());
+    return kDefect;
   }
 }
 
@@ -178,8 +184,6 @@ int guarded(int argc, char** argv) {
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("salbench"));
   spdlog::set_pattern("%^%l%$: %v");
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes then fails the write, as a full disk does
   return guarded(argc, argv);
 }

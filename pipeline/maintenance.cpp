@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "io/table.h"
 #include "io/value.h"
+#include "pipeline/interrupt.h"
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
 
@@ -83,13 +84,24 @@ std::string recomputed_fault(const Context& context, const Plan& plan, FolderSto
       if (!value) return "cannot be computed again: something that it reads is damaged";
       values.push_back(std::move(*value));
     }
-    StageInputs inputs{{}, &context.source(job.item), context.seed, context.name(job.item), job.item.view};
+    StageInputs inputs{.values = {},
+                       .files = {},
+                       .source = &context.source(job.item),
+                       .seed = context.seed,
+                       .item = context.name(job.item),
+                       .view = job.item.view};
     for (const Value& value : values) inputs.values.push_back(&value);
+    if (stage.source != Source::none)
+      inputs.files = read_unchanged(sources_of(context, job.item, stage.source));
     const Digest content = content_digest(arrays_from(stage.run(inputs)));
     if (content == plan.jobs(job.item)[job.stage].content) return {};
     return fmt::format("computed again it comes out otherwise, as {}", content.hex());
-  } catch (const std::exception& error) {
+  } catch (const InputError& error) {
     return fmt::format("cannot be computed again: {}", error.what());
+  } catch (const StorageError&) {
+    throw;
+  } catch (...) {
+    return current_defect();
   }
 }
 
@@ -166,6 +178,7 @@ void print_faults(const std::vector<Fault>& faults) {
 }
 
 std::size_t verify_folder(const fs::path& folder, bool quiet, const std::atomic<bool>& stop) {
+  const OrderlyEnd orderly;
   const Verification result = verify_cache(folder, stop, *progress_of(quiet));
   print_faults(result.faults);
   if (!quiet)
@@ -178,6 +191,7 @@ std::size_t verify_folder(const fs::path& folder, bool quiet, const std::atomic<
 std::size_t verify_sample(const Setup& setup, std::size_t sample, bool quiet, const std::atomic<bool>& stop) {
   FolderStore store(setup.cache, Access::read_only);
   const Plan plan = make_plan(setup.context, store);
+  const OrderlyEnd orderly;
   const Recomputation result = recompute_sample(setup.context, plan, store, sample, stop);
   print_faults(result.faults);
   if (!quiet)
@@ -306,6 +320,7 @@ ExitStatus accept_command(const Arguments& arguments, const std::string& stage,
   const Setup setup(arguments);
   require_cache(setup.cache);
   FolderStore store(setup.cache, Access::read_write);
+  const OrderlyEnd orderly;
   const Accepted count = accept_stage(setup.context, stage, store, stop);
   if (!arguments.quiet) {
     fmt::print("{}: {} results of earlier versions accepted; {} were valid already, {} have none\n", stage,

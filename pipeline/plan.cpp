@@ -45,11 +45,11 @@ std::optional<Job> stopped_by(const Job& input, std::size_t index) {
 std::optional<Job> add_sources(const Context& context, const ItemRef& item, const Stage& stage,
                                Recipe& recipe) {
   if (stage.source == Source::none) return {};
-  const std::vector<SourceDigest>& files = sources_of(context, item, stage.source);
+  const SourceFiles& files = sources_of(context, item, stage.source);
   if (files.empty())
     return verdict_of(Verdict::absent,
                       stage.source == Source::map_file ? Reason::not_given : Reason::no_ground_truth);
-  for (const SourceDigest& file : files) {
+  for (const SourceFile& file : files) {
     if (!file.digest) return verdict_of(Verdict::compute, Reason::unreadable);
     recipe.inputs.emplace_back(file.name, *file.digest);
   }
@@ -134,8 +134,8 @@ std::vector<ItemRef> Context::items(bool meshes) const {
   return result;
 }
 
-const std::vector<SourceDigest>& sources_of(const Context& context, const ItemRef& item, Source source) {
-  const Family& family = context.workload.families[item.family];
+SourceFiles& sources_of(const Context& context, const ItemRef& item, Source source) {
+  Family& family = context.workload.families[item.family];
   switch (source) {
     case Source::mesh_file:
       return family.mesh_file;

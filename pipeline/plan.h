@@ -77,7 +77,7 @@ struct Plan {
 // What planning and running have in common: everything that is fixed before the first job.
 struct Context {
   const Catalog& catalog;
-  const Workload& workload;
+  Workload& workload;  // its digests follow files that change during a run
   std::uint64_t seed = 0;
   std::optional<Histogram> given_reference = {};  // in place of the data set's own mean
   Attributes attributes = {};                     // written to every artefact
@@ -91,7 +91,7 @@ struct Context {
 };
 
 // The files that a stage reads of an item; empty where there are none of their kind.
-const std::vector<SourceDigest>& sources_of(const Context& context, const ItemRef& item, Source source);
+SourceFiles& sources_of(const Context& context, const ItemRef& item, Source source);
 
 using Lookup = std::function<std::optional<Digest>(std::string_view stage, const Digest& key)>;
 

@@ -1,8 +1,11 @@
 #include "pipeline/results.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "io/file.h"
@@ -15,18 +18,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string quoted(const std::string& text) {  // a double-quoted YAML scalar
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (c == '\n')
-      result += "\\n";
-    else
-      result += c;
-  }
-  return result + '"';
-}
 
 std::string host_name() {
   char name[256] = {};
@@ -44,14 +35,17 @@ std::string run_yaml(const RunRecord& record) {
   if (record.config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
   yaml += fmt::format(
       "program: salbench {}\nhost: {}\nthreads: {}\nseconds: {:.3f}\nartefacts_computed: {}\n",
-      SALBENCH_VERSION, quoted(host_name()), record.threads, record.seconds, record.runner.computed());
+      SALBENCH_VERSION, yaml_quoted(host_name()), record.threads, record.seconds, record.runner.computed());
   if (record.context.shard) yaml += fmt::format("shard: {}\n", record.context.shard->text());
   yaml += fmt::format("reference: {}\n", reference_line(record.context));
   for (const Model& model : record.config.models)
     if (model.given)
       yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
-                          quoted(model.given->source.string()), model.given->matched);
-  yaml += fmt::format("meshes: {}\n", record.context.workload.families.size());
+                          yaml_quoted(model.given->source.string()), model.given->matched);
+  const DataIdentity data = identity_of(record.context.workload);
+  yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, files: {}, digest: {}}}\n",
+                      yaml_quoted(record.config.data), record.context.workload.layout,
+                      record.context.workload.families.size(), data.files, data.digest.hex());
   yaml +=
       "stages:  # version, artefacts this run computed, seconds summed over threads, reasons with counts\n";
   for (const StageCount& count : count_by_stage(record.context, record.plan, record.why)) {
@@ -59,14 +53,15 @@ std::string run_yaml(const RunRecord& record) {
     const StageTiming spent = timing == record.runner.timings().end() ? StageTiming{} : timing->second;
     std::string why;
     for (const auto& [reason, n] : count.reasons)
-      why += fmt::format("{}{}: {}", why.empty() ? "" : ", ", quoted(reason), n);
+      why += fmt::format("{}{}: {}", why.empty() ? "" : ", ", yaml_quoted(reason), n);
     yaml += fmt::format("  {}: {{version: {}, computed: {}, seconds: {:.3f}, why: {{{}}}}}\n", count.stage,
                         count.version, spent.computed, spent.seconds, why);
   }
   yaml += record.runner.failures().empty() ? "failed: []\n" : "failed:\n";
   for (const Failure& failure : record.runner.failures())
-    yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n", quoted(record.context.name(failure.item)),
-                        failure.stage, quoted(failure.cause));
+    yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n",
+                        yaml_quoted(record.context.name(failure.item)), failure.stage,
+                        yaml_quoted(failure.cause));
   yaml += "configuration:\n";
   std::string line;
   for (const char c : config_yaml(record.config)) {
@@ -93,6 +88,8 @@ std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& r
 std::vector<ResultRow> collect_results(const Config& config, const Context& context, const Plan& plan,
                                        Runner& runner) {
   std::vector<ResultRow> rows;
+  Progress& progress = runner.progress();
+  progress.begin("collecting scores", context.workload.families.size());
   for (std::size_t f = 0; f < context.workload.families.size(); ++f) {
     for (const ItemRef& item : context.family(f)) {
       const Chain& chain = context.chain(item);
@@ -106,7 +103,9 @@ std::vector<ResultRow> collect_results(const Config& config, const Context& cont
                         model.name, std::get<Scores>(runner.result(item, stage))});
       }
     }
+    progress.item_done();
   }
+  progress.end();
   return rows;
 }
 
@@ -152,21 +151,33 @@ Table summary_table(const std::vector<ResultRow>& rows) {
   return table;
 }
 
+// Densities over [0, 1] sum to the number of their bins; a column that sums to anything else, such as
+// probabilities, is of the same shape, and shape is what it stands for.
 Histogram read_reference(const std::string& path) {
-  try {
-    const std::vector<double> column = number_column(read_csv(path), "GS");
-    Histogram histogram{};
-    if (column.size() != histogram.size())
-      throw ConfigError(fmt::format("{}: column GS has {} rows, not 100 bins", path, column.size()));
-    for (std::size_t i = 0; i < histogram.size(); ++i) {
-      if (!(column[i] >= 0))
-        throw ConfigError(fmt::format("{}:{}: column GS holds no density >= 0", path, i + 2));
-      histogram[i] = column[i];
-    }
-    return histogram;
-  } catch (const InputError& error) {
-    throw ConfigError(error.what());
+  constexpr double kRounded = 1e-3;  // of the sum: a density that was written with few digits
+  const Table table = read_csv(path);
+  const std::vector<double> column = number_column(table, "GS");
+  Histogram histogram{};
+  if (column.size() != histogram.size())
+    throw ConfigError(
+        fmt::format("{}: column GS has {} rows, expected {} bins", path, column.size(), histogram.size()));
+  for (std::size_t i = 0; i < histogram.size(); ++i) {
+    histogram[i] = column[i];
+    if (!std::isfinite(column[i]) || column[i] < 0)
+      throw ConfigError(fmt::format("{}:{}: column GS holds {}, expected a density, finite and not negative",
+                                    path, table.lines[i], column[i]));
   }
+  const double sum = std::accumulate(column.begin(), column.end(), 0.0);
+  if (!(sum > 0) || !std::isfinite(sum))
+    throw ConfigError(fmt::format("{}:{}: column GS sums to {} from here on: no density does", path,
+                                  table.lines.front(), sum));
+  if (!table.remark.empty()) spdlog::warn("{}: {}", path, table.remark);
+  const auto bins = static_cast<double>(histogram.size());
+  if (std::abs(sum / bins - 1) <= kRounded) return histogram;
+  spdlog::warn("{}: column GS sums to {}, densities over {} bins to {}: it was scaled", path, sum, bins,
+               bins);
+  for (double& density : histogram) density = density / sum * bins;
+  return histogram;
 }
 
 void prepare_output(const fs::path& folder) {

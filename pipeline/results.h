@@ -57,7 +57,8 @@ Table results_table(const std::vector<ResultRow>& rows);
 // n.
 Table summary_table(const std::vector<ResultRow>& rows);
 
-// A histogram of 100 bins from the column GS of a CSV file. Throws ConfigError.
+// A density over 100 bins from the column GS of a CSV file; what sums to something else is scaled, with a
+// warning. Throws InputError or ConfigError, with file and line.
 Histogram read_reference(const std::string& path);
 
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.

@@ -29,8 +29,9 @@ bool has_open_job(const Context& context, const Plan& plan, const ItemRef& item,
   return false;
 }
 
-std::string unreadable_source(const Context& context, const ItemRef& item, const Stage& stage) {
-  for (const SourceDigest& file : sources_of(context, item, stage.source))
+// Why a stage's source cannot be read.
+std::string source_error(const Context& context, const ItemRef& item, const Stage& stage) {
+  for (const SourceFile& file : sources_of(context, item, stage.source))
     if (!file.digest) return file.error;
   return {};
 }
@@ -60,28 +61,31 @@ class Runner::FamilyRun {
   void advance(const ItemRef& item, std::size_t index) {
     Job& job = runner_.plan_.jobs(item)[index];
     if (!job.open()) return;
-    Decision decision = decide(
-        runner_.context_, runner_.plan_, item, index,
-        [&](std::string_view stage, const Digest& key) { return runner_.store_.find_now(stage, key); });
+    const Stage& stage = runner_.context_.chain(item)[index];
+    // The key is of what the files hold now: they may have been edited since they were planned with.
+    std::vector<SourceData> files;
+    if (stage.source != Source::none) files = read_again(sources_of(runner_.context_, item, stage.source));
+    Decision decision =
+        decide(runner_.context_, runner_.plan_, item, index,
+               [&](std::string_view name, const Digest& key) { return runner_.store_.find_now(name, key); });
     // The plan's reason is kept: why it was recomputed is asked afterwards.
     const Reason reason = job.reason;
     job = decision.job;
     if (job.verdict != Verdict::compute) return;
-    const Stage& stage = runner_.context_.chain(item)[index];
     if (job.reason == Reason::unreadable) {
-      job.verdict = Verdict::failed;
-      runner_.record(item, stage, unreadable_source(runner_.context_, item, stage));
+      fail(job, {item, stage.name, source_error(runner_.context_, item, stage)});
       return;
     }
     job.reason = reason;
     try {
-      job.content = compute(item, index, decision.recipe);
+      job.content = compute(item, index, decision.recipe, std::move(files));
       job.verdict = Verdict::done;
     } catch (const StorageError&) {
       throw;
-    } catch (const std::exception& error) {
-      job.verdict = Verdict::failed;
-      runner_.record(item, stage, error.what());
+    } catch (const InputError& error) {
+      fail(job, {item, stage.name, error.what()});
+    } catch (...) {
+      fail(job, {item, stage.name, current_defect(), true});
     }
   }
 
@@ -102,21 +106,34 @@ class Runner::FamilyRun {
   }
 
  private:
+  void fail(Job& job, Failure failure) {
+    job.verdict = Verdict::failed;
+    runner_.record(std::move(failure));
+  }
+
   // A damaged artefact is a miss, but its content is still known: only the same content will do.
   void recompute(const ItemRef& item, std::size_t index, const Digest& expected) {
     Decision decision = decide(runner_.context_, runner_.plan_, item, index,
                                [](std::string_view, const Digest&) { return std::nullopt; });
-    if (compute(item, index, decision.recipe) != expected)
+    const Source source = runner_.context_.chain(item)[index].source;
+    std::vector<SourceData> files;
+    if (source != Source::none) files = read_unchanged(sources_of(runner_.context_, item, source));
+    if (compute(item, index, decision.recipe, std::move(files)) != expected)
       throw std::logic_error(
           fmt::format("stage {} gave another result than before for the same inputs: it is not "
                       "deterministic; please report this",
                       runner_.context_.chain(item)[index].name));
   }
 
-  Digest compute(const ItemRef& item, std::size_t index, const Recipe& recipe) {
+  Digest compute(const ItemRef& item, std::size_t index, const Recipe& recipe,
+                 std::vector<SourceData> files) {
     const Stage& stage = runner_.context_.chain(item)[index];
-    StageInputs inputs{
-        {}, &runner_.context_.source(item), runner_.context_.seed, runner_.context_.name(item), item.view};
+    StageInputs inputs{.values = {},
+                       .files = std::move(files),
+                       .source = &runner_.context_.source(item),
+                       .seed = runner_.context_.seed,
+                       .item = runner_.context_.name(item),
+                       .view = item.view};
     std::vector<ValuePtr> held;
     for (const Input& input : stage.inputs) {
       held.push_back(input_value(item, input));
@@ -299,10 +316,10 @@ std::size_t Runner::computed() const {
   return sum;
 }
 
-void Runner::record(const ItemRef& item, const Stage& stage, const std::string& cause) {
-  spdlog::error("{}: {}: {}", context_.name(item), stage.name, cause);
+void Runner::record(Failure failure) {
+  spdlog::error("{}: {}: {}", context_.name(failure.item), failure.stage, failure.cause);
   const std::lock_guard lock(mutex_);
-  failures_.push_back({item, stage.name, cause});
+  failures_.push_back(std::move(failure));
 }
 
 void Runner::record(const std::string& stage, double seconds) {

@@ -20,6 +20,7 @@ struct Failure {
   ItemRef item;
   std::string stage;
   std::string cause;
+  bool defect = false;  // of the program, or memory ran out: nothing is wrong with the item
 };
 
 struct StageTiming {
@@ -47,6 +48,7 @@ class Runner {
   const std::vector<Failure>& failures() const { return failures_; }  // by item, then in the order of stages
   const std::map<std::string, StageTiming>& timings() const { return timings_; }
   std::size_t computed() const;
+  Progress& progress() const { return progress_; }
 
  private:
   class FamilyRun;
@@ -57,7 +59,7 @@ class Runner {
   std::unique_ptr<Claim> claim_of(std::size_t family) const;
   std::unique_ptr<Claim> wait_for_claim(const std::string& work) const;
   std::shared_ptr<const Value> make_mean(std::size_t index, bool meshes);
-  void record(const ItemRef& item, const Stage& stage, const std::string& cause);
+  void record(Failure failure);
   void record(const std::string& stage, double seconds);
 
   const Context& context_;

@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include "io/file.h"
+#include "stages/core/errors.h"
+
 namespace salbench {
 
 struct Section::Impl {
@@ -53,13 +56,11 @@ void check_mapping(const YAML::Node& node, const std::string& file, const std::s
   }
 }
 
-YAML::Node parse(const std::string& file, const auto& load) {
+YAML::Node parse(const std::string& file, const std::string& text) {
   try {
-    YAML::Node node = load();
+    YAML::Node node = YAML::Load(text);
     check_mapping(node, file, "");
     return node;
-  } catch (const YAML::BadFile&) {
-    throw ConfigError(fmt::format("{}: cannot be read; check the path and its permissions", file));
   } catch (const YAML::Exception& error) {
     fail_at(file, error.mark.line + 1, "not valid YAML: " + error.msg);
   }
@@ -92,12 +93,28 @@ std::string nearest_word(std::string_view word, const std::vector<std::string_vi
   return nearest;
 }
 
+std::string yaml_quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f)
+      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
 Section Section::from_file(const std::string& path) {
-  return Section(std::make_shared<Impl>(Impl{parse(path, [&] { return YAML::LoadFile(path); }), path, ""}));
+  try {
+    return from_text(read_file(path), path);
+  } catch (const InputError& error) {
+    throw ConfigError(error.what());
+  }
 }
 
 Section Section::from_text(const std::string& yaml, const std::string& name) {
-  return Section(std::make_shared<Impl>(Impl{parse(name, [&] { return YAML::Load(yaml); }), name, ""}));
+  return Section(std::make_shared<Impl>(Impl{parse(name, yaml), name, ""}));
 }
 
 std::vector<std::string> Section::keys() const {

@@ -57,6 +57,8 @@ class Section {
   std::shared_ptr<const Impl> impl_;
 };
 
+std::string yaml_quoted(std::string_view text);  // a scalar that reads back as the same text
+
 // The candidate with the smallest edit distance to `word`; empty where none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
 

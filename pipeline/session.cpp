@@ -42,6 +42,8 @@ Config configuration(const Arguments& arguments, const std::optional<Model>& giv
   if (config.data.empty())
     throw ConfigError(
         fmt::format("{}: names no data set: give --data DIR, or a key 'data'", arguments.config));
+  if (config.cache.empty()) config.cache = "salbench-cache";
+  if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
   return config;
 }
 
@@ -62,8 +64,8 @@ Setup::Setup(const Arguments& arguments, const std::optional<Model>& given)
       workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items,
                              shard_of(arguments))),
       context{catalog, workload, config.seed},
-      cache(config.cache.empty() ? "salbench-cache" : config.cache),
-      output(config.output.empty() ? fs::path("salbench-out") / config.name : fs::path(config.output)) {
+      cache(config.cache),
+      output(config.output) {
   if (!arguments.reference.empty()) context.given_reference = read_reference(arguments.reference);
   context.shard = shard_of(arguments);
   context.attributes = {{"protocol", std::string(name_of(config.protocol))}};

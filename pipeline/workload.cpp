@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -52,27 +51,35 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
   return names;
 }
 
-SourceDigest digest_of(std::string name, const std::filesystem::path& path) {
-  try {
-    return {std::move(name), file_digest(read_file(path)), {}};
-  } catch (const InputError& error) {
-    return {std::move(name), {}, error.what()};
-  }
-}
-
 Family make_family(const DatasetItem& source) {
   Family family{source, {}, {}};
   std::string extension = source.mesh.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  family.mesh_file.push_back(digest_of("mesh file " + extension, source.mesh));
-  if (!source.saliency.empty()) family.truth_files.push_back(digest_of("saliency file", source.saliency));
+  family.mesh_file.push_back(source_file("mesh file " + extension, source.mesh));
+  if (!source.saliency.empty()) family.truth_files.push_back(source_file("saliency file", source.saliency));
   for (std::size_t k = 0; k < source.picks.size(); ++k)
-    family.truth_files.push_back(digest_of(fmt::format("picks {}", k), source.picks[k]));
+    family.truth_files.push_back(source_file(fmt::format("picks {}", k), source.picks[k]));
   return family;
 }
 
 }  // namespace
+
+DataIdentity identity_of(const Workload& workload) {
+  DataIdentity identity;
+  Hasher hasher;
+  for (const Family& family : workload.families) {
+    hasher.add(family.source.name);
+    for (const SourceFiles* files : {&family.mesh_file, &family.truth_files})
+      for (const SourceFile& file : *files) {
+        hasher.add(file.name);
+        hasher.add(file.digest ? file.digest->hex() : "unreadable");
+        ++identity.files;
+      }
+  }
+  identity.digest = hasher.digest();
+  return identity;
+}
 
 std::vector<std::string> split_list(const std::string& list) {
   std::vector<std::string> parts;
@@ -97,7 +104,7 @@ Workload make_workload(const Dataset& dataset, const std::string& selection,
 
   std::vector<DatasetItem> items = dataset.items;
   std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
-  Workload workload{{}, dataset.notes};
+  Workload workload{dataset.layout, {}, dataset.notes};
   for (const DatasetItem& item : shard ? share_of(items, *shard) : items)
     workload.families.push_back(make_family(item));
   return workload;

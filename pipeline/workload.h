@@ -7,30 +7,31 @@
 #include <utility>
 #include <vector>
 
-#include "cache/digest.h"
 #include "io/dataset.h"
 #include "pipeline/shard.h"
+#include "pipeline/source.h"
 
 namespace salbench {
 
-// A file that an item is read from, by the name it has in a key, with its digest or why there is none.
-struct SourceDigest {
-  std::string name;  // "mesh file .off", "saliency file", "picks 3": no paths
-  std::optional<Digest> digest;
-  std::string error;
-};
-
 struct Family {
-  DatasetItem source;  // a mesh, and its scans are its family
-  std::vector<SourceDigest> mesh_file;
-  std::vector<SourceDigest> truth_files;                  // empty: nothing is known about the mesh
-  std::vector<std::vector<SourceDigest>> map_files = {};  // given: of the mesh, then of its scans; or empty
+  DatasetItem source;                       // a mesh, and its scans are its family
+  SourceFiles mesh_file;                    // one
+  SourceFiles truth_files;                  // empty: nothing is known about the mesh
+  std::vector<SourceFiles> map_files = {};  // given: of the mesh, then of its scans; or empty
 };
 
 struct Workload {
+  std::string layout;            // of the data set
   std::vector<Family> families;  // in the data set's order
   std::vector<std::string> notes;
 };
+
+// What tells the data of two runs apart, or that they are the same, wherever they lie.
+struct DataIdentity {
+  std::size_t files = 0;  // meshes and ground truth
+  Digest digest;          // of the items' names and of all bytes that are read of them
+};
+DataIdentity identity_of(const Workload& workload);
 
 std::vector<std::string> split_list(const std::string& list);  // at commas, without blanks and empty parts
 

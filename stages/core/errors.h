@@ -1,6 +1,8 @@
 // Exceptions, by who has to act. Everything else that is thrown is a defect of the program.
 #pragma once
 
+#include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -30,5 +32,18 @@ struct OptionError : ConfigError {
 struct StorageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+// Within a handler, of any other exception: what to tell of it (exit status 70).
+inline std::string current_defect() {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return "out of memory; use fewer --threads, or leave large items out with --items";
+  } catch (const std::exception& error) {
+    return std::string("a defect of salbench, please report it: ") + error.what();
+  } catch (...) {
+    return "a defect of salbench, please report it: an unknown exception";
+  }
+}
 
 }  // namespace salbench

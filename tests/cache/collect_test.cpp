@@ -1,7 +1,6 @@
 #include "cache/collect.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "cache/folder_store.h"
 #include "stages/core/errors.h"
@@ -24,11 +23,6 @@ class CollectTest : public testing::Test {
                 {{"saliency", {1}, std::vector<double>{1.0 * k}, "1", "one value"}},
                 {.item = item, .seconds = 0, .attributes = {}});
     return *store_.path(stage, key_of(recipe(stage, k)));
-  }
-  std::string host() const {
-    char name[256] = {};
-    ::gethostname(name, sizeof name - 1);
-    return name;
   }
 
   TemporaryFolder folder_;
@@ -57,7 +51,7 @@ TEST_F(CollectTest, RemovesWhatIsNotNeededAndCountsItByStage) {
 TEST_F(CollectTest, ADryRunSaysTheSameAndRemovesNothing) {
   const fs::path file = save("fpfh", "1", 1);
   const fs::path damaged = folder_.write("damaged/" + file.filename().string(), "rotten");
-  const fs::path dead = folder_.write("tmp/" + host() + ".4194304.0.part", "x");  // above any pid
+  const fs::path dead = folder_.write("tmp/00c0ffee00c0ffee.salbench-part", "x");
   const Collected dry = collect_garbage(folder_.path(), {}, true, progress);
   EXPECT_TRUE(fs::exists(file) && fs::exists(damaged) && fs::exists(dead));
   const Collected real = collect_garbage(folder_.path(), {}, false, progress);
@@ -82,15 +76,14 @@ TEST_F(CollectTest, WhereKeysAreUnknownEverythingOfTheStageAndItemStays) {
 
 TEST_F(CollectTest, WhatIsNoArtefactIsNeverTouched) {
   const std::string artefact = save("fpfh", "1", 1).filename().string();
-  const std::vector<fs::path> foreign = {
-      folder_.write("notes.txt", "x"),
-      folder_.write("fpfh/readme", "x"),
-      folder_.write("fpfh/00/1.h5", "x"),
-      folder_.write("fpfh/00/deep/" + artefact, "x"),
-      folder_.write("damaged/mine.h5", "x"),
-      folder_.write("tmp/another-host.1.0.part", "x"),
-      folder_.write("tmp/" + host() + ".4194304.mine", "x"),
-      folder_.write("tmp/" + host() + "." + std::to_string(::getpid()) + ".9.part", "x")};
+  const UnfinishedFile being_written(folder_ / "tmp");
+  const std::vector<fs::path> foreign = {folder_.write("notes.txt", "x"),
+                                         folder_.write("fpfh/readme", "x"),
+                                         folder_.write("fpfh/00/1.h5", "x"),
+                                         folder_.write("fpfh/00/deep/" + artefact, "x"),
+                                         folder_.write("damaged/mine.h5", "x"),
+                                         folder_.write("tmp/0123456789abcdef.mine", "x"),
+                                         being_written.path()};
   collect_garbage(folder_.path(), {}, false, progress);
   for (const fs::path& file : foreign) EXPECT_TRUE(fs::exists(file)) << file;
   EXPECT_TRUE(fs::exists(folder_ / "CACHEDIR.TAG"));

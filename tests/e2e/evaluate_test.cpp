@@ -142,7 +142,7 @@ TEST(Evaluate, WhatIsWrongWithOneMapIsSaidInOneLineAndTheOthersAreScored) {
   };
   for (const Bad& bad :
        {Bad{values(kVertices - 1), {"2.val", "161", "162"}}, Bad{values(kVertices, "nan"), {"2.val:1"}},
-        Bad{values(kVertices, "0 1"), {"2.val:1", "more than one"}}, Bad{"", {"2.val", "has 0 values"}}}) {
+        Bad{values(kVertices, "0 1"), {"2.val:1", "more than one"}}, Bad{"", {"2.val", "0 values"}}}) {
     toy.write("own/2.val", bad.text);
     const Outcome run = evaluate(toy, toy / "own");
     EXPECT_EQ(run.status, 1);

@@ -31,9 +31,7 @@ bool reaches(Process& process, const Workspace& toy, std::size_t artefacts,
 }
 
 // Of the second mesh, by another process, which is the test: a run can then not come to its end by itself.
-std::unique_ptr<Claim> claim_of_second_mesh(const Workspace& toy) {
-  return toy.claim_family("2");
-}
+std::unique_ptr<Claim> claim_of_second_mesh(const Workspace& toy) { return toy.claim_family("2"); }
 constexpr std::size_t kBesideSecondMesh = 4 + 2 + 12 * 7;  // artefacts that such a run can store
 
 TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {

@@ -1,15 +1,16 @@
 #include "io/ground_truth_file.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/file.h"
 #include "io/mesh_file.h"
 #include "stages/core/errors.h"
 #include "tests/support/data.h"
-#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {
@@ -38,8 +39,8 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
   expect_refused_saliency("1\n-inf\n", 2, "9.val:2: \"-inf\" is not a finite number");
   expect_refused_saliency("1\nx\n", 2, "9.val:2: \"x\" is not a number");
   expect_refused_saliency("1\n2 3\n", 2, "9.val:2: the line has more than one value");
-  expect_refused_saliency("1\n2\n3\n", 2, "9.val:3: the file has 3 values, the mesh 2 vertices");
-  expect_refused_saliency("1\n", 2, "9.val:1: the file has 1 values, the mesh 2 vertices");
+  expect_refused_saliency("1\n2\n3\n", 2, "9.val:3: the file has 3 values, but the mesh has 2 vertices");
+  expect_refused_saliency("1\n", 2, "9.val:1: the file has 1 values, but the mesh has 2 vertices");
   expect_refused_saliency("", 2, "9.val: the file has 0 values");
 }
 
@@ -58,13 +59,13 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadPick) {
 }
 
 TEST(GroundTruthFile, AParticipantWithoutPicksCounts) {
-  const TemporaryFolder folder;
   DatasetItem item;
-  item.picks = {folder.write("1_0.pid", "3\n"), folder.write("1_1.pid", "")};
-  EXPECT_THAT(read_ground_truth(item, 4).picks, ElementsAre(ElementsAre(3), IsEmpty()));
-  EXPECT_THAT(read_ground_truth(item, 4).saliency, IsEmpty());
-  item.picks = {item.picks[1], item.picks[1]};
-  EXPECT_THAT(read_ground_truth(item, 4).picks, IsEmpty());  // nobody picked anything: there are no picks
+  item.picks = {"1_0.pid", "1_1.pid"};
+  const GroundTruth truth = parse_ground_truth(item, std::array<std::string_view, 2>{"3\n", ""}, 4);
+  EXPECT_THAT(truth.picks, ElementsAre(ElementsAre(3), IsEmpty()));
+  EXPECT_THAT(truth.saliency, IsEmpty());
+  EXPECT_THAT(parse_ground_truth(item, std::array<std::string_view, 2>{"", ""}, 4).picks, IsEmpty())
+      << "nobody picked anything: there are no picks";
 }
 
 TEST(GroundTruthFile, ReadsTheStudysFiles) {
@@ -74,7 +75,11 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
   for (const DatasetItem& item : find_dataset(*data, Layout::automatic).items) {
     if (item.saliency.empty()) continue;
     SCOPED_TRACE(item.name);
-    const GroundTruth truth = read_ground_truth(item, read_mesh(item.mesh).vertices.size());
+    std::vector<std::string> texts = {read_file(item.saliency)};
+    for (const auto& path : item.picks) texts.push_back(read_file(path));
+    const GroundTruth truth =
+        parse_ground_truth(item, std::vector<std::string_view>(texts.begin(), texts.end()),
+                           read_mesh(item.mesh).vertices.size());
     ++with_truth;
     EXPECT_GE(truth.picks.size(), 22U);
     // A vertex that somebody picked has at least that person's share of saliency.

@@ -39,7 +39,7 @@ TEST(Config, TheTextProtocolHasThePapersWords) {
 
 TEST(Config, WritesItselfSoThatItReadsBackTheSame) {
   for (const char* yaml :
-       {"", "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}"}) {
+       {"", "data: 'a \"b\" \\c\u00e9'\ncache: \"two\\nlines\"\noutput: o", "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}"}) {
     const std::string written = config_yaml(config_of(yaml));
     EXPECT_EQ(config_yaml(config_of(written)), written);
   }
