@@ -7,6 +7,7 @@
 #include "io/hdf5_file.h"
 #include "io/table.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/job_counts.h"
 
 namespace salbench {
 namespace {
@@ -65,7 +66,7 @@ TEST(Evaluate, MapsThatTheProgramWroteScoreAsTheyDidInside) {
   const Outcome run = evaluate(toy, maps);
   ASSERT_EQ(run.status, 0) << run.err;
   const auto own = seedless_scores(toy, "OWN");
-  ASSERT_THAT(own, Each(SizeIs(26)));
+  ASSERT_THAT(own, Each(SizeIs(JobCounts().of("scores.PS"))));
   EXPECT_EQ(own, seedless_scores(toy, "PS"));
   EXPECT_THAT(run.out, HasSubstr("OWN"));
   // Every table that compares models has it.
@@ -82,7 +83,7 @@ TEST(Evaluate, MatchedMapsAreNotMatchedAgain) {
   ASSERT_EQ(evaluate(toy, maps, {"--matched"}).status, 0);
   EXPECT_EQ(seedless_scores(toy, "OWN"), seedless_scores(toy, "PS"));
   EXPECT_THAT(toy.artefacts("map.OWN"), IsEmpty());
-  EXPECT_THAT(toy.artefacts("matched.OWN"), SizeIs(26));
+  EXPECT_THAT(toy.artefacts("matched.OWN"), SizeIs(JobCounts().of("matched.PS")));
   replace_first_line(maps / "1.val", "-0.5");
   const Outcome outside = evaluate(toy, maps, {"--matched"});
   EXPECT_EQ(outside.status, 1);
@@ -107,7 +108,7 @@ TEST(Evaluate, AnHdf5FileSaysTheSameAsAFolder) {
   const fs::path file = toy.write("own maps.h5", {reinterpret_cast<const char*>(image.data()), image.size()});
   ASSERT_EQ(evaluate(toy, file).status, 0);
   EXPECT_EQ(rows_of(toy.results(), "OWN"), from_folder);
-  EXPECT_EQ(toy.computed(), 26) << "maps read again, found equal, and no further";
+  EXPECT_EQ(toy.computed(), JobCounts().of("map.PS")) << "maps read again, found equal, and no further";
 }
 
 TEST(Evaluate, OnlyWhatAChangedMapConcernsIsComputed) {
@@ -116,12 +117,12 @@ TEST(Evaluate, OnlyWhatAChangedMapConcernsIsComputed) {
   const std::string alone = toy.results();
   const fs::path maps = write_maps(toy);
   ASSERT_EQ(evaluate(toy, maps).status, 0);
-  EXPECT_EQ(toy.computed(), 26 * 3 + 2);  // maps, matched maps, scores; two mean histograms
+  EXPECT_EQ(toy.computed(), JobCounts().of_model("PS"));
   ASSERT_EQ(evaluate(toy, maps).status, 0);
   EXPECT_EQ(toy.computed(), 0);
   replace_first_line(maps / "1.val", "0.125");
   ASSERT_EQ(evaluate(toy, maps).status, 0);
-  EXPECT_EQ(toy.computed(), 3 + 1);
+  EXPECT_EQ(toy.computed(), JobCounts(kMeshesOnly, 1).of_model("PS")) << "of one mesh, and the mean";
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0);
   EXPECT_EQ(toy.results(), alone);
@@ -167,7 +168,7 @@ TEST(Evaluate, OfAKindThatHasNoMapNoneIsExpected) {
   const Outcome run = evaluate(toy, toy / "own");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(rows_of(toy.results(), "OWN"), SizeIs(2));
-  EXPECT_THAT(rows_of(toy.results(), "PS"), SizeIs(26));
+  EXPECT_THAT(rows_of(toy.results(), "PS"), SizeIs(JobCounts().of("scores.PS")));
 }
 
 TEST(Evaluate, NamesAndFoldersThatWillNotDo) {

@@ -4,6 +4,7 @@
 
 #include "pipeline/results.h"
 #include "stages/core/mesh_ops.h"
+#include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
@@ -49,18 +50,20 @@ TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
     others.run();
     store.take_saved();
   }
-  Config config = read_config(Section::from_text(kToyConfig, "toy.yaml"), "toy");
+  Config config = toy_config();
   config.models.push_back(far_model("", Protocol::published));
   ToyRun run(data.path(), store, config);
   run.run();
-  // Nothing of the other models is touched: a map, a matched map and scores for 13 shapes, and two mean
-  // histograms.
+  // Nothing of the other models is touched.
   const auto computed = store.take_saved();
-  EXPECT_THAT(computed, testing::SizeIs(13 * 3 + 2));
+  const JobCounts jobs(config, 1);
+  EXPECT_THAT(computed, testing::SizeIs(jobs.of("map.FAR") + jobs.of("matched.FAR") + jobs.of("scores.FAR") +
+                                        jobs.of("mean_histogram.FAR")));
   EXPECT_THAT(computed, testing::Each(testing::HasSubstr("FAR")));
   const auto rows = collect_results(run.config, run.context, run.plan, run.runner);
-  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const ResultRow& row) { return row.model == "FAR"; }),
-            13);
+  const auto scored =
+      std::count_if(rows.begin(), rows.end(), [](const ResultRow& row) { return row.model == "FAR"; });
+  EXPECT_EQ(static_cast<std::size_t>(scored), jobs.shapes());
   EXPECT_THAT(to_csv(summary_table(rows)), testing::HasSubstr("meshes,FAR,auc,1,"));
 }
 

@@ -9,6 +9,7 @@
 
 #include "pipeline/results.h"
 #include "stages/core/errors.h"
+#include "tests/support/job_counts.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
 
@@ -112,7 +113,7 @@ class ExplainTest : public testing::Test {
 TEST_F(ExplainTest, AHitNeedsNoReason) {
   run();
   const auto all = explained(kMeshes, "1");
-  EXPECT_THAT(all, SizeIs(4 + 2 * 3));
+  EXPECT_THAT(all, SizeIs(JobCounts(kMeshes, 1).stages()));
   EXPECT_THAT(all, Each(AllOf(Field(&Explanation::state, "cached"), Field(&Explanation::why, ""))));
   EXPECT_EQ(all[0].file, artefact("mesh", "1"));
 }
@@ -243,7 +244,7 @@ TEST_F(ExplainTest, ScansWaitForTheirMesh) {
   EXPECT_EQ(asked("scan", "scan: {step_degrees: 2}\nmodels: {PS: }\n", "2_3"),
             "to compute: scan.step_degrees 1 -> 2");
   EXPECT_THAT(planned("scan: {step_degrees: 2}\nmodels: {PS: }\n", "scan"),
-              ElementsAre(Pair("scan.step_degrees 1 -> 2", 12), Pair("waits for mesh", 12)));
+              ElementsAre(Pair("scan.step_degrees 1 -> 2", kViews), Pair("waits for mesh", kViews)));
 }
 
 TEST_F(ExplainTest, ARunSaysWhyItComputed) {

@@ -44,11 +44,15 @@ inline void write_toy_item(const std::filesystem::path& root, const std::string&
 // Coarse scans keep tests quick; everything else is as in a real run.
 inline constexpr const char* kToyConfig = "scan: {step_degrees: 1}\nmodels: {PS: , RS: }\n";
 
+inline Config toy_config(const std::string& yaml = kToyConfig) {
+  return read_config(Section::from_text(yaml, "toy.yaml"), "toy");
+}
+
 // One planned and executed run. The store is the caller's, so that runs can follow each other.
 struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, const std::string& yaml = kToyConfig,
          const std::string& items = "")
-      : ToyRun(root, the_store, read_config(Section::from_text(yaml, "toy.yaml"), "toy"), items) {}
+      : ToyRun(root, the_store, toy_config(yaml), items) {}
 
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
