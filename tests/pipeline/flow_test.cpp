@@ -1,11 +1,13 @@
 #include "pipeline/flow.h"
 
-#include <numeric>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/support/meeting.h"
 
 namespace salbench {
 namespace {
@@ -31,8 +33,48 @@ TEST(Flow, EveryFamilyAndPartRunsOnceBetweenItsOpenAndClose) {
   }
 }
 
-TEST(Flow, NoMoreFamiliesAreAliveThanTokens) {
+TEST(Flow, PartsOfOneFamilyRunAtTheSameTime) {
+  Meeting both(2);
+  stream_families(1, {.threads = 2, .families_alive = 1}, kGoOn,
+                  {.open = [](int) { return 2; },
+                   .part = [&](int, int) { EXPECT_TRUE(both.join()); },
+                   .close = [](int) {}});
+  EXPECT_TRUE(both.met());
+}
+
+TEST(Flow, PartsOfDifferentFamiliesRunAtTheSameTime) {
+  Meeting both(2);
+  stream_families(2, {.threads = 2, .families_alive = 2}, kGoOn,
+                  {.open = [](int) { return 1; },
+                   .part = [&](int, int) { EXPECT_TRUE(both.join()); },
+                   .close = [](int) {}});
+  EXPECT_TRUE(both.met());
+}
+
+// One thread, the caller's, cannot do two things at once. The meeting gives another thread, were there one,
+// the time to show itself.
+TEST(Flow, WithOneThreadEverythingRunsInTheCallersThread) {
+  const auto caller = std::this_thread::get_id();
+  Meeting somebody_else(2, std::chrono::milliseconds(200));
+  const auto expect_caller = [&] { EXPECT_EQ(std::this_thread::get_id(), caller); };
+  stream_families(3, {.threads = 1, .families_alive = 2}, kGoOn,
+                  {.open =
+                       [&](int) {
+                         expect_caller();
+                         return 3;
+                       },
+                   .part =
+                       [&](int, int) {
+                         expect_caller();
+                         somebody_else.join();
+                       },
+                   .close = [&](int) { expect_caller(); }});
+  EXPECT_FALSE(somebody_else.met());
+}
+
+TEST(Flow, AsManyFamiliesAreAliveAsThereAreTokensAndNoMore) {
   std::atomic<int> alive = 0, most = 0;
+  Meeting first_three(3);
   stream_families(300, {.threads = 4, .families_alive = 3}, kGoOn,
                   {.open =
                        [&](int) {
@@ -42,11 +84,13 @@ TEST(Flow, NoMoreFamiliesAreAliveThanTokens) {
                          }
                          return 5;
                        },
-                   .part = [](int, int) { std::this_thread::yield(); },
+                   .part =
+                       [&](int family, int part) {
+                         if (family < 3 && part == 0) first_three.join();
+                       },
                    .close = [&](int) { --alive; }});
   EXPECT_EQ(alive, 0);
-  EXPECT_LE(most, 3);
-  EXPECT_GE(most, 1);
+  EXPECT_EQ(most, 3);
 }
 
 TEST(Flow, StopLetsOpenFamiliesCloseAndStartsNoOthers) {
@@ -75,18 +119,23 @@ TEST(Flow, TheFirstExceptionComesOutAfterTheGraphHasRunDry) {
                               },
                           .part =
                               [](int f, int) {
-                                if (f == 5) throw std::runtime_error("disk full");
+                                if (f >= 5) throw std::runtime_error("disk full at " + std::to_string(f));
                               },
                           .close = [](int) {}};
   EXPECT_THROW(stream_families(1000, {.threads = 2, .families_alive = 3}, kGoOn, bodies), std::runtime_error);
   opened = 0;  // one at a time, the failure is known before the next could be opened
-  EXPECT_THROW(stream_families(1000, {.threads = 2, .families_alive = 1}, kGoOn, bodies), std::runtime_error);
+  EXPECT_THAT([&] { stream_families(1000, {.threads = 2, .families_alive = 1}, kGoOn, bodies); },
+              testing::ThrowsMessage<std::runtime_error>("disk full at 5"));
   EXPECT_EQ(opened, 6);
 }
 
 TEST(Flow, NothingToDoIsFine) {
+  int calls = 0;
   stream_families(0, {}, kGoOn,
-                  {.open = [](int) { return 0; }, .part = [](int, int) {}, .close = [](int) {}});
+                  {.open = [&](int) { return ++calls; },
+                   .part = [&](int, int) { ++calls; },
+                   .close = [&](int) { ++calls; }});
+  EXPECT_EQ(calls, 0);
 }
 
 }  // namespace

@@ -2,12 +2,15 @@
 #include "pipeline/runner.h"
 
 #include <map>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "pipeline/results.h"
 #include "pipeline/statistics.h"
+#include "tests/support/job_counts.h"
+#include "tests/support/meeting.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
@@ -39,20 +42,15 @@ class RunnerTest : public testing::Test {
     return store_.take_saved();
   }
 
+  const JobCounts jobs_;  // of a first run over both meshes
   TemporaryFolder data_;
   MemoryStore store_;
   std::vector<std::string> failures_;
   std::string results_;
 };
 
-// Per mesh: mesh, ground_truth, normals, fpfh and 3 for each of 2 models; per scan: scan, ground truth,
-// normals, surface, fpfh and the same 6. For meshes and for scans the mean histograms of the ground truth and
-// of 2 models.
-constexpr std::size_t kMeshJobs = 4 + 6, kScanJobs = 5 + 6, kMeans = 2 * 3;
-constexpr std::size_t kAll = 2 * (kMeshJobs + 12 * kScanJobs) + kMeans;
-
 TEST_F(RunnerTest, AFirstRunComputesEverythingAndASecondNothing) {
-  EXPECT_THAT(run(), SizeIs(kAll));
+  EXPECT_THAT(run(), SizeIs(jobs_.all()));
   EXPECT_THAT(failures_, IsEmpty());
   const std::string first = results_;
   EXPECT_THAT(run(), IsEmpty());
@@ -61,12 +59,12 @@ TEST_F(RunnerTest, AFirstRunComputesEverythingAndASecondNothing) {
 
 TEST_F(RunnerTest, ThePlanForesaysWhatIsDone) {
   ToyRun first(data_.path(), store_);
-  EXPECT_EQ(first.open(), kAll - kMeans);
+  EXPECT_EQ(first.open(), jobs_.stages());
   first.run();
-  EXPECT_EQ(first.count(Verdict::done), kAll - kMeans);
+  EXPECT_EQ(first.count(Verdict::done), jobs_.stages());
   ToyRun second(data_.path(), store_);
   EXPECT_EQ(second.open(), 0U);
-  EXPECT_EQ(second.count(Verdict::cached), kAll - kMeans);
+  EXPECT_EQ(second.count(Verdict::cached), jobs_.stages());
 }
 
 TEST_F(RunnerTest, ResultsDoNotDependOnThreads) {
@@ -75,6 +73,52 @@ TEST_F(RunnerTest, ResultsDoNotDependOnThreads) {
   store_.clear();
   run(kToyConfig, 4);
   EXPECT_EQ(results_, one);
+}
+
+// Does something before what the stage does anyway.
+using Before = std::function<void(const StageInputs&)>;
+void do_before(Stage& stage, const Before& before) {
+  stage.run = [before, was = stage.run](const StageInputs& in) {
+    before(in);
+    return was(in);
+  };
+}
+
+TEST_F(RunnerTest, WithTwoThreadsTwoMeshesAreWorkedOnAtTheSameTime) {
+  ToyRun toy(data_.path(), store_);
+  Meeting both(2);
+  do_before(toy.catalog.mesh[stage_index(toy.catalog.mesh, "normals")],
+            [&](const StageInputs&) { EXPECT_TRUE(both.join()); });
+  toy.run(2);
+  EXPECT_TRUE(both.met());
+}
+
+TEST_F(RunnerTest, WithTwoThreadsTwoScansOfAMeshAreWorkedOnAtTheSameTime) {
+  ToyRun toy(data_.path(), store_, kToyConfig, "1");
+  Meeting both(2);
+  do_before(toy.catalog.scan[stage_index(toy.catalog.scan, "scan_normals")], [&](const StageInputs& in) {
+    if (in.view == 3 || in.view == 7) {
+      EXPECT_TRUE(both.join());
+    }
+  });
+  toy.run(2);
+  EXPECT_TRUE(both.met());
+}
+
+// The caller's thread cannot do two things at once; as in flow_test.cpp.
+TEST_F(RunnerTest, WithOneThreadEveryStageRunsInTheCallersThread) {
+  ToyRun toy(data_.path(), store_);
+  const auto caller = std::this_thread::get_id();
+  Meeting somebody_else(2, std::chrono::milliseconds(200));
+  for (Chain* chain : {&toy.catalog.mesh, &toy.catalog.scan})
+    for (Stage& stage : *chain)
+      do_before(stage, [&](const StageInputs&) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        somebody_else.join();
+      });
+  toy.run(1);
+  EXPECT_FALSE(somebody_else.met());
+  EXPECT_EQ(toy.count(Verdict::done), jobs_.stages());
 }
 
 TEST_F(RunnerTest, OneRemovedArtefactIsComputedAgainAndNothingElse) {
@@ -129,7 +173,10 @@ TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
     // People are compared on the two meshes, and their options are those of the curve alone.
     const std::map<std::string, std::size_t> of_people = {{"curve." + name, 2}};
     const std::map<std::string, std::size_t> of_maps = {
-        {"map." + name, 26}, {"matched." + name, 26}, {"scores." + name, 26}, {"mean_histogram." + name, 2}};
+        {"map." + name, jobs_.shapes()},
+        {"matched." + name, jobs_.shapes()},
+        {"scores." + name, jobs_.shapes()},
+        {"mean_histogram." + name, jobs_.of("mean_histogram.PS")}};
     EXPECT_EQ(jobs, name == "HS" ? of_people : of_maps);
     EXPECT_THAT(run(every_model()), IsEmpty());  // and back: both are in the cache
   }
@@ -138,7 +185,7 @@ TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
 TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
   run();
   const auto computed = run(std::string(kToyConfig) + "metrics: {splits: 7}\n");
-  EXPECT_THAT(computed, SizeIs(26 * 2));
+  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores")));
   for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
 }
 
@@ -167,7 +214,7 @@ TEST_F(RunnerTest, ANewlyWrittenButEqualFileConcernsNothing) {
 TEST_F(RunnerTest, AnotherSeedConcernsWhatIsRandom) {
   run();
   const auto computed = run(std::string(kToyConfig) + "seed: 7\n");
-  EXPECT_THAT(computed, SizeIs(26 * (1 + 1 + 2) + 2));  // map, matched, scores and means of RS; scores of PS
+  EXPECT_THAT(computed, SizeIs(jobs_.of_model("RS") + jobs_.of("scores.PS")));
 }
 
 TEST_F(RunnerTest, AFailingItemStopsNoOther) {
@@ -177,17 +224,20 @@ TEST_F(RunnerTest, AFailingItemStopsNoOther) {
   ASSERT_THAT(toy.runner.failures(), SizeIs(1));
   EXPECT_EQ(toy.runner.failures()[0].stage, "mesh");
   EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("3.off"));
-  EXPECT_EQ(toy.count(Verdict::done), kAll - kMeans);
+  EXPECT_EQ(toy.count(Verdict::done), jobs_.stages());
   EXPECT_EQ(toy.count(Verdict::failed), 1U);
-  EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::absent), kMeshJobs - 1 + 12 * kScanJobs);
-  EXPECT_EQ(collect_results(toy.config, toy.context, toy.plan, toy.runner).size(), 26U * 2);
+  EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::absent), JobCounts(kToyConfig, 1).stages() - 1);
+  EXPECT_EQ(collect_results(toy.config, toy.context, toy.plan, toy.runner).size(), jobs_.of_kind("scores"));
 }
 
 TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
   std::filesystem::create_directories(data_ / "Meshes");
   write_file(data_ / "Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.1)));
   const auto computed = run();
-  EXPECT_THAT(computed, SizeIs(kAll + (kMeshJobs - 1 - 2) + 12 * (kScanJobs - 1 - 2)));
+  const std::size_t unscored = JobCounts(kToyConfig, 1).where([](const Stage& stage) {
+    return stage.kind != "ground_truth" && stage.kind != "scores";
+  });
+  EXPECT_THAT(computed, SizeIs(jobs_.all() + unscored));
   EXPECT_THAT(failures_, IsEmpty());
   EXPECT_THAT(computed, Contains("matched.PS@3_5"));
   EXPECT_THAT(results_, Not(HasSubstr("\nmeshes,3,")));
@@ -208,13 +258,17 @@ TEST_F(RunnerTest, AStoppedRunResumesToTheSameResults) {
   run();
   const std::string uninterrupted = results_;
   store_.clear();
-  {
+  std::size_t stored = 0;
+  for (const char* stage : {"mesh", "surface", "fpfh", "matched.PS"}) {
     ToyRun toy(data_.path(), store_);
-    toy.stop = true;
+    Chain& chain = has_stage(toy.catalog.scan, stage) ? toy.catalog.scan : toy.catalog.mesh;
+    do_before(chain[stage_index(chain, stage)], [&](const StageInputs&) { toy.stop = true; });
     toy.run();
-    EXPECT_THAT(store_.take_saved(), IsEmpty());
+    const std::size_t here = store_.take_saved().size();
+    EXPECT_GT(here, 0U) << "what was at work when the run was stopped, at " << stage;
+    stored += here;
   }
-  run();
+  EXPECT_THAT(run(), SizeIs(jobs_.all() - stored));
   EXPECT_EQ(results_, uninterrupted);
 }
 
@@ -226,7 +280,7 @@ TEST_F(RunnerTest, AGivenReferenceReplacesTheMean) {
   toy.plan = make_plan(toy.context, store_);
   toy.run();
   const auto computed = store_.take_saved();
-  EXPECT_THAT(computed, SizeIs(kAll - 2));
+  EXPECT_THAT(computed, SizeIs(jobs_.all() - jobs_.of("reference")));
   EXPECT_THAT(computed, Not(Contains("reference@meshes")));
 }
 

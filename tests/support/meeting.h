@@ -1,0 +1,39 @@
+// A place where threads meet, for tests that show what runs at the same time.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+
+namespace salbench {
+
+class Meeting {
+ public:
+  // The patience bounds a test that fails; one that passes does not use it up.
+  explicit Meeting(int expected, std::chrono::milliseconds patience = std::chrono::seconds(30))
+      : expected_(expected), patience_(patience) {}
+
+  // Waits for the others. True where all were here at one time; false for everybody once somebody has waited
+  // in vain.
+  bool join() {
+    std::unique_lock lock(mutex_);
+    if (++present_ == expected_ && !failed_) met_ = true;
+    changed_.notify_all();
+    failed_ |= !changed_.wait_for(lock, patience_, [&] { return met_ || failed_; });
+    return met_;
+  }
+  bool met() const {
+    const std::lock_guard lock(mutex_);
+    return met_;
+  }
+
+ private:
+  const int expected_;
+  const std::chrono::milliseconds patience_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  int present_ = 0;
+  bool met_ = false, failed_ = false;
+};
+
+}  // namespace salbench
