@@ -2,13 +2,13 @@
 #include <chrono>
 #include <csignal>
 #include <memory>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/job_counts.h"
 
 namespace salbench {
 namespace {
@@ -18,21 +18,10 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// Waits until so many artefacts are stored, whatever the machine's speed, and then a little longer: the
-// signal falls anywhere between and in the writing of them. False where the run was over before.
-bool reaches(Process& process, const Workspace& toy, std::size_t artefacts,
-             std::chrono::microseconds longer) {
-  while (toy.artefacts().size() < artefacts) {
-    if (process.ended()) return false;
-    std::this_thread::sleep_for(std::chrono::microseconds(200));  // a core for the program
-  }
-  std::this_thread::sleep_for(longer);
-  return !process.ended();
-}
-
 // Of the second mesh, by another process, which is the test: a run can then not come to its end by itself.
 std::unique_ptr<Claim> claim_of_second_mesh(const Workspace& toy) { return toy.claim_family("2"); }
-constexpr std::size_t kBesideSecondMesh = 4 + 2 + 12 * 7;  // artefacts that such a run can store
+// Artefacts that such a run can store.
+std::size_t beside_second_mesh() { return JobCounts(kToyConfig, 1).before_reference(); }
 
 TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {
   const Workspace toy;
@@ -46,12 +35,12 @@ TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {
   for (int trial = 0; trial < 2 * kHeldUp; ++trial) {
     toy.forget_everything();
     auto claim = trial < kHeldUp ? claim_of_second_mesh(toy) : nullptr;
-    const std::size_t artefacts = rng.below(claim ? kBesideSecondMesh : contents.size());
+    const std::size_t artefacts = rng.below(claim ? beside_second_mesh() : contents.size());
     const std::chrono::microseconds longer(rng.below(4000));
     SCOPED_TRACE(testing::Message() << "after " << artefacts << " artefacts and " << longer.count() << " us");
     {
       Process process(toy.command("run"));
-      if (reaches(process, toy, artefacts, longer)) {
+      if (toy.reached_by(process, artefacts, longer)) {
         process.send(SIGKILL);
         killed += process.wait().status == 128 + SIGKILL ? 1 : 0;
       }
@@ -74,13 +63,17 @@ TEST(Interruption, KilledOverAndOverARunStillComesToItsEnd) {
   const std::string results = toy.results();
   const auto contents = toy.contents();
   toy.forget_everything();
-  for (std::size_t reached = contents.size() / 8; reached < contents.size(); reached += contents.size() / 8) {
-    Process process(toy.command("run"));
-    if (reaches(process, toy, reached, {})) process.send(SIGKILL);
-    process.wait();
+  {
+    const auto claim = claim_of_second_mesh(toy);
+    for (std::size_t eighth = 1; eighth <= 8; ++eighth) {
+      Process process(toy.command("run"));
+      ASSERT_TRUE(toy.reached_by(process, eighth * beside_second_mesh() / 8));
+      process.send(SIGKILL);
+      EXPECT_EQ(process.wait().status, 128 + SIGKILL);
+    }
   }
   ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_LT(toy.computed(), static_cast<int>(contents.size()) / 2) << "what was stored was not used";
+  EXPECT_EQ(toy.computed(), contents.size() - beside_second_mesh()) << "what was stored was not used";
   EXPECT_EQ(toy.results(), results);
   EXPECT_EQ(toy.contents(), contents);
   EXPECT_THAT(toy.left_over(), IsEmpty());
@@ -107,7 +100,7 @@ TEST_P(Signal, EndsTheRunInOrderAndTheLinePrintedResumesIt) {
 
   auto claim = claim_of_second_mesh(toy);
   Process process(toy.command("run"));
-  ASSERT_TRUE(reaches(process, toy, 20, {}));
+  ASSERT_TRUE(toy.reached_by(process, 20));
   process.send(GetParam());
   const Outcome ended = process.wait();
   claim.reset();

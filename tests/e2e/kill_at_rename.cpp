@@ -1,7 +1,8 @@
-// Loaded into the program by LD_PRELOAD: kills it at its Nth rename, the moment at which a file comes into
-// being.
+// Loaded into the program by LD_PRELOAD: kills or stops it at its Nth rename, the moment at which a file
+// comes into being.
 //   SALBENCH_KILL_AT="N before"    the file is whole and has its temporary name
 //   SALBENCH_KILL_AT="N after"     it has its name, and the program does not know yet
+//   SALBENCH_KILL_BY=SIGNAL        its number
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
@@ -15,8 +16,11 @@ extern "C" int rename(const char* from, const char* to) noexcept {
   static std::atomic<int> count = 0;
   const char* when = std::getenv("SALBENCH_KILL_AT");
   const bool now = when != nullptr && ++count == std::atoi(when);
-  if (now && std::string_view(when).ends_with("before")) std::raise(SIGKILL);
+  const char* by = std::getenv("SALBENCH_KILL_BY");
+  const int signal = by != nullptr ? std::atoi(by) : SIGKILL;
+  const bool before = now && std::string_view(when).ends_with("before");
+  if (before) std::raise(signal);
   const int result = real_rename(from, to);
-  if (now) std::raise(SIGKILL);
+  if (now && !before) std::raise(signal);
   return result;
 }

@@ -1,10 +1,13 @@
 #include "tests/e2e/process.h"
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <system_error>
+#include <thread>
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -42,6 +45,12 @@ bool Process::ended() {
   return reaped_;
 }
 
+bool Process::stopped() const {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WSTOPPED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == pid_;
+}
+
 Outcome Process::wait() {
   while (!reaped_) {
     if (::waitpid(pid_, &raw_status_, 0) == pid_)
@@ -51,6 +60,27 @@ Outcome Process::wait() {
   }
   const int status = WIFEXITED(raw_status_) ? WEXITSTATUS(raw_status_) : 128 + WTERMSIG(raw_status_);
   return {status, read_file(outputs_ / "out"), read_file(outputs_ / "err")};
+}
+
+bool wait_until(Process& process, const std::function<bool()>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  while (!condition()) {
+    if (process.ended()) return condition();
+    if (std::chrono::steady_clock::now() > deadline) {
+      ADD_FAILURE() << "waited two minutes in vain";
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(200));  // a core for the program
+  }
+  return true;
+}
+
+std::vector<std::string> with_signal_at_rename(std::vector<std::string> command, const std::string& moment,
+                                               int signal) {
+  command.insert(command.begin(),
+                 {"/usr/bin/env", "LD_PRELOAD=" SALBENCH_KILL_AT_RENAME, "SALBENCH_KILL_AT=" + moment,
+                  "SALBENCH_KILL_BY=" + std::to_string(signal), "ASAN_OPTIONS=verify_asan_link_order=0"});
+  return command;
 }
 
 }  // namespace salbench

@@ -1,6 +1,7 @@
 // A program run beside the test: what it was told, what it said, and how it ended.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ class Process {
   ~Process();
 
   void send(int signal) const;
-  bool ended();    // without waiting
-  Outcome wait();  // for the end
+  bool ended();          // without waiting
+  bool stopped() const;  // by SIGSTOP; without waiting
+  Outcome wait();        // for the end
 
  private:
   TemporaryFolder outputs_;
@@ -34,6 +36,14 @@ class Process {
   int raw_status_ = 0;
   bool reaped_ = false;
 };
+
+// Waits for a condition that the process brings about. False if the process ends without it, and, which is a
+// failure of the test, after two minutes.
+bool wait_until(Process& process, const std::function<bool()>& condition);
+
+// The command, sent the signal by itself at one of its renames: "3 before", "3 after" (kill_at_rename.cpp).
+std::vector<std::string> with_signal_at_rename(std::vector<std::string> command, const std::string& moment,
+                                               int signal);
 
 inline Outcome run_process(const std::vector<std::string>& command) { return Process(command).wait(); }
 

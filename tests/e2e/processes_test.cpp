@@ -1,14 +1,13 @@
 // Several processes over one cache: they share the work, and what comes of it is what one process makes.
-#include <chrono>
 #include <csignal>
 #include <memory>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "io/file.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/job_counts.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
@@ -21,20 +20,21 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-constexpr int kProcesses = 4;
+constexpr int kProcesses = 4, kMeshes = 6;  // meshes with those of add_more_meshes
 
 std::string out_of(const Workspace& toy, int process) {
   return (toy / ("out" + std::to_string(process))).string();
 }
 
+// None equals another, whose artefacts it would share.
 void add_more_meshes(const Workspace& toy) {
-  for (int k = 3; k <= 6; ++k)
-    write_toy_item(toy.data(), std::to_string(k), shapes::bumpy_sphere(2, 0.05 * k));
+  for (int k = 3; k <= kMeshes; ++k)
+    write_toy_item(toy.data(), std::to_string(k), shapes::bumpy_sphere(2, 0.02 + 0.05 * k));
 }
 
-int computed_by(const fs::path& record) {
+std::size_t computed_by(const fs::path& record) {
   const auto line = lines_with(read_file(record), "artefacts_computed: ");
-  return std::stoi(line.at(0).substr(line[0].find(' ')));
+  return std::stoul(line.at(0).substr(line[0].find(' ')));
 }
 
 TEST(Processes, FourAtOnceDoTheWorkOfOneAndComeToTheSameBytes) {
@@ -49,7 +49,7 @@ TEST(Processes, FourAtOnceDoTheWorkOfOneAndComeToTheSameBytes) {
   for (int p = 0; p < kProcesses; ++p)
     processes.push_back(
         std::make_unique<Process>(toy.command("run", {"--threads", "1", "--out", out_of(toy, p)})));
-  int computed = 0;
+  std::size_t computed = 0;
   for (int p = 0; p < kProcesses; ++p) {
     const Outcome run = processes[static_cast<std::size_t>(p)]->wait();
     ASSERT_EQ(run.status, 0) << run.err;
@@ -58,7 +58,7 @@ TEST(Processes, FourAtOnceDoTheWorkOfOneAndComeToTheSameBytes) {
     computed += computed_by(fs::path(out_of(toy, p)) / "run.yaml");
   }
   EXPECT_EQ(toy.contents(), contents);
-  EXPECT_EQ(computed, static_cast<int>(contents.size())) << "some artefact was computed twice";
+  EXPECT_EQ(computed, contents.size()) << "some artefact was computed twice";
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
 
@@ -68,29 +68,26 @@ TEST(Processes, WhatAnotherOneHasClaimedIsLeftUntilItGivesItUp) {
   auto claim = toy.claim_family("1");
   ASSERT_NE(claim, nullptr);
   Process run(toy.command("run"));
-  // All that can be had of the second mesh: two maps of it and of each scan.
-  const auto maps = [&] { return toy.artefacts("map.PS").size() + toy.artefacts("map.RS").size(); };
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (maps() < 26 && std::chrono::steady_clock::now() < give_up)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  EXPECT_FALSE(run.ended());
-  EXPECT_THAT(toy.contents(), SizeIs(4 + 2 + 12 * 7)) << "of the second mesh, before matching";
+  const std::size_t of_second_mesh = JobCounts(kToyConfig, 1).before_reference();
+  ASSERT_TRUE(wait_until(run, [&] { return toy.artefacts().size() >= of_second_mesh; }));
+  ASSERT_TRUE(toy.tries_to_claim(run, 2)) << "with nothing else to do, it must ask for the first mesh";
+  EXPECT_THAT(toy.contents(), SizeIs(of_second_mesh)) << "of the second mesh, before matching";
   for (const std::string& line : toy.contents()) EXPECT_THAT(line, HasSubstr("/2"));
   claim.reset();
   const Outcome outcome = run.wait();
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(toy.computed(), static_cast<int>(toy.contents().size()));
+  EXPECT_EQ(toy.computed(), toy.contents().size());
 }
 
 TEST(Processes, AKilledOneHoldsUpNoOther) {
   const Workspace toy;
   add_more_meshes(toy);
-  Process victim(toy.command("run", {"--threads", "1", "--out", out_of(toy, 1)}));
-  while (toy.artefacts().empty() && !victim.ended())
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // Stopped while it stores an artefact, so with its mesh claimed.
+  Process victim(with_signal_at_rename(toy.command("run", {"--threads", "1", "--out", out_of(toy, 1)}),
+                                       "10 before", SIGSTOP));
+  ASSERT_TRUE(wait_until(victim, [&] { return victim.stopped(); }));
   Process survivor(toy.command("run", {"--threads", "1", "--out", out_of(toy, 2)}));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  ASSERT_TRUE(toy.tries_to_claim(survivor, 3 * kMeshes)) << "after one try for each mesh it must be waiting";
   victim.send(SIGKILL);
   const Outcome run = survivor.wait();
   EXPECT_EQ(run.status, 0) << run.err;
@@ -105,8 +102,7 @@ TEST(Processes, AnInterruptedOneDoesNotWaitForOthers) {
   std::vector<std::unique_ptr<Claim>> claims;
   for (const char* mesh : {"1", "2"}) claims.push_back(toy.claim_family(mesh));
   Process run(toy.command("run"));
-  while (!fs::exists(toy.out() / "run.yaml") && !run.ended())
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(toy.tries_to_claim(run, 5)) << "after one try for each of two meshes it must be waiting";
   run.send(SIGINT);
   EXPECT_EQ(run.wait().status, 130);
   EXPECT_THAT(toy.artefacts(), IsEmpty());
@@ -120,22 +116,22 @@ TEST(Shards, TogetherDoTheWorkOfOneRunWhichThenOnlyMatchesAndScores) {
   const auto contents = toy.contents();
   toy.forget_everything();
 
-  int computed = 0;
+  std::size_t computed = 0;
   for (const char* shard : {"1/3", "2/3", "3/3"}) {
     const Outcome run = toy.salbench("run", {"--shard", shard});
     ASSERT_EQ(run.status, 0) << run.err;
     const std::string name = "shard_" + std::string(1, shard[0]) + "_of_3.yaml";
     EXPECT_THAT(read_file(toy.out() / name), HasSubstr("shard: " + std::string(shard) + "\n"));
-    EXPECT_GE(computed_by(toy.out() / name), 6 + 12 * 7) << "at least one mesh and its scans";
+    EXPECT_EQ(computed_by(toy.out() / name), JobCounts(kToyConfig, kMeshes / 3).before_reference());
     computed += computed_by(toy.out() / name);
     EXPECT_THAT(toy.salbench("plan", {"--shard", shard}).out, HasSubstr("\n0 jobs to do"));
   }
   EXPECT_FALSE(fs::exists(toy.out() / "results.csv") || fs::exists(toy.out() / "run.yaml"));
   EXPECT_THAT(toy.contents(), Each(Not(HasSubstr("matched."))));
-  EXPECT_EQ(computed, static_cast<int>(toy.contents().size()));
+  EXPECT_EQ(computed, toy.contents().size());
 
   ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_EQ(toy.computed() + computed, static_cast<int>(contents.size()));
+  EXPECT_EQ(toy.computed() + computed, contents.size());
   EXPECT_EQ(toy.results(), results);
   EXPECT_EQ(toy.contents(), contents);
 }
@@ -147,9 +143,10 @@ TEST(Shards, WithAGivenReferenceLeaveNothingButTheTablesToDo) {
   const std::string reference = toy.write("reference.csv", csv).string();
   for (const char* shard : {"1/2", "2/2"})
     ASSERT_EQ(toy.salbench("run", {"--shard", shard, "--reference", reference}).status, 0);
-  EXPECT_THAT(toy.artefacts("scores.PS"), SizeIs(26));
+  EXPECT_THAT(toy.artefacts("scores.PS"), SizeIs(JobCounts().of("scores.PS")));
   ASSERT_EQ(toy.salbench("run", {"--reference", reference}).status, 0);
-  EXPECT_EQ(toy.computed(), 4) << "the mean histograms of two models, of meshes and of scans";
+  const JobCounts jobs;
+  EXPECT_EQ(toy.computed(), jobs.means() - jobs.of("reference")) << "the mean histograms of the models";
 }
 
 TEST(Shards, AreWrittenIOfN) {

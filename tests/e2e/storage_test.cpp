@@ -125,7 +125,7 @@ class DamagedCache : public testing::Test {
     for (const fs::path& file : damaged)
       EXPECT_THAT(lines_with(run.err, file.string()), AllOf(SizeIs(1), Each(HasSubstr("warning: "))))
           << run.err;
-    EXPECT_EQ(toy_.computed(), static_cast<int>(damaged.size()));
+    EXPECT_EQ(toy_.computed(), damaged.size());
     EXPECT_EQ(toy_.results(), results_);
     EXPECT_EQ(toy_.contents(), contents_);
     const Outcome after = toy_.salbench("run");
@@ -165,7 +165,7 @@ TEST_F(DamagedCache, ADamagedInputIsFoundByWhatReadsIt) {
   const Outcome run = toy_.salbench("run");
   ASSERT_EQ(run.status, 0) << run.err;
   for (const fs::path& file : damaged) EXPECT_THAT(lines_with(run.err, file.string()), SizeIs(1));
-  EXPECT_EQ(toy_.computed(), 2 * static_cast<int>(damaged.size()));
+  EXPECT_EQ(toy_.computed(), 2 * damaged.size());
   EXPECT_EQ(toy_.results(), results_);
   EXPECT_EQ(toy_.contents(), contents_);
 }

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <sstream>
+#include <system_error>
+#include <thread>
 
 #include <fmt/format.h>
+#include <sys/inotify.h>
+#include <unistd.h>
 
 #include "cache/artefact_name.h"
 #include "cache/digest.h"
+#include "cache/layout.h"
 #include "io/file.h"
 #include "tests/support/toy_data.h"
 
@@ -49,13 +54,29 @@ std::unique_ptr<Claim> Workspace::claim_family(const std::string& mesh) const {
   return claim_in(cache(), "family " + file_digest(read_file(data() / "Meshes" / (mesh + ".off"))).hex());
 }
 
+// Each try opens the file of the claims. Openings and closings take turns: the kernel merges equal events.
+bool Workspace::tries_to_claim(Process& process, int times) const {
+  const int watch = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  const fs::path claims = cache() / kClaimsFile;
+  if (::inotify_add_watch(watch, claims.c_str(), IN_OPEN | IN_CLOSE_WRITE) < 0)
+    throw std::system_error(errno, std::generic_category(), claims.string());
+  int seen = 0;
+  const bool tried = wait_until(process, [&] {
+    inotify_event event{};  // of a file: no name follows
+    while (::read(watch, &event, sizeof event) == sizeof event) seen += (event.mask & IN_OPEN) != 0 ? 1 : 0;
+    return seen >= times;
+  });
+  ::close(watch);
+  return tried;
+}
+
 std::string Workspace::results() const { return read_file(out() / "results.csv"); }
 std::string Workspace::summary() const { return read_file(out() / "summary.csv"); }
 
-int Workspace::computed() const {
+std::size_t Workspace::computed() const {
   constexpr std::string_view kKey = "artefacts_computed: ";
   const std::string yaml = read_file(out() / "run.yaml");
-  return std::stoi(yaml.substr(yaml.find(kKey) + kKey.size()));
+  return std::stoul(yaml.substr(yaml.find(kKey) + kKey.size()));
 }
 
 void Workspace::forget_everything() const {
@@ -71,6 +92,12 @@ std::vector<fs::path> Workspace::artefacts(std::string_view stage) const {
       files.push_back(it->path());
   std::sort(files.begin(), files.end());
   return files;
+}
+
+bool Workspace::reached_by(Process& process, std::size_t count, std::chrono::microseconds longer) const {
+  if (!wait_until(process, [&] { return artefacts().size() >= count; })) return false;
+  std::this_thread::sleep_for(longer);
+  return !process.ended();
 }
 
 std::vector<std::string> Workspace::contents() const {

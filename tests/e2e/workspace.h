@@ -1,6 +1,7 @@
 // A folder with a small data set, a configuration, and the cache and results of the runs over them.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -42,13 +43,19 @@ class Workspace {
 
   // What the program claims while it works on a mesh and its scans, held by the test in its place.
   std::unique_ptr<Claim> claim_family(const std::string& mesh) const;
+  // Waits until work has been claimed, or tried to be claimed, so many more times; false where the process
+  // ends.
+  bool tries_to_claim(Process& process, int times) const;
 
   std::string results() const;     // the bytes of results.csv
   std::string summary() const;     // of summary.csv
-  int computed() const;            // artefacts that the last run computed, by its run.yaml
+  std::size_t computed() const;    // artefacts that the last run computed, by its run.yaml
   void forget_everything() const;  // removes cache and results
 
   std::vector<std::filesystem::path> artefacts(std::string_view stage = {}) const;  // files, sorted
+  // Waits until so many are stored, whatever the machine's speed, and then a little longer: what comes next
+  // falls anywhere between and in the writing of them. False where the process ended before.
+  bool reached_by(Process& process, std::size_t artefacts, std::chrono::microseconds longer = {}) const;
   // "stage/item key content" of every artefact: what the cache says, without when it was said.
   std::vector<std::string> contents() const;
   // Everything in the cache's scratch folder, and in the output folder what is no table.
