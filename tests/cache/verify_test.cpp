@@ -121,7 +121,7 @@ TEST_F(VerifyTest, AnArtefactUnderTheKeyOfAnotherIsNamedAndNotUsed) {
   ArtefactName wrong = name(0);
   wrong.key = key_of(recipe(7));
   disguise(0, *read_bytes(file(0)), wrong);
-  EXPECT_THAT(fault(), HasSubstr("key"));
+  EXPECT_THAT(fault(), HasSubstr("its key is not that of what it was made of"));
   EXPECT_FALSE(FolderStore(folder_.path(), Access::read_only).load("fpfh", wrong.key));
 }
 

@@ -186,6 +186,7 @@ TEST(FpfhHistogram, DegenerateShapesGiveNumbers) {
         for (const Support& support : {kNine, Support{0, 0.0}, Support{0, 10.0}}) {
           const Normals normals(points.size(), normal);
           const Descriptors d = fpfh(points, normals, KdTree(points), support, weighting);
+          ASSERT_EQ(d.size(), points.size());
           EXPECT_TRUE(std::ranges::all_of(d.values, [](float v) { return std::isfinite(v) && v >= 0; }));
         }
       }
