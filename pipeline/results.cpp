@@ -169,12 +169,12 @@ Histogram read_reference(const std::string& path) {
   }
   const double sum = std::accumulate(column.begin(), column.end(), 0.0);
   if (!(sum > 0) || !std::isfinite(sum))
-    throw ConfigError(fmt::format("{}:{}: column GS sums to {} from here on: no density does", path,
+    throw ConfigError(fmt::format("{}:{}: column GS sums to {:.6g} from here on: no density does", path,
                                   table.lines.front(), sum));
   if (!table.remark.empty()) spdlog::warn("{}: {}", path, table.remark);
   const auto bins = static_cast<double>(histogram.size());
   if (std::abs(sum / bins - 1) <= kRounded) return histogram;
-  spdlog::warn("{}: column GS sums to {}, densities over {} bins to {}: it was scaled", path, sum, bins,
+  spdlog::warn("{}: column GS sums to {:.6g}, densities over {} bins to {}: it was scaled", path, sum, bins,
                bins);
   for (double& density : histogram) density = density / sum * bins;
   return histogram;

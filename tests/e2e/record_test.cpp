@@ -47,7 +47,7 @@ TEST(Record, TheConfigurationNamesItsFolders) {
   fs::remove_all(toy.out());
   const Outcome again = run_process({SALBENCH_PROGRAM, "run", toy.config().string()});
   ASSERT_EQ(again.status, 0) << again.err;
-  EXPECT_EQ(toy.computed(), 0);
+  EXPECT_EQ(toy.computed(), 0U);
   EXPECT_EQ(toy.results(), results);
 }
 
