@@ -72,6 +72,16 @@ int read_all(int fd, Buffer& buffer) {
   return 0;
 }
 
+// Size in bytes of a regular file, opened with O_NONBLOCK: the opening of a pipe would wait for its writer.
+std::size_t check_regular(int fd, const fs::path& path) {
+  struct stat status {};
+  if (fd < 0 || ::fstat(fd, &status) != 0) fail_input(path, errno);
+  if (S_ISDIR(status.st_mode))
+    throw InputError(fmt::format("{}: is a folder, where a file is expected", path.string()));
+  if (!S_ISREG(status.st_mode)) throw InputError(fmt::format("{}: is not a regular file", path.string()));
+  return static_cast<std::size_t>(status.st_size);
+}
+
 // Takes the lock of an unfinished file; an error number, or 0.
 int lock(int fd) {
   struct flock whole {};
@@ -133,14 +143,13 @@ std::string system_reason(int error) {
   return std::system_category().message(error) + (advice.empty() ? "" : "; ") + std::string(advice);
 }
 
+void require_regular_file(const fs::path& path) {
+  check_regular(Descriptor(path, O_RDONLY | O_NONBLOCK).get(), path);
+}
+
 std::string read_file(const fs::path& path) {
-  const Descriptor file(path, O_RDONLY | O_NONBLOCK);  // the opening of a pipe would wait for its writer
-  struct stat status {};
-  if (file.get() < 0 || ::fstat(file.get(), &status) != 0) fail_input(path, errno);
-  if (S_ISDIR(status.st_mode))
-    throw InputError(fmt::format("{}: is a folder, where a file is expected", path.string()));
-  if (!S_ISREG(status.st_mode)) throw InputError(fmt::format("{}: is not a regular file", path.string()));
-  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+  const Descriptor file(path, O_RDONLY | O_NONBLOCK);
+  std::string bytes(check_regular(file.get(), path), '\0');
   if (const int error = read_all(file.get(), bytes); error != 0) fail_input(path, error);
   return bytes;
 }

@@ -15,6 +15,9 @@ namespace salbench {
 
 using Bytes = std::vector<std::byte>;
 
+// Throws as read_file does, which opens it next, or another library.
+void require_regular_file(const std::filesystem::path& path);
+
 // All bytes of a file that the user named. Throws InputError if it is missing, unreadable or not a regular
 // file (pipes and devices never block), StorageError if the system is out of open files or memory.
 std::string read_file(const std::filesystem::path& path);

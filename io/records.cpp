@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,20 +29,6 @@ void put(std::byte* place, Number number) {
   std::memcpy(place, &number, sizeof number);
 }
 
-template <class Number>
-Number number_at(const std::byte* place) {
-  Number number;
-  std::memcpy(&number, place, sizeof number);
-  return number;
-}
-
-Cell cell_at(const std::byte* place, const Field& field) {
-  if (field.type == FieldType::integer) return number_at<std::int64_t>(place);
-  if (field.type == FieldType::real) return number_at<double>(place);
-  const std::string_view text(reinterpret_cast<const char*>(place), field.size);
-  return std::string(text.substr(0, text.find('\0')));
-}
-
 }  // namespace
 
 std::vector<Field> packed(std::vector<Field> fields) {
@@ -68,18 +53,6 @@ Records records_from(const Table& table) {
       std::visit([place](const auto& cell) { put(place, cell); }, table.rows[r][c]);
     }
   return records;
-}
-
-Table table_from(const Records& records) {
-  Table table;
-  for (const Field& field : records.fields) table.columns.push_back(field.name);
-  const std::size_t size = record_size(records.fields);
-  for (std::size_t begin = 0; begin < records.bytes.size(); begin += size) {
-    auto& row = table.rows.emplace_back();
-    for (const Field& field : records.fields)
-      row.push_back(cell_at(records.bytes.data() + begin + field.offset, field));
-  }
-  return table;
 }
 
 }  // namespace salbench

@@ -30,7 +30,4 @@ std::size_t record_size(const std::vector<Field>& fields);  // bytes; of packed 
 // A column without cells is text. Throws std::logic_error for a column that mixes types.
 Records records_from(const Table& table);
 
-// The inverse.
-Table table_from(const Records& records);
-
 }  // namespace salbench

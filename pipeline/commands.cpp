@@ -54,24 +54,33 @@ std::string val_text(const ScalarField& field) {
   return lines;
 }
 
-// Writes TO/MODEL/ITEM.val for every map that is known; returns how many.
-std::size_t write_maps(const Setup& setup, const Plan& plan, Runner& runner, const Arguments& arguments) {
+// Writes TO/MODEL/ITEM.val for every map that is known; returns how many. Ends early once `stop` is set.
+std::size_t write_maps(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
+  const Context& context = session.setup.context;
+  std::vector<std::string> models;
+  for (const Model& model : session.setup.config.models)
+    if (model.is_map()) models.push_back(model.name);
+  for (const std::string& model : models)
+    make_folder(fs::path(arguments.to) / model, "choose another with --to");
+  const std::vector<ItemRef> items = context.items();
   std::size_t written = 0;
-  for (const Model& model : setup.config.models) {
-    if (!model.is_map()) continue;
-    const std::string name = (arguments.matched ? "matched." : "map.") + model.name;
-    const fs::path folder = fs::path(arguments.to) / model.name;
-    make_folder(folder, "choose another with --to");
-    for (std::size_t f = 0; f < setup.workload.families.size(); ++f) {
-      for (const ItemRef& item : setup.context.family(f)) {
-        const Chain& chain = setup.context.chain(item);
-        if (!has_stage(chain, name) || !plan.jobs(item)[stage_index(chain, name)].known()) continue;
-        const Value map = runner.result(item, stage_index(chain, name));
-        write_file(folder / (setup.context.name(item) + ".val"), val_text(std::get<ScalarField>(map)));
-        ++written;
-      }
+  session.progress->begin("writing", items.size());
+  for (const ItemRef& item : items) {
+    for (const std::string& model : models) {
+      if (stop) return written;
+      const Chain& chain = context.chain(item);
+      const std::string name = (arguments.matched ? "matched." : "map.") + model;
+      if (!has_stage(chain, name)) continue;
+      const std::size_t stage = stage_index(chain, name);
+      if (!session.plan.jobs(item)[stage].known()) continue;
+      const Value map = session.runner.result(item, stage);
+      write_file(fs::path(arguments.to) / model / (context.name(item) + ".val"),
+                 val_text(std::get<ScalarField>(map)));
+      ++written;
     }
+    session.progress->item_done();
   }
+  session.progress->end();
   return written;
 }
 
@@ -170,7 +179,8 @@ ExitStatus maps_command(const Arguments& arguments, const std::atomic<bool>& sto
   const OrderlyEnd orderly;
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
-  const std::size_t written = write_maps(session.setup, session.plan, session.runner, arguments);
+  const std::size_t written = write_maps(session, arguments, stop);
+  if (stop) return interrupted_status(arguments);
   if (!arguments.quiet) fmt::print("{} maps written to {}\n", written, arguments.to);
   return finished_status(session);
 }

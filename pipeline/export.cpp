@@ -98,23 +98,18 @@ bool write_shape(Session& session, const ItemRef& item, ShapeFormat format, cons
 }
 
 std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames& stages,
-                         const fs::path& folder) {
+                         const fs::path& folder, const std::atomic<bool>& stop) {
   make_folder(folder, "choose another with --to");
+  const std::vector<ItemRef> items = session.setup.context.items();
   std::size_t written = 0;
-  for (std::size_t f = 0; f < session.setup.workload.families.size(); ++f)
-    for (const ItemRef& item : session.setup.context.family(f))
-      written += write_shape(session, item, format, stages, folder) ? 1U : 0U;
+  session.progress->begin("exporting", items.size());
+  for (const ItemRef& item : items) {
+    if (stop) break;
+    written += write_shape(session, item, format, stages, folder) ? 1U : 0U;
+    session.progress->item_done();
+  }
+  session.progress->end();
   return written;
-}
-
-// --- one file ---------------------------------------------------------------------------------------------
-
-void write_archive(Session& session, const StageNames& stages, const fs::path& file, bool link) {
-  const fs::path folder = fs::absolute(file).parent_path();
-  make_folder(folder, "choose another with --to");
-  const Bytes image =
-      hdf5_image(export_content(session, stages, link ? std::optional(folder) : std::nullopt));
-  write_file(file, {reinterpret_cast<const char*>(image.data()), image.size()});
 }
 
 }  // namespace
@@ -133,13 +128,14 @@ ExitStatus export_command(const Arguments& arguments, const ExportOptions& optio
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
-  if (shapes) {
-    const std::size_t written = write_shapes(session, format, stages, arguments.to);
-    if (!arguments.quiet) fmt::print("{} shapes written to {}\n", written, arguments.to);
-  } else {
-    write_archive(session, stages, arguments.to, options.link);
-    if (!arguments.quiet) fmt::print("exported to {}\n", arguments.to);
-  }
+  std::string done = fmt::format("exported to {}", arguments.to);
+  if (shapes)
+    done = fmt::format("{} shapes written to {}", write_shapes(session, format, stages, arguments.to, stop),
+                       arguments.to);
+  else
+    export_file(session, stages, arguments.to, options.link, stop);
+  if (stop) return interrupted_status(arguments);
+  if (!arguments.quiet) fmt::print("{}\n", done);
   return finished_status(session);
 }
 

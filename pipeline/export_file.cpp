@@ -1,9 +1,12 @@
 #include "pipeline/export_file.h"
 
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "io/file.h"
+#include "io/hdf5_file.h"
 #include "pipeline/results.h"
 #include "stages/core/errors.h"
 
@@ -35,30 +38,40 @@ Attributes attributes_of(const Origin& origin) {
 
 class Exporter {
  public:
-  Exporter(Session& session, const StageNames& stages, const std::optional<fs::path>& links_from)
-      : session_(session), context_(session.setup.context), stages_(stages), links_from_(links_from) {}
-
-  Hdf5Content content() && {
+  Exporter(Session& session, const StageNames& stages, const fs::path& folder, bool link)
+      : session_(session), context_(session.setup.context), stages_(stages), folder_(folder), link_(link) {
     check_names();
+  }
+
+  bool write(const fs::path& target, const std::atomic<bool>& stop) {
+    UnfinishedFile unfinished(folder_);
+    file_.emplace(unfinished.path());
     add_root();
-    for (std::size_t f = 0; f < context_.workload.families.size(); ++f)
-      for (const ItemRef& item : context_.family(f)) add_item(item);
+    const std::vector<ItemRef> items = context_.items();
+    session_.progress->begin("exporting", items.size());
+    for (const ItemRef& item : items) {
+      if (stop) return false;
+      add_item(item);
+      session_.progress->item_done();
+    }
+    session_.progress->end();
     for (std::size_t mean = 0; mean < context_.catalog.means.size(); ++mean)
       for (const bool meshes : {true, false}) add_mean(mean, meshes);
     add_scores();
-    return std::move(content_);
+    file_->close();
+    unfinished.finish(target);
+    return true;
   }
 
  private:
   // A mesh file may be called "52_3", as the scan 3 of the mesh 52 is.
   void check_names() const {
     std::set<std::string, std::less<>> names = {std::string(kScores), std::string(kMeans)};
-    for (std::size_t f = 0; f < context_.workload.families.size(); ++f)
-      for (const ItemRef& item : context_.family(f))
-        if (!names.insert(context_.name(item)).second)
-          throw ConfigError(fmt::format(
-              "two things of the export would be called '{}': rename the mesh, or leave it out with --items",
-              context_.name(item)));
+    for (const ItemRef& item : context_.items())
+      if (!names.insert(context_.name(item)).second)
+        throw ConfigError(fmt::format(
+            "two things of the export would be called '{}': rename the mesh, or leave it out with --items",
+            context_.name(item)));
   }
 
   void add_root() {
@@ -68,15 +81,15 @@ class Exporter {
       for (const Stage& stage : *chain)
         if (chain == &context_.catalog.mesh || !has_stage(context_.catalog.mesh, stage.name))
           versions += fmt::format("{}: {}\n", stage.name, stage.version);
-    content_.attributes = {
+    Attributes attributes = {
         {"program", fmt::format("salbench {}", SALBENCH_VERSION)},
         {"layout", std::string("salbench export 1")},
         {"configuration", config_yaml(config)},
         {"stage_versions", std::move(versions)},
         {"reference", std::string(context_.given_reference ? "given by --reference"
                                                            : "mean over the items of the export")}};
-    content_.attributes.insert(content_.attributes.end(), context_.attributes.begin(),
-                               context_.attributes.end());
+    attributes.insert(attributes.end(), context_.attributes.begin(), context_.attributes.end());
+    file_->attributes("/", attributes);
   }
 
   void add_item(const ItemRef& item) {
@@ -86,33 +99,37 @@ class Exporter {
                              {"item", context_.source(item).name},
                              {"class", context_.source(item).category}};
     if (!item.is_mesh()) attributes.emplace_back("view", std::int64_t{item.view});
-    content_.attributes_of.push_back({name, std::move(attributes)});
+    file_->attributes(name, attributes);
     for (std::size_t s = 0; s < chain.size(); ++s) {
       const Job& job = session_.plan.jobs(item)[s];
       if (!job.known() || !stages_.contains(chain[s].name)) continue;
       const Origin origin{decide(context_, session_.plan, item, s, nowhere).recipe, chain[s].kind, job};
-      const Value value = session_.runner.result(item, s);  // mends a damaged artefact, too
-      if (const auto* scores = std::get_if<Scores>(&value))
-        add_score(item, origin, *scores);
+      const auto result = [&] { return session_.runner.result(item, s); };
+      if (chain[s].kind == "scores")
+        add_score(item, origin, std::get<Scores>(result()));
       else
-        add_result(name + "/" + chain[s].name, origin, value);
+        add_result(name + "/" + chain[s].name, origin, result);
     }
   }
 
-  void add_result(const std::string& group, const Origin& origin, const Value& value) {
-    if (links_from_) {
-      const fs::path artefact = session_.store.path(origin.recipe.stage, origin.job.key).value();
-      content_.links.push_back({group, fs::relative(artefact, *links_from_).string(), "/"});
+  // `compute` makes a damaged artefact anew.
+  template <class Compute>
+  void add_result(const std::string& group, const Origin& origin, const Compute& compute) {
+    const auto read = [&] { return session_.store.image(origin.recipe.stage, origin.job.key); };
+    std::optional<Bytes> image = read();
+    if (!image) {
+      compute();
+      image = read();
+    }
+    const auto artefact = session_.store.path(origin.recipe.stage, origin.job.key);
+    if (!image || !artefact)
+      throw StorageError(fmt::format("{}: something removes its artefacts while they are exported; run again",
+                                     session_.setup.cache.string()));
+    if (link_) {
+      file_->link({group, fs::relative(*artefact, folder_).string(), "/"});
     } else {
-      add_arrays(group, value);
-      content_.attributes_of.push_back({group, attributes_of(origin)});
-    }
-  }
-
-  void add_arrays(const std::string& group, const Value& value) {
-    for (Array& array : arrays_from(value)) {
-      array.name = group + "/" + array.name;
-      content_.arrays.push_back(std::move(array));
+      file_->copy(group, *image);
+      file_->attributes(group, attributes_of(origin));
     }
   }
 
@@ -122,13 +139,18 @@ class Exporter {
     const std::optional<Histogram> histogram = session_.runner.mean(index, meshes);
     if (!histogram || !stages_.contains(mean.name)) return;
     const std::string group = fmt::format("{}/{}/{}", kMeans, mean.name, meshes ? "meshes" : "scans");
-    if (index == kReference && context_.given_reference)
-      add_arrays(group, *histogram);
-    else
-      add_result(group,
-                 {decide_mean(context_, session_.plan, index, meshes, nowhere).recipe, kind_of(*histogram),
-                  session_.plan.means[index][meshes ? 0 : 1]},
-                 *histogram);
+    if (index == kReference && context_.given_reference) {
+      for (Array& array : arrays_from(*histogram)) {
+        array.name = group + "/" + array.name;
+        file_->array(array);
+      }
+      return;
+    }
+    const Origin origin{decide_mean(context_, session_.plan, index, meshes, nowhere).recipe,
+                        kind_of(*histogram), session_.plan.means[index][meshes ? 0 : 1]};
+    const ArtefactNote note{meshes ? "meshes" : "scans", 0, context_.attributes};
+    add_result(group, origin,
+               [&] { session_.store.save(origin.recipe, origin.kind, arrays_from(*histogram), note); });
   }
 
   void add_score(const ItemRef& item, const Origin& origin, const Scores& scores) {
@@ -145,24 +167,27 @@ class Exporter {
     table.columns.insert(table.columns.end(), {"key", "content"});
     for (std::size_t r = 0; r < table.rows.size(); ++r)
       table.rows[r].insert(table.rows[r].end(), {origins_[r].first.hex(), origins_[r].second.hex()});
-    content_.tables.push_back({std::string(kScores), std::move(table),
-                               "agreement of each model's map with the ground truth; NaN where undefined"});
+    file_->table({std::string(kScores), std::move(table),
+                  "agreement of each model's map with the ground truth; NaN where undefined"});
   }
 
   Session& session_;
   const Context& context_;
   const StageNames& stages_;
-  const std::optional<fs::path>& links_from_;
-  Hdf5Content content_;
+  const fs::path& folder_;
+  bool link_;
+  std::optional<Hdf5Writer> file_;
   std::vector<ResultRow> rows_;
   std::vector<std::pair<Digest, Digest>> origins_;  // key and content, as rows_
 };
 
 }  // namespace
 
-Hdf5Content export_content(Session& session, const StageNames& stages,
-                           const std::optional<fs::path>& links_from) {
-  return Exporter(session, stages, links_from).content();
+bool export_file(Session& session, const StageNames& stages, const fs::path& target, bool link,
+                 const std::atomic<bool>& stop) {
+  const fs::path folder = fs::absolute(target).parent_path();
+  make_folder(folder, "choose another with --to");
+  return Exporter(session, stages, folder, link).write(target, stop);
 }
 
 }  // namespace salbench

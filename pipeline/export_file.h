@@ -4,23 +4,23 @@
 //   /scores                      one table: a row an item and model
 #pragma once
 
+#include <atomic>
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <set>
 #include <string>
 
-#include "io/hdf5_file.h"
 #include "pipeline/session.h"
 
 namespace salbench {
 
 using StageNames = std::set<std::string, std::less<>>;
 
-// After the session's run: what it knows of the stages named; what failed or does not apply is not there.
-// With `links_from`, the folder that the file will lie in, groups are links to the artefacts, each of which
-// has been read and found whole. Throws ConfigError where two things would have the same name.
-Hdf5Content export_content(Session& session, const StageNames& stages,
-                           const std::optional<std::filesystem::path>& links_from);
+// After the session's run: writes what it knows of the stages named, item by item; what failed or does not
+// apply is not there. Nothing has the name `target` before the file is complete: false if the session was
+// stopped before that, and the part written is removed. With `link`, groups are links to the artefacts, each
+// of which has been read and found whole. Throws ConfigError where two things would have the same name,
+// StorageError.
+bool export_file(Session& session, const StageNames& stages, const std::filesystem::path& target, bool link,
+                 const std::atomic<bool>& stop);
 
 }  // namespace salbench

@@ -58,22 +58,17 @@ GivenMaps maps_in_folder(const fs::path& folder) {
 }
 
 // Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
-GivenMaps maps_in_file(const fs::path& path) {
-  std::shared_ptr<const Arrays> arrays;
-  try {
-    const std::string bytes = read_file(path);
-    arrays =
-        std::make_shared<const Arrays>(hdf5_content(std::as_bytes(std::span(bytes)), path.string()).arrays);
-  } catch (const InputError& error) {
-    throw ConfigError(fmt::format("--maps {}", error.what()));
-  }
+GivenMaps maps_in_file(const fs::path& path) try {
+  const auto file = std::make_shared<const Hdf5File>(path);
   GivenMaps maps{.source = path};
-  for (const Array& array : *arrays) maps.items.insert(array.name);
-  maps.read = [arrays](const std::string& item) -> SourceData {
-    const Array& array = *find_array(*arrays, item);
+  for (const std::string& name : file->arrays()) maps.items.insert(name);
+  maps.read = [file](const std::string& item) -> SourceData {
+    const Array array = file->read(item);
     return {content_digest({array}), as_field(array)};
   };
   return maps;
+} catch (const InputError& error) {
+  throw ConfigError(fmt::format("--maps {}", error.what()));
 }
 
 SourceFile source_of(const std::shared_ptr<const GivenMaps>& maps, const std::string& item) {

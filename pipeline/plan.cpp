@@ -126,6 +126,13 @@ std::vector<ItemRef> Context::family(std::size_t f) const {
   return items;
 }
 
+std::vector<ItemRef> Context::items() const {
+  std::vector<ItemRef> all;
+  for (std::size_t f = 0; f < workload.families.size(); ++f)
+    for (const ItemRef& item : family(f)) all.push_back(item);
+  return all;
+}
+
 std::vector<ItemRef> Context::items(bool meshes) const {
   std::vector<ItemRef> result;
   for (std::size_t f = 0; f < workload.families.size(); ++f)

@@ -88,6 +88,7 @@ struct Context {
   std::string name(const ItemRef& item) const;       // "52", "52_3"
   std::vector<ItemRef> items(bool meshes) const;     // of one kind, in order
   std::vector<ItemRef> family(std::size_t f) const;  // the mesh, then its scans
+  std::vector<ItemRef> items() const;                // all, family by family
 };
 
 // The files that a stage reads of an item; empty where there are none of their kind.

@@ -10,6 +10,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {
@@ -44,60 +45,54 @@ TEST(Hdf5File, ReadsBackWhatWasWritten) {
   expect_equal(hdf5_content(hdf5_image(content), "image"), content);
 }
 
-// A file with everything in it that a file may hold, in the order it is read back.
-Hdf5Content nested() {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  return {{{"52/fpfh/fpfh", {1, 2}, std::vector<float>{0.5F, 2}, "1", "rows"}},
-          {{"program", std::string("x")}},
-          {{"52", {{"class", std::string("cup")}, {"view", std::int64_t{3}}}},
-           {"52/empty", {{"why", std::string("nothing else implies it")}}},
-           {"52/fpfh/fpfh", {{"seconds", 0.5}}}},
-          {{"scores",
-            {{"item", "auc", "n"},
-             {{"52", 0.25, std::int64_t{7}},
-              {"größer", -kNan, std::int64_t{-1}},
-              {"", 1e-300, std::int64_t{1} << 40}}},
-            "a row an item"}},
-          {{"53/fpfh", "../cache/fpfh/a b.h5", "/"}}};
-}
-
-TEST(Hdf5File, GroupsTablesAndLinksComeBack) {
-  const Hdf5Content content = nested();
-  const Hdf5Content back = hdf5_content(hdf5_image(content), "image");
-  expect_equal(back, content);
-  ASSERT_EQ(back.attributes_of.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(back.attributes_of[i].object, content.attributes_of[i].object);
-    EXPECT_EQ(back.attributes_of[i].attributes, content.attributes_of[i].attributes);
-  }
-  ASSERT_EQ(back.tables.size(), 1U);
-  EXPECT_EQ(back.tables[0].name, "scores");
-  EXPECT_EQ(back.tables[0].description, "a row an item");
-  EXPECT_EQ(to_csv(back.tables[0].table), to_csv(content.tables[0].table));
-  ASSERT_EQ(back.links.size(), 1U);
-  EXPECT_EQ(back.links[0].name, "53/fpfh");
-  EXPECT_EQ(back.links[0].file, "../cache/fpfh/a b.h5");
-  EXPECT_EQ(back.links[0].object, "/");
-}
-
-TEST(Hdf5File, NestedContentGivesEqualBytesToo) { EXPECT_EQ(hdf5_image(nested()), hdf5_image(nested())); }
-
-TEST(Hdf5File, TablesWithoutRowsKeepTheirColumns) {
-  const Hdf5Content back = hdf5_content(hdf5_image({{}, {}, {}, {{"t", {{"a", "b"}, {}}, ""}}, {}}), "image");
-  ASSERT_EQ(back.tables.size(), 1U);
-  EXPECT_EQ(back.tables[0].table.columns, (std::vector<std::string>{"a", "b"}));
-  EXPECT_TRUE(back.tables[0].table.rows.empty());
-}
-
-TEST(Hdf5File, ColumnsThatMixTypesAreRefused) {
-  const Hdf5Table mixed{"t", {{"a"}, {{"x"}, {0.5}}}, ""};
-  EXPECT_THROW(hdf5_image({{}, {}, {}, {mixed}, {}}), std::logic_error);
-}
-
 TEST(Hdf5File, TwoThingsOfOneNameAreRefused) {
   const Array a{"a", {1}, std::vector<double>{1}, "1", ""};
   EXPECT_THROW(hdf5_image({{a, a}, {}}), std::runtime_error);
-  EXPECT_THROW(hdf5_image({{a}, {}, {}, {}, {{"a", "other.h5", "/"}}}), std::runtime_error);
+  const TemporaryFolder folder;
+  Hdf5Writer writer(folder / "a.h5");
+  writer.array(a);
+  EXPECT_THROW(writer.array(a), StorageError);
+  EXPECT_THROW(writer.link({"a", "other.h5", "/"}), StorageError);
+}
+
+// Written piece by piece, with everything that an export holds.
+void write_all(const std::filesystem::path& path) {
+  Hdf5Writer writer(path);
+  writer.attributes("/", {{"program", std::string("x")}});
+  writer.copy("52/all", hdf5_image(sample()));
+  writer.array({"52/fpfh/fpfh", {1, 2}, std::vector<float>{0.5F, 2}, "1", "rows"});
+  writer.attributes("52/fpfh", {{"seconds", 0.5}});
+  writer.attributes("52/empty", {{"why", std::string("nothing else implies it")}});
+  writer.table(
+      {"scores", {{"item", "n"}, {{"52", std::int64_t{7}}, {"", std::int64_t{-1}}}}, "a row an item"});
+  writer.table({"no rows", {{"a", "b"}, {}}, ""});
+  writer.link({"53/fpfh", "../cache/fpfh/a b.h5", "/"});
+  writer.close();
+}
+
+TEST(Hdf5Writer, WritesWhatIsReadBackAndTheSameBytesAgain) {
+  const TemporaryFolder folder;
+  write_all(folder / "a.h5");
+  write_all(folder / "b.h5");
+  EXPECT_EQ(read_file(folder / "a.h5"), read_file(folder / "b.h5"));
+  const Hdf5File file(folder / "a.h5");
+  EXPECT_THAT(file.arrays(), testing::ElementsAre("52/all/a", "52/all/deep/er", "52/all/empty", "52/all/fpfh",
+                                                  "52/all/one", "52/fpfh/fpfh"));
+  for (const Array& array : sample().arrays) {
+    const Array copy = file.read("52/all/" + array.name);
+    EXPECT_EQ(copy.shape, array.shape);
+    EXPECT_EQ(copy.values, array.values);
+  }
+}
+
+TEST(Hdf5Writer, ColumnsThatMixTypesAreRefused) {
+  const TemporaryFolder folder;
+  Hdf5Writer writer(folder / "a.h5");
+  EXPECT_THROW(writer.table({"t", {{"a"}, {{"x"}, {0.5}}}, ""}), std::logic_error);
+}
+
+TEST(Hdf5Writer, WhereNothingCanBeWrittenIsAStorageError) {
+  EXPECT_THROW(Hdf5Writer("/proc/nowhere/a.h5"), StorageError);
 }
 
 // The mean over 4800 scans names as many inputs.
