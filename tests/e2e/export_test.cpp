@@ -1,7 +1,6 @@
 // What `salbench export` writes: it says what the cache says, and other programs read it.
 #include <algorithm>
-#include <cmath>
-#include <map>
+#include <csignal>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 
 #include "io/file.h"
 #include "io/hdf5_file.h"
+#include "tests/e2e/small_disk.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/toy_data.h"
@@ -22,111 +22,43 @@ using testing::HasSubstr;
 
 constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which sees Debian's h5py and VTK
 
-Hdf5Content read_hdf5(const fs::path& path) { return hdf5_content(read_bytes(path).value(), path.string()); }
-
-std::string text_of(const Attributes& attributes, std::string_view name) {
-  const AttributeValue* value = find_attribute(attributes, name);
-  return value == nullptr ? "" : std::get<std::string>(*value);
-}
-
-// Of one export: its arrays and the attributes of its groups by their paths.
-struct Export {
-  explicit Export(const fs::path& path) : content(read_hdf5(path)) {
-    for (const Array& array : content.arrays) arrays[array.name] = &array;
-    for (const auto& [object, attributes] : content.attributes_of) attributes_of[object] = attributes;
-  }
-  Hdf5Content content;
-  std::map<std::string, const Array*> arrays;
-  std::map<std::string, Attributes> attributes_of;
-};
-
-std::string group_of(const Attributes& artefact) {
-  const std::string stage = text_of(artefact, "stage"), item = text_of(artefact, "item");
-  return text_of(artefact, "kind") == "histogram" ? "means/" + stage + "/" + item : item + "/" + stage;
-}
-
-void expect_same_arrays(const Arrays& artefact, const Export& exported, const std::string& group) {
-  for (const Array& array : artefact) {
-    const auto found = exported.arrays.find(group + "/" + array.name);
-    ASSERT_NE(found, exported.arrays.end()) << group << "/" << array.name;
-    EXPECT_EQ(found->second->shape, array.shape) << found->first;
-    EXPECT_TRUE(found->second->values == array.values) << found->first;
-    EXPECT_EQ(found->second->unit, array.unit) << found->first;
-    EXPECT_EQ(found->second->description, array.description) << found->first;
-  }
-}
-
-// The row of /scores that says where it is from with this key.
-std::map<std::string, Cell> row_with_key(const Table& table, const std::string& key) {
-  const auto column = std::find(table.columns.begin(), table.columns.end(), "key") - table.columns.begin();
-  for (const auto& cells : table.rows) {
-    if (cells[static_cast<std::size_t>(column)] != Cell(key)) continue;
-    std::map<std::string, Cell> row;
-    for (std::size_t c = 0; c < cells.size(); ++c) row[table.columns[c]] = cells[c];
-    return row;
-  }
-  return {};
-}
-
-bool same_number(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
-
-void expect_same_scores(const Hdf5Content& artefact, const Table& table) {
-  auto row = row_with_key(table, text_of(artefact.attributes, "key"));
-  ASSERT_FALSE(row.empty());
-  const auto& scores = std::get<std::vector<double>>(find_array(artefact.arrays, "scores")->values);
-  const char* columns[] = {"auc", "auc_exact", "nss", "cc", "lcc"};
-  for (std::size_t c = 0; c < 5; ++c)
-    EXPECT_TRUE(same_number(std::get<double>(row[columns[c]]), scores[c])) << columns[c];
-  const auto& counts = std::get<std::vector<std::int64_t>>(find_array(artefact.arrays, "counts")->values);
-  EXPECT_EQ(std::get<std::int64_t>(row["n_points"]), counts[0]);
-  EXPECT_EQ(std::get<std::int64_t>(row["n_picks"]), counts[1]);
-  const std::string view = std::get<std::string>(row["view"]), item = std::get<std::string>(row["item"]);
-  EXPECT_EQ(view.empty() ? item : item + "_" + view, text_of(artefact.attributes, "item"));
-  EXPECT_EQ("scores." + std::get<std::string>(row["model"]), text_of(artefact.attributes, "stage"));
+Outcome compared(const Workspace& toy, const fs::path& file) {
+  return run_process({kPython, SALBENCH_COMPARE_EXPORT, file.string(), toy.cache().string()});
 }
 
 TEST(Export, OfFiveItemsSaysWhatTheCacheSaysToTheBit) {
   const Workspace toy;
   write_toy_item(toy.data(), "3", shapes::bumpy_sphere(1));  // equal meshes would share artefacts
   write_toy_item(toy.data(), "4", shapes::bumpy_sphere(1, 0.3));
-  write_toy_item(toy.data(), "5", shapes::bumpy_sphere(1, 0.4));
+  write_toy_item(toy.data(), "5", shapes::bumpy_sphere(3, 0.4));  // descriptors large enough to be packed
   const Outcome ended = toy.salbench("export", {"--to", (toy / "new folder" / "toy.h5").string()});
   ASSERT_EQ(ended.status, 0) << ended.err;
+  const Outcome same = compared(toy, toy / "new folder" / "toy.h5");
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_THAT(same.out, testing::MatchesRegex(fmt::format("[0-9]+ data sets, [1-9][0-9]* of them packed, {} scores\n", JobCounts(kToyConfig, 5).of_kind("scores"))));
+}
 
-  const Export exported(toy / "new folder" / "toy.h5");
-  ASSERT_EQ(exported.content.tables.size(), 1U);
-  std::size_t arrays = 0, scores = 0;
-  for (const fs::path& path : toy.artefacts()) {
-    const Hdf5Content artefact = read_hdf5(path);
-    if (text_of(artefact.attributes, "kind") == "scores") {
-      expect_same_scores(artefact, exported.content.tables[0].table);
-      ++scores;
-      continue;
-    }
-    const std::string group = group_of(artefact.attributes);
-    expect_same_arrays(artefact.arrays, exported, group);
-    const Attributes& said = exported.attributes_of.at(group);
-    for (const auto& [name, value] : said)
-      EXPECT_EQ(*find_attribute(artefact.attributes, name), value) << group << " " << name;
-    EXPECT_EQ(said.size(), 8U);
-    arrays += artefact.arrays.size();
-  }
-  EXPECT_EQ(exported.arrays.size(), arrays);
-  EXPECT_EQ(exported.content.tables[0].table.rows.size(), scores);
-  EXPECT_EQ(scores, JobCounts(kToyConfig, 5).of_kind("scores"));
+// The attribute of an object of an export, by h5py.
+std::string attribute(const fs::path& file, const std::string& object, const std::string& name) {
+  const Outcome read =
+      run_process({kPython, "-c",
+                   "import h5py, sys; a = h5py.File(sys.argv[1])[sys.argv[2]].attrs[sys.argv[3]]; "
+                   "sys.stdout.write(a.decode() if isinstance(a, bytes) else a)",
+                   file.string(), object, name});
+  EXPECT_EQ(read.status, 0) << read.err;
+  return read.out;
 }
 
 TEST(Export, TellsConfigurationAndVersions) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("export", {"--to", (toy / "toy.h5").string()}).status, 0);
-  const Export exported(toy / "toy.h5");
-  const Attributes& root = exported.content.attributes;
-  EXPECT_THAT(text_of(root, "program"), testing::StartsWith("salbench "));
-  EXPECT_THAT(text_of(root, "configuration"), AllOf(HasSubstr("seed: 2016"), HasSubstr("scans: false")));
-  EXPECT_THAT(text_of(root, "stage_versions"), AllOf(HasSubstr("fpfh: "), HasSubstr("map.PS: ")));
-  EXPECT_EQ(text_of(root, "protocol"), "published");
-  EXPECT_EQ(text_of(exported.attributes_of.at("1"), "dataset"), "meshes");
-  toy.configure(text_of(root, "configuration"));  // and can be run again as it stands there
+  const auto root = [&](const char* name) { return attribute(toy / "toy.h5", "/", name); };
+  EXPECT_THAT(root("program"), testing::StartsWith("salbench "));
+  EXPECT_THAT(root("configuration"), AllOf(HasSubstr("seed: 2016"), HasSubstr("scans: false")));
+  EXPECT_THAT(root("stage_versions"), AllOf(HasSubstr("fpfh: "), HasSubstr("map.PS: ")));
+  EXPECT_EQ(root("protocol"), "published");
+  EXPECT_EQ(attribute(toy / "toy.h5", "/1", "dataset"), "meshes");
+  toy.configure(root("configuration"));  // and can be run again as it stands there
   EXPECT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0);
 }
@@ -136,11 +68,8 @@ TEST(Export, ChoosesItemsAndStages) {
   const Outcome ended =
       toy.salbench("export", {"--to", (toy / "toy.h5").string(), "--items", "2", "--stage", "normals, map"});
   ASSERT_EQ(ended.status, 0) << ended.err;
-  const Export exported(toy / "toy.h5");
-  std::vector<std::string> names;
-  for (const auto& [name, array] : exported.arrays) names.push_back(name);
-  EXPECT_THAT(names, testing::ElementsAre("2/map.PS/saliency", "2/map.RS/saliency", "2/normals/normals"));
-  EXPECT_TRUE(exported.content.tables.empty());
+  EXPECT_THAT(Hdf5File(toy / "toy.h5").arrays(),
+              testing::ElementsAre("2/map.PS/saliency", "2/map.RS/saliency", "2/normals/normals"));
 }
 
 TEST(Export, TwiceGivesTheSameBytes) {
@@ -162,12 +91,11 @@ TEST(Export, IsReadByTheExampleCopiedAndLinked) {
   ASSERT_EQ(linked.status, 0) << linked.err;
   EXPECT_EQ(linked.out, copy.out);
 
-  const Export exported(toy / "copy.h5");
+  const Hdf5File exported(toy / "copy.h5");
   double at_picks = 0;
   for (const std::string item : {"1", "2"}) {
-    const auto& map = std::get<std::vector<double>>(exported.arrays.at(item + "/map.PS/saliency")->values);
-    auto picks =
-        std::get<std::vector<std::int32_t>>(exported.arrays.at(item + "/ground_truth/picks")->values);
+    const auto map = std::get<std::vector<double>>(exported.read(item + "/map.PS/saliency").values);
+    auto picks = std::get<std::vector<std::int32_t>>(exported.read(item + "/ground_truth/picks").values);
     std::sort(picks.begin(), picks.end());
     picks.erase(std::unique(picks.begin(), picks.end()), picks.end());
     double sum = 0;
@@ -188,6 +116,86 @@ TEST(Export, ShapesAreReadByVtkAndPandas) {
       run_process({kPython, SALBENCH_READ_SHAPES, (toy / "toy.h5").string(), (toy / "shapes").string()});
   EXPECT_EQ(read.status, 0) << read.err;
   EXPECT_EQ(read.out, fmt::format("ok: {} items\n", JobCounts().shapes()));
+}
+
+TEST(Export, ADamagedArtefactIsMendedAndExported) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  for (const char* stage : {"fpfh", "map.PS", "mean_histogram.PS"}) {
+    const fs::path file = toy.artefacts(stage).front();
+    std::string bytes = read_file(file);
+    bytes[bytes.size() / 2] ^= 1;
+    write_file(file, bytes);
+  }
+  const Outcome ended = toy.salbench("export", {"--to", (toy / "toy.h5").string()});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(compared(toy, toy / "toy.h5").status, 0);
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const FolderEntry& entry : list_folder(folder)) files.push_back(entry.path);
+  return files;
+}
+
+// Stops the program in the midst of its export, where `at` is called with the process and the part written.
+template <class At>
+Outcome during_export(const Workspace& toy, const At& at) {
+  const fs::path folder = toy / "exports";
+  fs::create_directories(folder);
+  Process process(toy.command("export", {"--to", (folder / "toy.h5").string()}));
+  while (files_in(folder).empty() && !process.ended()) {
+  }
+  at(process);
+  return process.wait();
+}
+
+TEST(Export, KilledNothingHasItsNameAndThePartIsKnownToBeAbandoned) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const Outcome killed = during_export(toy, [](const Process& process) { process.send(SIGKILL); });
+  ASSERT_EQ(killed.status, 128 + SIGKILL);
+  EXPECT_FALSE(fs::exists(toy / "exports/toy.h5"));
+  std::vector<fs::path> abandoned;
+  visit_abandoned(toy / "exports", [&](const fs::path& file) { abandoned.push_back(file); });
+  EXPECT_THAT(abandoned, testing::SizeIs(1));
+  EXPECT_EQ(abandoned, files_in(toy / "exports"));
+}
+
+TEST(Export, InterruptedItLeavesNothing) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const Outcome ended = during_export(toy, [](const Process& process) { process.send(SIGINT); });
+  EXPECT_EQ(ended.status, 130) << ended.err;
+  EXPECT_THAT(lines_with(ended.err, " export "), testing::SizeIs(1));
+  EXPECT_THAT(files_in(toy / "exports"), testing::IsEmpty());
+}
+
+// Whichever of its writes is the one that fails.
+TEST(Export, AFullDiskIsOneErrorAndLeavesNothing) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("export", {"--to", (toy / "exports/whole.h5").string()}).status, 0);
+  const std::uintmax_t blocks = fs::file_size(toy / "exports/whole.h5") / 1024;
+  fs::remove(toy / "exports/whole.h5");
+  for (std::uintmax_t limit = 1; limit < blocks; limit += 1 + blocks / 25) {
+    std::string line = "ulimit -f " + std::to_string(limit) + "; exec";
+    for (const std::string& word :
+         toy.command("export", {"--to", (toy / "exports/toy.h5").string(), "--quiet"}))
+      line += " '" + word + "'";
+    const Outcome full = run_process({"/bin/bash", "-c", line});
+    EXPECT_EQ(full.status, 3) << limit << full.err;
+    EXPECT_THAT(lines_with(full.err, "error: "),
+                AllOf(testing::SizeIs(1), testing::Each(HasSubstr("File too large"))))
+        << limit << full.err;
+    EXPECT_THAT(files_in(toy / "exports"), testing::IsEmpty());
+  }
+  const SmallDisk disk(toy / "exports", "size=100k");
+  if (!disk.mounted()) GTEST_SKIP() << "mounting is not allowed here";
+  const Outcome full = toy.salbench("export", {"--to", (toy / "exports/toy.h5").string(), "--quiet"});
+  EXPECT_EQ(full.status, 3) << full.err;
+  EXPECT_THAT(lines_with(full.err, "error: "),
+              AllOf(testing::SizeIs(1), testing::Each(HasSubstr("No space left"))));
+  EXPECT_THAT(files_in(toy / "exports"), testing::IsEmpty());
 }
 
 TEST(Export, SaysWhatItCannotDo) {

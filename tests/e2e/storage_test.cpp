@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mount.h>
 
 #include "io/file.h"
+#include "tests/e2e/small_disk.h"
 #include "tests/e2e/workspace.h"
 
 namespace salbench {
@@ -44,28 +44,6 @@ TEST(Storage, ACacheOfANewerProgramIsLeftAlone) {
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("newer"), HasSubstr(toy.cache().string())));
   }
 }
-
-// Mounted for the test; unmounted with the object.
-class SmallDisk {
- public:
-  SmallDisk(fs::path folder, const char* options) : folder_(std::move(folder)) {
-    fs::create_directories(folder_);
-    mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, options) == 0;
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  ~SmallDisk() {
-    if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
-  }
-  bool mounted() const { return mounted_; }
-  bool resize(const char* options) const {
-    return ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, options) == 0;
-  }
-
- private:
-  fs::path folder_;
-  bool mounted_ = false;
-};
 
 TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
   const Workspace toy;
