@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -47,9 +48,7 @@ class Descriptor {
   throw StorageError(fmt::format("{}: cannot be {}: {}", path.string(), what, system_reason(error)));
 }
 
-bool lacks_resources(int error) {
-  return error == EMFILE || error == ENFILE || error == ENOMEM || error == ENOBUFS;
-}
+bool lacks_resources(int error) { return error == EMFILE || error == ENFILE || error == ENOMEM; }
 
 // A file that the user named: not usable, unless it is the system that has no room to open anything.
 [[noreturn]] void fail_input(const fs::path& path, int error) {
@@ -114,33 +113,21 @@ bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
 }  // namespace
 
 std::string system_reason(int error) {
-  const auto advice = [&]() -> std::string_view {
-    switch (error) {
-      case EMFILE:
-        return "use fewer --threads, or raise the limit (ulimit -n)";
-      case ENFILE:
-        return "close other programs, or use fewer --threads";
-      case ENOMEM:
-      case ENOBUFS:
-        return "use fewer --threads, or close other programs";
-      case ENOSPC:
-      case EDQUOT:
-        return "free some space, or choose another folder";
-      case EFBIG:
-        return "raise the limit on the size of files (ulimit -f)";
-      case EACCES:
-      case EPERM:
-        return "check its permissions";
-      case EROFS:
-        return "choose another folder";
-      case EIO:
-      case ESTALE:
-        return "the disk or the network file system failed; check it and run again";
-      default:
-        return "";
-    }
-  }();
-  return std::system_category().message(error) + (advice.empty() ? "" : "; ") + std::string(advice);
+  static const std::map<int, std::string_view> advice = {
+      {EMFILE, "use fewer --threads, or raise the limit (ulimit -n)"},
+      {ENFILE, "close other programs, or use fewer --threads"},
+      {ENOMEM, "use fewer --threads, or close other programs"},
+      {ENOSPC, "free some space, or choose another folder"},
+      {EDQUOT, "free some space, or choose another folder"},
+      {EFBIG, "raise the limit on the size of files (ulimit -f)"},
+      {EACCES, "check its permissions"},
+      {EPERM, "check its permissions"},
+      {EROFS, "choose another folder"},
+      {EIO, "the disk or the network file system failed; check it and run again"},
+      {ESTALE, "the disk or the network file system failed; check it and run again"}};
+  const auto found = advice.find(error);
+  const std::string reason = std::system_category().message(error);
+  return found == advice.end() ? reason : fmt::format("{}; {}", reason, found->second);
 }
 
 void require_regular_file(const fs::path& path) {
@@ -155,9 +142,8 @@ std::string read_file(const fs::path& path) {
 }
 
 std::optional<Bytes> read_bytes(const fs::path& path) {
-  constexpr int kTries =
-      2;  // a network file system finds a name stale, and looks again, when it was replaced
-  for (int tries_left = kTries;; --tries_left) {
+  // A network file system that finds a name stale looks again: the file was replaced.
+  for (bool first = true;; first = false) {
     const Descriptor file(path, O_RDONLY | O_NONBLOCK);
     struct stat status {};
     int error = file.get() < 0 || ::fstat(file.get(), &status) != 0 ? errno : 0;
@@ -165,7 +151,7 @@ std::optional<Bytes> read_bytes(const fs::path& path) {
     if (error == 0) error = read_all(file.get(), bytes);
     if (error == 0) return bytes;
     if (is_missing(error)) return {};
-    if (error != ESTALE || tries_left == 1) fail(path, "read", error);
+    if (error != ESTALE || !first) fail(path, "read", error);
   }
 }
 

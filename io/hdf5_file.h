@@ -1,7 +1,7 @@
 // HDF5 files. An artefact is a byte image, built and parsed in memory: writing it is plain, checkable file
 // output, and its bytes pass a checksum before the HDF5 library sees them. A foreign file is read one data
-// set at a time, an export written one. What a file holds beside that is never read. Everything is safe to
-// call from several threads.
+// set at a time. What a file holds beside that is never read. Everything is safe to call from several
+// threads.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,6 @@
 
 #include "io/arrays.h"
 #include "io/file.h"
-#include "io/table.h"
 
 namespace salbench {
 
@@ -37,45 +36,15 @@ Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name
 // A file of another program.
 class Hdf5File {
  public:
-  explicit Hdf5File(const std::filesystem::path& path);  // throws InputError
+  // Reads everything once, in a child process: to be called before the program has threads. Throws
+  // InputError.
+  explicit Hdf5File(const std::filesystem::path& path);
   ~Hdf5File();
   std::vector<std::string> arrays() const;  // names of the data sets of numbers, sorted. Throws InputError
 
   // One of them, without unit and description. Throws InputError: damaged, values in other files, no room in
   // memory for what it claims.
   Array read(const std::string& name) const;
-
- private:
-  struct Open;
-  std::unique_ptr<Open> open_;
-};
-
-// A data set of records (compound type): all cells of a column are of one type; text is of fixed length.
-struct Hdf5Table {
-  std::string name;
-  Table table;
-  std::string description;
-};
-
-// A group or data set of another file under a name in this one (external link).
-struct Hdf5Link {
-  std::string name;
-  std::string file;    // relative to the folder of the file that holds the link
-  std::string object;  // in that file: "/" or a path from there
-};
-
-// Writes a file piece by piece. Names as above, each given once; all functions throw StorageError.
-class Hdf5Writer {
- public:
-  explicit Hdf5Writer(const std::filesystem::path& file);  // replaces what it holds
-  ~Hdf5Writer();
-  void attributes(const std::string& object,
-                  const Attributes& attributes);  // of a group that is made, or "/"
-  void array(const Array& array);
-  void table(const Hdf5Table& table);
-  void link(const Hdf5Link& link);
-  void copy(const std::string& group, std::span<const std::byte> image);  // its data sets, packed as they are
-  void close();  // without it the file is not complete
 
  private:
   struct Open;

@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "io/shape_file.h"
 #include "pipeline/export_file.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/option_text.h"
 #include "pipeline/results.h"
 #include "stages/core/errors.h"
@@ -125,6 +126,7 @@ ExitStatus export_command(const Arguments& arguments, const ExportOptions& optio
 
   Session session(arguments, stop);
   const StageNames stages = selected_stages(options.stages, session.setup.catalog);
+  const OrderlyEnd orderly;
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 

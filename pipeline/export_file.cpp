@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/hdf5_file.h"
+#include "io/hdf5_writer.h"
 #include "pipeline/results.h"
 #include "stages/core/errors.h"
 

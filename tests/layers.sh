@@ -27,12 +27,12 @@ keeps() {
   done < <(includes)
 }
 
-# hides LIBRARY HEADERS: what matches HEADERS is included by one .cpp and by no header.
+# hides LIBRARY HEADERS [HOME]: what matches HEADERS is included by one .cpp and by no header, or by HOME alone.
 hides() {
-  local path line included home=
+  local path line included home=${3:-}
   while IFS=: read -r path line included; do
     [[ $included =~ ^($2) ]] || continue
-    [[ $path == *.cpp ]] || complain "$path:$line" "$included" "$1 belongs in a .cpp"
+    [[ $path == *.cpp || $path == "$home" ]] || complain "$path:$line" "$included" "$1 belongs in a .cpp"
     [[ -z $home || $home == "$path" ]] || complain "$path:$line" "$included" "$1 is already included by $home"
     home=$path
   done < <(includes)
@@ -49,12 +49,17 @@ keeps pipeline 'pipeline|cache|io|stages/[a-z_]+'
 hides CGAL 'CGAL/'
 hides CLI11 'CLI/'
 hides Embree 'embree3/'
-hides HDF5 'hdf5|H5'
+hides HDF5 'hdf5\.|H5' io/hdf5_library.h
 hides nanoflann 'nanoflann'
 hides PCL 'pcl/'
 hides Spectra 'Spectra/'
 hides 'the flow graph' '(tbb|oneapi/tbb)/flow_graph'
 hides xxHash 'xxhash'
 hides yaml-cpp 'yaml-cpp/'
+
+while IFS=: read -r path line included; do
+  [[ $included != io/hdf5_library.h || $path == io/hdf5_*.cpp ]] ||
+    complain "$path:$line" "$included" "it brings the HDF5 library with it"
+done < <(includes)
 
 [[ $breaches -eq 0 ]]

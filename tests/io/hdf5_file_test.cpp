@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/hdf5_writer.h"
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "tests/support/temporary_folder.h"

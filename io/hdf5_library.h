@@ -1,0 +1,74 @@
+// What reading and writing share of the HDF5 library (C API, 1.10): for io/hdf5_*.cpp alone, which are all of
+// the program that knows it.
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+#include "io/arrays.h"
+
+namespace salbench::hdf5 {
+
+// Held while the library works, unless it is one that serialises its callers itself.
+std::unique_lock<std::mutex> library();
+
+// An HDF5 identifier with the function that closes it; a negative one is the library's failure.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*closer)(hid_t), const char* what) : id_(id), close_(closer) {
+    if (id_ < 0) throw std::runtime_error("HDF5: " + std::string(what) + " failed");
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() { close(); }
+  herr_t close() { return id_ < 0 ? 0 : close_(std::exchange(id_, -1)); }
+  operator hid_t() const { return id_; }  // NOLINT: that is what the C API takes
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void must(herr_t status, const char* what);  // throws std::runtime_error
+
+template <class T>
+struct Type {
+  static hid_t stored() {
+    if constexpr (std::is_floating_point_v<T>)
+      return sizeof(T) == 8 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+    else
+      return sizeof(T) == 8 ? H5T_STD_I64LE : H5T_STD_I32LE;
+  }
+  static hid_t memory() {
+    if constexpr (std::is_floating_point_v<T>)
+      return sizeof(T) == 8 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+    else
+      return sizeof(T) == 8 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
+  }
+};
+
+Handle property_list(hid_t kind);
+Handle string_type(std::size_t length);  // UTF-8; H5T_VARIABLE
+
+void write_attribute(hid_t object, const std::string& name, const AttributeValue& value);
+void write_array(hid_t file, hid_t links, const Array& array);
+
+Handle created_file(const char* name, hid_t access);
+Handle groups_between();  // link creation: the groups on a path are made
+Handle core_access();     // a file in memory, told from others by its name alone
+std::string image_name();
+Handle opened_image(std::span<const std::byte> image);
+
+// Names of the data sets of a file of so many bytes, sorted by level. By hard links alone: what other links
+// lead to is not of this file.
+std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes);
+
+}  // namespace salbench::hdf5
