@@ -36,9 +36,9 @@ Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name
 // A file of another program.
 class Hdf5File {
  public:
-  // Reads everything once, in a child process: to be called before the program has threads. Throws
-  // InputError.
-  explicit Hdf5File(const std::filesystem::path& path);
+  // A child process reads everything first, since damaged bytes may crash the library: to be called before
+  // the program has threads. Throws InputError.
+  explicit Hdf5File(const std::filesystem::path& path, bool in_child_first = true);
   ~Hdf5File();
   std::vector<std::string> arrays() const;  // names of the data sets of numbers, sorted. Throws InputError
 

@@ -17,11 +17,11 @@ constexpr std::uint64_t kMinObjectBytes = 16;  // of an object and its link, in 
 
 Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose, "H5Screate"}; }
 
-void write_attribute(hid_t object, const std::string& name, hid_t stored, hid_t memory, const void* value) {
+void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
   const Handle space = scalar_space();
-  const Handle attribute(H5Acreate2(object, name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                          "H5Acreate");
-  must(H5Awrite(attribute, memory, value), "H5Awrite");
+  must(H5Awrite(attribute, type, value), "H5Awrite");
 }
 
 // Of coordinates deflate saves an eighth, of descriptors (single precision, mostly zeros) a half.
@@ -98,11 +98,11 @@ void write_attribute(hid_t object, const std::string& name, const AttributeValue
     const bool on_heap = text->size() > kLongText;
     const char* begin = text->c_str();
     const Handle type = string_type(on_heap ? H5T_VARIABLE : text->size());
-    write_attribute(object, name, type, type, on_heap ? static_cast<const void*>(&begin) : begin);
+    write_attribute(object, name, type, on_heap ? static_cast<const void*>(&begin) : begin);
   } else if (const auto* real = std::get_if<double>(&value)) {
-    write_attribute(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, real);
+    write_attribute(object, name, type_of<double>(), real);
   } else {
-    write_attribute(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &std::get<std::int64_t>(value));
+    write_attribute(object, name, type_of<std::int64_t>(), &std::get<std::int64_t>(value));
   }
 }
 
@@ -119,10 +119,10 @@ void write_array(hid_t file, hid_t links, const Array& array) {
           throw std::logic_error(fmt::format("array {} has {} values for its shape of {}", array.name,
                                              values.size(), array.count()));
         const Handle set(
-            H5Dcreate2(file, array.name.c_str(), Type<T>::stored(), space, links, properties, H5P_DEFAULT),
+            H5Dcreate2(file, array.name.c_str(), type_of<T>(), space, links, properties, H5P_DEFAULT),
             H5Dclose, "H5Dcreate");
         if (!values.empty())
-          must(H5Dwrite(set, Type<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite");
+          must(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite");
         write_attribute(set, "unit", array.unit);
         write_attribute(set, "description", array.description);
       },

@@ -39,21 +39,14 @@ class Handle {
 
 void must(herr_t status, const char* what);  // throws std::runtime_error
 
+// As stored: little-endian, which is this machine's own.
 template <class T>
-struct Type {
-  static hid_t stored() {
-    if constexpr (std::is_floating_point_v<T>)
-      return sizeof(T) == 8 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
-    else
-      return sizeof(T) == 8 ? H5T_STD_I64LE : H5T_STD_I32LE;
-  }
-  static hid_t memory() {
-    if constexpr (std::is_floating_point_v<T>)
-      return sizeof(T) == 8 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
-    else
-      return sizeof(T) == 8 ? H5T_NATIVE_INT64 : H5T_NATIVE_INT32;
-  }
-};
+hid_t type_of() {
+  if constexpr (std::is_floating_point_v<T>)
+    return sizeof(T) == 8 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  else
+    return sizeof(T) == 8 ? H5T_STD_I64LE : H5T_STD_I32LE;
+}
 
 Handle property_list(hid_t kind);
 Handle string_type(std::size_t length);  // UTF-8; H5T_VARIABLE

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <optional>
 
 #include <fcntl.h>
@@ -10,7 +11,6 @@
 
 #include "io/file.h"
 #include "io/hdf5_library.h"
-#include "io/records.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -27,30 +27,64 @@ Handle opened_object(hid_t file, hid_t links, const std::string& name) {
   return {H5Gcreate2(file, name.c_str(), links, properties, H5P_DEFAULT), H5Gclose, "H5Gcreate"};
 }
 
-Handle record_type(const std::vector<Field>& fields, bool stored) {
-  Handle record(H5Tcreate(H5T_COMPOUND, record_size(fields)), H5Tclose, "H5Tcreate");
-  for (const Field& field : fields) {
-    const Handle text = string_type(field.size);
-    const hid_t integer = stored ? Type<std::int64_t>::stored() : Type<std::int64_t>::memory();
-    const hid_t real = stored ? Type<double>::stored() : Type<double>::memory();
-    const hid_t type = field.type == FieldType::text ? text : field.type == FieldType::real ? real : integer;
-    must(H5Tinsert(record, field.name.c_str(), field.offset, type), "H5Tinsert");
+// --- tables: rows as records of fixed size, fields packed one behind the other, text filled up with zeros
+
+struct Field {
+  std::string name;
+  std::size_t type = 0;    // the alternative of Cell
+  std::size_t size = 1;    // bytes: 8 of a number; of text those of the longest cell, at least 1
+  std::size_t offset = 0;  // bytes from the begin of the record
+};
+
+// A column without cells is text. Throws std::logic_error for one that mixes types.
+Field field_of(const Table& table, std::size_t column, std::size_t offset) {
+  Field field{.name = table.columns[column], .offset = offset};
+  for (const auto& row : table.rows) {
+    const Cell& cell = row.at(column);
+    field.type = table.rows.front().at(column).index();
+    if (cell.index() != field.type)
+      throw std::logic_error(fmt::format("the column {} mixes types", field.name));
+    const auto* text = std::get_if<std::string>(&cell);
+    field.size = std::max(field.size, text != nullptr ? text->size() : sizeof(double));
   }
-  return record;
+  return field;
+}
+
+void put(std::byte* place, const std::string& text) { std::memcpy(place, text.data(), text.size()); }
+template <class Number>
+void put(std::byte* place, Number number) {
+  std::memcpy(place, &number, sizeof number);
 }
 
 void write_table(hid_t file, hid_t links, const Hdf5Table& table) {
-  const Records records = records_from(table.table);
+  std::vector<Field> fields;
+  std::size_t record = 0;  // bytes
+  for (std::size_t c = 0; c < table.table.columns.size(); ++c) {
+    fields.push_back(field_of(table.table, c, record));
+    record += fields.back().size;
+  }
+  const Handle type(H5Tcreate(H5T_COMPOUND, record), H5Tclose, "H5Tcreate");
+  for (const Field& field : fields) {
+    const Handle text = string_type(field.size);
+    const hid_t of_cell[] = {text, type_of<std::int64_t>(), type_of<double>()};
+    must(H5Tinsert(type, field.name.c_str(), field.offset, of_cell[field.type]), "H5Tinsert");
+  }
   const hsize_t rows = table.table.rows.size();
+  std::vector<std::byte> records(rows * record);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t c = 0; c < fields.size(); ++c)
+      std::visit([place = &records[r * record + fields[c].offset]](const auto& cell) { put(place, cell); },
+                 table.table.rows[r][c]);
   const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose, "H5Screate_simple");
   const Handle properties = property_list(H5P_DATASET_CREATE);
   must(H5Pset_obj_track_times(properties, false), "H5Pset_obj_track_times");
-  const Handle stored = record_type(records.fields, true), memory = record_type(records.fields, false);
-  const Handle set(H5Dcreate2(file, table.name.c_str(), stored, space, links, properties, H5P_DEFAULT),
+  const Handle set(H5Dcreate2(file, table.name.c_str(), type, space, links, properties, H5P_DEFAULT),
                    H5Dclose, "H5Dcreate");
-  if (rows > 0) must(H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, records.bytes.data()), "H5Dwrite");
+  if (rows > 0) must(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, records.data()), "H5Dwrite");
   write_attribute(set, "description", table.description);
 }
+
+// --- a file on a disk that may be full
 
 // Where a write fails the library ends in a segmentation fault, then or when it closes the file. So this
 // driver keeps the first error to itself, writes nothing from there on, and the writer asks for it after

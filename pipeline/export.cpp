@@ -130,14 +130,15 @@ ExitStatus export_command(const Arguments& arguments, const ExportOptions& optio
   session.runner.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
-  std::string done = fmt::format("exported to {}", arguments.to);
-  if (shapes)
-    done = fmt::format("{} shapes written to {}", write_shapes(session, format, stages, arguments.to, stop),
-                       arguments.to);
-  else
-    export_file(session, stages, arguments.to, options.link, stop);
-  if (stop) return interrupted_status(arguments);
-  if (!arguments.quiet) fmt::print("{}\n", done);
+  std::string done = fmt::format("exported to {}\n", arguments.to);
+  if (shapes) {
+    const std::size_t written = write_shapes(session, format, stages, arguments.to, stop);
+    if (stop) return interrupted_status(arguments);
+    done = fmt::format("{} shapes written to {}\n", written, arguments.to);
+  } else if (!export_file(session, stages, arguments.to, options.link, stop)) {
+    return interrupted_status(arguments);
+  }
+  if (!arguments.quiet) fmt::print("{}", done);
   return finished_status(session);
 }
 

@@ -35,7 +35,9 @@ TEST(Export, OfFiveItemsSaysWhatTheCacheSaysToTheBit) {
   ASSERT_EQ(ended.status, 0) << ended.err;
   const Outcome same = compared(toy, toy / "new folder" / "toy.h5");
   EXPECT_EQ(same.status, 0) << same.err;
-  EXPECT_THAT(same.out, testing::MatchesRegex(fmt::format("[0-9]+ data sets, [1-9][0-9]* of them packed, {} scores\n", JobCounts(kToyConfig, 5).of_kind("scores"))));
+  EXPECT_THAT(same.out,
+              testing::MatchesRegex(fmt::format("[0-9]+ data sets, [1-9][0-9]* of them packed, {} scores\n",
+                                                JobCounts(kToyConfig, 5).of_kind("scores"))));
 }
 
 // The attribute of an object of an export, by h5py.
@@ -138,22 +140,23 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-// Stops the program in the midst of its export, where `at` is called with the process and the part written.
-template <class At>
-Outcome during_export(const Workspace& toy, const At& at) {
-  const fs::path folder = toy / "exports";
-  fs::create_directories(folder);
-  Process process(toy.command("export", {"--to", (folder / "toy.h5").string()}));
-  while (files_in(folder).empty() && !process.ended()) {
-  }
-  at(process);
+// Stops the program in the midst of its export, at the first artefact of a scan, and sends it a
+// signal.
+Outcome signalled_in_export(const Workspace& toy, int signal) {
+  fs::create_directories(toy / "exports");
+  const fs::path held = toy / "held";
+  Process process(in_trouble("SALBENCH_AT_OPEN=hold " + held.string() + " /2_5.",
+                             toy.command("export", {"--to", (toy / "exports/toy.h5").string()})));
+  EXPECT_TRUE(wait_until(process, [&] { return fs::exists(held); }));
+  EXPECT_THAT(files_in(toy / "exports"), testing::SizeIs(1));
+  process.send(signal);
   return process.wait();
 }
 
 TEST(Export, KilledNothingHasItsNameAndThePartIsKnownToBeAbandoned) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const Outcome killed = during_export(toy, [](const Process& process) { process.send(SIGKILL); });
+  const Outcome killed = signalled_in_export(toy, SIGKILL);
   ASSERT_EQ(killed.status, 128 + SIGKILL);
   EXPECT_FALSE(fs::exists(toy / "exports/toy.h5"));
   std::vector<fs::path> abandoned;
@@ -165,7 +168,7 @@ TEST(Export, KilledNothingHasItsNameAndThePartIsKnownToBeAbandoned) {
 TEST(Export, InterruptedItLeavesNothing) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const Outcome ended = during_export(toy, [](const Process& process) { process.send(SIGINT); });
+  const Outcome ended = signalled_in_export(toy, SIGINT);
   EXPECT_EQ(ended.status, 130) << ended.err;
   EXPECT_THAT(lines_with(ended.err, " export "), testing::SizeIs(1));
   EXPECT_THAT(files_in(toy / "exports"), testing::IsEmpty());

@@ -45,6 +45,9 @@ bool wait_until(Process& process, const std::function<bool()>& condition);
 std::vector<std::string> with_signal_at_rename(std::vector<std::string> command, const std::string& moment,
                                                int signal);
 
+// The command, with what the system does when it opens a file (trouble_at_open.cpp).
+std::vector<std::string> in_trouble(const std::string& variable, std::vector<std::string> command);
+
 inline Outcome run_process(const std::vector<std::string>& command) { return Process(command).wait(); }
 
 }  // namespace salbench

@@ -19,13 +19,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-std::vector<std::string> in_trouble(const std::string& variable, const std::vector<std::string>& command) {
-  std::vector<std::string> words = {"/usr/bin/env", "LD_PRELOAD=" SALBENCH_TROUBLE_AT_OPEN, variable,
-                                    "ASAN_OPTIONS=verify_asan_link_order=0"};
-  words.insert(words.end(), command.begin(), command.end());
-  return words;
-}
-
 struct SystemError {
   const char* name;
   int number;
