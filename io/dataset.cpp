@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 
+#include "io/file.h"
 #include "io/mesh_file.h"
 #include "stages/core/errors.h"
 
@@ -48,18 +48,12 @@ struct Found {
   std::vector<std::string> mesh_names;  // with extension
 };
 
-// Names of what a folder holds other than folders and hidden files, in natural order; nothing if there is no
-// such folder.
+// Names of what a folder holds other than folders and hidden files, in natural order.
 std::vector<std::string> files_in(const fs::path& folder) {
   std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    std::error_code broken_link;  // is no folder: reading it will say what is wrong
-    const std::string name = entry->path().filename().string();
-    if (!entry->is_directory(broken_link) && !name.starts_with('.')) names.push_back(name);
-  }
-  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
-    throw InputError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  for (const FolderEntry& entry : list_folder(folder))
+    if (std::string name = entry.path.filename(); !entry.is_folder && !name.starts_with('.'))
+      names.push_back(std::move(name));
   std::sort(names.begin(), names.end(), natural_less);
   return names;
 }
