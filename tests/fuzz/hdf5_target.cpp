@@ -44,13 +44,13 @@ class Recipe {
 
   void carry_out() {
     groups_ = {"/"};
-    for (int n = 0; n < 5 && !left_.empty(); ++n) add_object(n);
+    for (int n = 0; n < 2 && !left_.empty(); ++n) add_object(n);
     const hsize_t extent = kSound.size();
     const Id space(H5Screate_simple(1, &extent, nullptr), H5Sclose);
     const Id set(H5Dcreate2(file_, "sound", H5T_IEEE_F64BE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                  H5Dclose);
     H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, kSound.data());
-    for (int n = 0; n < 3 && !left_.empty(); ++n) add_attribute(set);
+    for (int n = 0; n < 2 && !left_.empty(); ++n) add_attribute(set);
   }
 
  private:
