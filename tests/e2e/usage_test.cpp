@@ -145,5 +145,23 @@ TEST(Usage, QuietMeansWarningsAndErrorsOnly) {
   for (const std::string& line : lines_with(run.err, "")) EXPECT_THAT(line, testing::StartsWith("warning: "));
 }
 
+TEST(Usage, WhatTakesLongSaysHowFarItIs) {
+  const Workspace toy(kMeshesOnly);
+  const auto says = [&](const std::vector<std::string>& command, const std::string& line) {
+    const Outcome outcome = run_process(command);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(lines_with(outcome.err, line), SizeIs(1)) << outcome.err;
+  };
+  says(toy.command("run"), "collecting scores: 2/2 items");
+  says(toy.command("maps", {"--to", (toy / "maps").string()}), "writing: 2/2 items");
+  says(toy.command("export", {"--to", (toy / "all.h5").string()}), "exporting: 2/2 items");
+  says(toy.command("export", {"--to", (toy / "shapes").string(), "--format", "ply"}), "exporting: 2/2 items");
+  const std::string n = std::to_string(toy.artefacts().size()), all = n + "/" + n + " items";
+  says({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}, "verifying: " + all);
+  says({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(), "--cache",
+        toy.cache().string()},
+       "collecting: " + all);
+}
+
 }  // namespace
 }  // namespace salbench
