@@ -25,19 +25,19 @@ void remove_file(const fs::path& file, bool dry_run, Amount& amount) {
 
 }  // namespace
 
-void Needed::add(std::string_view stage, const Digest& key) { stages_[std::string(stage)].keys.insert(key); }
+void KeepSet::add(std::string_view stage, const Digest& key) { stages_[std::string(stage)].keys.insert(key); }
 
-void Needed::add_every_key(std::string_view stage, std::string_view item) {
+void KeepSet::add_every_key(std::string_view stage, std::string_view item) {
   stages_[std::string(stage)].items.insert(item_label(item));
 }
 
-bool Needed::covers(std::string_view stage, const ArtefactName& name) const {
+bool KeepSet::covers(std::string_view stage, const ArtefactName& name) const {
   const auto found = stages_.find(stage);
   return found != stages_.end() &&
          (found->second.keys.contains(name.key) || found->second.items.contains(name.item));
 }
 
-Collected collect_garbage(const fs::path& folder, const Needed& needed, bool dry_run, Progress& progress) {
+Collected collect_garbage(const fs::path& folder, const KeepSet& needed, bool dry_run, Progress& progress) {
   require_cache(folder);
   Collected result;
   const std::vector<ArtefactFile> artefacts = list_cache(folder).artefacts;

@@ -16,8 +16,8 @@
 
 namespace salbench {
 
-// What is kept. A key that cannot be known yet is covered by keeping everything of its stage and item.
-class Needed {
+// Artefacts to keep. A key that is not known yet is covered by keeping everything of its stage and item.
+class KeepSet {
  public:
   void add(std::string_view stage, const Digest& key);
   void add_every_key(std::string_view stage, std::string_view item);
@@ -54,7 +54,7 @@ struct Collected {
 // Removes what `needed` does not cover, artefacts that were moved aside, and dead temporary files; with
 // `dry_run` says only what it would remove. Files that are no artefacts are never touched. Throws
 // StorageError where the folder is no cache, or a file cannot be removed.
-Collected collect_garbage(const std::filesystem::path& folder, const Needed& needed, bool dry_run,
+Collected collect_garbage(const std::filesystem::path& folder, const KeepSet& needed, bool dry_run,
                           Progress& progress);
 
 }  // namespace salbench

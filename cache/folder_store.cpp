@@ -92,7 +92,7 @@ struct FolderStore::Impl {
   bool is_complete(const fs::path& file, const ArtefactName& name) const {
     const auto size = size_of_file(file);
     if (size && *size != name.size)
-      set_aside(file, fmt::format("truncated: {} of {} bytes", *size, name.size));
+      quarantine(file, fmt::format("truncated: {} of {} bytes", *size, name.size));
     return size == name.size;
   }
 
@@ -103,7 +103,7 @@ struct FolderStore::Impl {
   }
 
   // A file that is gone (another process collects, or quarantines the same file) needs no warning.
-  void set_aside(const fs::path& file, std::string_view why) const {
+  void quarantine(const fs::path& file, std::string_view why) const {
     std::error_code error;
     if (access == Access::read_only) {
       spdlog::warn("{}: {}; a run will compute it again", file.string(), why);
@@ -134,7 +134,7 @@ struct FolderStore::Impl {
     if (auto bytes = read_bytes(file)) {
       auto [result, fault] = parse(std::move(*bytes), name);
       if (fault.empty()) return std::move(result);
-      set_aside(file, fault);
+      quarantine(file, fault);
     }
     forget(stage, key);
     return {};
@@ -176,7 +176,7 @@ bool FolderStore::has_item(std::string_view stage, std::string_view item) const 
 }
 
 // The names are read without the lock: on a network file system that takes its time.
-std::optional<Digest> FolderStore::find_now(std::string_view stage, const Digest& key) {
+std::optional<Digest> FolderStore::refresh_and_find(std::string_view stage, const Digest& key) {
   if (const auto content = find(stage, key)) return content;
   for (const ArtefactName& name : find_artefacts(impl_->folder, stage, key)) {
     if (!impl_->is_complete(impl_->shard(stage, key) / name.text(), name)) continue;

@@ -27,7 +27,7 @@ class FolderStore final : public Store {
 
   std::optional<Digest> find(std::string_view stage, const Digest& key) const override;
   bool has_item(std::string_view stage, std::string_view item) const override;
-  std::optional<Digest> find_now(std::string_view stage, const Digest& key) override;
+  std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) override;
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override;
   Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
               const ArtefactNote& note) override;
@@ -37,7 +37,7 @@ class FolderStore final : public Store {
   // The bytes of an artefact as they are stored, checked against their checksum; nothing as in load.
   std::optional<Bytes> image(std::string_view stage, const Digest& key);
 
-  // Where an artefact lies, for who links to it; nothing where there is none.
+  // File of an artefact, for links to it; nothing if there is none.
   std::optional<std::filesystem::path> path(std::string_view stage, const Digest& key) const;
 
   struct Usage {

@@ -1,4 +1,4 @@
-// What an artefact is a function of. Never in it: time stamps, paths, thread counts, source text.
+// Everything that an artefact is a function of. Never in it: time stamps, paths, thread counts, source text.
 #pragma once
 
 #include <cstdint>

@@ -69,9 +69,8 @@ void require_cache(const fs::path& folder) {
   check_format(folder);
   const std::string text = tag_text(folder);
   if (!text.starts_with(kTagSignature) || text.find(kFormatLine) == std::string::npos)
-    throw StorageError(
-        fmt::format("{}: is no cache of salbench (it has no {} of its own); name one with --cache",
-                    folder.string(), kTagName));
+    throw StorageError(fmt::format("{}: not a salbench cache ({} is missing); choose one with --cache",
+                                   folder.string(), kTagName));
 }
 
 void prepare_cache(const fs::path& folder) {

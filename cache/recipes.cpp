@@ -72,7 +72,7 @@ RecipeReading read_recipe(const ArtefactFile& file) {
 RecipeBook::RecipeBook(fs::path folder) : folder_(std::move(folder)) {
   for (FolderEntry& entry : list_folder(folder_ / kDamagedFolder))
     if (const auto name = parse_artefact_name(entry.path.filename().native()))
-      set_aside_.emplace(name->key, std::move(entry.path));
+      quarantined_.emplace(name->key, std::move(entry.path));
 }
 
 const std::vector<ArtefactFile>& RecipeBook::artefacts(const std::string& stage, std::string_view item) {
@@ -86,9 +86,9 @@ const std::vector<ArtefactFile>& RecipeBook::artefacts(const std::string& stage,
   return found == by_item.end() ? none : found->second;
 }
 
-const fs::path* RecipeBook::set_aside(const Digest& key) const {
-  const auto found = set_aside_.find(key);
-  return found == set_aside_.end() ? nullptr : &found->second;
+const fs::path* RecipeBook::quarantined(const Digest& key) const {
+  const auto found = quarantined_.find(key);
+  return found == quarantined_.end() ? nullptr : &found->second;
 }
 
 }  // namespace salbench

@@ -41,14 +41,14 @@ class RecipeBook {
   const std::vector<ArtefactFile>& artefacts(const std::string& stage, std::string_view item);
 
   // An artefact under this key that a run has moved aside as damaged.
-  const std::filesystem::path* set_aside(const Digest& key) const;
+  const std::filesystem::path* quarantined(const Digest& key) const;
 
  private:
   using ByItem = std::map<std::string, std::vector<ArtefactFile>, std::less<>>;
 
   std::filesystem::path folder_;
   std::map<std::string, ByItem> stages_;
-  std::map<Digest, std::filesystem::path> set_aside_;
+  std::map<Digest, std::filesystem::path> quarantined_;
 };
 
 }  // namespace salbench

@@ -35,7 +35,7 @@ struct ArtefactNote {
 class Store : public Index {
  public:
   // As find, but also sees what other processes have stored meanwhile.
-  virtual std::optional<Digest> find_now(std::string_view stage, const Digest& key) = 0;
+  virtual std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) = 0;
   // The arrays; nothing where the artefact is missing, short or fails its checksum. A bad file is moved aside
   // with a warning that names it, and is a miss from then on. Throws StorageError if the system does not let
   // it be read, which says nothing about the file.

@@ -37,12 +37,12 @@ std::optional<decltype(Recipe::inputs)> inputs_from(const std::string& text) {
   return inputs;
 }
 
-// What the attributes say otherwise than the name; empty where they agree.
+// Describes where the attributes contradict the name; empty if they agree.
 std::string contradiction(const Attributes& attributes, std::string_view stage, const ArtefactName& name) {
   const auto recipe = recipe_from(attributes);
-  if (!recipe) return "an attribute that says what it was made of is missing";
-  if (recipe->stage != stage) return fmt::format("its attributes say that it is of stage {}", recipe->stage);
-  if (key_of(*recipe) != name.key) return "its key is not that of what it was made of";
+  if (!recipe) return "an attribute of its recipe is missing";
+  if (recipe->stage != stage) return fmt::format("its attributes name stage {}", recipe->stage);
+  if (key_of(*recipe) != name.key) return "its key is not that of its recipe";
   if (item_label(attribute<std::string>(attributes, "item").value_or("")) != name.item)
     return "its attributes name another item";
   return {};
@@ -87,8 +87,7 @@ Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view s
   if (std::string fault = damage(bytes, name); !fault.empty()) return faulty(std::move(fault));
   try {
     Hdf5Content content = hdf5_content(bytes, name.item);
-    if (content_digest(content.arrays) != name.content)
-      return faulty("its content is not what its name says");
+    if (content_digest(content.arrays) != name.content) return faulty("its content does not match its name");
     if (std::string fault = contradiction(content.attributes, stage, name); !fault.empty())
       return faulty(std::move(fault));
     return {std::move(content), {}};

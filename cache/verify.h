@@ -1,4 +1,4 @@
-// What can be wrong with an artefact, and a look at every one of a cache folder.
+// Checks of one artefact, and of every artefact in a cache folder.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace salbench {
 
-// What an artefact was made of, from its own attributes; nothing where one is missing or malformed.
+// Recipe of an artefact, from its own attributes; nothing if one is missing or malformed.
 std::optional<Recipe> recipe_from(const Attributes& attributes);
 
 // Describes how the bytes differ from those that were written under this name; empty if they are the same.

@@ -24,7 +24,7 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const vo
   must(H5Awrite(attribute, type, value), "H5Awrite");
 }
 
-// Of coordinates deflate saves an eighth, of descriptors (single precision, mostly zeros) a half.
+// Deflate saves an eighth of coordinates, and half of descriptors (single precision, mostly zeros).
 Handle creation_properties(const Array& array) {
   Handle properties = property_list(H5P_DATASET_CREATE);
   must(H5Pset_obj_track_times(properties, false), "H5Pset_obj_track_times");

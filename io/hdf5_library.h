@@ -1,4 +1,4 @@
-// What reading and writing share of the HDF5 library (C API, 1.10): for io/hdf5_*.cpp alone, which are all of
+// Shared by reading and writing of the HDF5 library (C API, 1.10): for io/hdf5_*.cpp alone, which are all of
 // the program that knows it.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the parsers of mesh formats share.
+// Shared by the parsers of mesh formats.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace salbench {
 
 inline constexpr std::int64_t kMostVertices = std::numeric_limits<std::int32_t>::max();
 
-// What is wrong with a position; empty if nothing. Stages square distances, which must not overflow.
+// Describes what is wrong with a position; empty if nothing. Stages square distances, which must not
+// overflow.
 std::string_view wrong_with_point(const Vec3& point);
 
 // The next three numbers of the line.
@@ -31,10 +32,10 @@ inline std::size_t room_for(std::int64_t announced, std::size_t bytes) {
   return std::min(static_cast<std::size_t>(announced), bytes / kFewestBytesPerRecord);
 }
 
-// What is wrong with a number of vertices or faces; empty if nothing.
+// Describes what is wrong with a number of vertices or faces; empty if nothing.
 std::string wrong_with_count(std::int64_t count, std::string_view plural);
 
-// What is wrong with a face of so many vertices; empty if nothing.
+// Describes what is wrong with a face of so many vertices; empty if nothing.
 std::string wrong_with_polygon(std::int64_t n_vertices);
 
 std::string index_out_of_range(std::int64_t index, std::int64_t first, std::int64_t n_vertices);

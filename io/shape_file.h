@@ -12,7 +12,7 @@
 
 namespace salbench {
 
-// csv  one row a point: x, y, z, nx, ny, nz, then the fields; no faces; doubles read back as the same
+// csv  one row per point: x, y, z, nx, ny, nz, then the fields; no faces; doubles read back as the same
 // ply  binary little endian; x, y, z as double, everything else at a vertex as float [turk1994]
 // vtp  VTK's PolyData in XML, base64, double precision; points without faces become vertex cells
 enum class ShapeFormat { csv, ply, vtp };
@@ -30,7 +30,7 @@ struct ShapeWithFields {
   std::span<const Vec3> points;
   std::span<const Vec3> normals = {};    // one a point, or none
   std::span<const Triangle> faces = {};  // may be none
-  std::vector<PointField> fields = {};   // one value a point
+  std::vector<PointField> fields = {};   // one value per point
   std::string remark = {};               // one line for who opens the file in an editor; without "--"
 };
 

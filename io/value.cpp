@@ -176,7 +176,9 @@ struct Layout<Histogram> {
   static Histogram read(const Arrays& arrays) {
     const auto& values = values_of<double>(arrays, "density");
     Histogram histogram{};
-    if (values.size() != histogram.size()) throw InputError("the data set 'density' has not 100 bins");
+    if (values.size() != histogram.size())
+      throw InputError(
+          fmt::format("data set 'density': expected {} bins, found {}", histogram.size(), values.size()));
     std::copy(values.begin(), values.end(), histogram.begin());
     return histogram;
   }

@@ -187,7 +187,7 @@ void add_people(ChainBuilder& chain, const Config& config, const Model& model) {
              }});
 }
 
-// What both kinds of shape have in common: descriptors, models, scores.
+// Rows that meshes and scans share: descriptors, models, scores.
 void add_evaluation(ChainBuilder& chain, const Parts& parts, const Config& config) {
   chain.add({.name = "fpfh",
              .version = 1,

@@ -14,8 +14,8 @@
 
 namespace salbench {
 
-// Where an input comes from: an earlier stage of the same shape, a stage of the mesh that the shape is a scan
-// of, or the reference histogram of the data set.
+// Source of an input: an earlier stage of the same shape, a stage of the mesh that the shape is a scan of, or
+// the reference histogram of the data set.
 struct Input {
   enum class From : std::uint8_t { shape, mesh, reference } from = From::shape;
   std::size_t stage = 0;  // index in that chain
@@ -77,8 +77,7 @@ Histogram histogram_of(const Value& value);  // of a ground truth's saliency, or
 
 Catalog make_catalog(const Config& config);
 
-// Where an option of the stage stands in the configuration: "fpfh.radius"; the key itself where it stands
-// nowhere.
+// Configuration path of a stage's option, such as "fpfh.radius"; the bare key if no section has it.
 std::string option_path(const Stage& stage, std::string_view key);
 
 // Index of a stage in a chain. Throws std::out_of_range.

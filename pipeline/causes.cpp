@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& parts) {
 
 std::string or_none(const std::string& value) { return value.empty() ? "none" : value; }
 
-// What became of an input that a key names.
+// Fate of an input that a key names.
 std::string fate(const RecipeDifference& difference) {
   if (difference.before.empty()) return "added";
   return difference.after.empty() ? "removed" : "changed";
@@ -101,7 +101,7 @@ Cause Causes::of(const ItemRef& item, std::size_t index, bool verify) {
   if (decision.job.reason == Reason::unreadable) return {Reason::unreadable};
   const Digest key = key_of(decision.recipe);
 
-  const std::filesystem::path* aside = book_.set_aside(key);
+  const std::filesystem::path* aside = book_.quarantined(key);
   if (aside != nullptr && (!hit || job.reason == Reason::damaged))
     return {Reason::damaged, {}, *aside, "a run moved it aside"};
   const auto& files = book_.artefacts(stage.name, context_.name(item));
@@ -163,7 +163,8 @@ std::string Causes::group(const ItemRef& item, std::size_t index) {
   const Stage& stage = context_.chain(item)[index];
   const Cause cause = of(item, index);
   if (cause.reason == Reason::input_pending || cause.reason == Reason::input_failed)
-    return fmt::format("{} {}", text_of(cause.reason), input_name(context_, item, stage.inputs[job.because]));
+    return fmt::format("{} {}", text_of(cause.reason),
+                       input_name(context_, item, stage.inputs[job.blocking_input]));
   if (cause.differences.empty()) return std::string(text_of(cause.reason));
   std::vector<std::string> parts;
   for (const RecipeDifference& difference : cause.differences)
@@ -171,7 +172,7 @@ std::string Causes::group(const ItemRef& item, std::size_t index) {
   return joined(parts);
 }
 
-// What a mean was taken over is counted: "3 map.LS changed, 1 map.LS added".
+// Counts the inputs of a mean by their fate: "3 map.LS changed, 1 map.LS added".
 std::string Causes::group_of_mean(std::size_t index, bool meshes) {
   const Job& job = plan_.means[index][meshes ? 0 : 1];
   const MeanHistogram& mean = context_.catalog.means[index];
@@ -181,7 +182,7 @@ std::string Causes::group_of_mean(std::size_t index, bool meshes) {
   if (job.verdict == Verdict::cached || now.stage.empty()) return std::string(text_of(job.reason));
 
   const Digest key = key_of(now);
-  if (book_.set_aside(key) != nullptr) return std::string(text_of(Reason::damaged));
+  if (book_.quarantined(key) != nullptr) return std::string(text_of(Reason::damaged));
   const Cause cause = nearest(book_.artefacts(mean.name, meshes ? "meshes" : "scans"), now, key);
   if (cause.differences.empty()) return std::string(text_of(cause.reason));
   std::map<std::string, std::size_t> fates;
@@ -232,7 +233,7 @@ Causes::Product Causes::product(const ItemRef& item, const Input& input) const {
 
 // From job to job, to the first that waits for nothing.
 std::string Causes::waits(const ItemRef& item, std::size_t index) {
-  const Input& input = context_.chain(item)[index].inputs[plan_.jobs(item)[index].because];
+  const Input& input = context_.chain(item)[index].inputs[plan_.jobs(item)[index].blocking_input];
   const Product awaited = product(item, input);
   std::string text = "waits for " + awaited.stage;
   if (awaited.is_mean) return text + ", " + waits_for_mean(item.is_mesh());

@@ -38,7 +38,7 @@ void print_counts(const Setup& setup, const Plan& plan) {
   }
   fmt::print("{}\n", aligned(table));
   fmt::print("{} jobs to do{}\n", open,
-             open > 0 ? "; one that waits is skipped where what it waits for comes out as before" : "");
+             open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : "");
 }
 
 void print_failures(const Setup& setup, const std::vector<Failure>& failures) {

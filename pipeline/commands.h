@@ -1,4 +1,4 @@
-// The verbs of the program.
+// The subcommands of the program.
 #pragma once
 
 #include <atomic>
@@ -25,7 +25,7 @@ ExitStatus status_command(const Arguments& arguments);
 // Carries a session out and writes the tables.
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop);
 
-// How a verb that computes ends: each says on stderr what the user must know.
+// The end of a subcommand that computes: each says on stderr what the user must know.
 std::string interrupted_text(const Arguments& arguments);
 ExitStatus interrupted_status(const Arguments& arguments);
 ExitStatus finished_status(const Session& session);  // whether all succeeded

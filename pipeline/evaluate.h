@@ -1,4 +1,4 @@
-// The verb `evaluate`: maps of one's own, scored beside the models of a configuration.
+// Subcommand `evaluate`: maps of one's own, scored beside the models of a configuration.
 #pragma once
 
 #include <atomic>

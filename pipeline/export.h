@@ -1,4 +1,4 @@
-// The verb `export`: what is known of some items, as files that other programs open.
+// Subcommand `export`: everything known of some items, as files that other programs open.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@ struct ExportOptions {
   bool link = false;          // h5: refer to the artefacts in the cache, do not copy them
 };
 
-// Computes what is missing first. Throws as the other verbs do (commands.h).
+// Computes what is missing first. Throws as the other subcommands do (commands.h).
 ExitStatus export_command(const Arguments& arguments, const ExportOptions& options,
                           const std::atomic<bool>& stop);
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kScores = "scores", kMeans = "means";
 
-// Where a result comes from: the attributes have the names that they have in the artefact.
+// Origin of a result; its attributes have the names that they have in the artefact.
 struct Origin {
   Recipe recipe;
   std::string_view kind;

@@ -1,7 +1,7 @@
 // What a run knows, as one self-contained HDF5 file (docs/data_dictionary.md):
 //   /ITEM/STAGE/...              the data sets of an artefact, its attributes on the group
 //   /means/STAGE/{meshes,scans}  mean histograms over the items of the export
-//   /scores                      one table: a row an item and model
+//   /scores                      one table, one row per item and model
 #pragma once
 
 #include <atomic>

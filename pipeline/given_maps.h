@@ -21,9 +21,9 @@ struct GivenMaps {
   bool matched = false;              // the values are histogram-matched already: they lie in [0, 1]
   std::set<std::string> items = {};  // that there are maps of: "52", "52_3"
 
-  // Of one of these items. Throws InputError.
+  // Reads the map of one of these items. Throws InputError.
   std::function<SourceData(const std::string& item)> read = {};
-  // What was read, as a map of n_points finite numbers. Throws InputError.
+  // The data as a map of n_points finite numbers. Throws InputError.
   ScalarField checked(const SourceData& data, const std::string& item, std::size_t n_points) const;
 
   std::string place(const std::string& item) const;  // for a message: where the item's map is looked for

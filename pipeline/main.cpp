@@ -31,36 +31,39 @@ Exit status: 0 all done; 1 some items failed, each was named; 2 unusable argumen
 3 cache or output folder unusable; 70 a defect of the program, or memory ran out;
 130 interrupted, the line that resumes was printed.)";
 
-CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, Arguments& arguments) {
-  CLI::App* verb = app.add_subcommand(name, what);
-  verb->add_option("CONFIG", arguments.config, "configuration file (YAML); see configs/")->required();
-  verb->add_option("--data", arguments.data, "folder of the data set");
-  verb->add_option("--cache", arguments.cache,
-                   "folder of the artefacts (default: cache in CONFIG, or salbench-cache)");
-  verb->add_option("--out", arguments.output,
-                   "folder of the results (default: output in CONFIG, or salbench-out/NAME)");
-  verb->add_option("--threads", arguments.threads,
+CLI::App* add_subcommand(CLI::App& app, const std::string& name, const std::string& what,
+                         Arguments& arguments) {
+  CLI::App* subcommand = app.add_subcommand(name, what);
+  subcommand->add_option("CONFIG", arguments.config, "configuration file (YAML); see configs/")->required();
+  subcommand->add_option("--data", arguments.data, "folder of the data set");
+  subcommand->add_option("--cache", arguments.cache,
+                         "folder of the artefacts (default: cache in CONFIG, or salbench-cache)");
+  subcommand->add_option("--out", arguments.output,
+                         "folder of the results (default: output in CONFIG, or salbench-out/NAME)");
+  subcommand
+      ->add_option("--threads", arguments.threads,
                    "threads (default: all cores); results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  verb->add_option("--items", arguments.items, "only these meshes and their scans, such as 1-20,52,125");
-  verb->add_option(
+  subcommand->add_option("--items", arguments.items,
+                         "only these meshes and their scans, such as 1-20,52,125");
+  subcommand->add_option(
       "--reference", arguments.reference,
       "match to this histogram (CSV with a column GS of 100 bins), not to the data set's own mean");
-  verb->add_flag("--quiet", arguments.quiet, "neither progress nor tables; warnings and errors only");
-  return verb;
+  subcommand->add_flag("--quiet", arguments.quiet, "neither progress nor tables; warnings and errors only");
+  return subcommand;
 }
 
-// A verb that looks after a cache: of the configurations it names, or of one.
+// A subcommand that maintains the cache of the configurations it names.
 CLI::App* add_maintenance(CLI::App& app, const std::string& name, const std::string& what,
                           Arguments& arguments) {
-  CLI::App* verb = app.add_subcommand(name, what);
-  verb->add_option("--data", arguments.data, "folder of the data set");
-  verb->add_option("--cache", arguments.cache,
-                   "folder of the artefacts (default: cache in CONFIG, or salbench-cache)");
-  verb->add_option("--items", arguments.items, "as of the run: only these meshes and their scans");
-  verb->add_option("--reference", arguments.reference, "as of the run: match to this histogram");
-  verb->add_flag("--quiet", arguments.quiet, "name what is wrong, and nothing else");
-  return verb;
+  CLI::App* subcommand = app.add_subcommand(name, what);
+  subcommand->add_option("--data", arguments.data, "folder of the data set");
+  subcommand->add_option("--cache", arguments.cache,
+                         "folder of the artefacts (default: cache in CONFIG, or salbench-cache)");
+  subcommand->add_option("--items", arguments.items, "as of the run: only these meshes and their scans");
+  subcommand->add_option("--reference", arguments.reference, "as of the run: match to this histogram");
+  subcommand->add_flag("--quiet", arguments.quiet, "name what is wrong, and nothing else");
+  return subcommand;
 }
 
 // As a shell reads it back as the same word.
@@ -85,45 +88,46 @@ int dispatch(int argc, char** argv) {
   app.require_subcommand(1);
   Arguments arguments;
   arguments.command_line = joined(argc, argv);
-  CLI::App* run = add_verb(app, "run", "compute what is missing and write the tables", arguments);
+  CLI::App* run = add_subcommand(app, "run", "compute what is missing and write the tables", arguments);
   constexpr const char* kShard = "only share I of N of the items; a run without it then merges the shares";
   run->add_option("--shard", arguments.shard, kShard)->type_name("I/N");
-  CLI::App* maps =
-      add_verb(app, "maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value a line", arguments);
+  CLI::App* maps = add_subcommand(
+      app, "maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value per line", arguments);
   maps->add_option("--models", arguments.models, "only these, such as LS,PS");
   maps->add_option("--to", arguments.to, "folder that the maps are written to")->required();
   maps->add_flag("--matched", arguments.matched, "after histogram matching");
   EvaluateOptions evaluated;
-  CLI::App* evaluate = add_verb(
+  CLI::App* evaluate = add_subcommand(
       app, "evaluate", "a run that also scores saliency maps of your own, made by any program", arguments);
   evaluate
-      ->add_option("--maps", evaluated.maps,
-                   "folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; one value a line), or an "
-                   "HDF5 file with a data set ITEM")
+      ->add_option(
+          "--maps", evaluated.maps,
+          "folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; one value per line), or an "
+          "HDF5 file with a data set ITEM")
       ->required();
   evaluate->add_option("--name", evaluated.name, "what to call them in the tables")->required();
   evaluate->add_option("--models", arguments.models, "beside these models only, such as LS,PS");
   evaluate->add_flag("--matched", evaluated.matched, "the values are histogram-matched already");
   ExportOptions exported;
-  CLI::App* exports =
-      add_verb(app, "export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
-               arguments);
+  CLI::App* exports = add_subcommand(
+      app, "export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
+      arguments);
   exports->add_option("--stage", exported.stages,
                       "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*");
   exports->add_option("--models", arguments.models, "only these, such as LS,PS");
   exports->add_option("--to", arguments.to, "the HDF5 file, or the folder of the shapes")->required();
-  exports->add_option("--format", exported.format, "h5 (default), or a shape an item: csv, ply, vtp");
+  exports->add_option("--format", exported.format, "h5 (default), or one shape per item: csv, ply, vtp");
   exports->add_flag("--link", exported.link, "refer to the artefacts in the cache, do not copy them");
   CLI::App* plan =
-      add_verb(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
+      add_subcommand(app, "plan", "count what a run would compute, and why; changes nothing", arguments);
   plan->add_option("--shard", arguments.shard, kShard)->type_name("I/N");
   ExplainOptions explained;
-  CLI::App* explain =
-      add_verb(app, "explain",
-               "tell of each artefact of an item whether it is cached, and if not what differs", arguments);
+  CLI::App* explain = add_subcommand(
+      app, "explain", "tell of each artefact of an item whether it is cached, and if not what differs",
+      arguments);
   explain->add_option("ITEM", explained.item, "a mesh (52) or a scan of it (52_3)")->required();
   explain->add_option("STAGE", explained.stage, "this stage only");
-  add_verb(app, "status", "count what is in the cache; changes nothing", arguments);
+  add_subcommand(app, "status", "count what is in the cache; changes nothing", arguments);
   VerifyOptions verified;
   CLI::App* verify = add_maintenance(
       app, "verify", "read every artefact of a cache and name each bad one; changes nothing", arguments);

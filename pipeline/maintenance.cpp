@@ -24,7 +24,7 @@ bool key_is_unknown(const Job& job) {
   switch (job.verdict) {
     case Verdict::cached:
     case Verdict::done:
-    case Verdict::absent:
+    case Verdict::not_applicable:
       return false;
     case Verdict::compute:
       return job.reason == Reason::unreadable;
@@ -73,7 +73,7 @@ std::optional<Value> stored_input(const Context& context, const Plan& plan, Fold
   }
 }
 
-// What is wrong with a cached job; empty where it comes out as it is stored.
+// Recomputes a cached job and describes the first difference; empty if there is none.
 std::string recomputed_fault(const Context& context, const Plan& plan, FolderStore& store,
                              const StageOfItem& job) {
   const Stage& stage = context.chain(job.item)[job.stage];
@@ -95,7 +95,9 @@ std::string recomputed_fault(const Context& context, const Plan& plan, FolderSto
       inputs.files = read_unchanged(sources_of(context, job.item, stage.source));
     const Digest content = content_digest(arrays_from(stage.run(inputs)));
     if (content == plan.jobs(job.item)[job.stage].content) return {};
-    return fmt::format("computed again it comes out otherwise, as {}", content.hex());
+    return fmt::format(
+        "computed again, its content is {}: the stage is not deterministic, or its version was not raised",
+        content.hex());
   } catch (const InputError& error) {
     return fmt::format("cannot be computed again: {}", error.what());
   } catch (const StorageError&) {
@@ -140,7 +142,7 @@ std::optional<Result> earlier_result(const FolderStore& store, Recipe recipe, st
 
 void accept_job(const Context& context, const Decision& decision, std::string_view kind,
                 const std::string& item, FolderStore& store, Accepted& count) {
-  if (decision.job.verdict == Verdict::absent) return;
+  if (decision.job.verdict == Verdict::not_applicable) return;
   if (decision.job.known()) {
     ++count.valid;
   } else if (key_is_unknown(decision.job)) {
@@ -219,13 +221,13 @@ void print_collected(const Collected& collected, std::size_t waiting, bool dry_r
 
 }  // namespace
 
-std::size_t add_needed(const Context& context, const Plan& plan, Needed& needed) {
+std::size_t add_needed(const Context& context, const Plan& plan, KeepSet& needed) {
   std::size_t unknown = 0;
   const auto add = [&](const std::string& stage, const std::string& item, const Job& job) {
     if (key_is_unknown(job)) {
       needed.add_every_key(stage, item);
       ++unknown;
-    } else if (job.verdict != Verdict::absent) {
+    } else if (job.verdict != Verdict::not_applicable) {
       needed.add(stage, job.key);  // also of a job to compute: another process may be storing it now
     }
   };
@@ -298,7 +300,7 @@ ExitStatus verify_command(const Arguments& arguments, const VerifyOptions& optio
 }
 
 ExitStatus gc_command(const Arguments& arguments, const GcOptions& options) {
-  Needed needed;
+  KeepSet needed;
   std::size_t waiting = 0;
   fs::path folder;
   for (const std::string& config : options.configs) {

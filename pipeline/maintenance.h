@@ -1,4 +1,4 @@
-// The verbs that look after a cache: verify, gc and accept.
+// Subcommands that maintain a cache: verify, gc and accept.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace salbench {
 // Adds what a run of this plan reads or may come to read. Where a job's key is not known yet (what it reads
 // is still to be computed, or cannot be read) every artefact of its stage and item is needed: one of them may
 // turn out to be the result. Returns how many jobs are of that kind.
-std::size_t add_needed(const Context& context, const Plan& plan, Needed& needed);
+std::size_t add_needed(const Context& context, const Plan& plan, KeepSet& needed);
 
 // Computes `sample` cached jobs again, seeded by the configuration's seed, and compares. Stores nothing; a
 // job whose input cannot be read is a fault too. Ends early once `stop` is set.

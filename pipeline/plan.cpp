@@ -10,8 +10,8 @@
 namespace salbench {
 namespace {
 
-Job verdict_of(Verdict verdict, Reason reason, std::size_t because = 0) {
-  return {verdict, reason, static_cast<std::uint8_t>(because), {}, {}};
+Job verdict_of(Verdict verdict, Reason reason, std::size_t blocking_input = 0) {
+  return {verdict, reason, static_cast<std::uint8_t>(blocking_input), {}, {}};
 }
 
 const Job& input_job(const Plan& plan, const ItemRef& item, const Input& input) {
@@ -31,8 +31,8 @@ std::optional<Job> stopped_by(const Job& input, std::size_t index) {
     case Verdict::cached:
     case Verdict::done:
       return {};
-    case Verdict::absent:
-      return verdict_of(Verdict::absent, input.reason, index);
+    case Verdict::not_applicable:
+      return verdict_of(Verdict::not_applicable, input.reason, index);
     case Verdict::failed:
     case Verdict::blocked:
       return verdict_of(Verdict::blocked, Reason::input_failed, index);
@@ -47,7 +47,7 @@ std::optional<Job> add_sources(const Context& context, const ItemRef& item, cons
   if (stage.source == Source::none) return {};
   const SourceFiles& files = sources_of(context, item, stage.source);
   if (files.empty())
-    return verdict_of(Verdict::absent,
+    return verdict_of(Verdict::not_applicable,
                       stage.source == Source::map_file ? Reason::not_given : Reason::no_ground_truth);
   for (const SourceFile& file : files) {
     if (!file.digest) return verdict_of(Verdict::compute, Reason::unreadable);
@@ -89,7 +89,7 @@ std::string_view text_of(Reason reason) {
     case Reason::input_pending:
       return "waits for";
     case Reason::input_failed:
-      return "cannot be had without";
+      return "failed input:";
     case Reason::no_ground_truth:
       return "no ground truth";
     case Reason::unreadable:
@@ -157,7 +157,7 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
                 const Lookup& lookup) {
   const Stage& stage = context.chain(item)[index];
   if (stage.applies && !stage.applies(context.source(item)))
-    return {verdict_of(Verdict::absent, Reason::inapplicable), {}};
+    return {verdict_of(Verdict::not_applicable, Reason::inapplicable), {}};
   Recipe recipe{stage.name, stage.version, {}, {}, {}};
   for (const OptionLines& options : stage.options) recipe.options += options.text;
   if (stage.per_view) recipe.options += fmt::format("view: {}\n", item.view);
@@ -166,7 +166,7 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
   for (std::size_t i = 0; i < stage.inputs.size(); ++i) {
     const Job& input = input_job(plan, item, stage.inputs[i]);
     const std::optional<Job> by_this = stopped_by(input, i);
-    if (by_this && (!stopped || by_this->verdict == Verdict::absent)) stopped = by_this;
+    if (by_this && (!stopped || by_this->verdict == Verdict::not_applicable)) stopped = by_this;
     recipe.inputs.emplace_back(input_name(context, item, stage.inputs[i]), input.content);
   }
   if (stopped) return {*stopped, {}};
@@ -184,10 +184,10 @@ Decision decide_mean(const Context& context, const Plan& plan, std::size_t index
     job.content = content_digest(arrays_from(*context.given_reference));
     return {job, {}};
   }
-  if (context.shard) return {verdict_of(Verdict::absent, Reason::needs_all), {}};
+  if (context.shard) return {verdict_of(Verdict::not_applicable, Reason::needs_all), {}};
   const Chain& chain = meshes ? context.catalog.mesh : context.catalog.scan;
   const std::string& averaged = meshes ? mean.of_mesh : mean.of_scan;
-  if (!has_stage(chain, averaged)) return {verdict_of(Verdict::absent, Reason::none), {}};
+  if (!has_stage(chain, averaged)) return {verdict_of(Verdict::not_applicable, Reason::none), {}};
   const std::size_t stage = stage_index(chain, averaged);
   Recipe recipe{mean.name, mean.version, {}, {}, {}};
   for (const ItemRef& item : context.items(meshes)) {
@@ -195,7 +195,7 @@ Decision decide_mean(const Context& context, const Plan& plan, std::size_t index
     if (job.open()) return {verdict_of(Verdict::wait, Reason::input_pending), {}};
     if (job.known()) recipe.inputs.emplace_back(context.name(item), job.content);
   }
-  if (recipe.inputs.empty()) return {verdict_of(Verdict::absent, Reason::no_ground_truth), {}};
+  if (recipe.inputs.empty()) return {verdict_of(Verdict::not_applicable, Reason::no_ground_truth), {}};
   Job job = looked_up(recipe, lookup);
   return {job, std::move(recipe)};
 }
@@ -267,7 +267,7 @@ class Counter {
         return count.compute;
       case Verdict::wait:
         return count.wait;
-      case Verdict::absent:
+      case Verdict::not_applicable:
         return count.absent;
       default:
         return count.failed;

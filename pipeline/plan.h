@@ -19,24 +19,24 @@
 namespace salbench {
 
 enum class Verdict : std::uint8_t {
-  wait,     // an input is not known yet
-  compute,  // all inputs are known, the result is not in the cache
-  cached,   // in the cache
-  done,     // computed by this run
-  absent,   // does not apply: no ground truth, or no reference histogram
-  failed,   // this stage failed
-  blocked,  // something it reads failed
+  wait,            // an input is not known yet
+  compute,         // all inputs are known, the result is not in the cache
+  cached,          // in the cache
+  done,            // computed by this run
+  not_applicable,  // does not apply: no ground truth, or no reference histogram
+  failed,          // this stage failed
+  blocked,         // something it reads failed
 };
 
 enum class Reason : std::uint8_t {
   none,
   never_computed,  // nothing in the cache for this stage and item
   changed,         // the cache has this stage of the item for other inputs, options, seed or version
-  input_pending,   // waits for `because`
-  input_failed,    // `because` failed
+  input_pending,   // waits for the blocking input
+  input_failed,    // the blocking input failed
   no_ground_truth,
   unreadable,    // a source file cannot be read
-  damaged,       // the artefact is cut short or fails its checksum
+  damaged,       // the artefact is truncated or fails its checksum
   inapplicable,  // the stage has nothing to say of the item
   not_given,     // a map of such items is not among those given
   needs_all,     // the mean over the whole data set, of which this is a share
@@ -46,8 +46,8 @@ std::string_view text_of(Reason reason);
 struct Job {
   Verdict verdict = Verdict::wait;
   Reason reason = Reason::none;
-  std::uint8_t because = 0;  // index of the input at fault among the stage's inputs
-  Digest key, content;       // known where cached or done
+  std::uint8_t blocking_input = 0;  // index among the stage's inputs
+  Digest key, content;              // known where cached or done
 
   bool known() const { return verdict == Verdict::cached || verdict == Verdict::done; }
   bool open() const { return verdict == Verdict::wait || verdict == Verdict::compute; }
@@ -64,8 +64,8 @@ struct ItemRef {
 
 struct Plan {
   struct FamilyJobs {
-    std::vector<Job> mesh;                // a job a stage of Catalog::mesh
-    std::vector<std::vector<Job>> scans;  // a view: a job a stage of Catalog::scan
+    std::vector<Job> mesh;                // [row of Catalog::mesh]
+    std::vector<std::vector<Job>> scans;  // [view][row of Catalog::scan]
   };
   std::vector<FamilyJobs> families;
   std::vector<std::array<Job, 2>> means;  // as Catalog::means; of the meshes, of the scans
@@ -74,7 +74,7 @@ struct Plan {
   const std::vector<Job>& jobs(const ItemRef& item) const;
 };
 
-// What planning and running have in common: everything that is fixed before the first job.
+// Everything that planning and running share and that is fixed before the first job.
 struct Context {
   const Catalog& catalog;
   Workload& workload;  // its digests follow files that change during a run
@@ -107,12 +107,12 @@ Decision decide(const Context& context, const Plan& plan, const ItemRef& item, s
 Decision decide_mean(const Context& context, const Plan& plan, std::size_t mean, bool meshes,
                      const Lookup& lookup);
 
-// What a key calls an input: the name of the stage that makes it.
+// Name of an input as it appears in a key: the stage that produces it.
 const std::string& input_name(const Context& context, const ItemRef& item, const Input& input);
 
 Plan make_plan(const Context& context, const Index& index);
 
-// What there is to do, counted by stage for `salbench plan` and `status`; the means stand last.
+// Job counts per stage, for `salbench plan` and `status`. Means come last.
 struct StageCount {
   std::string stage;  // or mean
   std::int32_t version = 0;

@@ -1,4 +1,4 @@
-// What a run has found, item by item, and the files it is written to.
+// Results of a run, item by item, and the files they are written to.
 #pragma once
 
 #include <array>
@@ -43,11 +43,11 @@ struct DatasetAndModel {
 // Those that the rows speak of: meshes before scans, models in the order of their first row.
 std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows);
 
-// One row an item and model that was scored; by item, mesh before scans, then in the order of the models.
+// One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
 std::vector<ResultRow> collect_results(const Config& config, const Context& context, const Plan& plan,
                                        Runner& runner);
 
-// Of the meshes that HS was computed for, in their order.
+// Human curves of the meshes that HS was computed for, in their order.
 std::vector<HumanCurve> collect_human_curves(const Config& config, const Context& context, const Plan& plan,
                                              Runner& runner);
 
@@ -64,7 +64,7 @@ Histogram read_reference(const std::string& path);
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
-// What a run was and did: configuration, versions, timings, failures.
+// Record of a run: configuration, versions, timings, failures.
 struct RunRecord {
   const Config& config;
   const Context& context;
@@ -75,7 +75,7 @@ struct RunRecord {
   Why why = {};  // of what was computed; empty: not recorded
 };
 
-// Of a run over a share, beside those of the other shares: shard_2_of_4.yaml.
+// Writes the record of a run over a share, such as shard_2_of_4.yaml.
 void write_shard_record(const std::filesystem::path& folder, const RunRecord& record);
 
 // results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and run.yaml;

@@ -19,7 +19,7 @@ namespace {
 
 using ValuePtr = std::shared_ptr<const Value>;
 
-constexpr std::chrono::milliseconds kLookAgain(50);  // whether another process has given up a claim
+constexpr std::chrono::milliseconds kClaimPollInterval(50);  // whether another process has given up a claim
 
 bool has_open_job(const Context& context, const Plan& plan, const ItemRef& item, bool after_reference) {
   const Chain& chain = context.chain(item);
@@ -65,9 +65,9 @@ class Runner::FamilyRun {
     // The key is of what the files hold now: they may have been edited since they were planned with.
     std::vector<SourceData> files;
     if (stage.source != Source::none) files = read_again(sources_of(runner_.context_, item, stage.source));
-    Decision decision =
-        decide(runner_.context_, runner_.plan_, item, index,
-               [&](std::string_view name, const Digest& key) { return runner_.store_.find_now(name, key); });
+    Decision decision = decide(
+        runner_.context_, runner_.plan_, item, index,
+        [&](std::string_view name, const Digest& key) { return runner_.store_.refresh_and_find(name, key); });
     // The plan's reason is kept: why it was recomputed is asked afterwards.
     const Reason reason = job.reason;
     job = decision.job;
@@ -203,7 +203,7 @@ Runner::Work Runner::open_work(bool after_reference) const {
   return work;
 }
 
-// What other processes have claimed is left to the end, and by then is mostly found in the cache. Nothing is
+// Families claimed by other processes are left to the end; by then most are found in the cache. Nothing is
 // held while waiting for them, so that two processes never wait for each other.
 void Runner::run_pass(int threads, bool after_reference) {
   Work left = open_work(after_reference);
@@ -213,7 +213,7 @@ void Runner::run_pass(int threads, bool after_reference) {
   progress_.begin(after_reference ? "matching and scoring" : "maps", items);
   while (!left.empty() && !stop_) {
     Work claimed_by_others = work_through(left, threads, after_reference);
-    if (claimed_by_others.size() == left.size()) std::this_thread::sleep_for(kLookAgain);
+    if (claimed_by_others.size() == left.size()) std::this_thread::sleep_for(kClaimPollInterval);
     left = std::move(claimed_by_others);
   }
   progress_.end();
@@ -266,7 +266,7 @@ std::unique_ptr<Claim> Runner::claim_of(std::size_t family) const {
 std::unique_ptr<Claim> Runner::wait_for_claim(const std::string& work) const {
   while (!stop_) {
     if (auto claim = store_.claim(work)) return claim;
-    std::this_thread::sleep_for(kLookAgain);
+    std::this_thread::sleep_for(kClaimPollInterval);
   }
   return nullptr;
 }
@@ -277,14 +277,14 @@ ValuePtr Runner::make_mean(std::size_t index, bool meshes) {
     return std::make_shared<const Value>(*context_.given_reference);
   const MeanHistogram& mean = context_.catalog.means[index];
   Job& job = plan_.means[index][meshes ? 0 : 1];
-  Decision decision =
-      decide_mean(context_, plan_, index, meshes,
-                  [&](std::string_view name, const Digest& key) { return store_.find_now(name, key); });
+  Decision decision = decide_mean(
+      context_, plan_, index, meshes,
+      [&](std::string_view name, const Digest& key) { return store_.refresh_and_find(name, key); });
   job = decision.job;
   if (job.verdict == Verdict::cached)
     if (const auto arrays = store_.load(mean.name, job.key))
       return std::make_shared<const Value>(value_from("histogram", *arrays));
-  if (job.verdict == Verdict::absent) return {};
+  if (job.verdict == Verdict::not_applicable) return {};
 
   const auto started = std::chrono::steady_clock::now();
   const std::size_t stage = meshes ? stage_index(context_.catalog.mesh, mean.of_mesh)

@@ -39,7 +39,7 @@ class Runner {
   // StorageError.
   void run(int threads);
 
-  // Of the meshes or of the scans; nothing where there was nothing to average. After run().
+  // Mean over the meshes or over the scans, after run(); nothing if there was nothing to average.
   std::optional<Histogram> mean(std::size_t index, bool meshes);
 
   // A known result, from the cache where it is there. Damaged artefacts are computed again.

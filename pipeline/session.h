@@ -1,4 +1,4 @@
-// What the verbs of the program have in common: from the command line to a plan, and to a run of it.
+// The way from the command line to a plan, and to a run of it, shared by all subcommands.
 #pragma once
 
 #include <atomic>

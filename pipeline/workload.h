@@ -26,7 +26,7 @@ struct Workload {
   std::vector<std::string> notes;
 };
 
-// What tells the data of two runs apart, or that they are the same, wherever they lie.
+// Identity of a run's data, wherever they lie.
 struct DataIdentity {
   std::size_t files = 0;  // meshes and ground truth
   Digest digest;          // of the items' names and of all bytes that are read of them

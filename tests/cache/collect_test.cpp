@@ -31,7 +31,7 @@ class CollectTest : public testing::Test {
 
 TEST_F(CollectTest, RemovesWhatIsNotNeededAndCountsItByStage) {
   const fs::path needed = save("fpfh", "1", 1), old = save("fpfh", "1", 2), unused = save("map.XX", "1", 3);
-  Needed scope;
+  KeepSet scope;
   scope.add("fpfh", key_of(recipe("fpfh", 1)));
   scope.add("map.XX", key_of(recipe("fpfh", 1)));  // a key counts for its own stage alone
   const std::uint64_t old_size = fs::file_size(old), unused_size = fs::file_size(unused);
@@ -67,7 +67,7 @@ TEST_F(CollectTest, ADryRunSaysTheSameAndRemovesNothing) {
 TEST_F(CollectTest, WhereKeysAreUnknownEverythingOfTheStageAndItemStays) {
   const fs::path a = save("fpfh", "bull horn", 1), b = save("fpfh", "bull horn", 2);
   const fs::path other_item = save("fpfh", "2", 3), other_stage = save("scan", "bull horn", 4);
-  Needed scope;
+  KeepSet scope;
   scope.add_every_key("fpfh", "bull horn");
   collect_garbage(folder_.path(), scope, false, progress);
   EXPECT_TRUE(fs::exists(a) && fs::exists(b));

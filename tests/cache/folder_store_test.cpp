@@ -68,7 +68,7 @@ TEST_F(FolderStoreTest, SeesWhatAnotherProcessStored) {
   FolderStore mine = open(), theirs = open();
   const Digest content = save(theirs);
   EXPECT_FALSE(mine.find("fpfh", key_of(recipe())));
-  EXPECT_EQ(mine.find_now("fpfh", key_of(recipe())), content);
+  EXPECT_EQ(mine.refresh_and_find("fpfh", key_of(recipe())), content);
 }
 
 // On a network file system each stat takes its time, and a first run misses 70 000 times.
@@ -81,7 +81,7 @@ TEST_F(FolderStoreTest, AMissLooksAtNoFileOfAnotherKey) {
       folder_ / "fpfh" / missing.hex().substr(0, 2) / ArtefactName{"52", other, {}, 0, 1000}.text();
   fs::create_directories(file.parent_path());
   std::ofstream(file) << "truncated";
-  EXPECT_FALSE(store.find_now("fpfh", missing));
+  EXPECT_FALSE(store.refresh_and_find("fpfh", missing));
   EXPECT_TRUE(fs::exists(file)) << "it was looked at, and found to be cut short";
 }
 

@@ -103,12 +103,12 @@ TEST_F(RecipeBookTest, ShortFilesAreListedAndNotBelieved) {
   const auto reading = read_recipe(book.artefacts("fpfh", "52").front());
   EXPECT_FALSE(reading.recipe);
   EXPECT_THAT(reading.fault, testing::StartsWith("truncated: 9 of "));
-  EXPECT_EQ(book.set_aside(key_of(recipe())), nullptr);
+  EXPECT_EQ(book.quarantined(key_of(recipe())), nullptr);
   { const FolderStore moves_it_aside(folder_.path(), Access::read_write); }
   RecipeBook after(folder_.path());
   EXPECT_THAT(after.artefacts("fpfh", "52"), IsEmpty());
-  ASSERT_NE(after.set_aside(key_of(recipe())), nullptr);
-  EXPECT_TRUE(fs::exists(*after.set_aside(key_of(recipe()))));
+  ASSERT_NE(after.quarantined(key_of(recipe())), nullptr);
+  EXPECT_TRUE(fs::exists(*after.quarantined(key_of(recipe()))));
 }
 
 }  // namespace

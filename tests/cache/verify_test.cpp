@@ -114,14 +114,14 @@ TEST_F(VerifyTest, AnArtefactUnderTheContentOfAnotherIsNamed) {
   ArtefactName wrong = name(0);
   wrong.content = name(1).content;
   disguise(0, *read_bytes(file(0)), wrong);
-  EXPECT_THAT(fault(), HasSubstr("content is not what its name says"));
+  EXPECT_THAT(fault(), HasSubstr("content does not match its name"));
 }
 
 TEST_F(VerifyTest, AnArtefactUnderTheKeyOfAnotherIsNamedAndNotUsed) {
   ArtefactName wrong = name(0);
   wrong.key = key_of(recipe(7));
   disguise(0, *read_bytes(file(0)), wrong);
-  EXPECT_THAT(fault(), HasSubstr("its key is not that of what it was made of"));
+  EXPECT_THAT(fault(), HasSubstr("its key is not that of its recipe"));
   EXPECT_FALSE(FolderStore(folder_.path(), Access::read_only).load("fpfh", wrong.key));
 }
 

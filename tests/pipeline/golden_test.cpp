@@ -114,8 +114,8 @@ class RecordingStore final : public Store {
   bool has_item(std::string_view stage, std::string_view item) const override {
     return store_.has_item(stage, item);
   }
-  std::optional<Digest> find_now(std::string_view stage, const Digest& key) override {
-    return store_.find_now(stage, key);
+  std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) override {
+    return store_.refresh_and_find(stage, key);
   }
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
     return store_.load(stage, key);

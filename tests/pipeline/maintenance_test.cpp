@@ -43,7 +43,7 @@ class MaintenanceTest : public testing::Test {
   }
   // What gc does; returns how many jobs had no key.
   std::size_t collect(const std::vector<std::string>& yamls) const {
-    Needed needed;
+    KeepSet needed;
     std::size_t unknown = 0;
     for (const std::string& yaml : yamls) {
       FolderStore cache = store(Access::read_only);
@@ -105,7 +105,7 @@ TEST_F(MaintenanceTest, ResultsOfAnItemWhoseFileCannotBeReadAreKept) {
   ToyRun toy(data_.path(), cache, kPs);
   toy.workload.families[1].mesh_file.front() = source_file("mesh file .off", "/nowhere/2.off");
   toy.plan = make_plan(toy.context, cache);
-  Needed needed;
+  KeepSet needed;
   EXPECT_GT(add_needed(toy.context, toy.plan, needed), 0U);
   collect_garbage(cache_.path(), needed, false, progress);
   EXPECT_EQ(artefacts().size(), all);
@@ -138,7 +138,7 @@ TEST_F(MaintenanceTest, AStageThatNowComputesSomethingElseIsNamed) {
   const Recomputation result = recompute_sample(toy.context, toy.plan, cache, 1000000, kGoOn);
   ASSERT_THAT(result.faults, SizeIs(2));
   for (const Fault& fault : result.faults) {
-    EXPECT_THAT(fault.what, HasSubstr("comes out otherwise"));
+    EXPECT_THAT(fault.what, HasSubstr("computed again, its content is "));
     EXPECT_TRUE(fs::exists(fault.file));
     EXPECT_THAT(fault.file.string(), HasSubstr("/normals/"));
   }

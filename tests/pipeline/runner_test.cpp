@@ -226,7 +226,8 @@ TEST_F(RunnerTest, AFailingItemStopsNoOther) {
   EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("3.off"));
   EXPECT_EQ(toy.count(Verdict::done), jobs_.stages());
   EXPECT_EQ(toy.count(Verdict::failed), 1U);
-  EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::absent), JobCounts(kToyConfig, 1).stages() - 1);
+  EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::not_applicable),
+            JobCounts(kToyConfig, 1).stages() - 1);
   EXPECT_EQ(collect_results(toy.config, toy.context, toy.plan, toy.runner).size(), jobs_.of_kind("scores"));
 }
 
@@ -336,7 +337,7 @@ TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
     return toy.plan.families[family].mesh[stage_index(toy.catalog.mesh, "scores.HS")];
   };
   EXPECT_TRUE(job(0).open());
-  EXPECT_EQ(job(1).verdict, Verdict::absent);
+  EXPECT_EQ(job(1).verdict, Verdict::not_applicable);
   EXPECT_EQ(job(1).reason, Reason::inapplicable);
   toy.run();
   EXPECT_THAT(toy.runner.failures(), IsEmpty());
@@ -364,7 +365,7 @@ class FullStore final : public Store {
  public:
   std::optional<Digest> find(std::string_view, const Digest&) const override { return {}; }
   bool has_item(std::string_view, std::string_view) const override { return false; }
-  std::optional<Digest> find_now(std::string_view, const Digest&) override { return {}; }
+  std::optional<Digest> refresh_and_find(std::string_view, const Digest&) override { return {}; }
   std::optional<Arrays> load(std::string_view, const Digest&) override { return {}; }
   Digest save(const Recipe&, std::string_view, const Arrays&, const ArtefactNote&) override {
     throw StorageError("no space left");

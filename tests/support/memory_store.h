@@ -32,7 +32,7 @@ class MemoryStore final : public Store {
       if (id.first == stage && entry.item == item) return true;
     return false;
   }
-  std::optional<Digest> find_now(std::string_view stage, const Digest& key) override {
+  std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) override {
     return find(stage, key);
   }
 
