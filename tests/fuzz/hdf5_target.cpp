@@ -245,8 +245,9 @@ class Recipe {
     const Id type = any_type(2), space = any_space();
     const hssize_t n = H5Sget_simple_extent_npoints(space);
     if (n < 0 || n > 4096) return;
-    const Id attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const std::uint64_t n_bytes = H5Tget_size(type) * static_cast<std::uint64_t>(n);
+    if (n_bytes > 8 * kMaxWritten) return;
+    const Id attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     if (attribute >= 0 && n_bytes <= kMaxWritten && n_bytes > 0)
       H5Awrite(attribute, type, content(type, n_bytes).data());
   }
