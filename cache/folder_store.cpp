@@ -21,15 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Entry {
-  std::string item;
-  Digest content;
-  std::uint64_t checksum;
-  std::uint64_t size;
-};
-
 struct StageEntries {
-  std::unordered_map<Digest, Entry> by_key;
+  std::unordered_map<Digest, ArtefactName> by_key;
   std::set<std::string, std::less<>> items;
 };
 
@@ -64,13 +57,11 @@ struct FolderStore::Impl {
   mutable std::shared_mutex mutex;  // of stages
   std::map<std::string, StageEntries, std::less<>> stages;
 
-  fs::path shard(std::string_view stage, const Digest& key) const { return folder / shard_of(stage, key); }
-  fs::path path(std::string_view stage, const Digest& key, const Entry& entry) const {
-    return shard(stage, key) /
-           ArtefactName{entry.item, key, entry.content, entry.checksum, entry.size}.text();
+  fs::path path(std::string_view stage, const ArtefactName& name) const {
+    return folder / shard_of(stage, name.key) / name.text();
   }
 
-  const Entry* entry(std::string_view stage, const Digest& key) const {
+  const ArtefactName* entry(std::string_view stage, const Digest& key) const {
     const auto entries = stages.find(stage);
     if (entries == stages.end()) return nullptr;
     const auto found = entries->second.by_key.find(key);
@@ -79,11 +70,9 @@ struct FolderStore::Impl {
 
   void insert(const std::string& stage, const ArtefactName& name) {
     StageEntries& entries = stages[stage];
-    const auto [entry, fresh] =
-        entries.by_key.try_emplace(name.key, Entry{name.item, name.content, name.checksum, name.size});
+    const auto [known, fresh] = entries.by_key.try_emplace(name.key, name);
     // Two contents under one key: some stage is not deterministic. The smaller one counts, on every machine.
-    if (!fresh && name.content < entry->second.content)
-      entry->second = {name.item, name.content, name.checksum, name.size};
+    if (!fresh && name.content < known->second.content) known->second = name;
     entries.items.insert(name.item);
   }
 
@@ -123,16 +112,15 @@ struct FolderStore::Impl {
   // file that is gone is a miss; one that the system does not let us read is an error, not damage.
   template <class Result, class Parse>
   std::optional<Result> read(std::string_view stage, const Digest& key, const Parse& parse) {
-    std::optional<Entry> found;
+    std::optional<ArtefactName> name;
     {
       const std::shared_lock lock(mutex);
-      if (const Entry* known = entry(stage, key)) found = *known;
+      if (const ArtefactName* known = entry(stage, key)) name = *known;
     }
-    if (!found) return {};
-    const ArtefactName name{found->item, key, found->content, found->checksum, found->size};
-    const fs::path file = shard(stage, key) / name.text();
+    if (!name) return {};
+    const fs::path file = path(stage, *name);
     if (auto bytes = read_bytes(file)) {
-      auto [result, fault] = parse(std::move(*bytes), name);
+      auto [result, fault] = parse(std::move(*bytes), *name);
       if (fault.empty()) return std::move(result);
       quarantine(file, fault);
     }
@@ -165,7 +153,7 @@ FolderStore::~FolderStore() = default;
 
 std::optional<Digest> FolderStore::find(std::string_view stage, const Digest& key) const {
   const std::shared_lock lock(impl_->mutex);
-  const Entry* entry = impl_->entry(stage, key);
+  const ArtefactName* entry = impl_->entry(stage, key);
   return entry == nullptr ? std::nullopt : std::optional(entry->content);
 }
 
@@ -179,7 +167,7 @@ bool FolderStore::has_item(std::string_view stage, std::string_view item) const 
 std::optional<Digest> FolderStore::refresh_and_find(std::string_view stage, const Digest& key) {
   if (const auto content = find(stage, key)) return content;
   for (const ArtefactName& name : find_artefacts(impl_->folder, stage, key)) {
-    if (!impl_->is_complete(impl_->shard(stage, key) / name.text(), name)) continue;
+    if (!impl_->is_complete(impl_->path(stage, name), name)) continue;
     const std::unique_lock lock(impl_->mutex);
     impl_->insert(std::string(stage), name);
   }
@@ -207,13 +195,13 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   const Digest content = content_digest(arrays);
   const Bytes image = hdf5_image({arrays, describe(recipe, kind, key, content, note)});
   const ArtefactName name{item_label(note.item), key, content, checksum(image), image.size()};
-  const fs::path shard = impl_->shard(recipe.stage, key);
+  const fs::path target = impl_->path(recipe.stage, name);
   std::error_code error;
   if (!fs::exists(impl_->folder / kScratchFolder, error)) prepare_cache(impl_->folder);  // removed meanwhile
-  make_folder(shard, "choose another cache with --cache");
+  make_folder(target.parent_path(), "choose another cache with --cache");
   UnfinishedFile file(impl_->folder / kScratchFolder);
   file.append(image);
-  file.finish(shard / name.text());
+  file.finish(target);
   const std::unique_lock lock(impl_->mutex);
   impl_->insert(recipe.stage, name);
   return content;
@@ -223,8 +211,8 @@ std::unique_ptr<Claim> FolderStore::claim(std::string_view work) { return claim_
 
 std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& key) const {
   const std::shared_lock lock(impl_->mutex);
-  const Entry* entry = impl_->entry(stage, key);
-  return entry == nullptr ? std::nullopt : std::optional(impl_->path(stage, key, *entry));
+  const ArtefactName* entry = impl_->entry(stage, key);
+  return entry == nullptr ? std::nullopt : std::optional(impl_->path(stage, *entry));
 }
 
 std::vector<FolderStore::Usage> FolderStore::usage() const {
