@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "io/hdf5_writer.h"
 #include "stages/core/errors.h"
@@ -137,9 +138,8 @@ TEST(Hdf5File, SeveralThreadsAtOnceEachGetTheirOwnFile) {
   EXPECT_EQ(equal, 1200);
 }
 
-// libhdf5 crashes on some of these: a child process does so in our place.
-TEST(Hdf5File, DamagedBytesNeverEndTheProgram) {
-  const TemporaryFolder folder;
+// 0 if every file was read or refused by its name, and some were refused.
+int read_damaged(const std::filesystem::path& path) {
   const Bytes sound = hdf5_image({{{"52", {3}, std::vector<double>{1, 2, 3}, "1", "a map"},
                                    {"52_3", {2}, std::vector<float>{4, 5}, "1", "of a scan"}},
                                   {{"program", std::string("other")}}});
@@ -149,16 +149,23 @@ TEST(Hdf5File, DamagedBytesNeverEndTheProgram) {
     Bytes bytes = sound;
     for (int change = 0; change < 4; ++change)
       bytes[rng.below(bytes.size())] = static_cast<std::byte>(rng.below(256));
-    const auto path = folder.write("maps.h5", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     try {
       const Hdf5File file(path);
       for (const std::string& name : file.arrays()) file.read(name);
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), testing::StartsWith(path.string()));
+      if (!std::string_view(error.what()).starts_with(path.string())) return 1;
       ++refused;
     }
   }
-  EXPECT_GT(refused, 10);
+  return refused > 10 ? 0 : 2;
+}
+
+// libhdf5 crashes on some of these, which a child process does in our place, and leaks memory on others,
+// which is why all of this is in one.
+TEST(Hdf5File, DamagedBytesNeverEndTheProgram) {
+  const TemporaryFolder folder;
+  EXPECT_EXIT(::_exit(read_damaged(folder / "maps.h5")), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
