@@ -54,7 +54,7 @@ class UnfinishedFile {
 void visit_abandoned(const std::filesystem::path& folder,
                      const std::function<void(const std::filesystem::path&)>& visit);
 
-// What the folder holds, by name; nothing if there is no such folder. Throws StorageError where it cannot be
+// Entries of the folder, by name; none if there is no such folder. Throws StorageError where it cannot be
 // listed to its end.
 struct FolderEntry {
   std::filesystem::path path;

@@ -1,9 +1,9 @@
 // The core driver keeps an artefact in memory; its image is taken with H5Fget_file_image, in the library's
 // earliest format: the only one of which it takes a correct image.
 //
-// What a file says of itself is not believed: the library converts and fills whatever a data space declares.
-// So class, size and space of a data set or attribute are checked before a value is read, and what is
-// declared is held against what is stored.
+// A file's description of itself is not believed: the library converts and fills whatever a data space
+// declares. So class, size and space of a data set or attribute are checked before a value is read, and what
+// is declared is held against what is stored.
 #include "io/hdf5_file.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 namespace salbench {
 namespace {
 
-// What a signal handler may touch: lock-free atomics, and text that does not change any more.
+// A signal handler may touch lock-free atomics, and text that no longer changes.
 std::atomic<bool> asked = false;
 std::atomic<int> orderly_ends = 0;
 std::string farewell;

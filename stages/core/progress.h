@@ -1,4 +1,4 @@
-// What a long loop over many things tells whoever waits for it.
+// Progress of a long loop, for whoever waits for it.
 #pragma once
 
 #include <cstddef>
