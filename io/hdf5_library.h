@@ -60,7 +60,7 @@ Handle core_access();     // a file in memory, told from others by its name alon
 std::string image_name();
 Handle opened_image(std::span<const std::byte> image);
 
-// Names of the data sets of a file of so many bytes, sorted by level. By hard links alone: what other links
+// Names of the data sets of a file of so many bytes, group by group. By hard links alone: what other links
 // lead to is not of this file.
 std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes);
 

@@ -86,9 +86,8 @@ void write_table(hid_t file, hid_t links, const Hdf5Table& table) {
 
 // --- a file on a disk that may be full
 
-// Where a write fails the library ends in a segmentation fault, then or when it closes the file. So this
-// driver keeps the first error to itself, writes nothing from there on, and the writer asks for it after
-// every step.
+// The library crashes if a write fails, at once or when it closes the file (1.10.8). So this driver keeps the
+// first error to itself, writes nothing from there on, and the writer asks for it after every step.
 struct Disk {
   int fd = -1;
   int error = 0;  // errno of the first write that failed

@@ -79,7 +79,7 @@ TEST(Interruption, KilledOverAndOverARunStillComesToItsEnd) {
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
 
-// What a process that was killed while it wrote leaves behind, without the luck of hitting the moment.
+// Leftovers of a process that was killed while it wrote, without the luck of hitting the moment.
 TEST(Interruption, PartsOfFilesThatAKilledRunLeftAreRemoved) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("run").status, 0);

@@ -1,4 +1,4 @@
-// What the system refuses is neither damage to the cache nor the user's fault, and a defect of the program is
+// A refusal of the system is neither damage to the cache nor the user's fault, and a defect of the program is
 // called one.
 #include <csignal>
 

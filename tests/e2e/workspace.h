@@ -41,7 +41,7 @@ class Workspace {
     return run_process(command(verb, further));
   }
 
-  // What the program claims while it works on a mesh and its scans, held by the test in its place.
+  // The claim that the program takes on a mesh and its scans, held by the test in its place.
   std::unique_ptr<Claim> claim_family(const std::string& mesh) const;
   // Waits until work has been claimed, or tried to be claimed, so many more times; false where the process
   // ends.

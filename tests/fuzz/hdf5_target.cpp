@@ -62,7 +62,7 @@ class Recipe {
     ~Id() {
       if (id >= 0) close(id);
     }
-    operator hid_t() const { return id; }  // NOLINT: as in io/hdf5_file.cpp
+    operator hid_t() const { return id; }  // NOLINT: as in io/hdf5_library.h
     hid_t id;
     herr_t (*close)(hid_t);
   };
@@ -126,7 +126,7 @@ class Recipe {
     H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
   }
 
-  // What refers to memory refers to none.
+  // Types that hold pointers get null pointers.
   std::vector<char> content(hid_t type, std::uint64_t n_bytes) {
     std::vector<char> values(n_bytes, 0);
     const bool plain = H5Tdetect_class(type, H5T_VLEN) <= 0 && H5Tdetect_class(type, H5T_REFERENCE) <= 0 &&
@@ -313,7 +313,8 @@ void fuzz_hdf5_bytes(std::string_view bytes) {
 }
 
 void fuzz_hdf5(std::string_view bytes) {
-  // The library would give half a megabyte a file back to the system, and ask for it again: twice the time.
+  // Without this the library returns half a megabyte per file to the system and asks for it again: twice the
+  // time.
   static const bool keeps = H5dont_atexit() >= 0 && H5set_free_list_limits(-1, -1, -1, -1, -1, -1) >= 0;
   CHECK_EQ(keeps, true);
   constexpr int kKept = 1000;  // files after which that is given back all the same

@@ -66,7 +66,7 @@ void write_all(const std::filesystem::path& path) {
   writer.attributes("52/fpfh", {{"seconds", 0.5}});
   writer.attributes("52/empty", {{"why", std::string("nothing else implies it")}});
   writer.table(
-      {"scores", {{"item", "n"}, {{"52", std::int64_t{7}}, {"", std::int64_t{-1}}}}, "a row an item"});
+      {"scores", {{"item", "n"}, {{"52", std::int64_t{7}}, {"", std::int64_t{-1}}}}, "one row per item"});
   writer.table({"no rows", {{"a", "b"}, {}}, ""});
   writer.table({"texts without a letter", {{"view"}, {{""}, {""}}}, ""});
   writer.link({"53/fpfh", "../cache/fpfh/a b.h5", "/"});
