@@ -12,6 +12,8 @@ namespace salbench {
 
 using Cell = std::variant<std::string, std::int64_t, double>;  // NaN: nothing is known
 
+inline Cell cell_of(std::size_t count) { return static_cast<std::int64_t>(count); }
+
 struct Table {
   std::vector<std::string> columns;     // names
   std::vector<std::vector<Cell>> rows;  // each as long as columns

@@ -44,7 +44,14 @@ for folder in stages/*/; do
 done
 keeps io 'io|stages/core'
 keeps cache 'cache|io|stages/core'
-keeps pipeline 'pipeline|cache|io|stages/[a-z_]+'
+below='cache|io|stages/[a-z_]+'
+for room in config catalog plan run results commands; do
+  below+="|pipeline/$room"
+  keeps "pipeline/$room" "$below"
+done
+while IFS=: read -r path line included; do
+  [[ ! $path =~ ^pipeline/[^/]+$ ]] || complain "$path:$line" "$included" "pipeline has rooms: put it into one"
+done < <(includes)
 
 hides CGAL 'CGAL/'
 hides CLI11 'CLI/'

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace salbench {
@@ -9,14 +10,15 @@ namespace salbench {
 class Progress {
  public:
   virtual ~Progress() = default;
-  virtual void begin(const std::string& what, std::size_t items) = 0;
+  // `at_work` names what is being done at the moment; it may be called from any thread until end().
+  virtual void begin(const std::string& what, std::size_t items, std::function<std::string()> at_work = {}) = 0;
   virtual void item_done() = 0;  // from any thread
   virtual void end() = 0;
 };
 
 class NoProgress final : public Progress {
  public:
-  void begin(const std::string&, std::size_t) override {}
+  void begin(const std::string&, std::size_t, std::function<std::string()>) override {}
   void item_done() override {}
   void end() override {}
 };

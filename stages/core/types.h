@@ -30,7 +30,11 @@ struct Scan {
 };
 
 using Normals = std::vector<Vec3>;    // n x 3, unit length, outward or towards the camera
-using Faces = std::vector<Triangle>;  // f x 3, of a surface over the points of a scan
+using Faces = std::vector<Triangle>;  // f x 3, the partial mesh: a surface over the points of a scan
+
+// How a stage receives a shape that may be a mesh or a scan. The caller keeps the storage alive.
+using Points = std::span<const Vec3>;       // n x 3: the vertices of a mesh, or the points of a scan
+using Surface = std::span<const Triangle>;  // f x 3: the faces of a mesh, or the partial mesh of a scan
 
 inline constexpr int kFpfhBins = 33;  // three features of 11 bins: theta, alpha, phi
 
@@ -59,13 +63,9 @@ inline constexpr int kHistogramBins = 100;
 // Density histogram over [0, 1] of min-max-normalised values: sums to 100. [tasse2016]
 using Histogram = std::array<double, kHistogramBins>;
 
-// Agreement of one saliency map with the ground truth; NaN where a metric is undefined. [tasse2016]
+// Agreement of one saliency map with the ground truth. [tasse2016]
 struct Scores {
-  double auc = 0;        // the paper's protocol: sampled negatives, 20 thresholds
-  double auc_exact = 0;  // Mann-Whitney probability, ties one half
-  double nss = 0;        // standard deviations of the map
-  double cc = 0;         // Pearson
-  double lcc = 0;        // |cc|
+  std::vector<double> values;  // [metric], in the order of the metric table; NaN where undefined
   std::int64_t n_points = 0;
   std::int64_t n_picks = 0;  // distinct points picked
 };

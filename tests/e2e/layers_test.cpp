@@ -18,7 +18,7 @@ class Layers : public testing::Test {
     tree_.write("stages/scan/scan.cpp", "#include \"stages/scan/scan.h\"\n#include <embree3/rtcore.h>\n");
     tree_.write("io/off.cpp", "#include \"stages/core/types.h\"\n");
     tree_.write("cache/key.cpp", "#include \"io/arrays.h\"\n");
-    tree_.write("pipeline/flow.cpp", "#include <tbb/flow_graph.h>\n#include \"stages/fpfh/fpfh.h\"\n");
+    tree_.write("pipeline/run/graph.cpp", "#include <tbb/flow_graph.h>\n#include \"stages/fpfh/fpfh.h\"\n");
   }
   Outcome check() const { return run_process({SALBENCH_LAYERS, tree_.path().string()}); }
   void expect_breach(const std::string& path, const std::string& text, const std::string& said) const {
@@ -45,9 +45,15 @@ TEST_F(Layers, EveryKindOfBreachIsNamed) {
   expect_breach("stages/core/a.h", "#include \"stages/fpfh/fpfh.h\"\n", "stages/core may include");
   expect_breach("io/a.h", "#include \"stages/fpfh/fpfh.h\"\n", "io may include");
   expect_breach("io/a.h", "#include \"cache/key.h\"\n", "io may include");
-  expect_breach("cache/a.h", "#include \"pipeline/plan.h\"\n", "cache may include");
-  expect_breach("pipeline/a.h", "#include \"tests/support/shapes.h\"\n", "pipeline may include");
-  expect_breach("pipeline/a.cpp", "#include <tbb/flow_graph.h>\n", "the flow graph is already included by");
+  expect_breach("cache/a.h", "#include \"pipeline/plan/plan.h\"\n", "cache may include");
+  expect_breach("pipeline/plan/a.h", "#include \"tests/support/shapes.h\"\n", "pipeline/plan may include");
+  expect_breach("pipeline/config/a.h", "#include \"pipeline/catalog/catalog.h\"\n", "pipeline/config may include");
+  expect_breach("pipeline/catalog/a.h", "#include \"pipeline/plan/plan.h\"\n", "pipeline/catalog may include");
+  expect_breach("pipeline/plan/a.h", "#include \"pipeline/run/runner.h\"\n", "pipeline/plan may include");
+  expect_breach("pipeline/run/a.h", "#include \"pipeline/results/results.h\"\n", "pipeline/run may include");
+  expect_breach("pipeline/results/a.h", "#include \"pipeline/commands/run.h\"\n", "pipeline/results may include");
+  expect_breach("pipeline/a.h", "#include \"io/table.h\"\n", "pipeline has rooms");
+  expect_breach("pipeline/run/a.cpp", "#include <tbb/flow_graph.h>\n", "the flow graph is already included by");
   expect_breach("stages/scan/a.h", "#include <embree3/rtcore.h>\n", "Embree belongs in a .cpp");
 }
 

@@ -4,7 +4,7 @@
 
 #include "io/file.h"
 #include "io/table.h"
-#include "pipeline/model_catalog.h"
+#include "pipeline/catalog/models.h"
 #include "tests/e2e/workspace.h"
 
 namespace salbench {

@@ -1,5 +1,5 @@
 // What a run leaves behind: the tables, and a cache that makes the next run nothing to do.
-#include "pipeline/results.h"
+#include "pipeline/results/results.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include <string>
 
-#include "pipeline/config.h"
+#include "pipeline/catalog/config.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "tests/fuzz/message.h"

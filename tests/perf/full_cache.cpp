@@ -4,21 +4,18 @@
 // rerun with nothing to do can be measured at the size of the whole benchmark. The scores in it mean nothing.
 //   perf_full_cache CONFIG DATA CACHE
 #include <atomic>
-#include <cmath>
 #include <iostream>
 
-#include "pipeline/session.h"
+#include "pipeline/commands/session.h"
 #include "stages/core/rng.h"
+#include "stages/metrics/metrics.h"
 
 namespace salbench {
 namespace {
 
 Scores made_up_scores(Rng& rng) {
-  Scores scores{
-      .auc = rng.uniform(), .auc_exact = rng.uniform(), .nss = rng.normal(), .cc = rng.normal() / 3};
-  scores.lcc = std::abs(scores.cc);
-  scores.n_points = 5000;
-  scores.n_picks = 60;
+  Scores scores{.values = {}, .n_points = 5000, .n_picks = 60};
+  for (std::size_t m = 0; m < metric_table().size(); ++m) scores.values.push_back(rng.uniform());
   return scores;
 }
 
@@ -43,25 +40,26 @@ Value made_up(std::string_view kind, Rng rng) {
   throw std::invalid_argument("no made-up value for a result of kind " + std::string(kind));
 }
 
-void replace_bodies(Chain& chain) {
-  for (Stage& stage : chain)
-    stage.run = [name = stage.name, kind = stage.kind](const StageInputs& inputs) {
-      return made_up(kind, Rng(inputs.seed, name, inputs.item));
-    };
+// Means are real, of the made-up maps.
+void replace_bodies(Catalog& catalog) {
+  for (Row& row : catalog.rows)
+    if (!row.gathers)
+      row.run = [name = row.name, kind = row.kind](const JobInputs& inputs) {
+        return made_up(kind, inputs.random.rng(name));
+      };
 }
 
 void fill(const Arguments& arguments) {
   const std::atomic<bool> stop = false;
   Setup setup(arguments);
-  replace_bodies(setup.catalog.mesh);
-  replace_bodies(setup.catalog.scan);
+  replace_bodies(setup.catalog);
   FolderStore store(setup.cache, Access::read_write);
   Plan plan = make_plan(setup.context, store);
   const auto progress = std::make_unique<NoProgress>();
   Runner runner(setup.context, plan, store, *progress, stop);
   runner.run(thread_count(arguments));
   for (const Failure& failure : runner.failures())
-    std::cerr << setup.context.name(failure.item) << ": " << failure.stage << ": " << failure.cause << '\n';
+    std::cerr << setup.context.name(failure.job) << ": " << setup.context.row(failure.job).name << ": " << failure.cause << '\n';
   std::cout << setup.workload.families.size() << " meshes, " << runner.computed() << " artefacts\n";
 }
 

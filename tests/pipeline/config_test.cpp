@@ -1,4 +1,4 @@
-#include "pipeline/config.h"
+#include "pipeline/catalog/config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Every component of a key, changed alone, is the one that is named.
-#include "pipeline/explain.h"
+#include "pipeline/commands/explain.h"
 
 #include <fstream>
 #include <functional>
@@ -7,7 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results.h"
+#include "cache/folder_store.h"
+#include "pipeline/plan/causes.h"
 #include "stages/core/errors.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/temporary_folder.h"
@@ -47,7 +48,7 @@ class ExplainTest : public testing::Test {
     FolderStore store(cache(), Access::read_write);
     ToyRun toy(data_.path(), store, yaml);
     toy.run();
-    collect_results(toy.config, toy.context, toy.plan, toy.runner);
+    toy.results();
     Causes causes(toy.context, toy.plan, cache(), kOpenedForCounting);
     return counts(toy, stage, causes.words_of_computed());
   }
@@ -62,7 +63,7 @@ class ExplainTest : public testing::Test {
   }
 
   static Counts counts(const ToyRun& toy, const std::string& stage, const Why& why) {
-    for (const StageCount& count : count_by_stage(toy.context, toy.plan, why))
+    for (const RowCount& count : count_by_name(toy.context, toy.plan, why))
       if (count.stage == stage) return count.reasons;
     ADD_FAILURE() << "no stage " << stage;
     return {};
@@ -113,7 +114,7 @@ class ExplainTest : public testing::Test {
 TEST_F(ExplainTest, AHitNeedsNoReason) {
   run();
   const auto all = explained(kMeshes, "1");
-  EXPECT_THAT(all, SizeIs(JobCounts(kMeshes, 1).stages()));
+  EXPECT_THAT(all, SizeIs(JobCounts(kMeshes, 1).of_shapes()));
   EXPECT_THAT(all, Each(AllOf(Field(&Explanation::state, "cached"), Field(&Explanation::why, ""))));
   EXPECT_EQ(all[0].file, artefact("mesh", "1"));
 }
@@ -144,7 +145,7 @@ TEST_F(ExplainTest, OptionsOfTwoSectionsKeepTheirPaths) {
 
 TEST_F(ExplainTest, ARaisedStageVersionIsNamed) {
   run();
-  const Change raise = [](Catalog& catalog) { catalog.mesh[stage_index(catalog.mesh, "fpfh")].version = 2; };
+  const Change raise = [](Catalog& catalog) { catalog.rows[catalog.index(Shapes::meshes, "fpfh")].version = 2; };
   EXPECT_EQ(asked("fpfh", kMeshes, "1", raise), "to compute: stage version 1 -> 2");
   EXPECT_EQ(asked("map.PS", kMeshes, "1", raise), "waiting: waits for fpfh: stage version 1 -> 2");
   EXPECT_EQ(asked("map.RS", kMeshes, "1", raise), "cached: ");

@@ -182,34 +182,24 @@ void collect(const std::string& protocol, const std::vector<RecordingStore::Reco
   }
 }
 
-// What each stage reads. The inputs of a mean are named after items: it stands on the stages it averages.
+// What each row reads.
 void collect_inputs(const std::string& protocol, const ToyRun& toy, Outputs& outputs) {
   const std::string prefix = protocol + "/";
-  for (const Chain* chain : {&toy.catalog.mesh, &toy.catalog.scan}) {
-    for (const Stage& stage : *chain) {
-      for (const Input& input : stage.inputs) {
-        const std::string& read = input.from == Input::From::reference ? toy.catalog.means[kReference].name
-                                  : input.from == Input::From::mesh    ? toy.catalog.mesh[input.stage].name
-                                                                       : (*chain)[input.stage].name;
-        outputs.inputs.emplace_back(prefix + stage.name, prefix + read);
-      }
-    }
-  }
-  for (const MeanHistogram& mean : toy.catalog.means)
-    for (const std::string& read : {mean.of_mesh, mean.of_scan})
-      outputs.inputs.emplace_back(prefix + mean.name, prefix + read);
+  for (const Row& row : toy.catalog.rows)
+    for (const std::size_t input : row.inputs)
+      outputs.inputs.emplace_back(prefix + row.name, prefix + toy.catalog.rows[input].name);
 }
 
-void expect_every_stage(const std::string& protocol, const Catalog& catalog, const Outputs& outputs) {
-  const auto expect_rows = [&](const std::string& stage, const char* shape) {
+void expect_every_row(const std::string& protocol, const Catalog& catalog, const Outputs& outputs) {
+  for (const Row& row : catalog.rows) {
+    const std::string shape = row.shapes == Shapes::meshes ? "mesh" : "scan";
     EXPECT_TRUE(std::any_of(outputs.rows.begin(), outputs.rows.end(),
-                            [&](const GoldenRow& row) {
-                              return row.protocol == protocol && row.stage == stage && row.shape == shape;
+                            [&](const GoldenRow& golden) {
+                              return golden.protocol == protocol && golden.stage == row.name &&
+                                     golden.shape == shape;
                             }))
-        << stage << " did not run on a " << shape << ": the toy data must reach every stage";
-  };
-  for (const Stage& stage : catalog.mesh) expect_rows(stage.name, "mesh");
-  for (const Stage& stage : catalog.scan) expect_rows(stage.name, "scan");
+        << row.name << " did not run on a " << shape << ": the toy data must reach every row";
+  }
 }
 
 // Large enough for what works on part of a shape only: the simplification of MS begins at 3000 faces.
@@ -223,10 +213,10 @@ Outputs toy_outputs() {
     ToyRun toy(data.path(), store, "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\n");
     toy.run();
     for (const Failure& failure : toy.runner.failures())
-      ADD_FAILURE() << toy.context.name(failure.item) << ": " << failure.stage << ": " << failure.cause;
+      ADD_FAILURE() << toy.context.name(failure.job) << ": " << toy.context.row(failure.job).name << ": " << failure.cause;
     collect(protocol, store.records(), outputs);
     collect_inputs(protocol, toy, outputs);
-    expect_every_stage(protocol, toy.catalog, outputs);
+    expect_every_row(protocol, toy.catalog, outputs);
   }
   return outputs;
 }

@@ -1,5 +1,7 @@
 // What looks after a cache, over real runs on a toy data set.
-#include "pipeline/maintenance.h"
+#include "pipeline/commands/accept.h"
+#include "pipeline/commands/gc.h"
+#include "pipeline/commands/verify.h"
 
 #include <algorithm>
 #include <fstream>
@@ -129,8 +131,8 @@ TEST_F(MaintenanceTest, AStageThatNowComputesSomethingElseIsNamed) {
   run(kPs);
   FolderStore cache = store(Access::read_only);
   ToyRun toy(data_.path(), cache, kPs);
-  Stage& normals = toy.catalog.mesh[stage_index(toy.catalog.mesh, "normals")];
-  normals.run = [was = normals.run](const StageInputs& in) {
+  Row& normals = toy.catalog.rows[toy.row("normals")];
+  normals.run = [was = normals.run](const JobInputs& in) {
     Value value = was(in);
     std::get<Normals>(value).front() *= -1;
     return value;
@@ -165,10 +167,8 @@ class AcceptTest : public MaintenanceTest {
     all_ = run(kToyConfig);
   }
   static void raise(ToyRun& toy, const std::string& stage) {
-    for (Chain* chain : {&toy.catalog.mesh, &toy.catalog.scan})
-      if (has_stage(*chain, stage)) ++(*chain)[stage_index(*chain, stage)].version;
-    for (MeanHistogram& mean : toy.catalog.means)
-      if (mean.name == stage) ++mean.version;
+    for (Row& row : toy.catalog.rows)
+      if (row.name == stage) ++row.version;
     toy.plan = make_plan(toy.context, toy.store);
   }
   // Runs a program in which the stages have the next version; returns how many artefacts it computed.

@@ -1,5 +1,5 @@
 // What a run computes, counted: the engine's promise is that it is exactly what is missing.
-#include "pipeline/runner.h"
+#include "pipeline/run/runner.h"
 
 #include <map>
 #include <thread>
@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results.h"
-#include "pipeline/statistics.h"
+#include "pipeline/results/results.h"
+#include "pipeline/results/statistics.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/meeting.h"
 #include "tests/support/memory_store.h"
@@ -37,8 +37,8 @@ class RunnerTest : public testing::Test {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run(threads);
     for (const Failure& failure : toy.runner.failures())
-      failures_.push_back(toy.context.name(failure.item) + ": " + failure.stage + ": " + failure.cause);
-    results_ = to_csv(results_table(collect_results(toy.config, toy.context, toy.plan, toy.runner)));
+      failures_.push_back(toy.context.name(failure.job) + ": " + toy.context.row(failure.job).name + ": " + failure.cause);
+    results_ = to_csv(results_table(toy.results()));
     return store_.take_saved();
   }
 
@@ -59,12 +59,12 @@ TEST_F(RunnerTest, AFirstRunComputesEverythingAndASecondNothing) {
 
 TEST_F(RunnerTest, ThePlanForesaysWhatIsDone) {
   ToyRun first(data_.path(), store_);
-  EXPECT_EQ(first.open(), jobs_.stages());
+  EXPECT_EQ(first.open(), jobs_.of_shapes());
   first.run();
-  EXPECT_EQ(first.count(Verdict::done), jobs_.stages());
+  EXPECT_EQ(first.count(Verdict::done), jobs_.of_shapes());
   ToyRun second(data_.path(), store_);
   EXPECT_EQ(second.open(), 0U);
-  EXPECT_EQ(second.count(Verdict::cached), jobs_.stages());
+  EXPECT_EQ(second.count(Verdict::cached), jobs_.of_shapes());
 }
 
 TEST_F(RunnerTest, ResultsDoNotDependOnThreads) {
@@ -76,9 +76,9 @@ TEST_F(RunnerTest, ResultsDoNotDependOnThreads) {
 }
 
 // Does something before what the stage does anyway.
-using Before = std::function<void(const StageInputs&)>;
-void do_before(Stage& stage, const Before& before) {
-  stage.run = [before, was = stage.run](const StageInputs& in) {
+using Before = std::function<void(const JobInputs&)>;
+void do_before(Row& row, const Before& before) {
+  row.run = [before, was = row.run](const JobInputs& in) {
     before(in);
     return was(in);
   };
@@ -87,8 +87,7 @@ void do_before(Stage& stage, const Before& before) {
 TEST_F(RunnerTest, WithTwoThreadsTwoMeshesAreWorkedOnAtTheSameTime) {
   ToyRun toy(data_.path(), store_);
   Meeting both(2);
-  do_before(toy.catalog.mesh[stage_index(toy.catalog.mesh, "normals")],
-            [&](const StageInputs&) { EXPECT_TRUE(both.join()); });
+  do_before(toy.catalog.rows[toy.row("normals")], [&](const JobInputs&) { EXPECT_TRUE(both.join()); });
   toy.run(2);
   EXPECT_TRUE(both.met());
 }
@@ -96,7 +95,7 @@ TEST_F(RunnerTest, WithTwoThreadsTwoMeshesAreWorkedOnAtTheSameTime) {
 TEST_F(RunnerTest, WithTwoThreadsTwoScansOfAMeshAreWorkedOnAtTheSameTime) {
   ToyRun toy(data_.path(), store_, kToyConfig, "1");
   Meeting both(2);
-  do_before(toy.catalog.scan[stage_index(toy.catalog.scan, "scan_normals")], [&](const StageInputs& in) {
+  do_before(toy.catalog.rows[toy.row("scan_normals", Shapes::scans)], [&](const JobInputs& in) {
     if (in.view == 3 || in.view == 7) {
       EXPECT_TRUE(both.join());
     }
@@ -105,20 +104,19 @@ TEST_F(RunnerTest, WithTwoThreadsTwoScansOfAMeshAreWorkedOnAtTheSameTime) {
   EXPECT_TRUE(both.met());
 }
 
-// The caller's thread cannot do two things at once; as in flow_test.cpp.
+// The caller's thread cannot do two things at once; as in graph_test.cpp.
 TEST_F(RunnerTest, WithOneThreadEveryStageRunsInTheCallersThread) {
   ToyRun toy(data_.path(), store_);
   const auto caller = std::this_thread::get_id();
   Meeting somebody_else(2, std::chrono::milliseconds(200));
-  for (Chain* chain : {&toy.catalog.mesh, &toy.catalog.scan})
-    for (Stage& stage : *chain)
-      do_before(stage, [&](const StageInputs&) {
-        EXPECT_EQ(std::this_thread::get_id(), caller);
-        somebody_else.join();
-      });
+  for (Row& row : toy.catalog.rows)
+    do_before(row, [&](const JobInputs&) {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      somebody_else.join();
+    });
   toy.run(1);
   EXPECT_FALSE(somebody_else.met());
-  EXPECT_EQ(toy.count(Verdict::done), jobs_.stages());
+  EXPECT_EQ(toy.count(Verdict::done), jobs_.of_shapes());
 }
 
 TEST_F(RunnerTest, OneRemovedArtefactIsComputedAgainAndNothingElse) {
@@ -222,21 +220,21 @@ TEST_F(RunnerTest, AFailingItemStopsNoOther) {
   ToyRun toy(data_.path(), store_);
   toy.run();
   ASSERT_THAT(toy.runner.failures(), SizeIs(1));
-  EXPECT_EQ(toy.runner.failures()[0].stage, "mesh");
+  EXPECT_EQ(toy.context.row(toy.runner.failures()[0].job).name, "mesh");
   EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("3.off"));
-  EXPECT_EQ(toy.count(Verdict::done), jobs_.stages());
+  EXPECT_EQ(toy.count(Verdict::done), jobs_.of_shapes());
   EXPECT_EQ(toy.count(Verdict::failed), 1U);
   EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::not_applicable),
-            JobCounts(kToyConfig, 1).stages() - 1);
-  EXPECT_EQ(collect_results(toy.config, toy.context, toy.plan, toy.runner).size(), jobs_.of_kind("scores"));
+            JobCounts(kToyConfig, 1).of_shapes() - 1);
+  EXPECT_EQ(toy.results().size(), jobs_.of_kind("scores"));
 }
 
 TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
   std::filesystem::create_directories(data_ / "Meshes");
   write_file(data_ / "Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.1)));
   const auto computed = run();
-  const std::size_t unscored = JobCounts(kToyConfig, 1).where([](const Stage& stage) {
-    return stage.kind != "ground_truth" && stage.kind != "scores";
+  const std::size_t unscored = JobCounts(kToyConfig, 1).where([](const Row& row) {
+    return !row.gathers && row.kind != "ground_truth" && row.kind != "scores";
   });
   EXPECT_THAT(computed, SizeIs(jobs_.all() + unscored));
   EXPECT_THAT(failures_, IsEmpty());
@@ -262,8 +260,8 @@ TEST_F(RunnerTest, AStoppedRunResumesToTheSameResults) {
   std::size_t stored = 0;
   for (const char* stage : {"mesh", "surface", "fpfh", "matched.PS"}) {
     ToyRun toy(data_.path(), store_);
-    Chain& chain = has_stage(toy.catalog.scan, stage) ? toy.catalog.scan : toy.catalog.mesh;
-    do_before(chain[stage_index(chain, stage)], [&](const StageInputs&) { toy.stop = true; });
+    const Shapes shapes = toy.catalog.has(Shapes::scans, stage) ? Shapes::scans : Shapes::meshes;
+    do_before(toy.catalog.rows[toy.row(stage, shapes)], [&](const JobInputs&) { toy.stop = true; });
     toy.run();
     const std::size_t here = store_.take_saved().size();
     EXPECT_GT(here, 0U) << "what was at work when the run was stopped, at " << stage;
@@ -303,7 +301,7 @@ TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
 TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   ToyRun toy(data_.path(), store_, kWithPeople);
   toy.run();
-  const auto curves = collect_human_curves(toy.config, toy.context, toy.plan, toy.runner);
+  const auto curves = collect_human_curves(toy.state());
   ASSERT_THAT(curves, SizeIs(2));
   const Table table = human_curve_table(curves);
   EXPECT_THAT(table.columns, ElementsAre("n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"));
@@ -321,7 +319,7 @@ TEST_F(RunnerTest, AHumanCurveOfAnEarlierRunIsNotLeftBehind) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run();
     write_results(out.path(), {toy.config, toy.context, toy.plan, toy.runner},
-                  collect_results(toy.config, toy.context, toy.plan, toy.runner));
+                  toy.results());
     return std::filesystem::exists(out / "human_curve.csv");
   };
   EXPECT_TRUE(run_and_write(kWithPeople));
@@ -333,16 +331,14 @@ TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
   for (const char* participant : {"1", "2", "3"})
     std::filesystem::remove(data_ / "RawData" / ("2_" + std::string(participant) + ".pid"));
   ToyRun toy(data_.path(), store_, kWithPeople);
-  const auto job = [&](std::size_t family) {
-    return toy.plan.families[family].mesh[stage_index(toy.catalog.mesh, "scores.HS")];
-  };
+  const auto job = [&](std::size_t family) { return toy.mesh_job("scores.HS", family); };
   EXPECT_TRUE(job(0).open());
   EXPECT_EQ(job(1).verdict, Verdict::not_applicable);
   EXPECT_EQ(job(1).reason, Reason::inapplicable);
   toy.run();
   EXPECT_THAT(toy.runner.failures(), IsEmpty());
   const std::string results =
-      to_csv(results_table(collect_results(toy.config, toy.context, toy.plan, toy.runner)));
+      to_csv(results_table(toy.results()));
   EXPECT_THAT(results, HasSubstr("\nmeshes,1,human,,HS,"));
   EXPECT_THAT(results, HasSubstr("\nmeshes,2,human,,PS,"));
   EXPECT_THAT(results, Not(HasSubstr("\nmeshes,2,human,,HS,")));

@@ -1,4 +1,4 @@
-#include "pipeline/section.h"
+#include "pipeline/config/section.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

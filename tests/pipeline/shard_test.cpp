@@ -1,4 +1,4 @@
-#include "pipeline/shard.h"
+#include "pipeline/plan/shard.h"
 
 #include <algorithm>
 

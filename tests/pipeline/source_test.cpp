@@ -1,11 +1,11 @@
 // A file that is edited while a run is under way: what is stored under a key is of what the key names.
-#include "pipeline/source.h"
+#include "pipeline/catalog/source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/given_maps.h"
-#include "pipeline/results.h"
+#include "pipeline/catalog/given_maps.h"
+#include "pipeline/results/results.h"
 #include "stages/core/errors.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
@@ -27,7 +27,7 @@ class EditedDuringARun : public testing::Test {
   }
 
   static std::string results_of(ToyRun& run) {
-    return to_csv(results_table(collect_results(run.config, run.context, run.plan, run.runner)));
+    return to_csv(results_table(run.results()));
   }
   std::string results() {
     ToyRun run(data_.path(), store_, kYaml);
@@ -109,14 +109,14 @@ TEST_F(EditedDuringARun, AGivenMapPoisonsNothing) {
     Catalog catalog = make_catalog(config);
     Workload workload = make_workload(find_dataset(data_.path(), config.dataset.layout), "");
     const Context context{catalog, workload, config.seed};
-    add_given_maps(workload, context, config.models.back());
+    add_given_maps(workload, catalog, config.models.back());
     Plan plan = make_plan(context, store_);
     NoProgress progress;
     const std::atomic<bool> stop = false;
     Runner runner(context, plan, store_, progress, stop);
     before_it_runs();
     runner.run(2);
-    return to_csv(results_table(collect_results(config, context, plan, runner)));
+    return to_csv(results_table(collect_results({config, context, plan, runner})));
   };
   const std::string results_before = run_over([] {});
   store_.clear();
@@ -134,7 +134,7 @@ TEST_F(EditedDuringARun, ADamagedArtefactIsNotMadeAgainFromAnotherFile) {
   write_file(data_ / "Meshes/1.off", off_text(shapes::bumpy_sphere(2, 0.3)));
   run.run();
   ASSERT_EQ(run.runner.failures().size(), 1U);
-  EXPECT_EQ(run.runner.failures()[0].stage, "normals");
+  EXPECT_EQ(run.context.row(run.runner.failures()[0].job).name, "normals");
   EXPECT_FALSE(run.runner.failures()[0].defect);
   EXPECT_THAT(run.runner.failures()[0].cause,
               HasSubstr("1.off: changed since this run was planned; run it again"));
@@ -164,9 +164,9 @@ TEST(Source, TheDigestIsOfTheBytesThatAreHandedOut) {
 // One stage of every mesh is replaced by a body that throws.
 class Thrown : public EditedDuringARun {
  protected:
-  std::vector<Failure> failures_with(const std::function<Value(const StageInputs&)>& body) {
+  std::vector<Failure> failures_with(const std::function<Value(const JobInputs&)>& body) {
     ToyRun run(data_.path(), store_, kYaml);
-    run.catalog.mesh[stage_index(run.catalog.mesh, "fpfh")].run = body;
+    run.catalog.rows[run.row("fpfh")].run = body;
     run.run();
     return run.runner.failures();
   }
@@ -174,17 +174,17 @@ class Thrown : public EditedDuringARun {
 
 TEST_F(Thrown, BadDataIsTheItemsAndEverythingElseADefect) {
   struct Case {
-    std::function<Value(const StageInputs&)> body;
+    std::function<Value(const JobInputs&)> body;
     bool defect;
     const char* said;
   };
   const Case cases[] = {
-      {[](const StageInputs&) -> Value { throw InputError("1.off:3: bad"); }, false, "1.off:3: bad"},
-      {[](const StageInputs&) -> Value { throw std::logic_error("broken"); }, true,
+      {[](const JobInputs&) -> Value { throw InputError("1.off:3: bad"); }, false, "1.off:3: bad"},
+      {[](const JobInputs&) -> Value { throw std::logic_error("broken"); }, true,
        "a defect of salbench, please report it: broken"},
-      {[](const StageInputs&) -> Value { throw std::bad_alloc(); }, true,
+      {[](const JobInputs&) -> Value { throw std::bad_alloc(); }, true,
        "out of memory; use fewer --threads"},
-      {[](const StageInputs&) -> Value { throw 5; }, true, "an unknown exception"}};
+      {[](const JobInputs&) -> Value { throw 5; }, true, "an unknown exception"}};
   for (const Case& one : cases) {
     const std::vector<Failure> failures = failures_with(one.body);
     ASSERT_EQ(failures.size(), 2U) << one.said;

@@ -1,4 +1,4 @@
-#include "pipeline/workload.h"
+#include "pipeline/plan/workload.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,9 +10,8 @@
 
 #include "io/dataset.h"
 #include "io/file.h"
-#include "pipeline/config.h"
-#include "pipeline/plan.h"
-#include "pipeline/runner.h"
+#include "pipeline/config/section.h"
+#include "pipeline/results/results.h"
 #include "stages/ground_truth/simulation.h"
 #include "tests/support/shapes.h"
 
@@ -68,11 +67,16 @@ struct ToyRun {
   ToyRun& operator=(const ToyRun&) = delete;
 
   void run(int threads = 2) { runner.run(threads); }
-  std::size_t count(Verdict verdict) const {
+  RunState state() { return {config, context, plan, runner}; }
+  std::vector<ResultRow> results() { return collect_results(state()); }
+  std::size_t row(std::string_view name, Shapes shapes = Shapes::meshes) const {
+    return catalog.index(shapes, name);
+  }
+  Job& mesh_job(std::string_view name, std::size_t family) { return plan[{row(name), Item::mesh(family)}]; }
+  std::size_t count(Verdict verdict) const {  // of shapes, not of the data set
     std::size_t n = 0;
-    for (std::size_t f = 0; f < plan.families.size(); ++f)
-      for (const ItemRef& item : context.family(f))
-        for (const Job& job : plan.jobs(item)) n += job.verdict == verdict ? 1U : 0U;
+    for (const Item& item : all_items(context))
+      for (const JobRef& job : jobs_of(catalog, item)) n += plan[job].verdict == verdict ? 1U : 0U;
     return n;
   }
   std::size_t open() const { return count(Verdict::wait) + count(Verdict::compute); }

@@ -1,0 +1,234 @@
+#include "pipeline/catalog/catalog.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "io/ground_truth_file.h"
+#include "io/mesh_file.h"
+#include "pipeline/catalog/given_maps.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_check.h"
+#include "stages/core/smoothing.h"
+#include "stages/ground_truth/scan_truth.h"
+#include "stages/matching/matching.h"
+
+namespace salbench {
+namespace {
+
+// --- functions of rows that are more than one stage's ------------------------------------------------------
+
+Mesh load_mesh(const FilesOf<Source::mesh_file>& file) {
+  CheckedMesh checked = check_mesh(parse_mesh(file.data[0].text(), file.item.mesh));
+  for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", file.name, warning);
+  return std::move(checked.mesh);
+}
+
+// Picks alone are enough: the saliency is then made from them, as the study's authors did. [chen2012]
+GroundTruth load_ground_truth(const Mesh& mesh, const FilesOf<Source::truth_files>& files) {
+  std::vector<std::string_view> texts;
+  for (const SourceData& file : files.data) texts.push_back(file.text());
+  GroundTruth truth = parse_ground_truth(files.item, texts, mesh.vertices.size());
+  if (truth.saliency.empty() && truth.picks.empty())
+    throw InputError(
+        fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty .pid files",
+                    files.item.picks.front().string()));
+  if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh, truth.picks);
+  return truth;
+}
+
+GroundTruth made_up_ground_truth(const Mesh& mesh, const SimulationOptions& options,
+                                 const RandomSource& random) {
+  return simulated_ground_truth(mesh, options, random.seed, random.item);
+}
+
+Scan scan_of(const Mesh& mesh, const View& view, const ScanOptions& options) {
+  return simulate_scan(mesh, view.index, options);
+}
+
+const ScalarField& saliency_of(const GroundTruth& truth) { return truth.saliency; }
+const ScalarField& saliency_of(const ScalarField& map) { return map; }
+
+// Serial and in the order of the items: sums of doubles depend on their order.
+template <class T>
+Histogram mean_over(const Members<T>& members) {
+  std::vector<Histogram> histograms;
+  for (std::size_t i = 0; i < members.size; ++i)
+    histograms.push_back(normalised_histogram(saliency_of(std::get<T>(*members.value(i)))));
+  return mean_histogram(histograms);
+}
+
+// A group's map is matched like a model's, and so is the map of the others, which stands for the ground
+// truth.
+GroupScorer group_scorer(const Histogram& reference, const MetricsOptions& options, const Rng& rng) {
+  return {metric_table().size(), [=](const ScalarField& map, const GroundTruth& others) {
+            const GroundTruth matched_others{matched(others.saliency, reference), others.picks,
+                                             others.simulated};
+            return score(matched(map, reference), matched_others, options, rng);
+          }};
+}
+
+std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
+  if (!config.simulated())
+    return [](const DatasetItem& item) { return item.picks.size() >= kFewestParticipants; };
+  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kFewestParticipants;
+  return [enough](const DatasetItem&) { return enough; };
+}
+
+// --- groups of rows ----------------------------------------------------------------------------------------
+
+// A map from outside in place of a computed one. The points are read for their number alone.
+RowOf<ScalarField> add_given_map(Catalog& catalog, const ShapeRows& shape, const Model& model, RowHead head) {
+  return catalog.add(
+      shape.shapes, std::move(head),
+      [maps = model.given](Points points, const FilesOf<Source::map_file>& file) {
+        return maps->checked(file.data[0], file.name, points.size());
+      },
+      shape.points);
+}
+
+void add_scores(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model,
+                RowOf<ScalarField> matched_map) {
+  const std::string name = "scores." + model.name;
+  catalog.add(
+      shape.shapes, {name, scores_version()},
+      [name](const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options,
+             const RandomSource& random) { return score(map, truth, options, random.rng(name)); },
+      matched_map, shape.ground_truth, section("metrics", config.metrics));
+}
+
+void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model) {
+  const RowHead map_head{"map." + model.name, model.version};
+  const RowHead matched_head{"matched." + model.name, 1};
+  if (model.given && model.given->matched) {
+    add_scores(catalog, shape, config, model, add_given_map(catalog, shape, model, matched_head));
+    return;
+  }
+  const RowOf<ScalarField> map = model.given ? add_given_map(catalog, shape, model, map_head)
+                                             : model.add_map(catalog, shape, map_head);
+  const auto match = [](const ScalarField& values, const Histogram& reference) {
+    return matched(values, reference);
+  };
+  add_scores(catalog, shape, config, model,
+             catalog.add(shape.shapes, {"matched." + model.name, 1}, match, map, shape.reference));
+  catalog.add(shape.shapes, {"mean_histogram." + model.name, 1}, mean_over<ScalarField>, map);
+}
+
+// HS has no map: its scores come from the participants, who saw meshes only.
+void add_human_performance(Catalog& catalog, const ShapeRows& shape, const RowOf<Mesh>& mesh,
+                           const Config& config, const Model& model) {
+  const std::string scores = "scores." + model.name, curve = "curve." + model.name;
+  const std::int32_t version = model.version + scores_version() - 1;  // grows with either
+  catalog.add(
+      Shapes::meshes, {scores, version, has_participants(config)},
+      [scores](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
+               const MetricsOptions& options, const RandomSource& random) {
+        return one_against_rest(shape_of, truth, group_scorer(reference, options, random.rng(scores)));
+      },
+      mesh, shape.ground_truth, shape.reference, section("metrics", config.metrics));
+  catalog.add(
+      Shapes::meshes, {curve, version, has_participants(config)},
+      [scores, curve](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
+                      const HsOptions& options, const MetricsOptions& metrics, const RandomSource& random) {
+        return human_curve(shape_of, truth, options, group_scorer(reference, metrics, random.rng(scores)),
+                           random.rng(curve));
+      },
+      mesh, shape.ground_truth, shape.reference, section("models." + model.name, *model.human),
+      section("metrics", config.metrics));
+}
+
+RowOf<GroundTruth> add_mesh_ground_truth(Catalog& catalog, const Config& config, const RowOf<Mesh>& mesh) {
+  if (config.simulated())
+    return catalog.add(Shapes::meshes, {"ground_truth", 1}, made_up_ground_truth, mesh,
+                       section("simulation", config.simulation));
+  return catalog.add(Shapes::meshes, {"ground_truth", 1}, load_ground_truth, mesh);
+}
+
+RowOf<Histogram> add_reference(Catalog& catalog, Shapes shapes, const RowOf<GroundTruth>& truth,
+                               const std::optional<Histogram>& given) {
+  const auto row = catalog.add(shapes, {"reference", 1}, mean_over<GroundTruth>, truth);
+  if (given) catalog.rows[row.row].given = std::make_shared<const Value>(*given);
+  return row;
+}
+
+RowOf<Descriptors> add_fpfh(Catalog& catalog, const ShapeRows& shape, const Config& config) {
+  const auto describe = [](Points points, const Normals& normals, const FpfhOptions& options) {
+    return fpfh(points, normals, options);
+  };
+  return catalog.add(shape.shapes, {"fpfh", 1}, describe, shape.points, shape.normals,
+                     section("fpfh", config.fpfh));
+}
+
+}  // namespace
+
+Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference) {
+  Catalog catalog;
+  ShapeRows meshes{.shapes = Shapes::meshes}, scans{.shapes = Shapes::scans};
+
+  const RowOf<Mesh> mesh = catalog.add(Shapes::meshes, {"mesh", 1}, load_mesh);
+  meshes.points = mesh;
+  meshes.surface = mesh;
+  meshes.ground_truth = add_mesh_ground_truth(catalog, config, mesh);
+  meshes.reference = add_reference(catalog, Shapes::meshes, meshes.ground_truth, given_reference);
+
+  RowOf<Scan> scan;
+  if (config.dataset.scans) {
+    scan = catalog.add(Shapes::scans, {"scan", 1}, scan_of, mesh, section("scan", config.scan));
+    scans.points = scan;
+    scans.ground_truth = catalog.add(Shapes::scans, {"scan_ground_truth", 1}, scan_ground_truth, scan, mesh,
+                                     meshes.ground_truth);
+    scans.reference = add_reference(catalog, Shapes::scans, scans.ground_truth, given_reference);
+  }
+
+  if (config.dataset.meshes) {
+    meshes.normals = catalog.add(Shapes::meshes, {"normals", 1}, mesh_normals, mesh,
+                                 section("normals", config.normals));
+    meshes.fpfh = add_fpfh(catalog, meshes, config);
+  }
+  if (config.dataset.scans) {
+    scans.normals = catalog.add(Shapes::scans, {"scan_normals", 1}, scan_normals, scan,
+                                section("scan_normals", config.scan_normals));
+    scans.surface = catalog.add(Shapes::scans, {"surface", 1}, partial_mesh, scan, scans.normals,
+                                section("surface", config.surface));
+    scans.fpfh = add_fpfh(catalog, scans, config);
+  }
+
+  for (const Model& model : config.models) {
+    if (model.human && config.dataset.meshes) add_human_performance(catalog, meshes, mesh, config, model);
+    if (model.is_map() && config.dataset.meshes) add_model(catalog, meshes, config, model);
+    if (model.is_map() && config.dataset.scans) add_model(catalog, scans, config, model);
+  }
+  return catalog;
+}
+
+std::string option_path(const Row& row, std::string_view key) {
+  const std::string line = fmt::format("\n{}: ", key);
+  for (const OptionLines& options : row.options)
+    if (("\n" + options.text).find(line) != std::string::npos)
+      return fmt::format("{}.{}", options.section, key);
+  return std::string(key);
+}
+
+std::vector<bool> ancestors(const Catalog& catalog, const std::vector<std::size_t>& rows) {
+  std::vector<bool> needed(catalog.rows.size(), false);
+  for (const std::size_t row : rows) needed[row] = true;
+  for (std::size_t row = needed.size(); row-- > 0;)
+    if (needed[row] && !catalog.rows[row].given)
+      for (const std::size_t input : catalog.rows[row].inputs) needed[input] = true;
+  return needed;
+}
+
+bool Catalog::has(Shapes shapes, std::string_view name) const {
+  return std::any_of(rows.begin(), rows.end(),
+                     [&](const Row& row) { return row.shapes == shapes && row.name == name; });
+}
+
+std::size_t Catalog::index(Shapes shapes, std::string_view name) const {
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (rows[row].shapes == shapes && rows[row].name == name) return row;
+  throw std::out_of_range(fmt::format("the catalog has no row '{}' for {}", name, name_of(shapes)));
+}
+
+}  // namespace salbench

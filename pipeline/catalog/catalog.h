@@ -1,0 +1,23 @@
+// THE table of rows: everything there is to compute for a data set, from what, and how. Its order is that of the
+// paper's pipeline: load, scan, normals, descriptors, models, histogram matching, metrics.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pipeline/catalog/config.h"
+#include "pipeline/catalog/row.h"
+
+namespace salbench {
+
+// A reference histogram that is given takes the place of the data set's own mean.
+Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference = {});
+
+// Configuration path of a row's option, such as "fpfh.radius"; the bare key if no section has it.
+std::string option_path(const Row& row, std::string_view key);
+
+// Rows without which `row` cannot be computed, itself included: [row].
+std::vector<bool> ancestors(const Catalog& catalog, const std::vector<std::size_t>& rows);
+
+}  // namespace salbench

@@ -1,0 +1,83 @@
+#include "pipeline/catalog/config.h"
+
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace salbench {
+namespace {
+
+// The sections that are one options struct each: the only list of them.
+template <class Self, class Visit>
+void for_each_section(Self& config, Visit&& visit) {
+  visit("dataset", config.dataset);
+  visit("simulation", config.simulation);
+  visit("scan", config.scan);
+  visit("normals", config.normals);
+  visit("scan_normals", config.scan_normals);
+  visit("surface", config.surface);
+  visit("fpfh", config.fpfh);
+  visit("metrics", config.metrics);
+}
+
+std::vector<Model> read_models(const Section& root, Protocol protocol) {
+  const Section section = root.child("models");
+  std::vector<std::string_view> known;
+  for (const ModelRow& row : model_rows()) known.push_back(row.name);
+  section.reject_unknown(known);
+  std::vector<Model> models;
+  for (const ModelRow& row : model_rows())
+    if (!root.has("models") || section.has(row.name))
+      models.push_back(row.bind(section.child(row.name), protocol));
+  if (models.empty()) root.fail("models", "names no model; leave the key out to run all of them");
+  return models;
+}
+
+std::string indented(std::string_view lines, std::string_view by) {
+  std::istringstream stream{std::string(lines)};
+  std::string result, line;
+  while (std::getline(stream, line)) result += fmt::format("{}{}\n", by, line);
+  return result;
+}
+
+}  // namespace
+
+void check(const DatasetOptions& options) {
+  if (!options.meshes && !options.scans) throw OptionError("scans", "must be true where meshes is false");
+}
+
+Config read_config(const Section& root, const std::string& name) {
+  Config config;
+  config.name = name;
+  std::vector<std::string_view> known = {"protocol", "seed", "data", "cache", "output", "models"};
+  for_each_section(config, [&](std::string_view key, auto&) { known.push_back(key); });
+  root.reject_unknown(known);
+
+  root.read_value("protocol", config.protocol);
+  root.read_value("seed", config.seed);
+  root.read_value("data", config.data);
+  root.read_value("cache", config.cache);
+  root.read_value("output", config.output);
+  for_each_section(config, [&]<class Options>(std::string_view key, Options& options) {
+    options = preset<Options>(config.protocol);
+    root.child(key).read(options);
+  });
+  config.models = read_models(root, config.protocol);
+  return config;
+}
+
+std::string config_yaml(const Config& config) {
+  std::string yaml = fmt::format("protocol: {}\nseed: {}\n", name_of(config.protocol), config.seed);
+  for (const auto& [key, folder] : {std::pair("data", &config.data), std::pair("cache", &config.cache),
+                                    std::pair("output", &config.output)})
+    if (!folder->empty()) yaml += fmt::format("{}: {}\n", key, yaml_quoted(*folder));
+  for_each_section(config, [&](std::string_view key, const auto& options) {
+    yaml += fmt::format("{}:\n{}", key, indented(options_text(options), "  "));
+  });
+  yaml += "models:\n";
+  for (const Model& model : config.models)
+    if (!model.given) yaml += fmt::format("  {}:\n{}", model.name, indented(model.options, "    "));
+  return yaml;
+}
+
+}  // namespace salbench

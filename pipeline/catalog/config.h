@@ -1,0 +1,69 @@
+// What a run is: read from YAML, checked, with every default filled in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/dataset.h"
+#include "pipeline/catalog/models.h"
+#include "pipeline/config/section.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/ground_truth/simulation.h"
+#include "stages/metrics/metrics.h"
+#include "stages/normals/normals.h"
+#include "stages/scan/scan.h"
+#include "stages/surface/surface.h"
+
+namespace salbench {
+
+enum class Participants { measured, simulated };
+template <>
+struct EnumNames<Participants> {
+  static constexpr std::array<std::string_view, 2> names{"measured", "simulated"};
+};
+
+struct DatasetOptions {
+  Layout layout = Layout::automatic;
+  bool meshes = true;
+  bool scans = true;
+  Participants participants = Participants::measured;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("layout", self.layout, "how the folder is laid out");
+    visit("meshes", self.meshes, "evaluate the meshes themselves");
+    visit("scans", self.scans, "evaluate 12 simulated scans of each mesh");
+    visit("participants", self.participants, "ground truth from files, or made up for a demonstration");
+  }
+};
+void check(const DatasetOptions& options);
+
+struct Config {
+  std::string name;                 // the file's stem
+  std::string data, cache, output;  // folders; empty where only the command line can say
+  Protocol protocol = Protocol::published;
+  std::uint64_t seed = 2016;
+  DatasetOptions dataset;
+  SimulationOptions simulation;
+  ScanOptions scan;
+  MeshNormalsOptions normals;
+  ScanNormalsOptions scan_normals;
+  SurfaceOptions surface;
+  FpfhOptions fpfh;
+  MetricsOptions metrics;
+  std::vector<Model> models;  // in the order of the file
+
+  bool simulated() const { return dataset.participants == Participants::simulated; }
+};
+
+// Throws ConfigError: "file:line: key what is wrong".
+Config read_config(const Section& root, const std::string& name);
+
+// The complete configuration as YAML that read_config reads back as the same, but for models with given maps,
+// which no configuration names.
+std::string config_yaml(const Config& config);
+
+}  // namespace salbench

@@ -1,0 +1,110 @@
+#include "pipeline/catalog/given_maps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/ground_truth_file.h"
+#include "io/hdf5_file.h"
+#include "io/text_scanner.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// In the tables and in the cache the name stands beside others: these mean something else there.
+constexpr std::array<std::string_view, 2> kTaken = {"GS", "Avg-AUC"};
+constexpr std::size_t kLongestName = 40;
+
+void check_name(std::string_view name) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
+  if (name.empty() || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), plain))
+    throw ConfigError(fmt::format("--name {}: must be 1 to {} letters, digits, '-' and '_'", in_quotes(name),
+                                  kLongestName));
+  const auto rows = model_rows();
+  if (std::find(kTaken.begin(), kTaken.end(), name) != kTaken.end() ||
+      std::any_of(rows.begin(), rows.end(), [&](const ModelRow& row) { return row.name == name; }))
+    throw ConfigError(fmt::format("--name {}: is the name of something else in the tables; choose another",
+                                  in_quotes(name)));
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+ScalarField as_field(const Array& array) {
+  return std::visit([](const auto& values) { return ScalarField(values.begin(), values.end()); },
+                    array.values);
+}
+
+GivenMaps maps_in_folder(const fs::path& folder) {
+  GivenMaps maps{.source = folder};
+  for (const FolderEntry& entry : list_folder(folder))
+    if (entry.path.extension() == ".val") maps.items.insert(entry.path.stem().string());
+  maps.read = [folder](const std::string& item) -> SourceData {
+    std::string text = read_file(folder / (item + ".val"));
+    return {file_digest(text), std::move(text)};
+  };
+  return maps;
+}
+
+// Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
+GivenMaps maps_in_file(const fs::path& path) try {
+  const auto file = std::make_shared<const Hdf5File>(path);
+  GivenMaps maps{.source = path};
+  for (const std::string& name : file->arrays()) maps.items.insert(name);
+  maps.read = [file](const std::string& item) -> SourceData {
+    const Array array = file->read(item);
+    return {content_digest({array}), as_field(array)};
+  };
+  return maps;
+} catch (const InputError& error) {
+  throw ConfigError(fmt::format("--maps {}", error.what()));
+}
+
+}  // namespace
+
+std::string GivenMaps::place(const std::string& item) const {
+  return is_folder(source) ? (source / (item + ".val")).string()
+                           : fmt::format("{}: data set {}", source.string(), item);
+}
+
+ScalarField GivenMaps::checked(const SourceData& data, const std::string& item, std::size_t n_points) const {
+  const std::string where = place(item);
+  const auto* values = std::get_if<ScalarField>(&data.content);
+  ScalarField map = values != nullptr ? *values : parse_values(data.text(), where);
+  if (map.size() != n_points)
+    throw InputError(fmt::format("{}: {} values, but the shape has {} points", where, map.size(), n_points));
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (!std::isfinite(map[i]))
+      throw InputError(
+          fmt::format("{}: value {} (0-based) is {}, expected a finite number", where, i, map[i]));
+    if (matched && !(map[i] >= 0 && map[i] <= 1))
+      throw InputError(
+          fmt::format("{}: value {} (0-based) is {}: a matched map lies in [0, 1]; leave out "
+                      "--matched to have it matched",
+                      where, i, map[i]));
+  }
+  return map;
+}
+
+GivenMaps find_given_maps(const fs::path& source, bool matched) {
+  GivenMaps maps = is_folder(source) ? maps_in_folder(source) : maps_in_file(source);
+  maps.matched = matched;
+  return maps;
+}
+
+Model given_model(const std::string& name, GivenMaps maps) {
+  check_name(name);
+  return {.name = name, .version = 1, .given = std::make_shared<const GivenMaps>(std::move(maps))};
+}
+
+}  // namespace salbench

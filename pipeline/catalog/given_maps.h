@@ -1,0 +1,35 @@
+// Saliency maps made outside of the program, which stand where a model's would be computed.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "pipeline/catalog/models.h"
+#include "pipeline/catalog/source.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct GivenMaps {
+  std::filesystem::path source;      // a folder with ITEM.val, or an HDF5 file with a data set ITEM
+  bool matched = false;              // the values are histogram-matched already: they lie in [0, 1]
+  std::set<std::string> items = {};  // that there are maps of: "52", "52_3"
+
+  // Reads the map of one of these items. Throws InputError.
+  std::function<SourceData(const std::string& item)> read = {};
+  // The data as a map of n_points finite numbers. Throws InputError.
+  ScalarField checked(const SourceData& data, const std::string& item, std::size_t n_points) const;
+
+  std::string place(const std::string& item) const;  // for a message: where the item's map is looked for
+};
+
+// Lists the folder, or the data sets of the file. Throws ConfigError where it is neither.
+GivenMaps find_given_maps(const std::filesystem::path& source, bool matched);
+
+// A model that takes its maps from there. Throws ConfigError for a name that is taken, or is no name.
+Model given_model(const std::string& name, GivenMaps maps);
+
+}  // namespace salbench

@@ -1,0 +1,95 @@
+// The table of models. A new saliency model is its file pair in stages/models and one row here; its section
+// in a configuration and what it reads follow from its signature. HS has a row like the others, and is scored
+// in its own way.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "pipeline/catalog/row.h"
+#include "pipeline/config/section.h"
+#include "stages/models/hs.h"
+
+namespace salbench {
+
+struct GivenMaps;  // pipeline/catalog/given_maps.h
+
+// The rows of meshes, or of scans, that a model may read, by the type of the parameter that they stand for.
+struct ShapeRows {
+  Shapes shapes = Shapes::meshes;
+  RowOf<Points> points = {};
+  RowOf<Normals> normals = {};
+  RowOf<Surface> surface = {};  // of a scan: its partial mesh
+  RowOf<Descriptors> fpfh = {};
+  RowOf<GroundTruth> ground_truth = {};
+  RowOf<Histogram> reference = {};
+};
+
+// A model with its options bound: a map of every shape, computed or given, or, as HS alone, human performance.
+struct Model {
+  std::string name;
+  std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
+  std::string options = {};  // canonical text
+  std::function<RowOf<ScalarField>(Catalog&, const ShapeRows&, RowHead)> add_map = {};
+  std::optional<HsOptions> human = {};
+  std::shared_ptr<const GivenMaps> given = {};
+
+  bool is_map() const { return add_map != nullptr || given != nullptr; }
+};
+
+struct ModelRow {
+  std::string_view name;
+  // Reads the model's section over the defaults of the protocol.
+  std::function<Model(const Section& section, Protocol protocol)> bind;
+};
+
+namespace binding {
+
+// The argument that stands for a model's parameter; none for what comes from the job.
+template <class Parameter, class Options>
+auto argument_for(const ShapeRows& rows, const SectionOf<Options>& section) {
+  if constexpr (std::is_same_v<Parameter, Options>)
+    return std::tuple(section);
+  else if constexpr (std::is_same_v<Parameter, Points>)
+    return std::tuple(rows.points);
+  else if constexpr (std::is_same_v<Parameter, Normals>)
+    return std::tuple(rows.normals);
+  else if constexpr (std::is_same_v<Parameter, Surface>)
+    return std::tuple(rows.surface);
+  else if constexpr (std::is_same_v<Parameter, Descriptors>)
+    return std::tuple(rows.fpfh);
+  else
+    return std::tuple();
+}
+
+}  // namespace binding
+
+// A row of the table, from the model's function; its options are the last parameter.
+template <class... Parameters>
+ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...)) {
+  using All = std::tuple<std::decay_t<Parameters>...>;
+  using Options = std::tuple_element_t<sizeof...(Parameters) - 1, All>;
+  return {name, [=](const Section& written, Protocol protocol) {
+            auto options = preset<Options>(protocol);
+            written.read(options);
+            const auto add_map = [=](Catalog& catalog, const ShapeRows& rows, RowHead head) {
+              const auto bound = section("models." + std::string(name), options);
+              return std::apply(
+                  [&](const auto&... arguments) {
+                    return catalog.add(rows.shapes, std::move(head), saliency, arguments...);
+                  },
+                  std::tuple_cat(binding::argument_for<std::decay_t<Parameters>>(rows, bound)...));
+            };
+            return Model{std::string(name), version, options_text(options), add_map, {}, {}};
+          }};
+}
+
+std::span<const ModelRow> model_rows();
+
+}  // namespace salbench

@@ -1,0 +1,163 @@
+#include "pipeline/commands/export.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cache/artefact_name.h"
+#include "io/file.h"
+#include "io/shape_file.h"
+#include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/session.h"
+#include "pipeline/config/option_text.h"
+#include "pipeline/results/export_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportOptions {
+  std::string stages;  // "scan,fpfh,map": stages, or what stands before the point in theirs; empty: all
+  std::string format = "h5";  // one HDF5 file; or the name of a ShapeFormat: a folder of shapes
+  bool link = false;          // h5: refer to the artefacts in the cache, do not copy them
+};
+
+std::vector<std::string> stages_of(const Catalog& catalog) {
+  std::vector<std::string> names;
+  for (const Row& row : catalog.rows)
+    if (std::find(names.begin(), names.end(), row.name) == names.end()) names.push_back(row.name);
+  return names;
+}
+
+// "map" names "map.LS" and all its like.
+StageNames selected_stages(const std::string& list, const Catalog& catalog) {
+  const std::vector<std::string> known = stages_of(catalog);
+  const std::vector<std::string> wanted = split_list(list);
+  if (wanted.empty()) return {known.begin(), known.end()};
+  StageNames selected;
+  for (const std::string& part : wanted) {
+    bool found = false;
+    for (const std::string& stage : known) {
+      if (stage != part && !stage.starts_with(part + ".")) continue;
+      selected.insert(stage);
+      found = true;
+    }
+    if (!found)
+      throw ConfigError(fmt::format("--stage {}: there is no stage '{}'; there are {}", list, part,
+                                    fmt::join(known, ", ")));
+  }
+  return selected;
+}
+
+// --- shapes -----------------------------------------------------------------------------------------------
+
+// Gives a shape the part of it that a stage's value holds. The value must outlive the shape.
+struct Addition {
+  ShapeWithFields& shape;
+  const std::string& stage;
+
+  void operator()(const Mesh& mesh) const {
+    shape.points = mesh.vertices;
+    shape.faces = mesh.faces;
+  }
+  void operator()(const Scan& scan) const { shape.points = scan.points; }
+  void operator()(const Normals& normals) const { shape.normals = normals; }
+  void operator()(const Faces& faces) const { shape.faces = faces; }
+  void operator()(const ScalarField& field) const { shape.fields.push_back({item_label(stage), field}); }
+  void operator()(const GroundTruth& truth) const {
+    if (!truth.saliency.empty()) shape.fields.push_back({"ground_truth", truth.saliency});
+    ScalarField picks(shape.points.size());
+    for (const auto& participant : truth.picks)
+      for (const std::int32_t point : participant) ++picks[static_cast<std::size_t>(point)];
+    shape.fields.push_back({"picks", std::move(picks)});
+  }
+  template <class Other>
+  void operator()(const Other&) const {}  // not per point
+};
+
+bool is_points(const Row& row) { return row.kind == "mesh" || row.kind == "scan"; }
+
+// Rows stand in the order of their inputs: the points come first.
+bool write_shape(Session& session, const Item& item, ShapeFormat format, const StageNames& stages,
+                 const fs::path& folder) {
+  const Context& context = session.setup.context;
+  ShapeWithFields shape;
+  if (session.setup.config.simulated()) shape.remark = kSimulatedNote;
+  std::vector<ValuePtr> values;  // spans refer to them
+  for (const JobRef& job : jobs_of(context.catalog, item)) {
+    const Row& row = context.row(job);
+    if (!session.plan[job].known() || (!is_points(row) && !stages.contains(row.name))) continue;
+    values.push_back(session.runner.result(job));
+    std::visit(Addition{shape, row.name}, *values.back());
+  }
+  if (shape.points.empty()) return false;
+  write_file(folder / fmt::format("{}.{}", context.name(item), name_of(format)), shape_text(shape, format));
+  return true;
+}
+
+std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames& stages,
+                         const fs::path& folder, const std::atomic<bool>& stop) {
+  make_folder(folder, "choose another with --to");
+  const std::vector<Item> items = all_items(session.setup.context);
+  std::size_t written = 0;
+  session.progress->begin("exporting", items.size());
+  for (const Item& item : items) {
+    if (stop) break;
+    written += write_shape(session, item, format, stages, folder) ? 1U : 0U;
+    session.progress->item_done();
+  }
+  session.progress->end();
+  return written;
+}
+
+ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
+                      const std::atomic<bool>& stop) {
+  ShapeFormat format{};
+  const bool shapes = options.format != "h5";
+  if (shapes && !parse_option(options.format, format))
+    throw ConfigError(
+        fmt::format("--format {}: must be h5 or {}", options.format, expected_of<ShapeFormat>()));
+  if (shapes && options.link) throw ConfigError("--link: only one HDF5 file (--format h5) can hold links");
+
+  Session session(arguments, stop);
+  const StageNames stages = selected_stages(options.stages, session.setup.catalog);
+  const OrderlyEnd orderly;
+  session.runner.run(thread_count(arguments));
+  if (stop) return interrupted_status(arguments);
+
+  std::string done = fmt::format("exported to {}\n", arguments.to);
+  if (shapes) {
+    const std::size_t written = write_shapes(session, format, stages, arguments.to, stop);
+    if (stop) return interrupted_status(arguments);
+    done = fmt::format("{} shapes written to {}\n", written, arguments.to);
+  } else if (!export_file({session.state(), session.store, session.setup.cache}, stages, arguments.to,
+                          options.link, stop)) {
+    return interrupted_status(arguments);
+  }
+  if (!arguments.quiet) fmt::print("{}", done);
+  return finished_status(session);
+}
+
+}  // namespace
+
+Subcommand export_subcommand(Arguments& arguments) {
+  const auto options = std::make_shared<ExportOptions>();
+  return {"export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
+          run_parameters(
+              arguments,
+              {{"--stage", &options->stages,
+                "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
+               {"--models", &arguments.models, "only these, such as LS,PS"},
+               {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes", true},
+               {"--format", &options->format, "h5 (default), or one shape per item: csv, ply, vtp"},
+               {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"}}),
+          [&arguments, options](const std::atomic<bool>& stop) {
+            return run_export(arguments, *options, stop);
+          }};
+}
+
+}  // namespace salbench

@@ -1,0 +1,100 @@
+#include "pipeline/commands/gc.h"
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "io/table.h"
+#include "pipeline/commands/session.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct GcOptions {
+  std::vector<std::string> configs;
+  bool dry_run = false;
+};
+
+double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+void print_collected(const Collected& collected, std::size_t waiting, bool dry_run) {
+  Table table{.columns = {"stage", "kept", "MB", dry_run ? "to remove" : "removed", "MB"}, .rows = {}};
+  Amount removed;
+  for (const Collected::OfStage& stage : collected.stages) {
+    table.rows.push_back({stage.stage, cell_of(stage.kept.files), megabytes(stage.kept.bytes),
+                          cell_of(stage.removed.files), megabytes(stage.removed.bytes)});
+    removed.files += stage.removed.files;
+    removed.bytes += stage.removed.bytes;
+  }
+  fmt::print("{}\n", aligned(table, 1));
+  fmt::print("{}: {} artefacts ({:.1f} MB), {} damaged ones, {} unfinished files\n",
+             dry_run ? "would be removed" : "removed", removed.files, megabytes(removed.bytes),
+             collected.damaged.files, collected.unfinished.files);
+  if (waiting > 0)
+    fmt::print("{} jobs wait for what they read: everything of their stages and items was kept\n", waiting);
+}
+
+ExitStatus run_gc(Arguments arguments, const GcOptions& options) {
+  KeepSet needed;
+  std::size_t waiting = 0;
+  fs::path folder;
+  for (const std::string& config : options.configs) {
+    arguments.config = config;
+    const Setup setup(arguments);
+    if (!folder.empty() && fs::weakly_canonical(folder) != fs::weakly_canonical(setup.cache))
+      throw ConfigError(fmt::format("{}: its cache is {}, not {}: clean one cache at a time", config,
+                                    setup.cache.string(), folder.string()));
+    folder = setup.cache;
+    const FolderStore store(folder, Access::read_only);
+    waiting += add_needed(setup.context, make_plan(setup.context, store), needed);
+  }
+  const Collected collected = collect_garbage(folder, needed, options.dry_run, *progress_of(arguments.quiet));
+  if (!arguments.quiet) print_collected(collected, waiting, options.dry_run);
+  return kAllDone;
+}
+
+}  // namespace
+
+bool key_is_unknown(const Job& job) {
+  switch (job.verdict) {
+    case Verdict::cached:
+    case Verdict::done:
+    case Verdict::not_applicable:
+      return false;
+    case Verdict::compute:
+      return job.reason == Reason::unreadable;
+    default:
+      return true;
+  }
+}
+
+std::size_t add_needed(const Context& context, const Plan& plan, KeepSet& needed) {
+  std::size_t unknown = 0;
+  for (std::size_t row = 0; row < plan.jobs.size(); ++row)
+    for (const Item& item : items_of(context, row)) {
+      const JobRef ref{row, item};
+      const Job& job = plan[ref];
+      if (context.row(ref).given) continue;
+      if (key_is_unknown(job)) {
+        needed.add_every_key(context.row(ref).name, context.name(ref));
+        ++unknown;
+      } else if (job.verdict != Verdict::not_applicable) {
+        needed.add(context.row(ref).name, job.key);  // also of a job to compute: another process may store it
+      }
+    }
+  return unknown;
+}
+
+Subcommand gc_subcommand(Arguments& arguments) {
+  const auto options = std::make_shared<GcOptions>();
+  return {"gc", "remove from a cache what no run of these configurations needs",
+          cache_parameters(arguments, {{"CONFIG", &options->configs,
+                                        "every configuration whose artefacts are kept", true},
+                                       {"--dry-run", &options->dry_run, "only say what would be removed"}}),
+          [&arguments, options](const std::atomic<bool>&) { return run_gc(arguments, *options); }};
+}
+
+}  // namespace salbench

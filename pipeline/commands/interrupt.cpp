@@ -1,0 +1,42 @@
+#include "pipeline/commands/interrupt.h"
+
+#include <csignal>
+
+#include <unistd.h>
+
+#include "pipeline/commands/subcommand.h"
+
+namespace salbench {
+namespace {
+
+// A signal handler may touch lock-free atomics, and text that no longer changes.
+std::atomic<bool> asked = false;
+std::atomic<int> orderly_ends = 0;
+std::string farewell;
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+void on_signal(int signal) {
+  if (orderly_ends > 0 && !asked) {
+    asked = true;
+    std::signal(signal, SIG_DFL);
+    return;
+  }
+  // Nothing can be done about a standard error that takes no text.
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, farewell.data(), farewell.size());
+  ::_exit(kInterrupted);
+}
+
+}  // namespace
+
+void handle_interrupts(const std::string& last_words) {
+  farewell = last_words;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+OrderlyEnd::OrderlyEnd() { ++orderly_ends; }
+OrderlyEnd::~OrderlyEnd() { --orderly_ends; }
+
+const std::atomic<bool>& interrupted() { return asked; }
+
+}  // namespace salbench

@@ -1,0 +1,13 @@
+#include <csignal>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "pipeline/commands/program.h"
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("salbench"));
+  spdlog::set_pattern("%^%l%$: %v");
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes then fails the write, as a full disk does
+  return salbench::run_program(argc, argv, salbench::subcommand_rows());
+}

@@ -1,0 +1,134 @@
+#include "pipeline/commands/program.h"
+
+#include <array>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "io/file.h"
+#include "pipeline/commands/accept.h"
+#include "pipeline/commands/config.h"
+#include "pipeline/commands/evaluate.h"
+#include "pipeline/commands/explain.h"
+#include "pipeline/commands/export.h"
+#include "pipeline/commands/gc.h"
+#include "pipeline/commands/graph.h"
+#include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/maps.h"
+#include "pipeline/commands/plan.h"
+#include "pipeline/commands/run.h"
+#include "pipeline/commands/session.h"
+#include "pipeline/commands/status.h"
+#include "pipeline/commands/verify.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::array kSubcommands = {
+    run_subcommand,    maps_subcommand,  evaluate_subcommand, export_subcommand,
+    plan_subcommand,   graph_subcommand, explain_subcommand,  status_subcommand,
+    config_subcommand, verify_subcommand, gc_subcommand,      accept_subcommand,
+};
+
+constexpr const char* kExamples = R"(Examples:
+  salbench run configs/shrec07.yaml --data SchellingData          the whole benchmark; run it again to resume
+  salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
+  salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
+  salbench export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5
+  salbench plan configs/shrec07.yaml --data SchellingData         what a run would compute, and why
+  salbench graph configs/shrec07.yaml --format dot | dot -Tsvg    the flow graph of a run, as a picture
+  salbench explain configs/shrec07.yaml 52_3 --data SchellingData what differs from what the cache has
+  salbench status configs/shrec07.yaml --data SchellingData       what is there already
+  salbench config                                                 every option, its default, unit and range
+
+Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
+3 cache or output folder unusable; 70 a defect of the program, or memory ran out;
+130 interrupted, the line that resumes was printed.)";
+
+// As a shell reads it back as the same word.
+std::string shell_word(const std::string& word) {
+  constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string joined(std::span<const char* const> words) {
+  std::string line;
+  for (const char* word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  return line;
+}
+
+struct Declare {
+  CLI::App& app;
+  const Parameter& parameter;
+
+  void operator()(bool* target) const { app.add_flag(parameter.name, *target, parameter.help); }
+  void operator()(int* target) const { declared(*target)->check(CLI::Range(1, parameter.max)); }
+  template <class Text>
+  void operator()(Text* target) const {
+    declared(*target);
+  }
+
+ private:
+  template <class Target>
+  CLI::Option* declared(Target& target) const {
+    return app.add_option(parameter.name, target, parameter.help)->required(parameter.required);
+  }
+};
+
+int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> rows) {
+  CLI::App app{"Benchmark of 3D saliency models on meshes and simulated range scans."};
+  app.set_version_flag("--version", "salbench " SALBENCH_VERSION);
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  Arguments arguments;
+  arguments.command_line = joined(words);
+  std::vector<Subcommand> subcommands;
+  for (const SubcommandRow row : rows) subcommands.push_back(row(arguments));
+  for (const Subcommand& subcommand : subcommands) {
+    CLI::App* declared = app.add_subcommand(subcommand.name, subcommand.summary);
+    for (const Parameter& parameter : subcommand.parameters)
+      std::visit(Declare{*declared, parameter}, parameter.target);
+  }
+  try {
+    app.parse(static_cast<int>(words.size()), words.data());
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kAllDone : kUnusableArguments;
+  }
+  handle_interrupts(interrupted_text(arguments));
+  for (const Subcommand& subcommand : subcommands)
+    if (app.got_subcommand(subcommand.name)) return subcommand.run(interrupted());
+  throw std::logic_error("a subcommand was parsed that is not in the table");
+}
+
+}  // namespace
+
+std::span<const SubcommandRow> subcommand_rows() { return kSubcommands; }
+
+int run_program(int argc, const char* const* argv, std::span<const SubcommandRow> rows) {
+  try {
+    return dispatch({argv, static_cast<std::size_t>(argc)}, rows);
+  } catch (const StorageError& error) {
+    spdlog::error("{}", error.what());
+    return kUnusableStorage;
+  } catch (const std::filesystem::filesystem_error& error) {
+    spdlog::error("{}: {}", error.path1().string(), system_reason(error.code().value()));
+    return kUnusableStorage;
+  } catch (const ConfigError& error) {
+    spdlog::error("{}", error.what());
+    return kUnusableArguments;
+  } catch (const InputError& error) {
+    spdlog::error("{}", error.what());
+    return kUnusableArguments;
+  } catch (...) {
+    spdlog::error("{}", current_defect());
+    return kDefect;
+  }
+}
+
+}  // namespace salbench

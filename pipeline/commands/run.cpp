@@ -1,0 +1,77 @@
+#include "pipeline/commands/run.h"
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/table.h"
+#include "pipeline/commands/interrupt.h"
+#include "pipeline/plan/causes.h"
+#include "pipeline/results/record.h"
+
+namespace salbench {
+namespace {
+
+constexpr const char* kPartialNote =
+    "PARTIAL: the run was interrupted; these are the items that were finished, and their scores are final.";
+
+// No tables: what they compare is in the other shares.
+void finish_shard(const Session& session, const RunRecord& record, const Arguments& arguments) {
+  write_shard_record(session.setup.output, record);
+  if (!arguments.quiet)
+    fmt::print(
+        "shard {}: {} meshes, {} artefacts computed; when all shards are done, the same line without "
+        "--shard writes the tables\n",
+        session.setup.context.shard->text(), session.setup.workload.families.size(),
+        session.runner.computed());
+}
+
+void print_summary(const Session& session, const std::vector<ResultRow>& rows) {
+  const Setup& setup = session.setup;
+  if (setup.config.simulated()) fmt::print("{}\n", kSimulatedNote);
+  fmt::print("{}", aligned(summary_table(rows)));
+  fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup.config.protocol),
+             session.runner.computed(), setup.output.string());
+}
+
+void write_results(Session& session, const RunRecord& record, const Arguments& arguments) {
+  const std::vector<ResultRow> rows = collect_results(record.run);
+  std::vector<std::string> remarks;
+  if (record.interrupted) remarks.emplace_back(kPartialNote);
+  if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
+  write_tables(session.setup.output, record.run, rows, remarks);
+  write_record(session.setup.output, record);
+  if (!arguments.quiet && !record.interrupted) print_summary(session, rows);
+  if (record.interrupted)
+    fmt::print(stderr, "\n{}: {}\n", session.setup.output.string(), state_of_results(session.setup.output));
+}
+
+}  // namespace
+
+ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
+  const Setup& setup = session.setup;
+  setup.context.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
+  {
+    const OrderlyEnd orderly;
+    session.runner.run(thread_count(arguments));
+  }
+  const bool interrupted = stop;
+  if (interrupted && setup.context.shard) return interrupted_status(arguments);
+  Causes causes(setup.context, session.plan, setup.cache, kOpenedForCounting);
+  const RunRecord record{session.state(), thread_count(arguments), session.seconds(), interrupted,
+                         causes.words_of_computed()};
+  if (setup.context.shard)
+    finish_shard(session, record, arguments);
+  else
+    write_results(session, record, arguments);
+  return interrupted ? interrupted_status(arguments) : finished_status(session);
+}
+
+Subcommand run_subcommand(Arguments& arguments) {
+  return {"run", "compute what is missing and write the tables",
+          run_parameters(arguments, {shard_parameter(arguments)}), [&arguments](const std::atomic<bool>& stop) {
+            Session session(arguments, stop);
+            return run_session(session, arguments, stop);
+          }};
+}
+
+}  // namespace salbench

@@ -1,0 +1,116 @@
+#include "pipeline/commands/session.h"
+
+#include <algorithm>
+#include <thread>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "pipeline/catalog/given_reference.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Keeps the models that `--models` names.
+void select_models(Config& config, const std::string& list) {
+  std::vector<std::string_view> known;
+  for (const Model& model : config.models) known.push_back(model.name);
+  const std::vector<std::string> wanted = split_list(list);
+  for (const std::string& name : wanted) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw ConfigError(fmt::format("--models {}: the configuration has no model '{}'; it has {}", list, name,
+                                  fmt::join(known, ", ")));
+  }
+  if (!wanted.empty())
+    std::erase_if(config.models, [&](const Model& model) {
+      return std::find(wanted.begin(), wanted.end(), model.name) == wanted.end();
+    });
+}
+
+std::optional<Shard> shard_of(const Arguments& arguments) {
+  return arguments.shard.empty() ? std::nullopt : std::optional(parse_shard(arguments.shard));
+}
+
+std::optional<Histogram> reference_of(const Arguments& arguments) {
+  return arguments.reference.empty() ? std::nullopt : std::optional(read_reference(arguments.reference));
+}
+
+}  // namespace
+
+Config read_configuration(const Arguments& arguments, const std::optional<Model>& given) {
+  Config config =
+      read_config(Section::from_file(arguments.config), fs::path(arguments.config).stem().string());
+  select_models(config, arguments.models);
+  if (given) config.models.push_back(*given);
+  if (!arguments.data.empty()) config.data = arguments.data;
+  if (!arguments.cache.empty()) config.cache = arguments.cache;
+  if (!arguments.output.empty()) config.output = arguments.output;
+  if (config.data.empty())
+    throw ConfigError(
+        fmt::format("{}: names no data set: give --data DIR, or a key 'data'", arguments.config));
+  if (config.cache.empty()) config.cache = "salbench-cache";
+  if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
+  return config;
+}
+
+int thread_count(const Arguments& arguments) {
+  if (arguments.threads > 0) return arguments.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+Setup::Setup(const Arguments& arguments, const std::optional<Model>& given)
+    : config(read_configuration(arguments, given)),
+      catalog(make_catalog(config, reference_of(arguments))),
+      workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items,
+                             shard_of(arguments))),
+      context{.catalog = catalog,
+              .workload = workload,
+              .seed = config.seed,
+              .attributes = {{"protocol", std::string(name_of(config.protocol))}},
+              .shard = shard_of(arguments),
+              .reference_given = !arguments.reference.empty()},
+      cache(config.cache),
+      output(config.output) {
+  if (config.simulated()) context.attributes.emplace_back("participants", std::string(kSimulatedNote));
+  if (given) add_given_maps(workload, catalog, *given);
+  for (const std::string& note : workload.notes) spdlog::warn("{}", note);
+}
+
+Session::Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given)
+    : setup(arguments, given),
+      store(setup.cache, Access::read_write),
+      plan(make_plan(setup.context, store)),
+      progress(progress_of(arguments.quiet)),
+      runner(setup.context, plan, store, *progress, stop) {}
+
+double Session::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+}
+
+std::string interrupted_text(const Arguments& arguments) {
+  return fmt::format("\ninterrupted; everything finished so far is kept. To go on:\n  {}\n",
+                     arguments.command_line);
+}
+
+ExitStatus interrupted_status(const Arguments& arguments) {
+  fmt::print(stderr, "{}", interrupted_text(arguments));
+  return kInterrupted;
+}
+
+ExitStatus finished_status(const Session& session) {
+  const std::vector<Failure> failures = session.runner.failures();
+  if (failures.empty()) return kAllDone;
+  const Context& context = session.setup.context;
+  fmt::print(stderr, "\n{} failed:\n", failures.size());
+  for (const Failure& failure : failures)
+    fmt::print(stderr, "  {}: {}: {}\n", context.name(failure.job), context.row(failure.job).name,
+               failure.cause);
+  const bool any_defect =
+      std::any_of(failures.begin(), failures.end(), [](const Failure& f) { return f.defect; });
+  return any_defect ? kDefect : kSomeFailed;
+}
+
+}  // namespace salbench

@@ -1,0 +1,57 @@
+// The way from the command line to a plan, and to a run of it, shared by all subcommands.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cache/folder_store.h"
+#include "pipeline/commands/subcommand.h"
+#include "pipeline/results/results.h"
+
+namespace salbench {
+
+int thread_count(const Arguments& arguments);
+
+// Everything that stands before the first job. The context refers to its neighbours, so it is never moved.
+// Throws ConfigError or InputError for what makes the command impossible.
+struct Setup {
+  explicit Setup(const Arguments& arguments, const std::optional<Model>& given = {});  // a model more
+  Setup(const Setup&) = delete;
+  Setup& operator=(const Setup&) = delete;
+
+  Config config;
+  Catalog catalog;
+  Workload workload;
+  Context context;
+  std::filesystem::path cache, output;
+};
+
+// The configuration as the command line changes it: folders, models. Throws ConfigError.
+Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {});
+
+// A setup with its cache opened for writing, planned, and ready to run.
+struct Session {
+  // Throws as Setup does, and StorageError.
+  Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {});
+
+  RunState state() { return {setup.config, setup.context, plan, runner}; }
+  double seconds() const;  // since it began
+
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
+  Setup setup;
+  FolderStore store;
+  Plan plan;
+  std::unique_ptr<Progress> progress;
+  Runner runner;
+};
+
+// The end of a subcommand that computes: each says on stderr what the user must know.
+std::string interrupted_text(const Arguments& arguments);
+ExitStatus interrupted_status(const Arguments& arguments);
+ExitStatus finished_status(const Session& session);  // whether all succeeded
+
+}  // namespace salbench

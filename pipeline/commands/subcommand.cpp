@@ -1,0 +1,54 @@
+#include "pipeline/commands/subcommand.h"
+
+namespace salbench {
+namespace {
+
+Parameters joined(Parameters parameters, const Parameters& further) {
+  parameters.insert(parameters.end(), further.begin(), further.end());
+  return parameters;
+}
+
+Parameter data_parameter(Arguments& arguments) {
+  return {"--data", &arguments.data, "folder of the data set"};
+}
+
+Parameter cache_parameter(Arguments& arguments) {
+  return {"--cache", &arguments.cache,
+          "folder of the artefacts (default: cache in CONFIG, or salbench-cache)"};
+}
+
+}  // namespace
+
+Parameter config_parameter(Arguments& arguments) {
+  return {"CONFIG", &arguments.config, "configuration file (YAML); see configs/", true};
+}
+
+Parameter shard_parameter(Arguments& arguments) {
+  return {"--shard", &arguments.shard,
+          "only share I of N of the items, as I/N; a run without it then merges the shares"};
+}
+
+Parameters run_parameters(Arguments& arguments, const Parameters& further) {
+  return joined(
+      {config_parameter(arguments), data_parameter(arguments), cache_parameter(arguments),
+       {"--out", &arguments.output,
+        "folder of the results (default: output in CONFIG, or salbench-out/NAME)"},
+       {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
+        1024},
+       {"--items", &arguments.items, "only these meshes and their scans, such as 1-20,52,125"},
+       {"--reference", &arguments.reference,
+        "match to this histogram (CSV with a column GS of 100 bins), not to the data set's own mean"},
+       {"--quiet", &arguments.quiet, "neither progress nor tables; warnings and errors only"}},
+      further);
+}
+
+Parameters cache_parameters(Arguments& arguments, const Parameters& further) {
+  return joined(
+      {data_parameter(arguments), cache_parameter(arguments),
+       {"--items", &arguments.items, "as of the run: only these meshes and their scans"},
+       {"--reference", &arguments.reference, "as of the run: match to this histogram"},
+       {"--quiet", &arguments.quiet, "name what is wrong, and nothing else"}},
+      further);
+}
+
+}  // namespace salbench

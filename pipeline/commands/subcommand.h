@@ -1,0 +1,61 @@
+// A subcommand of the program: its name, its parameters and what it does. It knows no command-line library.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace salbench {
+
+enum ExitStatus {
+  kAllDone = 0,
+  kSomeFailed = 1,
+  kUnusableArguments = 2,  // or configuration
+  kUnusableStorage = 3,    // cache or output folder
+  kDefect = 70,            // of the program, or memory ran out; as in sysexits.h
+  kInterrupted = 130,
+};
+
+// What most subcommands are told; empty or 0 where the command line says nothing.
+struct Arguments {
+  std::string command_line;  // as typed: the line that resumes
+  std::string config;
+  std::string data, cache, output;
+  std::string items;      // "1-20,52,125"
+  std::string shard;      // "2/4"
+  std::string reference;  // CSV file with a reference histogram in column GS
+  std::string models;     // "LS,PS"; empty: all of the configuration
+  std::string to;         // what is written to
+  int threads = 0;        // 0: all cores
+  bool quiet = false;     // no progress, no table
+};
+
+struct Parameter {
+  std::string name;  // "--items", or "ITEM" for one that is known by its place
+  std::variant<std::string*, std::vector<std::string>*, int*, bool*> target;
+  std::string help;
+  bool required = false;
+  int max = std::numeric_limits<int>::max();  // of a number, which is at least 1
+};
+using Parameters = std::vector<Parameter>;
+
+struct Subcommand {
+  std::string name, summary;
+  Parameters parameters;
+  // Throws ConfigError, InputError or StorageError for what makes the whole command impossible.
+  std::function<ExitStatus(const std::atomic<bool>& stop)> run;
+};
+
+// A row of the table of subcommands. `arguments` is filled before `run` is called, and outlives it.
+using SubcommandRow = Subcommand (*)(Arguments& arguments);
+
+// Parameters that several subcommands share.
+Parameter config_parameter(Arguments& arguments);
+Parameter shard_parameter(Arguments& arguments);
+Parameters run_parameters(Arguments& arguments, const Parameters& further = {});    // of what plans a run
+Parameters cache_parameters(Arguments& arguments, const Parameters& further = {});  // of what maintains a cache
+
+}  // namespace salbench

@@ -1,0 +1,155 @@
+#include "pipeline/config/section.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include "io/file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+
+struct Section::Impl {
+  YAML::Node node;
+  std::string file;
+  std::string path;  // "models.PS"; empty at the root
+
+  std::string full_key(std::string_view key) const {
+    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  }
+
+  // The entry of a key, or an invalid iterator's end: yaml-cpp's operator[] would invent nodes.
+  YAML::const_iterator entry(std::string_view key) const {
+    auto it = node.begin();
+    while (it != node.end() && it->first.Scalar() != key) ++it;
+    return it;
+  }
+  int line_of(std::string_view key) const {
+    const auto it = entry(key);
+    return 1 + (it == node.end() ? node.Mark().line : it->first.Mark().line);
+  }
+};
+
+namespace {
+
+// Keys and values of YAML may hold line ends and control characters, and a message is one line of text.
+[[noreturn]] void fail_at(const std::string& file, int line, std::string what) {
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+  std::replace_if(what.begin(), what.end(), is_control, '?');
+  throw ConfigError(fmt::format("{}:{}: {}", file, line, what));
+}
+
+void check_mapping(const YAML::Node& node, const std::string& file, const std::string& path) {
+  if (node.IsNull()) return;
+  const std::string what = path.empty() ? "the file" : path;
+  const int line = node.Mark().line + 1;
+  if (!node.IsMap()) fail_at(file, line, what + " must be a mapping of keys to values");
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    if (!entry.first.IsScalar()) fail_at(file, line, what + " has a key that is not a plain word");
+    const std::string& key = entry.first.Scalar();
+    if (!seen.insert(key).second)
+      fail_at(file, entry.first.Mark().line + 1, fmt::format("the key '{}' is given twice", key));
+  }
+}
+
+YAML::Node parse(const std::string& file, const std::string& text) {
+  try {
+    YAML::Node node = YAML::Load(text);
+    check_mapping(node, file, "");
+    return node;
+  } catch (const YAML::Exception& error) {
+    fail_at(file, error.mark.line + 1, "not valid YAML: " + error.msg);
+  }
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0U);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = std::exchange(row[j + 1], std::min({replaced, row[j] + 1, row[j + 1] + 1}));
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest_word(std::string_view word, const std::vector<std::string_view>& candidates) {
+  std::string nearest;
+  std::size_t best = word.size() / 2 + 2;  // farther away it is another word
+  for (const std::string_view candidate : candidates) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance >= best) continue;
+    best = distance;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+std::string yaml_quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f)
+      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+Section Section::from_file(const std::string& path) {
+  try {
+    return from_text(read_file(path), path);
+  } catch (const InputError& error) {
+    throw ConfigError(error.what());
+  }
+}
+
+Section Section::from_text(const std::string& yaml, const std::string& name) {
+  return Section(std::make_shared<Impl>(Impl{parse(name, yaml), name, ""}));
+}
+
+std::vector<std::string> Section::keys() const {
+  std::vector<std::string> result;
+  for (const auto& entry : impl_->node) result.push_back(entry.first.Scalar());
+  return result;
+}
+
+bool Section::has(std::string_view key) const { return impl_->entry(key) != impl_->node.end(); }
+
+Section Section::child(std::string_view key) const {
+  const auto it = impl_->entry(key);
+  const YAML::Node node = it == impl_->node.end() ? YAML::Node() : it->second;
+  check_mapping(node, impl_->file, impl_->full_key(key));
+  return Section(std::make_shared<Impl>(Impl{node, impl_->file, impl_->full_key(key)}));
+}
+
+std::optional<std::string> Section::text(std::string_view key) const {
+  const auto it = impl_->entry(key);
+  if (it == impl_->node.end()) return {};
+  if (!it->second.IsScalar()) fail(key, "must be one value");
+  return it->second.Scalar();
+}
+
+void Section::fail(std::string_view key, std::string_view what) const {
+  fail_at(impl_->file, impl_->line_of(key), fmt::format("{} {}", impl_->full_key(key), what));
+}
+
+void Section::reject_unknown(const std::vector<std::string_view>& known) const {
+  for (const std::string& key : keys()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string nearest = nearest_word(key, known);
+    fail(key, nearest.empty() ? fmt::format("is not a known key; known are: {}", fmt::join(known, ", "))
+                              : fmt::format("is not a known key; did you mean '{}'?", nearest));
+  }
+}
+
+}  // namespace salbench

@@ -1,0 +1,65 @@
+// One mapping of a YAML configuration file, read into option structs. Every error names file, line and key.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/config/option_text.h"
+#include "stages/core/errors.h"
+#include "stages/core/options.h"
+
+namespace salbench {
+
+class Section {
+ public:
+  // The root of a file. Throws ConfigError: unreadable, not YAML, not a mapping, a key given twice.
+  static Section from_file(const std::string& path);
+  static Section from_text(const std::string& yaml, const std::string& name);
+
+  std::vector<std::string> keys() const;  // in the file's order
+  bool has(std::string_view key) const;
+  Section child(std::string_view key) const;                    // a mapping; `key:` alone is an empty one
+  std::optional<std::string> text(std::string_view key) const;  // a scalar as written; nothing if absent
+
+  [[noreturn]] void fail(std::string_view key, std::string_view what) const;  // "file:line: path.key what"
+  void reject_unknown(const std::vector<std::string_view>& known) const;      // names the nearest known key
+
+  template <class Value>
+  void read_value(std::string_view key, Value& value) const {
+    const auto written = text(key);
+    if (!written) return;
+    if (!parse_option(*written, value)) fail(key, "is '" + *written + "', not " + expected_of<Value>());
+  }
+
+  // Overwrites the fields that the section names; the others keep their defaults.
+  template <class Options>
+  void read(Options& options) const {
+    std::vector<std::string_view> known;
+    Options::fields(options, [&](std::string_view key, auto& value, std::string_view) {
+      known.push_back(key);
+      read_value(key, value);
+    });
+    reject_unknown(known);
+    try {
+      check(options);
+    } catch (const OptionError& error) {
+      fail(error.key, error.what_is_wrong);
+    }
+  }
+
+ private:
+  struct Impl;
+  explicit Section(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<const Impl> impl_;
+};
+
+std::string yaml_quoted(std::string_view text);  // a scalar that reads back as the same text
+
+// The candidate with the smallest edit distance to `word`; empty where none is near.
+std::string nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
+
+}  // namespace salbench

@@ -1,0 +1,153 @@
+#include "pipeline/plan/workload.h"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "pipeline/catalog/given_maps.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+std::optional<int> as_number(std::string_view text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+struct Range {
+  int first = 0, last = 0;
+};
+
+// "3-17"; nothing where it is no range of numbers, or an empty one.
+std::optional<Range> as_range(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  if (dash == std::string_view::npos) return {};
+  const auto first = as_number(text.substr(0, dash)), last = as_number(text.substr(dash + 1));
+  if (!first || !last || *first > *last) return {};
+  return Range{*first, *last};
+}
+
+// A number range takes the items that exist in it: data sets have gaps. A single name must exist.
+std::set<std::string> selected_names(const std::string& selection, const std::set<std::string>& present) {
+  std::set<std::string> names;
+  for (const std::string& part : split_list(selection)) {
+    if (present.contains(part)) {
+      names.insert(part);
+      continue;
+    }
+    const std::optional<Range> range = as_range(part);
+    if (!range) throw ConfigError(fmt::format("--items {}: the data set has no item '{}'", selection, part));
+    const std::size_t before = names.size();
+    for (const std::string& name : present)
+      if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
+        names.insert(name);
+    if (names.size() == before)
+      throw ConfigError(fmt::format("--items {}: the data set has no item in the range {}", selection, part));
+  }
+  return names;
+}
+
+Family make_family(const DatasetItem& source) {
+  Family family{source, {}, {}};
+  std::string extension = source.mesh.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  family.mesh_file.push_back(source_file("mesh file " + extension, source.mesh));
+  if (!source.saliency.empty()) family.truth_files.push_back(source_file("saliency file", source.saliency));
+  for (std::size_t k = 0; k < source.picks.size(); ++k)
+    family.truth_files.push_back(source_file(fmt::format("picks {}", k), source.picks[k]));
+  return family;
+}
+
+SourceFile map_file(const std::shared_ptr<const GivenMaps>& maps, const std::string& item) {
+  std::string place = maps->place(item);
+  return source_file("map file", place, [maps, item, place] {
+    if (!maps->items.contains(item))
+      throw InputError(fmt::format("{}: missing, although other items have a map", place));
+    return maps->read(item);
+  });
+}
+
+// The items of one family: its mesh, then its scans.
+std::vector<std::string> names_of(const Family& family) {
+  std::vector<std::string> names = {family.source.name};
+  for (int view = 0; view < kViews; ++view) names.push_back(fmt::format("{}_{}", names[0], view));
+  return names;
+}
+
+}  // namespace
+
+DataIdentity identity_of(const Workload& workload) {
+  DataIdentity identity;
+  Hasher hasher;
+  for (const Family& family : workload.families) {
+    hasher.add(family.source.name);
+    for (const SourceFiles* files : {&family.mesh_file, &family.truth_files})
+      for (const SourceFile& file : *files) {
+        hasher.add(file.name);
+        hasher.add(file.digest ? file.digest->hex() : "unreadable");
+        ++identity.files;
+      }
+  }
+  identity.digest = hasher.digest();
+  return identity;
+}
+
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (begin <= list.size()) {
+    const std::size_t comma = std::min(list.find(',', begin), list.size());
+    std::string part = list.substr(begin, comma - begin);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    if (!part.empty()) parts.push_back(part);
+    begin = comma + 1;
+  }
+  return parts;
+}
+
+Workload make_workload(const Dataset& dataset, const std::string& selection,
+                       const std::optional<Shard>& shard) {
+  std::set<std::string> present;
+  for (const DatasetItem& item : dataset.items) present.insert(item.name);
+  const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
+  if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
+
+  std::vector<DatasetItem> items = dataset.items;
+  std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
+  Workload workload{dataset.layout, {}, dataset.notes};
+  for (const DatasetItem& item : shard ? share_of(items, *shard) : items)
+    workload.families.push_back(make_family(item));
+  return workload;
+}
+
+void add_given_maps(Workload& workload, const Catalog& catalog, const Model& model) {
+  const GivenMaps& maps = *model.given;
+  const bool scored[2] = {catalog.has(Shapes::meshes, "scores." + model.name),
+                          catalog.has(Shapes::scans, "scores." + model.name)};
+  bool any[2] = {false, false};  // of meshes, of scans
+  for (const Family& family : workload.families) {
+    const auto names = names_of(family);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      any[i > 0] |= scored[i > 0] && maps.items.contains(names[i]);
+  }
+  if (!any[0] && !any[1])
+    throw ConfigError(fmt::format("--maps {}: has no map of any item of the run; expected are such as {}",
+                                  maps.source.string(),
+                                  maps.place(names_of(workload.families[0])[scored[1] ? kViews : 0])));
+  for (Family& family : workload.families) {
+    const auto names = names_of(family);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      family.map_files.emplace_back();
+      if (any[i > 0]) family.map_files.back().push_back(map_file(model.given, names[i]));
+    }
+  }
+}
+
+}  // namespace salbench

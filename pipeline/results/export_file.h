@@ -1,0 +1,33 @@
+// What a run knows, as one self-contained HDF5 file (docs/data_dictionary.md):
+//   /ITEM/STAGE/...              the data sets of an artefact, its attributes on the group
+//   /means/STAGE/{meshes,scans}  mean histograms over the items of the export
+//   /scores                      one table, one row per item and model
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "cache/folder_store.h"
+#include "pipeline/results/results.h"
+
+namespace salbench {
+
+using StageNames = std::set<std::string, std::less<>>;
+
+struct ExportSource {
+  RunState run;
+  FolderStore& store;
+  std::filesystem::path cache;  // in messages
+};
+
+// After a run: writes what it knows of the stages named, item by item; what failed or does not
+// apply is not there. Nothing has the name `target` before the file is complete: false if it was
+// stopped before that, and the part written is removed. With `link`, groups are links to the artefacts, each
+// of which has been read and found whole. Throws ConfigError where two things would have the same name,
+// StorageError.
+bool export_file(const ExportSource& source, const StageNames& stages, const std::filesystem::path& target,
+                 bool link, const std::atomic<bool>& stop);
+
+}  // namespace salbench

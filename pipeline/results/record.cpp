@@ -1,0 +1,135 @@
+#include "pipeline/results/record.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "io/file.h"
+#include "pipeline/catalog/given_maps.h"
+#include "pipeline/config/section.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string host_name() {
+  char name[256] = {};
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+std::string_view reference_line(const Context& context) {
+  if (context.reference_given) return "given by --reference";
+  return context.shard ? "none, the run was over a share of the items" : "mean over the items of the run";
+}
+
+// Shapes whose scores are all there, of those that have any to come.
+std::pair<std::size_t, std::size_t> finished_shapes(const RunState& run) {
+  std::size_t finished = 0, scored = 0;
+  for (const Item& item : all_items(run.context)) {
+    std::size_t jobs = 0, open = 0;
+    for (const JobRef& job : jobs_of(run.context.catalog, item)) {
+      if (run.context.row(job).kind != "scores") continue;
+      jobs += run.plan[job].known() || run.plan[job].open() ? 1U : 0U;
+      open += run.plan[job].open() ? 1U : 0U;
+    }
+    scored += jobs > 0 ? 1U : 0U;
+    finished += jobs > 0 && open == 0 ? 1U : 0U;
+  }
+  return {finished, scored};
+}
+
+std::string state_line(const RunRecord& record) {
+  if (!record.interrupted) return "finished";
+  const auto [finished, scored] = finished_shapes(record.run);
+  return fmt::format("partial, {} of {} shapes have all scores", finished, scored);
+}
+
+float quantile(std::vector<float> values, double q) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<long>(q * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+std::string node_line(const Row& row, const NodeRecord& node, std::size_t items, double core_seconds) {
+  double seconds = 0;
+  for (const float s : node.seconds) seconds += static_cast<double>(s);
+  return fmt::format(
+      "  - {{stage: {}, of: {}, scope: {}, items: {}, settled: {}, computed: {}, seconds: {:.3f}, "
+      "median: {:.4f}, p95: {:.4f}, busy: {:.4f}}}\n",
+      row.name, name_of(row.shapes), name_of(row.scope()), items, node.settled, node.seconds.size(), seconds,
+      quantile(node.seconds, 0.5), quantile(node.seconds, 0.95),
+      core_seconds > 0 ? seconds / core_seconds : 0);
+}
+
+std::string stage_lines(const RunRecord& record) {
+  std::string yaml = "stages:  # version, and why this run computed what it did\n";
+  for (const RowCount& count : count_by_name(record.run.context, record.run.plan, record.why)) {
+    std::string why;
+    for (const auto& [reason, n] : count.reasons)
+      why += fmt::format("{}{}: {}", why.empty() ? "" : ", ", yaml_quoted(reason), n);
+    yaml += fmt::format("  {}: {{version: {}, why: {{{}}}}}\n", count.stage, count.version, why);
+  }
+  yaml +=
+      "nodes:  # of the graph, in its order: jobs settled and computed, seconds of one job and of all, share of "
+      "the cores' time\n";
+  const std::vector<NodeRecord>& nodes = record.run.runner.records();
+  for (std::size_t row = 0; row < nodes.size(); ++row)
+    yaml += node_line(record.run.context.catalog.rows[row], nodes[row], record.run.plan.jobs[row].size(),
+                      record.seconds * record.threads);
+  return yaml;
+}
+
+std::string run_yaml(const RunRecord& record) {
+  const auto& [config, context, plan, runner] = record.run;
+  std::string yaml;
+  if (config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
+  yaml += fmt::format("program: salbench {}\nresults: {}\nhost: {}\n", SALBENCH_VERSION, state_line(record),
+                      yaml_quoted(host_name()));
+  yaml += fmt::format("threads: {}\nseconds: {:.3f}\nartefacts_computed: {}\n", record.threads, record.seconds,
+                      runner.computed());
+  if (context.shard) yaml += fmt::format("shard: {}\n", context.shard->text());
+  yaml += fmt::format("reference: {}\n", reference_line(context));
+  for (const Model& model : config.models)
+    if (model.given)
+      yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
+                          yaml_quoted(model.given->source.string()), model.given->matched);
+  const DataIdentity data = identity_of(context.workload);
+  yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, files: {}, digest: {}}}\n",
+                      yaml_quoted(config.data), context.workload.layout, context.workload.families.size(),
+                      data.files, data.digest.hex());
+  yaml += stage_lines(record);
+  const std::vector<Failure> failures = runner.failures();
+  yaml += failures.empty() ? "failed: []\n" : "failed:\n";
+  for (const Failure& failure : failures)
+    yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n", yaml_quoted(context.name(failure.job)),
+                        context.row(failure.job).name, yaml_quoted(failure.cause));
+  yaml += "configuration:\n";
+  std::istringstream lines(config_yaml(config));
+  for (std::string line; std::getline(lines, line);) yaml += "  " + line + "\n";
+  return yaml;
+}
+
+}  // namespace
+
+void write_record(const fs::path& folder, const RunRecord& record) {
+  write_file(folder / "run.yaml", run_yaml(record));
+}
+
+void write_shard_record(const fs::path& folder, const RunRecord& record) {
+  const Shard& shard = *record.run.context.shard;
+  write_file(folder / fmt::format("shard_{}_of_{}.yaml", shard.index, shard.count), run_yaml(record));
+}
+
+std::string state_of_results(const fs::path& folder) try {
+  return Section::from_file((folder / "run.yaml").string()).text("results").value_or("");
+} catch (const ConfigError&) {
+  return {};
+}
+
+}  // namespace salbench

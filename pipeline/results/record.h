@@ -1,0 +1,29 @@
+// run.yaml: what ran, over which data, with which configuration, and what each node of the graph did.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pipeline/results/results.h"
+
+namespace salbench {
+
+struct RunRecord {
+  RunState run;
+  int threads = 1;
+  double seconds = 0;
+  bool interrupted = false;  // the tables hold what was finished
+  Why why = {};              // of what was computed; empty: not recorded
+};
+
+// Throws StorageError.
+void write_record(const std::filesystem::path& folder, const RunRecord& record);
+
+// Of a run over a share, such as shard_2_of_4.yaml.
+void write_shard_record(const std::filesystem::path& folder, const RunRecord& record);
+
+// Says whether the results in a folder are those of a finished run: "partial: 12 of 25 shapes have all scores".
+// Empty if there is no record.
+std::string state_of_results(const std::filesystem::path& folder);
+
+}  // namespace salbench

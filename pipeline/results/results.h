@@ -1,0 +1,62 @@
+// Results of a run, item by item, and the tables made of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/table.h"
+#include "pipeline/run/runner.h"
+#include "stages/metrics/metrics.h"
+
+namespace salbench {
+
+inline constexpr const char* kSimulatedNote =
+    "SIMULATED participants: the ground truth was made by the program; these scores say nothing about "
+    "people.";
+
+struct ResultRow {
+  std::string dataset;  // "meshes" or "scans"
+  std::string item;     // the mesh
+  std::string category;
+  std::string view;  // of a scan; empty for a mesh
+  std::string model;
+  Scores scores;
+};
+
+struct DatasetAndModel {
+  std::string dataset, model;
+  bool operator==(const DatasetAndModel&) const = default;
+};
+
+// Those that the rows speak of: meshes before scans, models in the order of their first row.
+std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows);
+
+// What a run knows, and what its results are read from.
+struct RunState {
+  const Config& config;
+  const Context& context;
+  const Plan& plan;
+  Runner& runner;
+};
+
+ResultRow result_row(const Context& context, const Item& item, const std::string& model, const Scores& scores);
+
+// One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
+std::vector<ResultRow> collect_results(const RunState& run);
+
+Table results_table(const std::vector<ResultRow>& rows);
+
+// dataset, model, metric, n, mean, sd, 95 % confidence interval of the mean; undefined scores are left out of
+// n.
+Table summary_table(const std::vector<ResultRow>& rows);
+
+// Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
+void prepare_output(const std::filesystem::path& folder);
+
+// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and, where HS was
+// computed, human_curve.csv. Each begins with the remarks, as comments. Throws StorageError.
+void write_tables(const std::filesystem::path& folder, const RunState& run, const std::vector<ResultRow>& rows,
+                  const std::vector<std::string>& remarks);
+
+}  // namespace salbench

@@ -1,0 +1,30 @@
+// The tables that compare models: by class, pairwise, and by how their values are distributed.
+#pragma once
+
+#include <vector>
+
+#include "io/table.h"
+#include "pipeline/results/results.h"
+
+namespace salbench {
+
+// dataset, class, model, n, auc_mean, auc_ci95 (half width): the paper's table of AUC by class. The model
+// "Avg-AUC" is the mean over the models of a class. Empty where items have no class.
+Table per_class_table(const std::vector<ResultRow>& rows);
+
+// Every pair of models under every metric: the paper's rank-sum test, and the paired signed-rank test with
+// Holm's correction over the pairs of one data set and metric. [wilcoxon1945] [holm1979]
+Table significance_table(const std::vector<ResultRow>& rows);
+
+// Human curves of the meshes that HS was computed for, in their order.
+std::vector<HumanCurve> collect_human_curves(const RunState& run);
+
+// n, metric, n_meshes, mean, sd, 95 % confidence interval of the mean: how well n people predict n others,
+// over the meshes that have 2n participants; n_meshes counts those where the metric is defined. [tasse2016]
+Table human_curve_table(const std::vector<HumanCurve>& curves);
+
+// bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
+// unmatched, min-max-normalised maps. [tasse2016]
+Table mean_histogram_table(const RunState& run, Shapes shapes);
+
+}  // namespace salbench

@@ -1,0 +1,81 @@
+// Carries out single jobs: loads what a job reads, calls its row's function, stores the result. The one place
+// where rows are run, for a run, for a check of the cache and for an export.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "cache/store.h"
+#include "pipeline/plan/plan.h"
+
+namespace salbench {
+
+struct Failure {
+  JobRef job;
+  std::string cause;
+  bool defect = false;  // of the program, or memory ran out: nothing is wrong with the item
+};
+
+// What a row's node has done.
+struct NodeRecord {
+  std::size_t settled = 0;            // jobs that passed through the node
+  std::vector<float> seconds = {};    // of each job that was computed
+};
+
+class Executor {
+ public:
+  // What happens when an artefact turns out to be damaged.
+  enum class Damaged { restore, report };
+
+  // All references must outlive it; it brings `plan` up to date.
+  Executor(const Context& context, Plan& plan, Store& store, Damaged damaged = Damaged::restore);
+
+  // Brings an open job to its end: from wait or compute to done, cached, not applicable, failed or blocked. What
+  // it reads is settled. Several threads may settle different jobs. Throws StorageError.
+  void settle(const JobRef& job);
+
+  // The result of a known job: in memory, from the cache, or given. A damaged artefact is computed again; only
+  // the same content will do. With Damaged::report it is an InputError.
+  ValuePtr load(const JobRef& job);
+
+  // Computes a known job again from what the cache has, and stores nothing.
+  Value recompute(const JobRef& job);
+
+  // Drops the values of a family's items.
+  void forget(std::size_t family);
+
+  const std::vector<Failure>& failures() const { return failures_; }    // in no order
+  const std::vector<NodeRecord>& records() const { return records_; }   // [row]
+  std::string at_work() const;                                          // "map.LS, 2 map.CS"
+
+ private:
+  struct Result {
+    Value value;
+    double seconds = 0;
+  };
+  ValuePtr held(const JobRef& job);
+  void hold(const JobRef& job, ValuePtr value);
+  ValuePtr input(const JobRef& job);
+  ValuePtr restored(const JobRef& job);
+  Result run(const JobRef& job, std::vector<SourceData> files);
+  Digest store(const JobRef& job, const Recipe& recipe, const Result& result);
+  void compute(const JobRef& job, std::vector<SourceData> files);
+  void fail(const JobRef& job, std::string cause, bool defect = false);
+
+  const Context& context_;
+  Plan& plan_;
+  Store& store_;
+  Damaged damaged_;
+  mutable std::mutex mutex_;          // of values_, failures_ and records_; held for moments only
+  std::recursive_mutex restoring_;    // a damaged value may need other damaged ones
+  std::vector<std::vector<ValuePtr>> values_;  // [row][item]: of families at work, and of sets
+  std::vector<Failure> failures_;
+  std::vector<NodeRecord> records_;
+  std::vector<std::atomic<int>> running_;  // [row]: jobs being computed
+};
+
+}  // namespace salbench

@@ -1,0 +1,113 @@
+#include "pipeline/run/runner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <tuple>
+
+#include "pipeline/run/graph.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::chrono::milliseconds kClaimPollInterval(50);  // whether another process has given up a claim
+
+// Rows whose result the rows of shapes wait for: the reference histograms, and all that these are made of.
+std::vector<bool> reference_rows(const Catalog& catalog) {
+  std::vector<std::size_t> references;
+  for (const Row& row : catalog.rows)
+    for (const std::size_t input : row.inputs)
+      if (catalog.rows[input].gathers) references.push_back(input);
+  return ancestors(catalog, references);
+}
+
+// By the mesh's content: meshes of one name in two data sets are not the same work.
+std::string work_of(const Context& context, std::size_t family) {
+  const auto& digest = context.workload.families[family].mesh_file.front().digest;
+  return "family " + (digest ? digest->hex() : context.name(Item::mesh(family)));
+}
+
+}  // namespace
+
+Runner::Runner(const Context& context, Plan& plan, Store& store, Progress& progress,
+               const std::atomic<bool>& stop)
+    : context_(context),
+      plan_(plan),
+      store_(store),
+      progress_(progress),
+      stop_(stop),
+      executor_(context, plan, store) {}
+
+void Runner::run(int threads) {
+  settle_all("reference", reference_rows(context_.catalog), threads);
+  settle_all("evaluation", std::vector<bool>(context_.catalog.rows.size(), true), threads);
+}
+
+// What other processes have claimed is left to the end; by then most of it is found in the cache. Nothing is
+// held while waiting for them, so that two processes never wait for each other.
+void Runner::settle_all(const std::string& what, const std::vector<bool>& rows, int threads) {
+  const auto open_jobs = [&] {
+    std::size_t open = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      if (rows[row])
+        open += static_cast<std::size_t>(std::count_if(plan_.jobs[row].begin(), plan_.jobs[row].end(),
+                                                       [](const Job& job) { return job.open(); }));
+    return open;
+  };
+  std::size_t open = open_jobs();
+  if (open == 0) return;
+  progress_.begin(what, open, [this] { return executor_.at_work(); });
+  while (open > 0 && !stop_) {
+    const std::size_t claimed_by_others = stream_once(rows, threads);
+    const std::size_t before = std::exchange(open, open_jobs());
+    if (open < before || stop_) continue;
+    if (claimed_by_others == 0) throw std::logic_error("jobs are left that nothing can settle");
+    std::this_thread::sleep_for(kClaimPollInterval);
+  }
+  progress_.end();
+}
+
+// Returns how many families and sets are claimed by other processes.
+std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
+  std::vector<std::unique_ptr<Claim>> claims(context_.workload.families.size());
+  std::atomic<std::size_t> claimed_by_others = 0;
+  const auto settle = [&](const JobRef& job) {
+    std::unique_ptr<Claim> claim;
+    if (job.item.is_set()) {
+      claim = store_.claim(context_.row(job).name + " " + context_.name(job));
+      if (!claim) return ++claimed_by_others, false;
+    }
+    executor_.settle(job);
+    progress_.item_done();
+    return true;
+  };
+  const auto enter = [&](std::size_t family) {
+    claims[family] = store_.claim(work_of(context_, family));
+    if (!claims[family]) ++claimed_by_others;
+    return claims[family] != nullptr;
+  };
+  const auto leave = [&](std::size_t family) {
+    executor_.forget(family);
+    claims[family].reset();
+  };
+  const auto open = [&](const JobRef& job) { return rows[job.row] && plan_[job].open(); };
+  stream(context_, {.threads = threads, .families = threads + 1}, stop_, {open, enter, settle, leave});
+  return claimed_by_others;
+}
+
+std::vector<Failure> Runner::failures() const {
+  std::vector<Failure> failures = executor_.failures();
+  std::stable_sort(failures.begin(), failures.end(), [](const Failure& a, const Failure& b) {
+    return std::tuple(a.job.item.family, a.job.item.view, a.job.row) <
+           std::tuple(b.job.item.family, b.job.item.view, b.job.row);
+  });
+  return failures;
+}
+
+std::size_t Runner::computed() const {
+  std::size_t sum = 0;
+  for (const NodeRecord& record : executor_.records()) sum += record.seconds.size();
+  return sum;
+}
+
+}  // namespace salbench

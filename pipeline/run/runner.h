@@ -1,0 +1,44 @@
+// Carries a plan out: the reference first, then every item from its mesh file to its scores.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/run/executor.h"
+#include "pipeline/run/progress.h"
+
+namespace salbench {
+
+class Runner {
+ public:
+  // All references must outlive the runner; it brings `plan` up to date as it goes.
+  Runner(const Context& context, Plan& plan, Store& store, Progress& progress, const std::atomic<bool>& stop);
+
+  // Two streams through the graph: what the reference histograms are means of, then everything else. Returns
+  // early once `stop` is set. An item's failure is recorded and stops nothing else. Throws StorageError.
+  void run(int threads);
+
+  // A known result, from the cache where it is there. Damaged artefacts are computed again.
+  ValuePtr result(const JobRef& job) { return executor_.load(job); }
+
+  std::vector<Failure> failures() const;  // by item, then in the order of rows
+  const std::vector<NodeRecord>& records() const { return executor_.records(); }  // [row]
+  std::size_t computed() const;
+  Progress& progress() const { return progress_; }
+
+ private:
+  void settle_all(const std::string& what, const std::vector<bool>& rows, int threads);
+  std::size_t stream_once(const std::vector<bool>& rows, int threads);
+
+  const Context& context_;
+  Plan& plan_;
+  Store& store_;
+  Progress& progress_;
+  const std::atomic<bool>& stop_;
+  Executor executor_;
+};
+
+}  // namespace salbench

@@ -1,0 +1,166 @@
+// CONTRIBUTING.md, followed: a stage, a model, a metric and a subcommand that are not in the program are added
+// in one place each, and take part like those that are.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/commands/program.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/metrics/metrics.h"
+#include "tests/support/job_counts.h"
+#include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+// --- a model: its function, and a row of the table -------------------------------------------------------
+
+struct FarOptions {
+  double power = 1;
+
+  static FarOptions text() { return {.power = 2}; }
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("power", self.power, "of the distance");
+  }
+};
+
+ScalarField far_saliency(Points points, const FarOptions& options) {
+  const Vec3 centre = centroid(points);
+  ScalarField saliency;
+  for (const Vec3& p : points) saliency.push_back(std::pow((p - centre).norm(), options.power));
+  return saliency;
+}
+
+Model far_model(const std::string& yaml, Protocol protocol) {
+  return model_row("FAR", 1, far_saliency).bind(Section::from_text(yaml, "far.yaml"), protocol);
+}
+
+TEST(AddAModel, ItsSectionIsReadOverTheProtocolsDefaults) {
+  EXPECT_EQ(far_model("", Protocol::published).options, "power: 1\n");
+  EXPECT_EQ(far_model("", Protocol::text).options, "power: 2\n");
+  EXPECT_EQ(far_model("power: 3", Protocol::text).options, "power: 3\n");
+  EXPECT_THROW(far_model("powr: 3", Protocol::text), ConfigError);
+}
+
+TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
+  TemporaryFolder data;
+  write_toy_item(data.path(), "1", shapes::bumpy_sphere(2));
+  MemoryStore store;
+  {
+    ToyRun others(data.path(), store);
+    others.run();
+    store.take_saved();
+  }
+  Config config = toy_config();
+  config.models.push_back(far_model("", Protocol::published));
+  ToyRun run(data.path(), store, config);
+  run.run();
+  // Nothing of the other models is touched.
+  const auto computed = store.take_saved();
+  const JobCounts jobs(config, 1);
+  EXPECT_THAT(computed, SizeIs(jobs.of("map.FAR") + jobs.of("matched.FAR") + jobs.of("scores.FAR") +
+                               jobs.of("mean_histogram.FAR")));
+  EXPECT_THAT(computed, Each(HasSubstr("FAR")));
+  const auto rows = run.results();
+  const auto scored =
+      std::count_if(rows.begin(), rows.end(), [](const ResultRow& row) { return row.model == "FAR"; });
+  EXPECT_EQ(static_cast<std::size_t>(scored), jobs.shapes());
+  EXPECT_THAT(to_csv(summary_table(rows)), HasSubstr("meshes,FAR,auc,1,"));
+}
+
+// --- what a row reads follows from its signature ---------------------------------------------------------
+
+ScalarField of_everything(Points, const Normals&, Surface, const Descriptors&, const RandomSource&,
+                          const FarOptions&) {
+  return {};
+}
+
+TEST(AddAModel, ItReadsWhatItsSignatureNames) {
+  Config config = toy_config("models: {RS: }");
+  config.models = {model_row("ALL", 3, of_everything).bind(Section::from_text("", ""), Protocol::text)};
+  const Catalog catalog = make_catalog(config);
+  const auto inputs_of = [&](Shapes shapes) {
+    std::vector<std::string> names;
+    for (const std::size_t input : catalog.rows[catalog.index(shapes, "map.ALL")].inputs)
+      names.push_back(catalog.rows[input].name);
+    return names;
+  };
+  EXPECT_THAT(inputs_of(Shapes::meshes), testing::ElementsAre("mesh", "normals", "mesh", "fpfh"));
+  EXPECT_THAT(inputs_of(Shapes::scans), testing::ElementsAre("scan", "scan_normals", "surface", "fpfh"));
+  const Row& row = catalog.rows[catalog.index(Shapes::scans, "map.ALL")];
+  EXPECT_TRUE(row.seeded);
+  EXPECT_EQ(row.version, 3);
+  EXPECT_EQ(row.kind, "field");
+  EXPECT_EQ(row.options[0].section, "models.ALL");
+  EXPECT_EQ(row.options[0].text, "power: 2\n");
+}
+
+// --- a stage: its function, and a row of the catalog -----------------------------------------------------
+
+ScalarField heights(const Mesh& mesh, const FarOptions& options) {
+  ScalarField z;
+  for (const Vec3& p : mesh.vertices) z.push_back(p.z() * options.power);
+  return z;
+}
+
+TEST(AddAStage, ItIsComputedStoredAndFoundAgain) {
+  TemporaryFolder data;
+  write_toy_item(data.path(), "1", shapes::bumpy_sphere(2));
+  MemoryStore store;
+  const auto computed = [&](double power) {
+    ToyRun toy(data.path(), store);
+    const RowOf<Mesh> mesh(toy.row("mesh"));
+    toy.catalog.add(Shapes::meshes, {"heights", 1}, heights, mesh, section("heights", FarOptions{power}));
+    toy.plan = make_plan(toy.context, store);
+    NoProgress progress;
+    Runner runner(toy.context, toy.plan, store, progress, toy.stop);
+    runner.run(2);
+    const auto value = runner.result({toy.row("heights"), Item::mesh(0)});
+    EXPECT_EQ(std::get<ScalarField>(*value).size(), shapes::bumpy_sphere(2).vertices.size());
+    return store.take_saved();
+  };
+  EXPECT_THAT(computed(1), testing::Contains("heights@1"));
+  EXPECT_THAT(computed(1), testing::IsEmpty());
+  EXPECT_THAT(computed(2), testing::ElementsAre("heights@1"));
+}
+
+// --- a metric: its function, and a row of the table ------------------------------------------------------
+
+TEST(AddAMetric, ItIsOneRow) {
+  const Metric largest{"largest", "1", "largest value of the map",
+                       [](const MetricInput& in) { return *std::max_element(in.map.begin(), in.map.end()); }};
+  const GroundTruth truth{{0.5, 0, 1}, {{1}}};
+  const Scores scores = score({&largest, 1}, {1, 7, 3}, truth, {}, Rng(1, "", ""));
+  EXPECT_THAT(scores.values, testing::ElementsAre(7));
+}
+
+// --- a subcommand: a function, and a row of the table ----------------------------------------------------
+
+Subcommand greet_subcommand(Arguments& arguments) {
+  return {"greet", "say hello to a configuration", {config_parameter(arguments)},
+          [&arguments](const std::atomic<bool>&) {
+            return arguments.config == "world" ? kAllDone : kSomeFailed;
+          }};
+}
+
+TEST(AddASubcommand, ItIsOneRow) {
+  const std::array<SubcommandRow, 1> rows = {greet_subcommand};
+  const auto run = [&](std::vector<const char*> words) {
+    return run_program(static_cast<int>(words.size()), words.data(), rows);
+  };
+  EXPECT_EQ(run({"salbench", "greet", "world"}), kAllDone);
+  EXPECT_EQ(run({"salbench", "greet", "moon"}), kSomeFailed);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(run({"salbench", "greet"}), kUnusableArguments);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("CONFIG is required"));
+}
+
+}  // namespace
+}  // namespace salbench
