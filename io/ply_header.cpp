@@ -1,8 +1,5 @@
 #include "io/ply_header.h"
 
-#include <algorithm>
-#include <utility>
-
 #include <fmt/format.h>
 
 namespace salbench::ply {
@@ -10,8 +7,9 @@ namespace {
 
 template <class Named>
 const Named* find_named(const std::vector<Named>& all, std::string_view name) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
-  return found == all.end() ? nullptr : &*found;
+  for (const Named& one : all)
+    if (one.name == name) return &one;
+  return nullptr;
 }
 
 struct TypeName {

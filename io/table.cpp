@@ -50,10 +50,8 @@ void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
 // Goes over the fields of a CSV text and counts the lines.
 class CsvReader {
  public:
-  CsvReader(std::string_view text, std::string_view name) : text_(text), name_(name) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
-  }
+  CsvReader(std::string_view text, std::string_view name)
+      : text_(without_byte_order_mark(text)), name_(name) {}
 
   // The fields of the next line that is not blank; nothing at the end.
   std::optional<std::vector<std::string>> next_row() {
