@@ -1,5 +1,5 @@
 // A layout is a list of places: where the meshes may lie and, for each, where their ground truth may. The
-// first place with a mesh is taken, so what is found never depends on anything but the names in the folders.
+// first place with a mesh is taken, so the result depends on the names in the folders alone.
 
 #include "io/dataset.h"
 
@@ -48,16 +48,15 @@ struct Found {
   std::vector<fs::path> meshes;
 };
 
-// Files of a folder whose name `wanted` accepts, without hidden ones, in natural order.
+// The files in a folder that `wanted` accepts, without hidden ones, in natural order.
 template <class Wanted>
 std::vector<fs::path> files_in(const fs::path& folder, const Wanted& wanted) {
   std::vector<fs::path> files;
   for (FolderEntry& entry : list_folder(folder))
     if (!entry.is_folder && !entry.path.filename().native().starts_with('.') && wanted(entry.path))
       files.push_back(std::move(entry.path));
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.filename().native(), b.filename().native());
-  });
+  std::sort(files.begin(), files.end(),
+            [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
   return files;
 }
 

@@ -143,7 +143,7 @@ std::string console_cell(const Cell& cell, int decimals) {
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
   const double value = std::get<double>(cell);
   if (std::isnan(value)) return "-";
-  // What would read as zero and is not keeps its magnitude.
+  // A value that would be rounded to zero keeps its magnitude.
   const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
   return vanishes ? fmt::format("{:.1e}", value) : fmt::format("{:.{}f}", value, decimals);
 }
