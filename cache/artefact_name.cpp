@@ -2,23 +2,12 @@
 
 #include <array>
 #include <cctype>
-#include <charconv>
 
 #include <fmt/format.h>
 
 namespace salbench {
-namespace {
 
 constexpr std::string_view kSuffix = ".h5";
-
-std::optional<std::uint64_t> from_hex(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return {};
-  return value;
-}
-
-}  // namespace
 
 std::string ArtefactName::text() const {
   return fmt::format("{}.{}.{}.{:016x}.{:x}{}", item, key.hex(), content.hex(), checksum, size, kSuffix);
@@ -36,8 +25,8 @@ std::optional<ArtefactName> parse_artefact_name(std::string_view file_name) {
   }
   const auto key = digest_from_hex(parts[1]);
   const auto content = digest_from_hex(parts[2]);
-  const auto sum = from_hex(parts[3]);
-  const auto size = from_hex(parts[4]);
+  const auto sum = number_from_hex(parts[3]);
+  const auto size = number_from_hex(parts[4]);
   if (!key || !content || !sum || !size) return {};
   return ArtefactName{std::string(file_name), *key, *content, *sum, *size};
 }

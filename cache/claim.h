@@ -1,4 +1,4 @@
-// Claims: of the processes that share a cache, one at a time does a piece of work.
+// Claims: one at a time of the processes that share a cache does a piece of work.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ class Claim {
   virtual ~Claim() = default;
 };
 
-// Nothing where a living process (this one included) holds it. Claims save work and protect nothing: where
-// the file system has no locks, everything is granted. Two works are the same where their names are.
+// Nothing if a living process (this one included) holds it. Claims save work and protect nothing: a file
+// system without locks grants everything. `work` identifies the work by its name.
 std::unique_ptr<Claim> claim_in(const std::filesystem::path& cache, std::string_view work);
 
 }  // namespace salbench

@@ -1,4 +1,4 @@
-// Folders stay, also empty ones: another process may be about to rename an artefact into one.
+// Empty folders stay: another process may be about to rename an artefact into one.
 #include "cache/collect.h"
 
 #include <fmt/format.h>

@@ -48,12 +48,12 @@ struct Collected {
   };
   std::vector<OfStage> stages;  // by name
   Amount damaged;               // removed from damaged/
-  Amount unfinished;            // what killed processes left in tmp/
+  Amount unfinished;            // left behind in tmp/ by killed processes
 };
 
-// Removes what `needed` does not cover, artefacts that were moved aside, and dead temporary files; with
-// `dry_run` says only what it would remove. Files that are no artefacts are never touched. Throws
-// StorageError where the folder is no cache, or a file cannot be removed.
+// Removes what `needed` does not cover, quarantined artefacts, and dead temporary files; `dry_run` only
+// counts them. Files that are not artefacts are never touched. Throws StorageError if the folder is not a
+// cache, or if a file cannot be removed.
 Collected collect_garbage(const std::filesystem::path& folder, const KeepSet& needed, bool dry_run,
                           Progress& progress);
 

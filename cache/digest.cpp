@@ -11,15 +11,18 @@ namespace salbench {
 
 std::string Digest::hex() const { return fmt::format("{:016x}{:016x}", high, low); }
 
+std::optional<std::uint64_t> number_from_hex(std::string_view hex) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(hex.data(), hex.data() + hex.size(), number, 16);
+  if (error != std::errc() || end != hex.data() + hex.size()) return {};
+  return number;
+}
+
 std::optional<Digest> digest_from_hex(std::string_view hex) {
   if (hex.size() != 32) return {};
-  Digest digest;
-  for (auto [part, into] :
-       {std::pair(hex.substr(0, 16), &digest.high), std::pair(hex.substr(16), &digest.low)}) {
-    const auto [end, error] = std::from_chars(part.data(), part.data() + 16, *into, 16);
-    if (error != std::errc() || end != part.data() + 16) return {};
-  }
-  return digest;
+  const auto high = number_from_hex(hex.substr(0, 16)), low = number_from_hex(hex.substr(16));
+  if (!high || !low) return {};
+  return Digest{*high, *low};
 }
 
 struct Hasher::State {
@@ -66,8 +69,7 @@ Digest content_digest(const Arrays& arrays) {
 }
 
 Digest file_digest(std::string_view bytes) {
-  constexpr std::size_t kBlock =
-      1U << 20U;  // part of the digest: each block is a field, the last one shorter
+  constexpr std::size_t kBlock = 1U << 20U;  // each block is a field: changing it changes every digest
   Hasher hasher;
   for (; bytes.size() >= kBlock; bytes.remove_prefix(kBlock)) hasher.add(bytes.substr(0, kBlock));
   hasher.add(bytes);

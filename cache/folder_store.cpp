@@ -71,13 +71,13 @@ struct FolderStore::Impl {
   void insert(const std::string& stage, const ArtefactName& name) {
     StageEntries& entries = stages[stage];
     const auto [known, fresh] = entries.by_key.try_emplace(name.key, name);
-    // Two contents under one key: some stage is not deterministic. The smaller one counts, on every machine.
+    // Two contents under one key: some stage is not deterministic. Every machine takes the smaller digest.
     if (!fresh && name.content < known->second.content) known->second = name;
     entries.items.insert(name.item);
   }
 
-  // A file whose size is not the one in its name was cut short outside of our control: not listed, so a miss.
-  // Out of the way, it is not complained about at each listing.
+  // A file whose size is not the one in its name was truncated by others: not listed, so a miss. Moved aside,
+  // it is not reported again at each listing.
   bool is_complete(const fs::path& file, const ArtefactName& name) const {
     const auto size = size_of_file(file);
     if (size && *size != name.size)
@@ -108,8 +108,8 @@ struct FolderStore::Impl {
                    error.message());
   }
 
-  // What `parse` makes of an artefact's bytes, with a fault if there is one: the file is then quarantined. A
-  // file that is gone is a miss; one that the system does not let us read is an error, not damage.
+  // Calls `parse`, which returns a result and a fault, on an artefact's bytes; a fault quarantines the file.
+  // A missing file is a miss; one that the system does not let us read is an error, not damage.
   template <class Result, class Parse>
   std::optional<Result> read(std::string_view stage, const Digest& key, const Parse& parse) {
     std::optional<ArtefactName> name;

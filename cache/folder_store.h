@@ -1,7 +1,7 @@
 // The artefacts of a folder:
 //   <folder>/<stage>/<2 digits>/<item>.<key>.<content>.<checksum>.<size>.h5
 // The names carry everything that planning needs, so the index is one listing of the folder and there is no
-// data base to corrupt, to lock or to bring up to date: an artefact exists when its name does, by rename.
+// database to corrupt, lock or update: an artefact exists once its name does, by rename.
 #pragma once
 
 #include <filesystem>
@@ -19,9 +19,9 @@ enum class Access { read_only, read_write };
 
 class FolderStore final : public Store {
  public:
-  // Lists the folder. read_write creates it, probes that it can be written to and removes what killed
-  // processes left; read_only takes a missing folder as empty. Throws StorageError: not a folder, not
-  // writable, or written by a newer program.
+  // Lists the folder. read_write creates it, checks that it is writable and removes temporary files of killed
+  // processes; read_only takes a missing folder as empty. Throws StorageError: not a folder, not writable, or
+  // written by a newer program.
   FolderStore(std::filesystem::path folder, Access access);
   ~FolderStore() override;
 
@@ -34,7 +34,7 @@ class FolderStore final : public Store {
 
   std::unique_ptr<Claim> claim(std::string_view work) override;
 
-  // The bytes of an artefact as they are stored, checked against their checksum; nothing as in load.
+  // The stored bytes of an artefact, checked against their checksum; nothing in the same cases as load.
   std::optional<Bytes> image(std::string_view stage, const Digest& key);
 
   // File of an artefact, for links to it; nothing if there is none.

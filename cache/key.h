@@ -1,4 +1,4 @@
-// Everything that an artefact is a function of. Never in it: time stamps, paths, thread counts, source text.
+// Everything that an artefact depends on; no time stamps, paths, thread counts or source text.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace salbench {
 struct Recipe {
   std::string stage;
   std::int32_t stage_version = 0;
-  std::string options;  // canonical text, one `key: value` a line
-  std::string seed;     // "seed/item" where random numbers are used; else empty
+  std::string options;                                 // canonical text, one `key: value` per line
+  std::string seed;                                    // "seed/item" if random numbers are used; else empty
   std::vector<std::pair<std::string, Digest>> inputs;  // name and content digest, in the order of the catalog
 };
 

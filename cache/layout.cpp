@@ -1,7 +1,6 @@
 #include "cache/layout.h"
 
 #include <cstdlib>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -27,7 +26,7 @@ bool is_own(const std::string& name) {
   return name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile;
 }
 
-// Artefacts lie one folder below their stage's; whatever lies elsewhere is not ours.
+// Artefacts lie one level below the folder of their stage; any other file is foreign.
 void list_below(const fs::path& folder, const std::string& stage, int depth, CacheListing& listing) {
   constexpr int kShardDepth = 1;
   for (FolderEntry& entry : list_folder(folder)) {
@@ -41,11 +40,6 @@ void list_below(const fs::path& folder, const std::string& stage, int depth, Cac
     else
       listing.others.push_back(std::move(entry.path));
   }
-}
-
-template <class T>
-void append(std::vector<T>& to, std::vector<T> more) {
-  to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
 }  // namespace
@@ -99,11 +93,7 @@ CacheListing list_cache(const fs::path& folder) {
   CacheListing listing;
   for (const FolderEntry& entry : list_folder(folder))
     if (!entry.is_folder && !is_own(entry.path.filename())) listing.others.push_back(entry.path);
-  for (const std::string& stage : list_stages(folder)) {
-    CacheListing of_stage = list_stage(folder, stage);
-    append(listing.artefacts, std::move(of_stage.artefacts));
-    append(listing.others, std::move(of_stage.others));
-  }
+  for (const std::string& stage : list_stages(folder)) list_below(folder / stage, stage, 0, listing);
   return listing;
 }
 

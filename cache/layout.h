@@ -1,8 +1,8 @@
-// Where things lie in a cache folder:
+// Contents of a cache folder:
 //   CACHEDIR.TAG           what makes a folder a cache; holds the format
 //   <stage>/<2 digits>/    artefacts, by the first digits of the key
-//   tmp/                   files that are being written
-//   damaged/               artefacts that were moved aside
+//   tmp/                   files being written
+//   damaged/               quarantined artefacts
 #pragma once
 
 #include <filesystem>
@@ -21,14 +21,14 @@ inline constexpr std::string_view kClaimsFile = "claims";  // empty; see claim.c
 // The folder of an artefact, below the cache's.
 std::filesystem::path shard_of(std::string_view stage, const Digest& key);
 
-// Throws StorageError where a newer program wrote the folder; a folder without a tag passes.
+// Throws StorageError if a newer program wrote the folder; a folder without a tag passes.
 void check_format(const std::filesystem::path& folder);
 
-// Throws StorageError unless the folder is a cache that this program knows: what inspects or removes files
-// starts here, so that a mistyped folder is left alone.
+// Throws StorageError unless the folder is a cache that this program knows. Called before files are inspected
+// or removed, so that a mistyped folder is left alone.
 void require_cache(const std::filesystem::path& folder);
 
-// Makes the folder a cache, or finds that it cannot be written to. Throws StorageError.
+// Makes the folder a cache. Throws StorageError if it cannot be written to.
 void prepare_cache(const std::filesystem::path& folder);
 
 struct ArtefactFile {
@@ -42,13 +42,12 @@ struct CacheListing {
   std::vector<std::filesystem::path> others;  // by path: files that are neither artefacts nor the cache's own
 };
 
-// All three throw StorageError where a folder cannot be listed to its end; a missing folder is empty.
+// All three throw StorageError if a folder cannot be listed to its end; a missing folder is empty.
 std::vector<std::string> list_stages(const std::filesystem::path& folder);
 CacheListing list_stage(const std::filesystem::path& folder, const std::string& stage);
 CacheListing list_cache(const std::filesystem::path& folder);
 
-// The artefacts that lie under one key, whose content may differ if a stage is not deterministic. Reads names
-// and nothing else.
+// Artefacts of one key; several if the stage is not deterministic. Reads only the names of files.
 std::vector<ArtefactName> find_artefacts(const std::filesystem::path& folder, std::string_view stage,
                                          const Digest& key);
 

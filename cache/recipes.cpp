@@ -29,6 +29,7 @@ Lines lines_of(const std::vector<std::pair<std::string, Digest>>& inputs) {
   return lines;
 }
 
+// nullptr if there is none.
 const std::string* value_of(const Lines& lines, const std::string& name) {
   for (const auto& [key, value] : lines)
     if (key == name) return &value;

@@ -1,5 +1,4 @@
-// Reads back what the artefacts of a cache folder were made from, and tells two recipes apart. Changes
-// nothing.
+// Reads the recipes of a folder's artefacts and compares two recipes. Changes nothing.
 #pragma once
 
 #include <filesystem>
@@ -23,12 +22,12 @@ struct RecipeDifference {
   bool operator==(const RecipeDifference&) const = default;
 };
 
-// Empty where the two give the same key. Stages are taken to be the same.
+// Empty if the two give the same key. Assumes that the stages are the same.
 std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& after);
 
 struct RecipeReading {
   std::optional<Recipe> recipe;  // of a sound artefact, from its root attributes
-  std::string fault;             // of any other: "checksum mismatch"
+  std::string fault;             // of any other artefact: "checksum mismatch"
 };
 RecipeReading read_recipe(const ArtefactFile& file);
 
@@ -37,10 +36,10 @@ class RecipeBook {
  public:
   explicit RecipeBook(std::filesystem::path folder);
 
-  // By path; also those cut short or damaged, which no run will use.
+  // By path; truncated and damaged ones included, which no run will use.
   const std::vector<ArtefactFile>& artefacts(const std::string& stage, std::string_view item);
 
-  // An artefact under this key that a run has moved aside as damaged.
+  // A quarantined artefact of this key; nullptr if there is none.
   const std::filesystem::path* quarantined(const Digest& key) const;
 
  private:

@@ -20,7 +20,7 @@ namespace salbench {
 class Index {
  public:
   virtual ~Index() = default;
-  // Content digest of the artefact, where there is one.
+  // Content digest of the artefact, if there is one.
   virtual std::optional<Digest> find(std::string_view stage, const Digest& key) const = 0;
   // Whether the stage has been computed for this item under any key: tells a new artefact from a changed one.
   virtual bool has_item(std::string_view stage, std::string_view item) const = 0;
@@ -34,17 +34,16 @@ struct ArtefactNote {
 
 class Store : public Index {
  public:
-  // As find, but also sees what other processes have stored meanwhile.
+  // As find, but also sees what other processes have stored in the meantime.
   virtual std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) = 0;
-  // The arrays; nothing where the artefact is missing, short or fails its checksum. A bad file is moved aside
-  // with a warning that names it, and is a miss from then on. Throws StorageError if the system does not let
-  // it be read, which says nothing about the file.
+  // The arrays; nothing if the artefact is missing, truncated or fails its checksum. A bad file is
+  // quarantined with a warning that names it, and is a miss from then on. Throws StorageError if the system
+  // does not let us read it, which says nothing about the file.
   virtual std::optional<Arrays> load(std::string_view stage, const Digest& key) = 0;
-  // Complete on return, or not there at all. Throws StorageError.
+  // The artefact is complete on return, or does not exist. Throws StorageError.
   virtual Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
                       const ArtefactNote& note) = 0;
-  // Of the processes that share the store, one at a time has a claim; nothing where another has it. A store
-  // of one process alone grants them all.
+  // One process at a time holds a claim; nothing if another holds it. A store of a single process grants all.
   virtual std::unique_ptr<Claim> claim(std::string_view work) {
     static_cast<void>(work);
     return std::make_unique<Claim>();

@@ -22,7 +22,7 @@ std::optional<T> attribute(const Attributes& attributes, std::string_view name) 
   return typed == nullptr ? std::nullopt : std::optional(*typed);
 }
 
-// "name: digest" a line; the digest stands last, so that a name may hold anything but a line's end.
+// One "name: digest" per line; the digest comes last, so a name may hold anything but a line break.
 std::optional<decltype(Recipe::inputs)> inputs_from(const std::string& text) {
   constexpr std::string_view kBetween = ": ";
   decltype(Recipe::inputs) inputs;
@@ -37,20 +37,19 @@ std::optional<decltype(Recipe::inputs)> inputs_from(const std::string& text) {
   return inputs;
 }
 
-// Describes where the attributes contradict the name; empty if they agree.
-std::string contradiction(const Attributes& attributes, std::string_view stage, const ArtefactName& name) {
-  const auto recipe = recipe_from(attributes);
+// Describes where the content contradicts the name; empty if they agree.
+std::string contradiction(const Hdf5Content& content, std::string_view stage, const ArtefactName& name) {
+  if (content_digest(content.arrays) != name.content) return "its content does not match its name";
+  const auto recipe = recipe_from(content.attributes);
   if (!recipe) return "an attribute of its recipe is missing";
   if (recipe->stage != stage) return fmt::format("its attributes name stage {}", recipe->stage);
   if (key_of(*recipe) != name.key) return "its key is not that of its recipe";
-  if (item_label(attribute<std::string>(attributes, "item").value_or("")) != name.item)
+  if (item_label(attribute<std::string>(content.attributes, "item").value_or("")) != name.item)
     return "its attributes name another item";
   return {};
 }
 
-Inspection faulty(std::string what) { return {{}, std::move(what)}; }
-
-// Describes what is wrong with one artefact, and counts it; empty for a sound one and one that is gone.
+// Describes what is wrong with one artefact, and counts it; empty if it is sound or gone.
 std::string fault_of(const ArtefactFile& file, const fs::path& folder, Verification& result) try {
   const auto bytes = read_bytes(file.path);
   if (!bytes) return {};
@@ -83,17 +82,15 @@ std::string damage(std::span<const std::byte> bytes, const ArtefactName& name) {
 }
 
 Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view stage,
-                            const ArtefactName& name) {
-  if (std::string fault = damage(bytes, name); !fault.empty()) return faulty(std::move(fault));
-  try {
-    Hdf5Content content = hdf5_content(bytes, name.item);
-    if (content_digest(content.arrays) != name.content) return faulty("its content does not match its name");
-    if (std::string fault = contradiction(content.attributes, stage, name); !fault.empty())
-      return faulty(std::move(fault));
-    return {std::move(content), {}};
-  } catch (const InputError& error) {
-    return faulty(error.what());
-  }
+                            const ArtefactName& name) try {
+  std::string fault = damage(bytes, name);
+  if (!fault.empty()) return {{}, std::move(fault)};
+  Hdf5Content content = hdf5_content(bytes, name.item);
+  fault = contradiction(content, stage, name);
+  if (!fault.empty()) return {{}, std::move(fault)};
+  return {std::move(content), {}};
+} catch (const InputError& error) {
+  return {{}, error.what()};
 }
 
 Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop, Progress& progress) {

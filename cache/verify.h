@@ -26,11 +26,11 @@ std::string damage(std::span<const std::byte> bytes, const ArtefactName& name);
 
 struct Inspection {
   std::optional<Hdf5Content> content;  // of a sound artefact
-  std::string fault;                   // of any other: "checksum mismatch"
+  std::string fault;                   // of any other artefact: "checksum mismatch"
 };
 
-// Looks at the bytes of the file `name` in the folder of `stage`: whether they are complete, pass the
-// checksum, hold the content that the name says, and attributes whose key is the name's.
+// Checks the bytes of the file `name` of `stage`: complete, checksum, content as in the name, and attributes
+// that give the key in the name.
 Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view stage,
                             const ArtefactName& name);
 
@@ -40,14 +40,14 @@ struct Fault {
 };
 
 struct Verification {
-  std::size_t artefacts = 0;  // looked at, good and bad
-  std::uint64_t bytes = 0;    // of them
-  std::size_t others = 0;     // files that are no artefacts, not looked at
+  std::size_t artefacts = 0;  // checked, sound or not
+  std::uint64_t bytes = 0;    // total size of these
+  std::size_t others = 0;     // files that are not artefacts, not checked
   std::vector<Fault> faults;  // by file
 };
 
-// Reads every artefact and changes nothing; what another process removes meanwhile is passed over. Ends early
-// once `stop` is set. Throws StorageError where the folder is no cache or cannot be listed.
+// Reads every artefact and changes nothing; skips files that another process removes in the meantime. Ends
+// early once `stop` is set. Throws StorageError if the folder is not a cache or cannot be listed.
 Verification verify_cache(const std::filesystem::path& folder, const std::atomic<bool>& stop,
                           Progress& progress);
 

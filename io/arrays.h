@@ -18,7 +18,7 @@ struct Array {
   std::string name;                // unique; "group/name" nests
   std::vector<std::size_t> shape;  // product = number of values; row major; empty: one scalar
   ArrayValues values;
-  std::string unit;  // "1" where there is none
+  std::string unit;  // "1" if there is none
   std::string description;
 
   std::size_t count() const;
@@ -26,7 +26,7 @@ struct Array {
 
 using Arrays = std::vector<Array>;
 
-const Array* find_array(const Arrays& arrays, std::string_view name);  // nullptr where there is none
+const Array* find_array(const Arrays& arrays, std::string_view name);  // nullptr if there is none
 
 using AttributeValue = std::variant<std::string, double, std::int64_t>;
 using Attributes = std::vector<std::pair<std::string, AttributeValue>>;  // in the order they are written

@@ -1,11 +1,12 @@
 // A layout is a list of places: where the meshes may lie and, for each, where their ground truth may. The
-// first place with a mesh is taken, so what is found never depends on anything but the names in the folders.
+// first place with a mesh is taken, so the result depends on the names in the folders alone.
 
 #include "io/dataset.h"
 
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -36,27 +37,35 @@ struct TruthFolders {
   fs::path picks;     // N_k.pid
 };
 
-// Where a layout may be.
 struct Place {
   fs::path meshes;
-  std::vector<TruthFolders> truth;  // the first of which a folder exists is taken
+  std::vector<TruthFolders> truth;  // the first that has an existing folder is taken
 };
 
 struct Found {
   Layout layout;
   Place place;
-  std::vector<std::string> mesh_names;  // with extension
+  std::vector<fs::path> meshes;
 };
 
-// Names of what a folder holds other than folders and hidden files, in natural order.
-std::vector<std::string> files_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const FolderEntry& entry : list_folder(folder))
-    if (std::string name = entry.path.filename(); !entry.is_folder && !name.starts_with('.'))
-      names.push_back(std::move(name));
-  std::sort(names.begin(), names.end(), natural_less);
-  return names;
+// The files in a folder that `wanted` accepts, without hidden ones, in natural order.
+template <class Wanted>
+std::vector<fs::path> files_in(const fs::path& folder, const Wanted& wanted) {
+  std::vector<fs::path> files;
+  for (FolderEntry& entry : list_folder(folder))
+    if (!entry.is_folder && !entry.path.filename().native().starts_with('.') && wanted(entry.path))
+      files.push_back(std::move(entry.path));
+  std::sort(files.begin(), files.end(),
+            [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
+  return files;
 }
+
+std::vector<fs::path> files_in(const fs::path& folder, const char* extension) {
+  return files_in(folder, [&](const fs::path& file) { return file.extension() == extension; });
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_digits(std::string_view text) { return std::all_of(text.begin(), text.end(), is_digit); }
 
 bool is_folder(const fs::path& path) {
   std::error_code error;
@@ -113,19 +122,16 @@ std::vector<Place> places_of(Layout layout, const fs::path& root) {
 
 std::optional<Found> find_layout(const fs::path& root, Layout layout) {
   for (const Place& place : places_of(layout, root)) {
-    std::vector<std::string> names = files_in(place.meshes);
-    std::erase_if(names, [](const std::string& name) { return !has_mesh_extension(name); });
-    if (!names.empty()) return Found{layout, place, std::move(names)};
+    std::vector<fs::path> meshes = files_in(place.meshes, has_mesh_extension);
+    if (!meshes.empty()) return Found{layout, place, std::move(meshes)};
   }
   return {};
 }
 
 std::string where_looked_for(const fs::path& root, Layout layout) {
-  std::vector<std::string> folders;
-  for (const Place& place : places_of(layout, root)) folders.push_back(place.meshes.string());
+  std::set<std::string> folders;
+  for (const Place& place : places_of(layout, root)) folders.insert(place.meshes.string());
   if (folders.empty()) return fmt::format("{} (with neither GS/ nor Saliency/ in it)", root.string());
-  std::sort(folders.begin(), folders.end());
-  folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
   return fmt::format("{}", fmt::join(folders, ", "));
 }
 
@@ -147,13 +153,9 @@ Found find_meshes(const fs::path& root, Layout wanted) {
 }
 
 // 1..400, or 0 for a name that is not such a number.
-int benchmark_number(std::string_view name) {
-  if (name.empty() || name.size() > 3 || name[0] == '0') return 0;
-  int number = 0;
-  for (const char c : name) {
-    if (c < '0' || c > '9') return 0;
-    number = number * 10 + (c - '0');
-  }
+int benchmark_number(const std::string& name) {
+  if (name.empty() || name.size() > 3 || name[0] == '0' || !is_digits(name)) return 0;
+  const int number = std::stoi(name);
   return number <= kBenchmarkMeshes ? number : 0;
 }
 
@@ -161,50 +163,43 @@ using ItemsByName = std::map<std::string, DatasetItem, NaturalLess>;
 
 ItemsByName items_of(const Found& found) {
   ItemsByName items;
-  for (const std::string& file : found.mesh_names) {
-    DatasetItem item;
-    item.mesh = found.place.meshes / file;
-    item.name = item.mesh.stem().string();
+  for (const fs::path& mesh : found.meshes) {
+    DatasetItem item{.name = mesh.stem(), .category = {}, .mesh = mesh, .saliency = {}, .picks = {}};
     if (const int number = benchmark_number(item.name); number > 0 && found.layout != Layout::folder)
       item.category = kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)];
     const auto [twin, fresh] = items.try_emplace(item.name, item);
     if (!fresh)
-      throw InputError(fmt::format("{}: has the same name as {}: keep one of them", item.mesh.string(),
+      throw InputError(fmt::format("{}: has the same name as {}: keep one of them", mesh.string(),
                                    twin->second.mesh.string()));
   }
   return items;
 }
 
 // "michael3" of "michael3_0.pid"; empty if the file is not named in this way.
-std::string_view picked_item(std::string_view file) {
-  const std::string_view stem = file.substr(0, file.size() - std::string_view(".pid").size());
+std::string picked_item(const fs::path& file) {
+  const std::string stem = file.stem();
   const std::size_t bar = stem.rfind('_');
-  if (bar == stem.npos || bar + 1 == stem.size()) return {};
-  return stem.find_first_not_of("0123456789", bar + 1) == stem.npos ? stem.substr(0, bar)
-                                                                    : std::string_view();
+  if (bar == stem.npos || bar + 1 == stem.size() || !is_digits(stem.substr(bar + 1))) return {};
+  return stem.substr(0, bar);
 }
 
 // Gives each item its files and notes the files that belong to none.
 void add_truth(const TruthFolders& folders, ItemsByName& items, std::vector<std::string>& notes) {
   std::map<std::string, std::string, NaturalLess> without_mesh;  // name -> one of its files
-  for (const std::string& file : files_in(folders.saliency)) {
-    if (!file.ends_with(".val")) continue;
-    const std::string name = file.substr(0, file.size() - 4);
-    if (const auto item = items.find(name); item != items.end())
-      item->second.saliency = folders.saliency / file;
+  for (const fs::path& file : files_in(folders.saliency, ".val")) {
+    if (const auto item = items.find(file.stem().native()); item != items.end())
+      item->second.saliency = file;
     else
-      without_mesh.emplace(name, (folders.saliency / file).string());
+      without_mesh.emplace(file.stem(), file);
   }
-  for (const std::string& file : files_in(folders.picks)) {
-    if (!file.ends_with(".pid")) continue;
-    const std::string_view name = picked_item(file);
+  for (const fs::path& file : files_in(folders.picks, ".pid")) {
+    const std::string name = picked_item(file);
     if (const auto item = items.find(name); item != items.end())
-      item->second.picks.push_back(folders.picks / file);
+      item->second.picks.push_back(file);
     else if (name.empty())
-      notes.push_back(
-          fmt::format("{}: is not named NAME_NUMBER.pid and was left out", (folders.picks / file).string()));
+      notes.push_back(fmt::format("{}: is not named NAME_NUMBER.pid and was left out", file.string()));
     else
-      without_mesh.emplace(name, (folders.picks / file).string());
+      without_mesh.emplace(name, file);
   }
   for (const auto& [name, file] : without_mesh)
     notes.push_back(fmt::format("{}: ground truth without a mesh ({})", name, file));
@@ -222,7 +217,7 @@ std::string ranges(const std::vector<int>& ascending) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// Where the items are meshes of the benchmark, says which of them are not here.
+// Notes which meshes of the benchmark are not here; nothing unless all items are meshes of the benchmark.
 void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& notes) {
   for (const auto& [name, item] : items)
     if (item.category.empty()) return;
@@ -253,11 +248,9 @@ Dataset find_dataset(const fs::path& root, Layout layout) {
 }
 
 bool natural_less(std::string_view a, std::string_view b) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  const auto digits_at = [&](std::string_view text, std::size_t at) {
-    std::size_t end = at;
-    while (end < text.size() && is_digit(text[end])) ++end;
-    return text.substr(at, end - at);
+  const auto digits_at = [](std::string_view text, std::size_t at) {
+    const auto begin = text.begin() + static_cast<std::ptrdiff_t>(at);
+    return std::string_view(begin, std::find_if_not(begin, text.end(), is_digit));
   };
   const auto significant = [](std::string_view digits) {
     digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));

@@ -11,7 +11,7 @@
 
 namespace salbench {
 
-// Where the files of the mesh N lie below ROOT, the folder that the user names.
+// Where the files of mesh N lie below ROOT, the folder that the user names.
 //   gs         GS/{Saliency/N.val, RawData/N_k.pid} with meshes in off/ or Meshes/; or ROOT is GS/
 //   schelling  {Meshes/N.off, Distributions/N.val, RawData/N_k.pid}, also below SchellingData/, once or twice
 //              [chen2012]
@@ -41,12 +41,10 @@ struct Dataset {
 };
 
 // Lists folders and reads no file; the result does not depend on the order in which the system lists them.
-// Throws InputError where there are no meshes, saying what was looked for where, and for two meshes of one
-// name.
+// Throws InputError if there are no meshes, naming the folders searched, or if two meshes have the same name.
 Dataset find_dataset(const std::filesystem::path& root, Layout layout);
 
-// Compares runs of digits as numbers: "2" < "10", "michael3" < "michael8", "1_2" < "1_10". A strict total
-// order.
+// A strict total order that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10".
 bool natural_less(std::string_view a, std::string_view b);
 
 }  // namespace salbench

@@ -1,6 +1,6 @@
 // A writer creates its file, locks it, and checks that it still has its name; a clean-up locks a file before
-// it removes it. So neither can take the other's. The locks are those of the open file (F_OFD_SETLK): they
-// hold between threads too, and end with the last descriptor.
+// it removes it. So neither can take the other's. The locks belong to the open file (F_OFD_SETLK): they hold
+// between threads too, and end with the last descriptor.
 #include "io/file.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ class Descriptor {
 
 bool lacks_resources(int error) { return error == EMFILE || error == ENFILE || error == ENOMEM; }
 
-// A file that the user named: not usable, unless it is the system that has no room to open anything.
+// Reports a file that the user named as unusable, unless the system lacks the resources to open any file.
 [[noreturn]] void fail_input(const fs::path& path, int error) {
   if (lacks_resources(error)) fail(path, "read", error);
   throw InputError(fmt::format("{}: cannot be read: {}", path.string(), system_reason(error)));
@@ -71,7 +71,7 @@ int read_all(int fd, Buffer& buffer) {
   return 0;
 }
 
-// Size in bytes of a regular file, opened with O_NONBLOCK: the opening of a pipe would wait for its writer.
+// Size in bytes of a regular file, opened with O_NONBLOCK: opening a pipe would wait for its writer.
 std::size_t check_regular(int fd, const fs::path& path) {
   struct stat status {};
   if (fd < 0 || ::fstat(fd, &status) != 0) fail_input(path, errno);
@@ -101,8 +101,8 @@ std::string unfinished_name() {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-// A rename is durable once its folder is. Not every file system can do this, and the file is complete
-// without.
+// Makes a rename in the folder durable. Failure is ignored: not every file system can do this, and the file
+// is complete without.
 void sync_folder(const fs::path& folder) {
   const Descriptor fd(folder, O_RDONLY | O_DIRECTORY);
   if (fd.get() >= 0) ::fsync(fd.get());
@@ -142,7 +142,7 @@ std::string read_file(const fs::path& path) {
 }
 
 std::optional<Bytes> read_bytes(const fs::path& path) {
-  // A network file system that finds a name stale looks again: the file was replaced.
+  // ESTALE on a network file system means that the file was replaced: a second attempt opens the new one.
   for (bool first = true;; first = false) {
     const Descriptor file(path, O_RDONLY | O_NONBLOCK);
     struct stat status {};
@@ -236,4 +236,5 @@ std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
   if (is_missing(error.value())) return {};
   fail(path, "looked at", error.value());
 }
+
 }  // namespace salbench

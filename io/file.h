@@ -15,7 +15,7 @@ namespace salbench {
 
 using Bytes = std::vector<std::byte>;
 
-// Throws as read_file does, which opens it next, or another library.
+// Throws as read_file does. For files that another library opens.
 void require_regular_file(const std::filesystem::path& path);
 
 // All bytes of a file that the user named. Throws InputError if it is missing, unreadable or not a regular
@@ -23,7 +23,7 @@ void require_regular_file(const std::filesystem::path& path);
 std::string read_file(const std::filesystem::path& path);
 
 // All bytes of one of our own files; nothing if there is no such file. Throws StorageError if the system does
-// not let it be read to its end: that says nothing about the bytes.
+// not let us read it to its end: that says nothing about the bytes.
 std::optional<Bytes> read_bytes(const std::filesystem::path& path);
 
 // Replaces the file in one step: a reader sees the old text or the new one, never a part, even after a crash.
@@ -31,11 +31,10 @@ std::optional<Bytes> read_bytes(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::string_view text);
 
 // A file that has a temporary name until it is complete. Its writer holds a lock on it, which dies with the
-// process: what killed writers left can be told from what is being written, whatever host or container the
-// writer runs on.
+// process. So files left behind by killed writers can be told from files in use, on any host or container.
 class UnfinishedFile {
  public:
-  explicit UnfinishedFile(const std::filesystem::path& folder);  // throws StorageError, as all of it does
+  explicit UnfinishedFile(const std::filesystem::path& folder);  // all members throw StorageError
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
   ~UnfinishedFile();  // removes it unless it was finished
@@ -49,23 +48,24 @@ class UnfinishedFile {
   int fd_ = -1;
 };
 
-// Calls `visit` for every unfinished file in the folder whose writer is dead. Where the file system has no
-// locks nothing is known to be dead.
+// Calls `visit` for every unfinished file in the folder whose writer is dead; for none on a file system
+// without locks.
 void visit_abandoned(const std::filesystem::path& folder,
                      const std::function<void(const std::filesystem::path&)>& visit);
 
-// Entries of the folder, by name; none if there is no such folder. Throws StorageError where it cannot be
-// listed to its end.
 struct FolderEntry {
   std::filesystem::path path;
-  bool is_folder = false;  // also a link to one; a link to nothing is not
+  bool is_folder = false;  // also true for a link to one, but not for a dangling link
 };
+
+// Entries of the folder, by name; none if there is no such folder. Throws StorageError if it cannot be listed
+// to its end.
 std::vector<FolderEntry> list_folder(const std::filesystem::path& folder);
 
 // Creates the folder and those above it. Throws StorageError with `advice` ("choose another with --cache").
 void make_folder(const std::filesystem::path& folder, std::string_view advice);
 
-// Size in bytes; nothing if there is no such file. Throws StorageError if the system does not tell.
+// Size in bytes; nothing if there is no such file. Throws StorageError if the system refuses.
 std::optional<std::uintmax_t> size_of_file(const std::filesystem::path& path);
 
 // The system's reason and what to do about it: "Too many open files: use fewer --threads, or ...".

@@ -1,9 +1,8 @@
 // The core driver keeps an artefact in memory; its image is taken with H5Fget_file_image, in the library's
 // earliest format: the only one of which it takes a correct image.
 //
-// A file's description of itself is not believed: the library converts and fills whatever a data space
-// declares. So class, size and space of a data set or attribute are checked before a value is read, and what
-// is declared is held against what is stored.
+// The library converts and fills whatever a data space declares. So class, size and space of a data set or
+// attribute are checked before a value is read, and the declared size is compared with the stored one.
 #include "io/hdf5_file.h"
 
 #include <algorithm>
@@ -23,10 +22,12 @@ namespace {
 
 using namespace hdf5;
 
-constexpr std::uint64_t kMaxInflation = 1032;  // deflate cannot do more
+constexpr std::uint64_t kMaxInflation = 1032;  // the most that deflate can do
 constexpr int kMaxRank = 8;
 
 [[noreturn]] void refuse(std::string_view what) { throw std::runtime_error(std::string(what)); }
+
+bool is_numeric(hid_t type) { return H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT; }
 
 std::string read_text(hid_t attribute, hid_t type, hid_t space) {
   if (H5Tis_variable_str(type) > 0) {
@@ -49,7 +50,7 @@ AttributeValue read_attribute(hid_t object, const char* name) {
   const H5T_class_t kind = H5Tget_class(type);
   if (H5Sget_simple_extent_type(space) != H5S_SCALAR) refuse(in_quotes(name) + " is not a single value");
   if (kind == H5T_STRING) return read_text(attribute, type, space);
-  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || H5Tget_size(type) > sizeof(double))
+  if (!is_numeric(type) || H5Tget_size(type) > sizeof(double))
     refuse(in_quotes(name) + " is neither a text nor a number");
   double real = 0;
   std::int64_t integer = 0;
@@ -94,15 +95,10 @@ std::vector<std::size_t> shape_of(hid_t set) {
   return {extents, extents + rank};
 }
 
-bool is_numeric(hid_t set) {
-  const Handle type(H5Dget_type(set), H5Tclose, "H5Dget_type");
-  const H5T_class_t kind = H5Tget_class(type);
-  return kind == H5T_INTEGER || kind == H5T_FLOAT;
-}
+Handle type_of_set(hid_t set) { return {H5Dget_type(set), H5Tclose, "H5Dget_type"}; }
 
-// Bytes of so many values. Throws where that is no number that this machine has.
-std::uint64_t bytes_of(std::uint64_t value, const std::vector<std::size_t>& shape) {
-  std::uint64_t bytes = value;
+// Size of an array whose values take `bytes` each. Throws if it overflows.
+std::uint64_t bytes_of(std::uint64_t bytes, const std::vector<std::size_t>& shape) {
   for (const std::uint64_t extent : shape)
     if (__builtin_mul_overflow(bytes, extent, &bytes)) refuse("it claims more values than can be");
   return bytes;
@@ -127,7 +123,7 @@ void check_storage(hid_t set, std::uint64_t value, const std::vector<std::size_t
   if (!plausible) refuse(fmt::format("it claims {} bytes of values, and {} are stored", claimed, stored));
 }
 
-// Aborts where a value does not fit: without, the library makes it the largest that does.
+// Aborts if a value does not fit; by default the library stores the largest that does.
 H5T_conv_ret_t refuse_overflow(H5T_conv_except_t what, hid_t, hid_t, void*, void*, void*) {
   return what == H5T_CONV_EXCEPT_RANGE_HI || what == H5T_CONV_EXCEPT_RANGE_LOW ? H5T_CONV_ABORT
                                                                                : H5T_CONV_UNHANDLED;
@@ -144,10 +140,10 @@ ArrayValues read_values(hid_t set, std::size_t count) {
   return values;
 }
 
-// `file`: bytes of the whole file.
+// `file`: size of the whole file, bytes.
 Array read_array(hid_t set, const std::string& name, std::uint64_t file) {
-  if (!is_numeric(set)) refuse("it does not hold numbers");
-  const Handle type(H5Dget_type(set), H5Tclose, "H5Dget_type");
+  const Handle type = type_of_set(set);
+  if (!is_numeric(type)) refuse("it does not hold numbers");
   const bool real = H5Tget_class(type) == H5T_FLOAT;
   const std::size_t size = H5Tget_size(type);
   if (size == 0 || size > (real ? sizeof(long double) : sizeof(std::int64_t)))
@@ -170,6 +166,10 @@ Handle unlocked_access() {
   Handle access = property_list(H5P_FILE_ACCESS);
   must(H5Pset_file_locking(access, false, true), "H5Pset_file_locking");
   return access;
+}
+
+[[noreturn]] void fail(std::string_view file, const std::runtime_error& error) {
+  throw InputError(fmt::format("{}: not a readable HDF5 file ({})", file, error.what()));
 }
 
 }  // namespace
@@ -202,7 +202,7 @@ Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name
   }
   return content;
 } catch (const std::runtime_error& error) {
-  throw InputError(fmt::format("{}: not a readable HDF5 file ({})", name, error.what()));
+  fail(name, error);
 }
 
 // --- a foreign file, one data set at a time ---------------------------------------------------------------
@@ -215,21 +215,22 @@ struct Hdf5File::Open {
   }
   std::vector<std::string> arrays() const {
     std::vector<std::string> names = data_sets_in(file, bytes);
-    std::erase_if(names, [&](const std::string& set) { return !is_numeric(opened_set(file, set)); });
+    std::erase_if(names,
+                  [&](const std::string& set) { return !is_numeric(type_of_set(opened_set(file, set))); });
     std::sort(names.begin(), names.end());
     return names;
   }
+
+  [[noreturn]] static void read_all_and_exit(const std::filesystem::path& path);
+  static void survive_reading(const std::filesystem::path& path);
 
   std::string name;
   Handle file;
   hsize_t bytes = 0;
 };
 
-namespace {
-
-// Ends the process by a signal where the library does, after so many seconds at the latest.
-template <class Open>
-[[noreturn]] void read_all_and_exit(const std::filesystem::path& path) {
+// Dies by a signal if the library crashes, and after so many seconds at the latest.
+void Hdf5File::Open::read_all_and_exit(const std::filesystem::path& path) {
   constexpr rlim_t kSeconds = 600;
   const rlimit limit{kSeconds, kSeconds}, no_core{0, 0};
   ::setrlimit(RLIMIT_CPU, &limit);
@@ -239,7 +240,7 @@ template <class Open>
     const Open open(path);
     for (const std::string& name : open.arrays()) try {
         read_array(opened_set(open.file, name), name, open.bytes);
-      } catch (const std::exception&) {  // told of when it is read in earnest
+      } catch (const std::exception&) {  // reported when the parent reads it
       }
   } catch (const std::exception&) {
   }
@@ -248,12 +249,11 @@ template <class Open>
 
 // Damaged bytes make the library crash before it can refuse them (1.10.8: within some thousand random
 // changes), so a child process reads everything first.
-template <class Open>
-void survive_reading(const std::filesystem::path& path) {
+void Hdf5File::Open::survive_reading(const std::filesystem::path& path) {
   const pid_t child = ::fork();
   if (child < 0)
     throw StorageError(fmt::format("{}: no process to read it: {}", path.string(), system_reason(errno)));
-  if (child == 0) read_all_and_exit<Open>(path);
+  if (child == 0) read_all_and_exit(path);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -262,16 +262,14 @@ void survive_reading(const std::filesystem::path& path) {
         fmt::format("{}: damaged: the HDF5 library crashes reading it; write the file again", path.string()));
 }
 
-}  // namespace
-
 Hdf5File::Hdf5File(const std::filesystem::path& path, bool in_child_first) {
   require_regular_file(path);
-  if (in_child_first) survive_reading<Open>(path);
+  if (in_child_first) Open::survive_reading(path);
   const auto lock = library();
   try {
     open_ = std::make_unique<Open>(path);
   } catch (const std::runtime_error& error) {
-    throw InputError(fmt::format("{}: not a readable HDF5 file ({})", path.string(), error.what()));
+    fail(path.string(), error);
   }
 }
 
@@ -284,7 +282,7 @@ std::vector<std::string> Hdf5File::arrays() const try {
   const auto lock = library();
   return open_->arrays();
 } catch (const std::runtime_error& error) {
-  throw InputError(fmt::format("{}: not a readable HDF5 file ({})", open_->name, error.what()));
+  fail(open_->name, error);
 }
 
 Array Hdf5File::read(const std::string& name) const try {

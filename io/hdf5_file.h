@@ -1,7 +1,6 @@
 // HDF5 files. An artefact is a byte image, built and parsed in memory: writing it is plain, checkable file
 // output, and its bytes pass a checksum before the HDF5 library sees them. A foreign file is read one data
-// set at a time. What a file holds beside that is never read. Everything is safe to call from several
-// threads.
+// set at a time; the rest of it is never read. Everything is safe to call from several threads.
 #pragma once
 
 #include <cstddef>
@@ -17,33 +16,32 @@
 
 namespace salbench {
 
-// Names are paths from the root group, without a slash in front; the groups on them are made.
+// Names are paths from the root group, without a leading slash; missing groups are created.
 struct Hdf5Content {
   Arrays arrays;
   Attributes attributes;  // of the root group
 };
 
 // The bytes of a complete HDF5 file: fixed little-endian types, UTF-8 attributes, `unit` and `description` on
-// every data set, no time stamps; shuffle + deflate where arrays are large and mostly zeros. Equal content
-// gives equal bytes. Throws std::runtime_error where the library fails, as it does for two arrays of one
-// name.
+// every data set, no time stamps; shuffle + deflate if arrays are large and mostly zeros. Equal content gives
+// equal bytes. Throws std::runtime_error if the library fails, as it does for two arrays of the same name.
 Bytes hdf5_image(const Hdf5Content& content);
 
-// The inverse, in the order of the names; links are not followed. Throws InputError naming `name` where the
+// The inverse, in the order of the names; links are not followed. Throws InputError naming `name` if the
 // image is not such a file.
 Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name);
 
 // A file of another program.
 class Hdf5File {
  public:
-  // A child process reads everything first, since damaged bytes may crash the library: to be called before
-  // the program has threads. Throws InputError.
+  // A child process reads everything first, since damaged bytes may crash the library: call it before the
+  // program has threads. Throws InputError.
   explicit Hdf5File(const std::filesystem::path& path, bool in_child_first = true);
   ~Hdf5File();
   std::vector<std::string> arrays() const;  // names of the data sets of numbers, sorted. Throws InputError
 
-  // One of them, without unit and description. Throws InputError: damaged, values in other files, no room in
-  // memory for what it claims.
+  // One of them, without unit and description. Throws InputError: damaged, values in other files, or larger
+  // than memory.
   Array read(const std::string& name) const;
 
  private:

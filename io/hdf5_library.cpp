@@ -41,7 +41,7 @@ Handle creation_properties(const Array& array) {
 
 struct Visit {
   std::vector<std::string> data_sets;
-  std::uint64_t objects_left;  // more than this many are a damaged file's going round in circles
+  std::uint64_t objects_left;  // a file with more objects is damaged, and its links form a cycle
 };
 
 herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* data) {
@@ -54,8 +54,8 @@ herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* da
 
 }  // namespace
 
-// The library's clean-up at exit is left out: where a disk is full it goes round in circles, and every file
-// has been closed by then.
+// The library's clean-up at exit is disabled: it loops forever if a disk is full, and every file has been
+// closed by then.
 std::unique_lock<std::mutex> library() {
   static std::mutex mutex;
   static const bool thread_safe = [] {
@@ -64,7 +64,7 @@ std::unique_lock<std::mutex> library() {
   }();
   std::unique_lock lock(mutex, std::defer_lock);
   if (!thread_safe) lock.lock();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread: failures are told by exceptions, not on stderr
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread: failures are exceptions, not text on stderr
   return lock;
 }
 

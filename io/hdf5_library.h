@@ -1,5 +1,4 @@
-// Shared by reading and writing of the HDF5 library (C API, 1.10): for io/hdf5_*.cpp alone, which are all of
-// the program that knows it.
+// Shared by io/hdf5_*.cpp, the only files of the program that know the HDF5 library (C API, 1.10).
 #pragma once
 
 #include <cstddef>
@@ -17,10 +16,10 @@
 
 namespace salbench::hdf5 {
 
-// Held while the library works, unless it is one that serialises its callers itself.
+// Lock to hold while calling the library; it locks nothing if the library was built thread-safe.
 std::unique_lock<std::mutex> library();
 
-// An HDF5 identifier with the function that closes it; a negative one is the library's failure.
+// An HDF5 identifier with the function that closes it. Throws if it is negative: the library failed.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*closer)(hid_t), const char* what) : id_(id), close_(closer) {
@@ -39,7 +38,7 @@ class Handle {
 
 void must(herr_t status, const char* what);  // throws std::runtime_error
 
-// As stored: little-endian, which is this machine's own.
+// Type as stored: little-endian, as on this machine.
 template <class T>
 hid_t type_of() {
   if constexpr (std::is_floating_point_v<T>)
@@ -55,13 +54,13 @@ void write_attribute(hid_t object, const std::string& name, const AttributeValue
 void write_array(hid_t file, hid_t links, const Array& array);
 
 Handle created_file(const char* name, hid_t access);
-Handle groups_between();  // link creation: the groups on a path are made
-Handle core_access();     // a file in memory, told from others by its name alone
+Handle groups_between();  // link creation that makes the missing groups on a path
+Handle core_access();     // of a file in memory, which only its name tells from others
 std::string image_name();
 Handle opened_image(std::span<const std::byte> image);
 
-// Names of the data sets of a file of so many bytes, group by group. By hard links alone: what other links
-// lead to is not of this file.
+// Names of the data sets in a file of `bytes` bytes, group by group. Follows hard links only: other links may
+// lead out of the file.
 std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes);
 
 }  // namespace salbench::hdf5

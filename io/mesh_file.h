@@ -1,8 +1,8 @@
 // Triangle meshes from files as they are found in the wild.
 //
 // Polygons become fans of triangles in the order of their vertices; vertices keep the file's numbering,
-// whether a face uses them or not; colours, normals and texture coordinates are passed over. A mesh may come
-// out without faces: stages/core/mesh_check.h says what can be used.
+// whether a face uses them or not; colours, normals and texture coordinates are skipped. A mesh may come out
+// without faces: stages/core/mesh_check.h says what can be used.
 #pragma once
 
 #include <filesystem>
@@ -20,10 +20,9 @@ Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path);  // 
 
 bool has_mesh_extension(const std::filesystem::path& path);  // .off .obj .ply
 
-// The same from memory; `name` stands in the messages for the path.
-Mesh parse_off(std::string_view text,
-               std::string_view name);  // [C][N][ST]OFF text, with or without header word
-Mesh parse_obj(std::string_view text, std::string_view name);   // v and f records; all others are passed over
+// The same from memory; messages say `name` for the path.
+Mesh parse_off(std::string_view text, std::string_view name);   // [C][N][ST]OFF, also without a header word
+Mesh parse_obj(std::string_view text, std::string_view name);   // v and f records; all others are skipped
 Mesh parse_ply(std::string_view bytes, std::string_view name);  // ascii, binary little and big endian
 
 }  // namespace salbench

@@ -5,9 +5,10 @@
 namespace salbench {
 
 std::string_view wrong_with_point(const Vec3& point) {
-  constexpr double kLargest = 1e150;
+  constexpr double kMaxCoordinate = 1e150;
   if (!point.allFinite()) return "a coordinate is not a finite number";
-  if (point.cwiseAbs().maxCoeff() > kLargest) return "a coordinate is larger than 1e150: scale the mesh";
+  if (point.cwiseAbs().maxCoeff() > kMaxCoordinate)
+    return "a coordinate is larger than 1e150: scale the mesh";
   return {};
 }
 
@@ -24,8 +25,7 @@ void append_fan(std::vector<Triangle>& faces, std::span<const std::int32_t> poly
 
 std::string wrong_with_count(std::int64_t count, std::string_view plural) {
   if (count < 0) return fmt::format("{} {}: a count cannot be negative", count, plural);
-  if (count > kMostVertices)
-    return fmt::format("{} {}: at most {} can be read", count, plural, kMostVertices);
+  if (count > kMaxVertices) return fmt::format("{} {}: at most {} can be read", count, plural, kMaxVertices);
   return {};
 }
 

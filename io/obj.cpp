@@ -39,14 +39,11 @@ class ObjParser {
   void join_continued_lines() {
     if (!ends_in_backslash(in_.line())) return;
     joined_.clear();
-    bool more = true;
-    while (more) {
-      const std::string_view line = in_.line();
-      more = ends_in_backslash(line);
-      joined_ += line.substr(0, more ? line.rfind('\\') : line.npos);
+    do {
+      joined_ += in_.line().substr(0, in_.line().rfind('\\'));
       joined_ += ' ';
-      more = more && in_.next_line();
-    }
+    } while (in_.next_line() && ends_in_backslash(in_.line()));
+    joined_ += in_.line();
     in_.replace_line(joined_);
   }
 
@@ -57,20 +54,18 @@ class ObjParser {
 
   void read_vertex() {
     mesh_.vertices.push_back(read_point(in_));  // a weight or a colour may follow
-    if (n_vertices() > kMostVertices) in_.fail(wrong_with_count(n_vertices(), "vertices"));
+    if (n_vertices() > kMaxVertices) in_.fail(wrong_with_count(n_vertices(), "vertices"));
   }
 
   void read_face() {
     polygon_.clear();
     for (std::string_view corner = in_.word(); !corner.empty(); corner = in_.word())
       polygon_.push_back(vertex_of(corner));
-    if (const std::string wrong = wrong_with_polygon(static_cast<std::int64_t>(polygon_.size()));
-        !wrong.empty())
-      in_.fail(wrong);
+    if (const std::string wrong = wrong_with_polygon(std::ssize(polygon_)); !wrong.empty()) in_.fail(wrong);
     append_fan(mesh_.faces, polygon_);
   }
 
-  // The vertex of "v", "v/vt", "v//vn" or "v/vt/vn": 1-based, or negative and counted back from the last.
+  // Reads "v", "v/vt", "v//vn" or "v/vt/vn": 1-based, or negative and counted back from the last vertex.
   std::int32_t vertex_of(std::string_view corner) {
     std::int64_t index = 0;
     const auto [end, error] = std::from_chars(corner.data(), corner.data() + corner.size(), index);
@@ -78,7 +73,7 @@ class ObjParser {
     if (error != std::errc() || rest.find_first_not_of("/-0123456789") != rest.npos ||
         !(rest.empty() || rest[0] == '/'))
       in_.fail(fmt::format("{} is not a corner of a face: v, v/vt, v//vn or v/vt/vn", in_quotes(corner)));
-    if (index == 0 || index < -n_vertices() || index > kMostVertices)
+    if (index == 0 || index < -n_vertices() || index > kMaxVertices)
       in_.fail(index_out_of_range(index, 1, n_vertices()));
     if (index > n_vertices()) forward_references_.push_back({index, in_.line_number()});
     return static_cast<std::int32_t>(index < 0 ? index + n_vertices() : index - 1);
@@ -92,7 +87,7 @@ class ObjParser {
             fmt::format("{}:{}: {}", in_.name(), line_number, index_out_of_range(index, 1, n_vertices())));
   }
 
-  std::int64_t n_vertices() const { return static_cast<std::int64_t>(mesh_.vertices.size()); }
+  std::int64_t n_vertices() const { return std::ssize(mesh_.vertices); }
 
   TextScanner in_;
   Mesh mesh_;

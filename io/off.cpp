@@ -23,11 +23,11 @@ bool is_count(std::string_view word) {
   return !word.empty() && word.find_first_not_of("+-0123456789") == word.npos;
 }
 
-// Goes past the header word, if there is one.
+// Skips the header word, if there is one.
 void skip_header_word(TextScanner& in) {
   const std::string_view word = in.peek_word();
   if (is_count(word)) return;
-  // Extra columns stand behind the coordinates, so these prefixes need no more than to be known. 4OFF and
+  // Extra columns follow the coordinates, so these prefixes need no more than to be known. 4OFF and
   // nOFF have other dimensions.
   constexpr std::array<std::string_view, 8> kPrefixes = {"", "C", "N", "CN", "ST", "STC", "STN", "STCN"};
   const std::size_t at = std::min(word.find("OFF"), word.find("off"));

@@ -1,6 +1,6 @@
-// Polygon files: the header says what the body consists of, so one walk over the elements serves every
-// encoding, and a body class turns it into text or bytes. The walk covers all elements, the last included: a
-// file that is cut short is found out wherever it ends. [turk1994]
+// The header says what the body consists of, so one walk over the elements serves every encoding; a body
+// class reads text or bytes. The walk covers all elements, the last included, so a truncated file is detected
+// wherever it ends. [turk1994]
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ std::string plural_of(const Element& element) {
   return fmt::format("elements {}", in_quotes(element.name));
 }
 
-// One record a line.
+// One record per line.
 class AsciiBody {
  public:
   explicit AsciiBody(const TextScanner& after_header) : in_(after_header) {}
@@ -73,29 +73,14 @@ class BinaryBody {
   void end_record() {}
 
   double value(Type type) {
-    switch (type) {
-      case Type::int8:
-        return take<std::int8_t>();
-      case Type::uint8:
-        return take<std::uint8_t>();
-      case Type::int16:
-        return take<std::int16_t>();
-      case Type::uint16:
-        return take<std::uint16_t>();
-      case Type::int32:
-        return take<std::int32_t>();
-      case Type::uint32:
-        return take<std::uint32_t>();
-      case Type::float32:
-        return static_cast<double>(take<float>());
-      case Type::float64:
-        return take<double>();
-    }
-    return 0;
+    return std::visit([&](auto zero) { return static_cast<double>(take<decltype(zero)>()); }, type);
   }
-  void skip(Type type, std::int64_t n) { take_bytes(static_cast<std::size_t>(n) * size_of(type)); }
+  void skip(Type type, std::int64_t n) {
+    const std::size_t size = std::visit([](auto zero) { return sizeof zero; }, type);
+    take_bytes(static_cast<std::size_t>(n) * size);
+  }
 
-  void end() const {  // some writers end with a line end
+  void end() const {  // some writers add a line break
     if (bytes_.find_first_not_of(" \r\n") != bytes_.npos)
       throw InputError(
           fmt::format("{}: there are {} bytes after the last element: the header is wrong, or the "
@@ -108,24 +93,6 @@ class BinaryBody {
   }
 
  private:
-  static std::size_t size_of(Type type) {
-    switch (type) {
-      case Type::int8:
-      case Type::uint8:
-        return 1;
-      case Type::int16:
-      case Type::uint16:
-        return 2;
-      case Type::int32:
-      case Type::uint32:
-      case Type::float32:
-        return 4;
-      case Type::float64:
-        return 8;
-    }
-    return 0;
-  }
-
   std::string_view take_bytes(std::size_t n) {
     if (n > bytes_.size())
       throw InputError(fmt::format("{}: {}", name_,
@@ -154,8 +121,8 @@ class BinaryBody {
 template <class Body>
 std::int64_t list_length(Body& body, Type type) {
   const double length = body.value(type);
-  constexpr double kLongest = 4294967295.0;  // what the widest integer type can say
-  if (!(length >= 0 && length <= kLongest) || length != std::floor(length))
+  constexpr double kMaxLength = 4294967295.0;  // of the widest integer type
+  if (!(length >= 0 && length <= kMaxLength) || length != std::floor(length))
     body.fail(fmt::format("{} is no length of a list", length));
   return static_cast<std::int64_t>(length);
 }
@@ -163,25 +130,6 @@ std::int64_t list_length(Body& body, Type type) {
 template <class Body>
 void skip_property(Body& body, const Property& property) {
   body.skip(property.type, property.length_type ? list_length(body, *property.length_type) : 1);
-}
-
-template <class Body>
-void read_vertices(Body& body, const Element& element, std::vector<Vec3>& vertices) {
-  const std::array<const Property*, 3> axes = {element.find("x"), element.find("y"), element.find("z")};
-  for (std::int64_t i = 0; i < element.count; ++i) {
-    body.next_record();
-    Vec3 point = Vec3::Zero();
-    for (const Property& property : element.properties) {
-      const auto axis = std::find(axes.begin(), axes.end(), &property) - axes.begin();
-      if (axis < 3)
-        point[axis] = body.value(property.type);
-      else
-        skip_property(body, property);
-    }
-    body.end_record();
-    if (const std::string_view wrong = wrong_with_point(point); !wrong.empty()) body.fail(wrong);
-    vertices.push_back(point);
-  }
 }
 
 template <class Body>
@@ -205,54 +153,45 @@ const Property* corners_of(const Element& face) {
   return corners != nullptr ? corners : face.find("vertex_index");
 }
 
-template <class Body>
-void read_faces(Body& body, const Element& element, std::int64_t n_vertices, std::vector<Triangle>& faces) {
-  const Property* corners = corners_of(element);
-  std::vector<std::int32_t> polygon;
-  for (std::int64_t i = 0; i < element.count; ++i) {
-    body.next_record();
-    for (const Property& property : element.properties) {
-      if (&property == corners)
-        read_polygon(body, property, n_vertices, polygon);
-      else
-        skip_property(body, property);
-    }
-    body.end_record();
-    append_fan(faces, polygon);
-  }
-}
-
-template <class Body>
-void skip_element(Body& body, const Element& element) {
-  if (element.properties.empty()) return;  // no bytes, however many are announced
-  for (std::int64_t i = 0; i < element.count; ++i) {
-    body.next_record();
-    for (const Property& property : element.properties) skip_property(body, property);
-    body.end_record();
-  }
-}
-
+// Elements other than vertices and faces are passed over, and so are all other properties of these two.
 template <class Body>
 Mesh read_body(Body body, const ply::Header& header, std::size_t file_size) {
   const Element* vertex = header.find("vertex");
   const Element* face = header.find("face");
+  const std::array<const Property*, 3> axes = {vertex->find("x"), vertex->find("y"), vertex->find("z")};
+  const Property* corners = face == nullptr ? nullptr : corners_of(*face);
   Mesh mesh;
   mesh.vertices.reserve(room_for(vertex->count, file_size));
   if (face != nullptr) mesh.faces.reserve(room_for(face->count, file_size));
+  Vec3 point = Vec3::Zero();
+  std::vector<std::int32_t> polygon;
   for (const Element& element : header.elements) {
+    if (element.properties.empty()) continue;  // no bytes, however many are announced
     body.begin(element);
-    if (&element == vertex)
-      read_vertices(body, element, mesh.vertices);
-    else if (&element == face)
-      read_faces(body, element, vertex->count, mesh.faces);
-    else
-      skip_element(body, element);
+    for (std::int64_t i = 0; i < element.count; ++i) {
+      body.next_record();
+      for (const Property& property : element.properties) {
+        const auto axis = std::find(axes.begin(), axes.end(), &property) - axes.begin();
+        if (axis < 3)
+          point[axis] = body.value(property.type);
+        else if (&property == corners)
+          read_polygon(body, property, vertex->count, polygon);
+        else
+          skip_property(body, property);
+      }
+      body.end_record();
+      if (&element == vertex) {
+        if (const std::string_view wrong = wrong_with_point(point); !wrong.empty()) body.fail(wrong);
+        mesh.vertices.push_back(point);
+      }
+      if (&element == face) append_fan(mesh.faces, polygon);
+    }
   }
   body.end();
   return mesh;
 }
 
-// What the walk relies on.
+// Refuses headers that read_body cannot follow.
 void check_header(const TextScanner& in, const ply::Header& header) {
   const Element* vertex = header.find("vertex");
   if (vertex == nullptr) in.fail("the header has no element \"vertex\": the file holds no mesh");

@@ -1,8 +1,5 @@
 #include "io/ply_header.h"
 
-#include <algorithm>
-#include <utility>
-
 #include <fmt/format.h>
 
 namespace salbench::ply {
@@ -10,32 +7,26 @@ namespace {
 
 template <class Named>
 const Named* find_named(const std::vector<Named>& all, std::string_view name) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
-  return found == all.end() ? nullptr : &*found;
+  for (const Named& one : all)
+    if (one.name == name) return &one;
+  return nullptr;
 }
 
-// Both spellings are in use.
-constexpr std::array<std::pair<std::string_view, Type>, 16> kTypes = {{{"char", Type::int8},
-                                                                       {"int8", Type::int8},
-                                                                       {"uchar", Type::uint8},
-                                                                       {"uint8", Type::uint8},
-                                                                       {"short", Type::int16},
-                                                                       {"int16", Type::int16},
-                                                                       {"ushort", Type::uint16},
-                                                                       {"uint16", Type::uint16},
-                                                                       {"int", Type::int32},
-                                                                       {"int32", Type::int32},
-                                                                       {"uint", Type::uint32},
-                                                                       {"uint32", Type::uint32},
-                                                                       {"float", Type::float32},
-                                                                       {"float32", Type::float32},
-                                                                       {"double", Type::float64},
-                                                                       {"float64", Type::float64}}};
+struct TypeName {
+  std::string_view name, synonym;  // both spellings are in use
+  Type type;
+};
+constexpr TypeName kTypes[] = {
+    {"char", "int8", std::int8_t{}},    {"uchar", "uint8", std::uint8_t{}},
+    {"short", "int16", std::int16_t{}}, {"ushort", "uint16", std::uint16_t{}},
+    {"int", "int32", std::int32_t{}},   {"uint", "uint32", std::uint32_t{}},
+    {"float", "float32", float{}},      {"double", "float64", double{}},
+};
 
 Type read_type(TextScanner& in) {
   const std::string_view word = in.word();
-  for (const auto& [name, type] : kTypes)
-    if (name == word) return type;
+  for (const auto& [name, synonym, type] : kTypes)
+    if (word == name || word == synonym) return type;
   in.fail(fmt::format("{} is no PLY type", in_quotes(word)));
 }
 

@@ -1,12 +1,11 @@
 // The header of a PLY file: what the elements of its body consist of. [turk1994]
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "io/text_scanner.h"
@@ -15,12 +14,14 @@ namespace salbench::ply {
 
 enum class Encoding { ascii, little_endian, big_endian };
 
-enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+// A type of number, given by a value of it.
+using Type = std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t, std::uint32_t,
+                          float, double>;
 
 struct Property {
   std::string name;
   Type type;                        // of the value, or of each member of the list
-  std::optional<Type> length_type;  // only of a list
+  std::optional<Type> length_type;  // of a list only
 };
 
 struct Element {

@@ -108,7 +108,7 @@ std::vector<double> flattened(std::span<const Vec3> rows) {
   return flat;
 }
 
-// Cells of one size: what their points are, and where each ends.
+// Cells of `size` points each: the indices of their points, and where each cell ends.
 std::string cells(std::string_view element, const std::vector<std::int64_t>& connectivity, std::size_t size) {
   std::vector<std::int64_t> offsets(connectivity.size() / size);
   for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = static_cast<std::int64_t>((i + 1) * size);

@@ -1,4 +1,4 @@
-// Shapes with values at their points as files that other programs show: MeshLab, CloudCompare, ParaView.
+// Shapes with values at their points, as files for other programs: MeshLab, CloudCompare, ParaView.
 #pragma once
 
 #include <array>
@@ -28,10 +28,10 @@ struct PointField {
 
 struct ShapeWithFields {
   std::span<const Vec3> points;
-  std::span<const Vec3> normals = {};    // one a point, or none
+  std::span<const Vec3> normals = {};    // one per point, or none
   std::span<const Triangle> faces = {};  // may be none
   std::vector<PointField> fields = {};   // one value per point
-  std::string remark = {};               // one line for who opens the file in an editor; without "--"
+  std::string remark = {};               // one line for readers of the file's text; without "--"
 };
 
 // The bytes of the file.

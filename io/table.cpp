@@ -50,10 +50,8 @@ void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
 // Goes over the fields of a CSV text and counts the lines.
 class CsvReader {
  public:
-  CsvReader(std::string_view text, std::string_view name) : text_(text), name_(name) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
-  }
+  CsvReader(std::string_view text, std::string_view name)
+      : text_(without_byte_order_mark(text)), name_(name) {}
 
   // The fields of the next line that is not blank; nothing at the end.
   std::optional<std::vector<std::string>> next_row() {
@@ -145,7 +143,7 @@ std::string console_cell(const Cell& cell, int decimals) {
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
   const double value = std::get<double>(cell);
   if (std::isnan(value)) return "-";
-  // What would read as zero and is not keeps its magnitude.
+  // A value that would be rounded to zero keeps its magnitude.
   const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
   return vanishes ? fmt::format("{:.1e}", value) : fmt::format("{:.{}f}", value, decimals);
 }

@@ -8,8 +8,6 @@
 namespace salbench {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 // from_chars takes no plus sign, which files do contain.
@@ -21,10 +19,10 @@ std::string_view without_plus(std::string_view word) {
 }  // namespace
 
 TextScanner::TextScanner(std::string_view text, std::string_view name, char comment)
-    : text_(text), name_(name), comment_(comment) {
-  if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
-  line_end_ = text_.find('\n') == text_.npos ? '\r' : '\n';
-}
+    : text_(without_byte_order_mark(text)),
+      name_(name),
+      comment_(comment),
+      line_end_(text.find('\n') == text.npos ? '\r' : '\n') {}
 
 bool TextScanner::next_line() {
   if (text_.empty()) {
@@ -82,33 +80,32 @@ std::string_view TextScanner::expected_word(std::string_view what) {
 
 void TextScanner::skip_word() { expected_word("a value"); }
 
-double TextScanner::number() {
-  const std::string_view found = expected_word("a number");
+template <class Number>
+Number TextScanner::parsed(std::string_view what, std::string_view type) {
+  const std::string_view found = expected_word(what);
   const std::string_view digits = without_plus(found);
-  double value = 0;
+  Number value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range)
-    fail(fmt::format("{} does not fit a double", in_quotes(found)));
+    fail(fmt::format("{} does not fit {}", in_quotes(found), type));
   if (error != std::errc() || end != digits.data() + digits.size())
-    fail(fmt::format("{} is not a number", in_quotes(found)));
-  if (!std::isfinite(value)) fail(fmt::format("{} is not a finite number", in_quotes(found)));
+    fail(fmt::format("{} is not {}", in_quotes(found), what));
+  if (!std::isfinite(static_cast<double>(value)))
+    fail(fmt::format("{} is not a finite number", in_quotes(found)));
   return value;
 }
 
-std::int64_t TextScanner::integer() {
-  const std::string_view found = expected_word("a whole number");
-  const std::string_view digits = without_plus(found);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) fail(fmt::format("{} does not fit 64 bits", in_quotes(found)));
-  if (error != std::errc() || end != digits.data() + digits.size())
-    fail(fmt::format("{} is not a whole number", in_quotes(found)));
-  return value;
-}
+double TextScanner::number() { return parsed<double>("a number", "a double"); }
+std::int64_t TextScanner::integer() { return parsed<std::int64_t>("a whole number", "64 bits"); }
 
 void TextScanner::fail(std::string_view what) const {
   if (line_number_ == 0) throw InputError(fmt::format("{}: {}", name_, what));  // nothing there to point at
   throw InputError(fmt::format("{}:{}: {}", name_, line_number_, what));
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
 }
 
 std::string ends_early(std::int64_t complete, std::int64_t announced, std::string_view plural) {
@@ -117,10 +114,10 @@ std::string ends_early(std::int64_t complete, std::int64_t announced, std::strin
 }
 
 std::string in_quotes(std::string_view word) {
-  constexpr std::size_t kLongest = 32;
+  constexpr std::size_t kMaxLength = 32;
   std::string text = "\"";
-  for (const char c : word.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text + (word.size() > kLongest ? "...\"" : "\"");
+  for (const char c : word.substr(0, kMaxLength)) text += c >= ' ' && c <= '~' ? c : '?';
+  return text + (word.size() > kMaxLength ? "...\"" : "\"");
 }
 
 }  // namespace salbench

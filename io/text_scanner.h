@@ -1,4 +1,4 @@
-// Walks over a text in memory by lines and words, and knows where it stands when something is wrong.
+// Walks over a text in memory by lines and words, and names the line where something is wrong.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace salbench {
 
-// Lines end in LF, CR LF, or (where the text has no LF at all) CR; words are parted by spaces and tabs. A
-// byte order mark at the start is skipped. The text must outlive the scanner.
+// Lines end in LF, CR LF, or (if the text has no LF at all) CR; spaces and tabs separate words. A byte order
+// mark at the start is skipped. The text must outlive the scanner.
 class TextScanner {
  public:
-  // From `comment` to the end of a line nothing counts; '\0' for a format without comments.
+  // Skips from `comment` to the end of the line; '\0' for a format without comments.
   TextScanner(std::string_view text, std::string_view name, char comment = '\0');
 
   bool next_line();         // false at the end of the text
@@ -23,17 +23,17 @@ class TextScanner {
   // For formats that announce how many records follow, one to a line: from here on, a text that ends too
   // early is reported as "ends after 5 of 10 vertices".
   void begin_records(std::int64_t announced, std::string_view plural);
-  void next_record();  // the next line that has a word; fails where there is none
+  void next_record();  // the next line that has a word; fails if there is none
 
   std::string_view word();       // the next word of the line; empty at its end
   std::string_view peek_word();  // the same, staying before it
-  void skip_word();              // fails where there is none, as these do:
+  void skip_word();              // fails if there is none, as these do:
   double number();               // finite
   std::int64_t integer();
 
   std::string_view line() const { return line_; }  // what is left of the line
   std::string_view text_after_line() const { return text_; }
-  void replace_line(std::string_view line) { line_ = line; }  // go on in a line that the caller put together
+  void replace_line(std::string_view line) { line_ = line; }  // continues in a line that the caller joined
   std::size_t line_number() const { return line_number_; }    // 1-based
   const std::string& name() const { return name_; }
 
@@ -41,6 +41,8 @@ class TextScanner {
 
  private:
   std::string_view expected_word(std::string_view what);
+  template <class Number>
+  Number parsed(std::string_view what, std::string_view type);
 
   std::string_view text_;  // after the line
   std::string_view line_;
@@ -52,6 +54,8 @@ class TextScanner {
   char comment_;
   char line_end_;
 };
+
+std::string_view without_byte_order_mark(std::string_view text);
 
 // "the file ends after 5 of 10 vertices: ..."
 std::string ends_early(std::int64_t complete, std::int64_t announced, std::string_view plural);

@@ -1,5 +1,5 @@
-// What a stage may produce, and how each kind is laid out as named arrays: the one table of the data sets in
-// an artefact (docs/data_dictionary.md).
+// The kinds of values that stages produce, and the layout of each as named arrays: the one definition of the
+// data sets in an artefact (docs/data_dictionary.md).
 #pragma once
 
 #include <string_view>
@@ -17,7 +17,7 @@ Arrays arrays_from(const Value& value);
 
 std::string_view kind_of(const Value& value);  // "mesh", "scan", ... : the name of the layout
 
-// The inverse, exact to the bit. Throws InputError where an array is missing or of another shape or type.
+// The inverse, exact to the bit. Throws InputError if an array is missing or has another shape or type.
 Value value_from(std::string_view kind, const Arrays& arrays);
 
 }  // namespace salbench
