@@ -103,11 +103,12 @@ void add_map(ChainBuilder& chain, const Parts& parts, const Model& model, std::s
              .seeded = (model.reads & kReadsSeed) != 0,
              .run = [model](const StageInputs& in) -> Value {
                std::size_t next = 1;
-               ModelInput input{.points = points_of(*in.values[0]), .seed = in.seed, .item = in.item};
-               if ((model.reads & kReadsNormals) != 0) input.normals = in.get<Normals>(next++);
-               if ((model.reads & kReadsFaces) != 0) input.faces = faces_of(*in.values[next++]);
-               if ((model.reads & kReadsFpfh) != 0) input.fpfh = &in.get<Descriptors>(next++);
-               return model.saliency(input);
+               MapInputs read{.points = points_of(*in.values[0])};
+               read.random = {in.seed, std::string(in.item)};
+               if ((model.reads & kReadsNormals) != 0) read.normals = &in.get<Normals>(next++);
+               if ((model.reads & kReadsFaces) != 0) read.surface = faces_of(*in.values[next++]);
+               if ((model.reads & kReadsFpfh) != 0) read.fpfh = &in.get<Descriptors>(next++);
+               return model.saliency(read);
              }});
 }
 

@@ -24,16 +24,32 @@ ModelRow row_of_people(std::string_view name, std::int32_t version) {
           }};
 }
 
+ScalarField ls(const MapInputs& in, const LsOptions& options) {
+  return ls_saliency(in.points, *in.normals, *in.fpfh, options);
+}
+ScalarField cs(const MapInputs& in, const CsOptions& options) {
+  return cs_saliency(in.points, *in.normals, options);
+}
+ScalarField ps(const MapInputs& in, const PsOptions& options) {
+  return ps_saliency(in.points, *in.fpfh, options);
+}
+ScalarField ms(const MapInputs& in, const MsOptions& options) {
+  return ms_saliency(in.points, in.surface, options);
+}
+ScalarField rs(const MapInputs& in, const RsOptions& options) {
+  return rs_saliency(in.points, in.random, options);
+}
+
 }  // namespace
 
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
-      model_row("LS", 1, kReadsNormals | kReadsFpfh, ls_saliency),
-      model_row("CS", 1, kReadsNormals, cs_saliency),
-      model_row("PS", 1, kReadsFpfh, ps_saliency),
-      model_row("MS", 1, kReadsFaces, ms_saliency),
+      model_row("LS", 1, kReadsNormals | kReadsFpfh, ls),
+      model_row("CS", 1, kReadsNormals, cs),
+      model_row("PS", 1, kReadsFpfh, ps),
+      model_row("MS", 1, kReadsFaces, ms),
       row_of_people("HS", 1),
-      model_row("RS", 1, kReadsSeed, rs_saliency),
+      model_row("RS", 1, kReadsSeed, rs),
   };
   return rows;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace salbench {
@@ -19,6 +20,15 @@ class Rng {
 
  private:
   std::uint64_t state_[4];
+};
+
+// Where a stage gets its random numbers. They depend on the seed of the run and the name of the item, and on
+// nothing else: two stages that draw under different names are independent of each other.
+struct RandomSource {
+  std::uint64_t seed = 0;  // of the run
+  std::string item = {};   // name of the shape, such as "9" or "9_0"
+
+  Rng rng(std::string_view stage) const { return Rng(seed, stage, item); }
 };
 
 }  // namespace salbench

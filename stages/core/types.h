@@ -30,7 +30,11 @@ struct Scan {
 };
 
 using Normals = std::vector<Vec3>;    // n x 3, unit length, outward or towards the camera
-using Faces = std::vector<Triangle>;  // f x 3, of a surface over the points of a scan
+using Faces = std::vector<Triangle>;  // f x 3, the partial mesh: a surface over the points of a scan
+
+// How a stage receives a shape that may be a mesh or a scan. The caller keeps the storage alive.
+using Points = std::span<const Vec3>;       // n x 3: the vertices of a mesh, or the points of a scan
+using Surface = std::span<const Triangle>;  // f x 3: the faces of a mesh, or the partial mesh of a scan
 
 inline constexpr int kFpfhBins = 33;  // three features of 11 bins: theta, alpha, phi
 

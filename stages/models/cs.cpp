@@ -232,21 +232,20 @@ void check(const CsOptions& options) {
          "between 0 and 1", options.distribution_weight);
 }
 
-ScalarField cs_saliency(const ModelInput& input, const CsOptions& options) {
+ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& options) {
   check(options);
-  const KdTree tree(input.points);
-  const SupportRadius support = grown_support_radius(input.points, tree, options.radius);
+  const KdTree tree(points);
+  const SupportRadius support = grown_support_radius(points, tree, options.radius);
   const Support described{static_cast<std::int32_t>(std::int64_t{support.neighbours} * 6 / 5), 0};
-  if (support.radius == 0) return ScalarField(input.points.size(), 0.0);  // all points coincide
-  const Descriptors descriptors =
-      fpfh(input.points, input.normals, tree, described, FpfhWeighting::published);
+  if (support.radius == 0) return ScalarField(points.size(), 0.0);  // all points coincide
+  const Descriptors descriptors = fpfh(points, normals, tree, described, FpfhWeighting::published);
 
-  const double unit = bounding_radius(input.points);
-  const Clusters of = cs_clusters(input.points, descriptors, support.radius, unit, options);
-  const GroupMeans clusters = group_means(input.points, descriptors, of.of_point, of.count);
+  const double unit = bounding_radius(points);
+  const Clusters of = cs_clusters(points, descriptors, support.radius, unit, options);
+  const GroupMeans clusters = group_means(points, descriptors, of.of_point, of.count);
   const Variances variance = variances(clusters);
-  const Neighbours in_reach = clusters_in_reach(adjacent_clusters(input.points, tree, support.radius, of));
-  const Likeness like = likeness(input.points, descriptors, of, clusters, in_reach, variance);
+  const Neighbours in_reach = clusters_in_reach(adjacent_clusters(points, tree, support.radius, of));
+  const Likeness like = likeness(points, descriptors, of, clusters, in_reach, variance);
   const ScalarField of_clusters =
       cluster_saliency(clusters, variance, like.masses, unit, options.distribution_weight);
   return point_saliency(of, in_reach, like, of_clusters);

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "stages/core/options.h"
-#include "stages/models/model.h"
+#include "stages/core/types.h"
 
 namespace salbench {
 
@@ -36,10 +36,10 @@ struct CsOptions {
 };
 void check(const CsOptions& options);  // throws OptionError
 
-// In [0, 1]. Reads input.points and input.normals, and computes descriptors of its own. Where there are no
-// more points than clusters aimed at, each point is a cluster. Points that all coincide, and descriptors that
-// do not tell clusters apart where their distribution does not either, give a constant map. Throws InputError
-// for a shape without points or with a coordinate or normal that is not finite. [tasse2015] [tasse2016]
-ScalarField cs_saliency(const ModelInput& input, const CsOptions& options);
+// In [0, 1]. Computes descriptors of its own. If there are no more points than clusters aimed at, each point
+// is a cluster. The map is constant if all points coincide, and if neither descriptors nor distribution tell
+// the clusters apart. Throws InputError for a shape without points or with a coordinate or normal that is not
+// finite. [tasse2015] [tasse2016]
+ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& options);
 
 }  // namespace salbench

@@ -87,12 +87,12 @@ ScalarField association(std::span<const Vec3> points, const ScalarField& low, co
 }
 
 // The low-level descriptors, those of the most distinct points replaced by high-level ones.
-Descriptors mixed_descriptors(const ModelInput& input, const ScalarField& low, const LsOptions& options) {
+Descriptors mixed_descriptors(Points points, const Normals& normals, const Descriptors& of_low_level,
+                              const ScalarField& low, const LsOptions& options) {
   const std::vector<std::int32_t> distinct = largest(low, count_of(options.high_share, low.size()));
-  const Support support{0, options.high_radius * bounding_radius(input.points)};
-  const Descriptors high =
-      fpfh(input.points, input.normals, KdTree(input.points), support, options.high_weighting, distinct);
-  Descriptors mixed = *input.fpfh;
+  const Support support{0, options.high_radius * bounding_radius(points)};
+  const Descriptors high = fpfh(points, normals, KdTree(points), support, options.high_weighting, distinct);
+  Descriptors mixed = of_low_level;
   for (std::size_t h = 0; h < distinct.size(); ++h) {
     const auto row = high.row(h);
     std::copy(row.begin(), row.end(),
@@ -134,19 +134,19 @@ void check(const LsOptions& options) {
                       "must be a number of at least 0, not " + std::to_string(options.high_weight));
 }
 
-ScalarField ls_saliency(const ModelInput& input, const LsOptions& options) {
+ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors& fpfh,
+                        const LsOptions& options) {
   check(options);
-  CHECK_EQ(input.fpfh != nullptr, true);
-  CHECK_EQ(input.fpfh->size(), input.points.size());
-  CHECK_EQ(input.normals.size(), input.points.size());
-  const std::vector<Vec3> points = in_units_of_radius(input.points);
+  CHECK_EQ(fpfh.size(), points.size());
+  CHECK_EQ(normals.size(), points.size());
+  const std::vector<Vec3> places = in_units_of_radius(points);
 
   // Near points count more at the low level, far ones at the high level.
-  const ScalarField low = distinctness(points, *input.fpfh, options.selected_share,
+  const ScalarField low = distinctness(places, fpfh, options.selected_share,
                                        [](double chi2, double distance) { return chi2 / (1 + distance); });
-  ScalarField saliency = association(points, low, options);
+  ScalarField saliency = association(places, low, options);
   const ScalarField high =
-      distinctness(points, mixed_descriptors(input, low, options), options.selected_share,
+      distinctness(places, mixed_descriptors(points, normals, fpfh, low, options), options.selected_share,
                    [](double chi2, double distance) { return chi2 * std::log1p(distance); });
   for (std::size_t i = 0; i < saliency.size(); ++i) saliency[i] += low[i] + options.high_weight * high[i];
   return saliency;

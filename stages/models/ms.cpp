@@ -222,13 +222,13 @@ ScalarField component_saliency(const Mesh& mesh, const MsOptions& options) {
   return logarithm(ring_means(edge_adjacency(mesh.vertices.size(), mesh.faces), fine));
 }
 
-void check_input(const ModelInput& input) {
-  const auto n = static_cast<std::int32_t>(input.points.size());
-  for (const Triangle& face : input.faces)
+void check_input(Points points, Surface surface) {
+  const auto n = static_cast<std::int32_t>(points.size());
+  for (const Triangle& face : surface)
     for (const std::int32_t v : face)
       if (v < 0 || v >= n)
         throw InputError("a face names point " + std::to_string(v) + ", but there are " + std::to_string(n));
-  for (const Vec3& p : input.points)
+  for (const Vec3& p : points)
     if (!p.allFinite()) throw InputError("a point has a coordinate that is not finite");
 }
 
@@ -259,18 +259,18 @@ void check(const MsOptions& options) {
   must(options.epsilon > 0, "epsilon", "> 0", options.epsilon);
 }
 
-ScalarField ms_saliency(const ModelInput& input, const MsOptions& options) {
-  check_input(input);
-  if (input.points.empty()) return {};
-  const ScalarField failed(input.points.size(), 0);
-  const double radius = bounding_radius(input.points);
+ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options) {
+  check_input(points, surface);
+  if (points.empty()) return {};
+  const ScalarField failed(points.size(), 0);
+  const double radius = bounding_radius(points);
   if (!std::isfinite(radius)) throw InputError("a size that floating point cannot square");
   if (radius == 0) return failed;
-  const std::vector<Vec3> points = normalised(input.points, radius);
-  const Part part = largest_component(points, input.faces);
+  const std::vector<Vec3> places = normalised(points, radius);
+  const Part part = largest_component(places, surface);
   if (part.points.size() < kMsSmallestComponent) return failed;
   const ScalarField saliency = component_saliency(part.mesh, options);
-  return saliency.empty() ? failed : on_all_points(points, part, saliency);
+  return saliency.empty() ? failed : on_all_points(places, part, saliency);
 }
 
 }  // namespace salbench

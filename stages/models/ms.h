@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "stages/core/options.h"
-#include "stages/models/model.h"
+#include "stages/core/types.h"
 
 namespace salbench {
 
@@ -55,10 +55,10 @@ void check(const MsOptions& options);  // throws OptionError
 
 inline constexpr std::size_t kMsSmallestComponent = 20;  // vertices
 
-// Reads input.points and input.faces. The largest connected component of the mesh is what the model sees;
-// every other point takes the value of the nearest vertex of it. A component of under 20 vertices and a
-// failed eigensolve give 0 for all points, which nothing else does. Throws InputError where a face names no
-// point, and for coordinates that are not finite or whose squares are not. [song2014] [tasse2016]
-ScalarField ms_saliency(const ModelInput& input, const MsOptions& options);
+// The model sees the largest connected component of the surface; every other point takes the value of the
+// nearest vertex of it. All points are 0 if that component has fewer than 20 vertices or the eigensolve
+// fails, and in no other case. Throws InputError for a face whose point does not exist, and for coordinates
+// that are not finite or whose squares overflow. [song2014] [tasse2016]
+ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options);
 
 }  // namespace salbench

@@ -30,19 +30,18 @@ void turn_away_from_flat(Axis& axis) {
 
 }  // namespace
 
-ScalarField ps_saliency(const ModelInput& input, const PsOptions& options) {
-  CHECK_EQ(input.fpfh != nullptr, true);
-  CHECK_EQ(input.fpfh->size(), input.points.size());
-  const auto n = static_cast<Eigen::Index>(input.fpfh->size());
+ScalarField ps_saliency(Points points, const Descriptors& fpfh, const PsOptions& options) {
+  CHECK_EQ(fpfh.size(), points.size());
+  const auto n = static_cast<Eigen::Index>(fpfh.size());
   if (n == 0) return {};
   using StoredRows = Eigen::Matrix<float, Eigen::Dynamic, kFpfhBins, Eigen::RowMajor>;
-  Rows centred = Eigen::Map<const StoredRows>(input.fpfh->values.data(), n, kFpfhBins).cast<double>();
+  Rows centred = Eigen::Map<const StoredRows>(fpfh.values.data(), n, kFpfhBins).cast<double>();
   const Eigen::Matrix<double, 1, kFpfhBins> mean = centred.colwise().mean();
   centred.rowwise() -= mean;
 
   Axis axis = first_principal_axis(centred);
   turn_away_from_flat(axis);
-  ScalarField saliency(input.points.size());
+  ScalarField saliency(points.size());
   Eigen::Map<Eigen::VectorXd> projection(saliency.data(), n);
   projection = centred * axis;
   if (options.absolute) projection = projection.cwiseAbs();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "stages/core/options.h"
-#include "stages/models/model.h"
+#include "stages/core/types.h"
 
 namespace salbench {
 
@@ -18,8 +18,8 @@ struct PsOptions {
   }
 };
 
-// Projection of the mean-centred descriptors on their first principal axis, its sign such that flat places
-// are low; 0 everywhere where all descriptors are equal. Reads input.fpfh. [tasse2016]
-ScalarField ps_saliency(const ModelInput& input, const PsOptions& options);
+// Projection of the mean-centred descriptors (n x 33) on their first principal axis, its sign such that flat
+// places are low; 0 everywhere if all descriptors are equal. [tasse2016]
+ScalarField ps_saliency(Points points, const Descriptors& fpfh, const PsOptions& options);
 
 }  // namespace salbench

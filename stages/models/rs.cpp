@@ -4,9 +4,9 @@
 
 namespace salbench {
 
-ScalarField rs_saliency(const ModelInput& input, const RsOptions&) {
-  Rng rng = input.rng("RS");
-  ScalarField saliency(input.points.size());
+ScalarField rs_saliency(Points points, const RandomSource& random, const RsOptions&) {
+  Rng rng = random.rng("RS");
+  ScalarField saliency(points.size());
   std::generate(saliency.begin(), saliency.end(), [&] { return rng.uniform(); });
   return saliency;
 }

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "stages/core/options.h"
-#include "stages/models/model.h"
+#include "stages/core/rng.h"
+#include "stages/core/types.h"
 
 namespace salbench {
 
 using RsOptions = NoOptions;
 
-// Uniform in [0, 1), a function of (seed, item) alone. [tasse2016]
-ScalarField rs_saliency(const ModelInput& input, const RsOptions& options);
+// Uniform in [0, 1), depends on the random source and the number of points alone. [tasse2016]
+ScalarField rs_saliency(Points points, const RandomSource& random, const RsOptions& options);
 
 }  // namespace salbench

@@ -29,11 +29,8 @@ struct Shape {
 
 void ls(benchmark::State& state, const LsOptions& options) {
   const Shape shape(static_cast<std::size_t>(state.range(0)));
-  ModelInput input;
-  input.points = shape.points;
-  input.normals = shape.normals;
-  input.fpfh = &shape.descriptors;
-  for (auto _ : state) benchmark::DoNotOptimize(ls_saliency(input, options));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(ls_saliency(shape.points, shape.normals, shape.descriptors, options));
   state.counters["pairs/s"] = benchmark::Counter(2.0 * static_cast<double>(state.range(0) * state.range(0)),
                                                  benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -23,15 +23,17 @@ struct FarOptions {
   }
 };
 
-ScalarField far_saliency(const ModelInput& input, const FarOptions& options) {
-  const Vec3 center = centroid(input.points);
+ScalarField far_saliency(Points points, const FarOptions& options) {
+  const Vec3 centre = centroid(points);
   ScalarField saliency;
-  for (const Vec3& p : input.points) saliency.push_back(std::pow((p - center).norm(), options.power));
+  for (const Vec3& p : points) saliency.push_back(std::pow((p - centre).norm(), options.power));
   return saliency;
 }
 
+ScalarField far(const MapInputs& in, const FarOptions& options) { return far_saliency(in.points, options); }
+
 Model far_model(const std::string& yaml, Protocol protocol) {
-  return model_row("FAR", 1, kReadsPoints, far_saliency).bind(Section::from_text(yaml, "far.yaml"), protocol);
+  return model_row("FAR", 1, kReadsPoints, far).bind(Section::from_text(yaml, "far.yaml"), protocol);
 }
 
 TEST(AddAModel, ItsSectionIsReadOverTheProtocolsDefaults) {

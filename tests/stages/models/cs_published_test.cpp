@@ -18,11 +18,7 @@ namespace {
 
 ScalarField cs_of_mesh(const std::filesystem::path& file) {
   const Mesh mesh = read_mesh(file);
-  const Normals normals = mesh_normals(mesh);
-  ModelInput input;
-  input.points = mesh.vertices;
-  input.normals = normals;
-  return cs_saliency(input, CsOptions{});
+  return cs_saliency(mesh.vertices, mesh_normals(mesh), CsOptions{});
 }
 
 // Linear between the order statistics, as NumPy has it.

@@ -32,10 +32,7 @@ struct Shape {
 };
 
 ScalarField saliency_of(const Shape& shape, const CsOptions& options = {}) {
-  ModelInput input;
-  input.points = shape.points;
-  input.normals = shape.normals;
-  return cs_saliency(input, options);
+  return cs_saliency(shape.points, shape.normals, options);
 }
 
 Shape shape_of(const Mesh& mesh) { return {mesh.vertices, mesh_normals(mesh)}; }

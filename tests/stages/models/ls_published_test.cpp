@@ -21,11 +21,7 @@ ScalarField ls_of_mesh(const published::path& data, int item) {
   const Mesh mesh = read_mesh(data / "SchellingData" / "Meshes" / (std::to_string(item) + ".off"));
   const Normals normals = mesh_normals(mesh);
   const Descriptors descriptors = fpfh(mesh.vertices, normals, FpfhOptions{});
-  ModelInput input;
-  input.points = mesh.vertices;
-  input.normals = normals;
-  input.fpfh = &descriptors;
-  return ls_saliency(input, LsOptions{});
+  return ls_saliency(mesh.vertices, normals, descriptors, LsOptions{});
 }
 
 TEST(LsPublished, ScoresAreThoseOfTheAuthors) {

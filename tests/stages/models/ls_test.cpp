@@ -27,13 +27,7 @@ struct Shape {
         normals(std::move(n)),
         low(fpfh(points, normals, KdTree(points), {9, 0}, FpfhWeighting::published)) {}
 
-  ScalarField ls(const LsOptions& options = {}) const {
-    ModelInput input;
-    input.points = points;
-    input.normals = normals;
-    input.fpfh = &low;
-    return ls_saliency(input, options);
-  }
+  ScalarField ls(const LsOptions& options = {}) const { return ls_saliency(points, normals, low, options); }
 };
 
 Shape cloud(std::size_t n, std::uint64_t seed) {

@@ -17,10 +17,7 @@ namespace {
 
 ScalarField ms_of_mesh(const published::path& data, int item) {
   const Mesh mesh = read_mesh(data / "SchellingData" / "Meshes" / (std::to_string(item) + ".off"));
-  ModelInput input;
-  input.points = mesh.vertices;
-  input.faces = mesh.faces;
-  return ms_saliency(input, MsOptions{});
+  return ms_saliency(mesh.vertices, mesh.faces, MsOptions{});
 }
 
 TEST(MsPublished, ScoresAreNearThoseOfTheAuthors) {

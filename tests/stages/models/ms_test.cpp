@@ -20,10 +20,7 @@ namespace {
 using testing::Each;
 
 ScalarField ms(const Mesh& mesh, const MsOptions& options = {}) {
-  ModelInput input;
-  input.points = mesh.vertices;
-  input.faces = mesh.faces;
-  return ms_saliency(input, options);
+  return ms_saliency(mesh.vertices, mesh.faces, options);
 }
 
 // Eigenvalues all distinct, as the fivefold ones of a sphere are not.

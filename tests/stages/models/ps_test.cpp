@@ -23,10 +23,7 @@ using testing::Each;
 
 ScalarField saliency_of(const Descriptors& descriptors, const PsOptions& options = {}) {
   const std::vector<Vec3> points(descriptors.size(), Vec3::Zero());
-  ModelInput input;
-  input.points = points;
-  input.fpfh = &descriptors;
-  return ps_saliency(input, options);
+  return ps_saliency(points, descriptors, options);
 }
 
 // Rows of a flat patch, all their weight in bins 5, 16 and 27, some of which moved one bin up by `share`.
@@ -106,10 +103,7 @@ TEST(PsSaliency, IsNothingWhereAllDescriptorsAreEqual) {
 ScalarField real_saliency(const published::path& data, int item) {
   const Mesh mesh = read_mesh(data / "SchellingData" / "Meshes" / (std::to_string(item) + ".off"));
   const Descriptors descriptors = fpfh(mesh.vertices, mesh_normals(mesh), FpfhOptions{});
-  ModelInput input;
-  input.points = mesh.vertices;
-  input.fpfh = &descriptors;
-  return ps_saliency(input, {});
+  return ps_saliency(mesh.vertices, descriptors, {});
 }
 
 TEST(PsSaliency, ScoresWhatTheAuthorsPublished) {

@@ -11,12 +11,8 @@
 namespace salbench {
 namespace {
 
-ScalarField random_saliency(const std::vector<Vec3>& points, std::uint64_t seed, std::string_view item) {
-  ModelInput input;
-  input.points = points;
-  input.seed = seed;
-  input.item = item;
-  return rs_saliency(input, {});
+ScalarField random_saliency(const std::vector<Vec3>& points, std::uint64_t seed, const std::string& item) {
+  return rs_saliency(points, {seed, item}, {});
 }
 
 TEST(RsSaliency, IsUniformOverTheUnitInterval) {
