@@ -143,7 +143,7 @@ Table summary_table(const std::vector<ResultRow>& rows) {
       std::vector<double> values;
       for (const ResultRow& row : rows)
         if (row.dataset == dataset && row.model == model) values.push_back(row.scores.*metric.value);
-      const Summary summary = summarize(values);
+      const Summary summary = summarise(values);
       table.rows.push_back({dataset, model, metric.name, summary.n, summary.mean, summary.sd, summary.ci_low,
                             summary.ci_high});
     }

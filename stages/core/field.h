@@ -10,7 +10,7 @@
 namespace salbench {
 
 // Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. [tasse2016]
-ScalarField min_max_normalized(std::span<const double> field);
+ScalarField min_max_normalised(std::span<const double> field);
 
 bool is_constant(std::span<const double> field);  // also true of an empty field
 

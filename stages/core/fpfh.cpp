@@ -40,18 +40,18 @@ struct SimplifiedHistograms {
   }
 };
 
-// neighbors.of(i) belongs to the point asked[i].
+// neighbours.of(i) belongs to the point asked[i].
 SimplifiedHistograms simplified_histograms(std::span<const Vec3> points, std::span<const Vec3> normals,
                                            std::span<const std::int32_t> asked,
-                                           const Neighborhoods& neighbors, bool swap) {
+                                           const Neighbourhoods& neighbours, bool swap) {
   SimplifiedHistograms result{std::vector<float>(asked.size() * kBins),
                               std::vector<std::size_t>(points.size())};
   for (std::size_t i = 0; i < asked.size(); ++i) {
     result.row_of[static_cast<std::size_t>(asked[i])] = i;
     const Vec3& p = at(points, asked[i]);
     const Vec3& n_p = at(normals, asked[i]);
-    const auto found = neighbors.of(i);
-    const auto distances_squared = neighbors.distances_squared_of(i);
+    const auto found = neighbours.of(i);
+    const auto distances_squared = neighbours.distances_squared_of(i);
     std::array<double, kBins> votes{};
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (distances_squared[k] == 0) continue;
@@ -107,11 +107,11 @@ std::vector<Vec3> points_at(std::span<const Vec3> points, std::span<const std::i
 }
 
 // The subset and all its neighbours, ascending.
-std::vector<std::int32_t> with_neighbors(std::size_t n, std::span<const std::int32_t> subset,
-                                         const Neighborhoods& neighbors) {
+std::vector<std::int32_t> with_neighbours(std::size_t n, std::span<const std::int32_t> subset,
+                                          const Neighbourhoods& neighbours) {
   std::vector<bool> taken(n, false);
   for (const std::int32_t i : subset) taken[static_cast<std::size_t>(i)] = true;
-  for (const std::int32_t i : neighbors.indices) taken[static_cast<std::size_t>(i)] = true;
+  for (const std::int32_t i : neighbours.indices) taken[static_cast<std::size_t>(i)] = true;
   std::vector<std::int32_t> result;
   for (std::size_t i = 0; i < n; ++i)
     if (taken[i]) result.push_back(static_cast<std::int32_t>(i));
@@ -147,23 +147,23 @@ DarbouxTriple pair_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const
   return {v.dot(*other), u->dot(line), std::atan2(u->cross(v).dot(*other), u->dot(*other))};
 }
 
-Neighborhoods neighborhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support) {
+Neighbourhoods neighbourhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support) {
   CHECK_LE(0, support.neighbours);
-  Neighborhoods result;
+  Neighbourhoods result;
   result.offsets.reserve(queries.size() + 1);
   result.offsets.push_back(0);
   const auto k = static_cast<std::size_t>(support.neighbours);
   result.indices.reserve(queries.size() * k);
   result.distances_squared.reserve(queries.size() * k);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (const Vec3& query : queries) {
     if (k > 0)
       tree.nearest(query, k, found);
     else
       tree.within(query, support.radius, found);
-    for (const Neighbor& neighbor : found) {
-      result.indices.push_back(neighbor.index);
-      result.distances_squared.push_back(neighbor.distance_squared);
+    for (const Neighbour& neighbour : found) {
+      result.indices.push_back(neighbour.index);
+      result.distances_squared.push_back(neighbour.distance_squared);
     }
     result.offsets.push_back(result.indices.size());
   }
@@ -174,14 +174,14 @@ Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, co
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset) {
   CHECK_EQ(points.size(), tree.size());
   check_normals(points, normals);
-  const Neighborhoods of_subset = neighborhoods(tree, points_at(points, subset), support);
-  const std::vector<std::int32_t> needed = with_neighbors(points.size(), subset, of_subset);
+  const Neighbourhoods of_subset = neighbourhoods(tree, points_at(points, subset), support);
+  const std::vector<std::int32_t> needed = with_neighbours(points.size(), subset, of_subset);
   const bool swap = weighting == FpfhWeighting::published;
   const SimplifiedHistograms spfh =
       std::equal(needed.begin(), needed.end(), subset.begin(), subset.end())
           ? simplified_histograms(points, normals, needed, of_subset, swap)
           : simplified_histograms(points, normals, needed,
-                                  neighborhoods(tree, points_at(points, needed), support), swap);
+                                  neighbourhoods(tree, points_at(points, needed), support), swap);
 
   const double unit = weighting == FpfhWeighting::text ? bounding_radius(points) : 1;
   Descriptors result{std::vector<float>(subset.size() * kBins), support.radius, support.neighbours};

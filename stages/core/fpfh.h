@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/options.h"
 #include "stages/core/types.h"
 
@@ -33,7 +33,7 @@ struct Support {
 
 // Compressed rows: the neighbours of query i, itself included, ordered by (distance, index), are the entries
 // offsets[i] .. offsets[i + 1] - 1.
-struct Neighborhoods {
+struct Neighbourhoods {
   std::vector<std::size_t> offsets;       // m + 1
   std::vector<std::int32_t> indices;      // point index
   std::vector<double> distances_squared;  // > 0 except for the point itself and those coincident with it
@@ -47,7 +47,7 @@ struct Neighborhoods {
   }
 };
 
-Neighborhoods neighborhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support);
+Neighbourhoods neighbourhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support);
 
 enum class FpfhWeighting {
   published,  // sum of SPFH(q) / |p - q|^2 over the neighbours, each block of 11 bins scaled to 100

@@ -21,14 +21,14 @@ double surface_area(const Mesh& mesh);
 Vec3 area_centroid(const Mesh& mesh);  // area-weighted mean of the face centres; the surface area is > 0
 
 // Compressed rows: the sorted, distinct neighbours of i along edges are
-// neighbors[offsets[i]] .. neighbors[offsets[i + 1] - 1].
+// neighbours[offsets[i]] .. neighbours[offsets[i + 1] - 1].
 struct Adjacency {
   std::vector<std::int32_t> offsets;  // n + 1
-  std::vector<std::int32_t> neighbors;
+  std::vector<std::int32_t> neighbours;
 
   std::size_t size() const { return offsets.size() - 1; }
   std::span<const std::int32_t> of(std::size_t i) const {
-    return {neighbors.data() + offsets[i], neighbors.data() + offsets[i + 1]};
+    return {neighbours.data() + offsets[i], neighbours.data() + offsets[i + 1]};
   }
 };
 

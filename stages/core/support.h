@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <span>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
 
 namespace salbench {
 
-inline constexpr std::int32_t kFewestNeighbors = 6;  // on average, the point itself excluded
+inline constexpr std::int32_t kFewestNeighbours = 6;  // on average, the point itself excluded
 
 // Mean over the points of how many others lie at distance <= radius; n > 0, `tree` is over `points`.
-double mean_neighbor_count(std::span<const Vec3> points, const KdTree& tree, double radius);
+double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, double radius);
 
 // Median distance of a point to its nearest other one; 0 of fewer than two points. `tree` is over `points`.
 double median_spacing(std::span<const Vec3> points, const KdTree& tree);

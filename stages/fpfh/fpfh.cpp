@@ -11,7 +11,7 @@ namespace salbench {
 namespace {
 
 Support support_of(std::span<const Vec3> points, const KdTree& tree, const FpfhOptions& options) {
-  if (options.neighbourhood == FpfhNeighborhood::nearest) return {options.neighbours, 0};
+  if (options.neighbourhood == FpfhNeighbourhood::nearest) return {options.neighbours, 0};
   if (options.grow) return {0, grown_support_radius(points, tree, options.radius).radius};
   return {0, options.radius * bounding_radius(points)};
 }

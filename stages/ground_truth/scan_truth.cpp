@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "stages/core/errors.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 
 namespace salbench {
 namespace {

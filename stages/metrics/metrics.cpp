@@ -109,12 +109,12 @@ double auc_exact(std::span<const double> map, std::span<const std::int32_t> pick
 double nss(std::span<const double> map, std::span<const std::int32_t> picked) {
   if (picked.empty()) return kUndefined;
   if (is_constant(map)) return 0;
-  const double center = mean(map);
+  const double centre = mean(map);
   double squares = 0;
-  for (const double value : map) squares += (value - center) * (value - center);
+  for (const double value : map) squares += (value - centre) * (value - centre);
   const double deviation = std::sqrt(squares / static_cast<double>(map.size()));
   double sum = 0;
-  for (const std::int32_t i : picked) sum += at(map, i) - center;
+  for (const std::int32_t i : picked) sum += at(map, i) - centre;
   return sum / (static_cast<double>(picked.size()) * deviation);
 }
 
@@ -141,7 +141,7 @@ Scores score(const ScalarField& matched, const GroundTruth& truth, const Metrics
   scores.auc = auc(matched, picked, options, rng);
   scores.auc_exact = auc_exact(matched, picked);
   scores.nss = nss(matched, picked);
-  scores.cc = truth.saliency.empty() ? kUndefined : cc(matched, min_max_normalized(truth.saliency));
+  scores.cc = truth.saliency.empty() ? kUndefined : cc(matched, min_max_normalised(truth.saliency));
   scores.lcc = std::abs(scores.cc);
   scores.n_points = static_cast<std::int64_t>(matched.size());
   scores.n_picks = static_cast<std::int64_t>(picked.size());

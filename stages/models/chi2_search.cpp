@@ -48,7 +48,7 @@ class Selection {
   Selection(std::size_t n, std::size_t k) : n_(n), k_(k), indices_(padded(n)), values_(n), selected_(n) {}
 
   // `row` holds n distances, filled up with infinity to a multiple of 16.
-  std::span<const Chi2Neighbor> nearest(const float* row) {
+  std::span<const Chi2Neighbour> nearest(const float* row) {
     float bound = sampled_bound(row);
     std::size_t found = indices_up_to(bound, row, indices_.size(), indices_.data());
     if (found < k_) {  // the sample misled
@@ -94,7 +94,7 @@ class Selection {
   }
 
   // All candidates below the k-th smallest, and the last ones of those equal to it.
-  std::span<const Chi2Neighbor> select(const float* row, std::size_t found, float kth) {
+  std::span<const Chi2Neighbour> select(const float* row, std::size_t found, float kth) {
     std::size_t below = 0, equal = 0;
     for (std::size_t c = 0; c < found; ++c) {
       below += row[indices_[c]] < kth;
@@ -115,7 +115,7 @@ class Selection {
   std::size_t n_, k_;
   std::vector<std::int32_t> indices_;  // candidates, ascending
   std::vector<float> values_;
-  std::vector<Chi2Neighbor> selected_;
+  std::vector<Chi2Neighbour> selected_;
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace salbench {
 
-struct Chi2Neighbor {
+struct Chi2Neighbour {
   std::int32_t index;
   float chi2;
 };
@@ -29,7 +29,7 @@ class Chi2Search {
   // Calls visit(i, nearest) for i = 0..n-1 in order. `nearest`, valid during the call, holds the k histograms
   // of smallest distance to i, i itself among them, by ascending index; of those at equal distance where the
   // k end, the ones of higher index. 1 <= k <= n.
-  using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbor> nearest)>;
+  using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbour> nearest)>;
   void for_each(std::size_t k, const Visit& visit) const;
 
  private:

@@ -27,7 +27,7 @@
 #include "stages/core/field.h"
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/support.h"
 #include "stages/models/cs_clusters.h"
 
@@ -44,13 +44,13 @@ using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
 Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, double radius,
                              const Clusters& clusters) {
   Neighbours adjacent(clusters.count);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.within(points[i], radius, found);
     if (found.size() <= 1) tree.nearest(points[i], kFallbackNear, found);
     auto& of_own = adjacent[static_cast<std::size_t>(clusters.of_point[i])];
-    for (const Neighbor& neighbor : found) {
-      const std::int32_t other = clusters.of_point[static_cast<std::size_t>(neighbor.index)];
+    for (const Neighbour& neighbour : found) {
+      const std::int32_t other = clusters.of_point[static_cast<std::size_t>(neighbour.index)];
       if (other != clusters.of_point[i]) of_own.push_back(other);
     }
   }
@@ -182,13 +182,13 @@ ScalarField cluster_saliency(const GroupMeans& clusters, const Variances& varian
     unique[j] = uniqueness(j, clusters, shares, chi2, unit);
     scattered[j] = distribution(clusters, shares, chi2, variance, unit);
   }
-  unique = min_max_normalized(unique);
-  scattered = min_max_normalized(scattered);
+  unique = min_max_normalised(unique);
+  scattered = min_max_normalised(scattered);
   for (std::size_t j = 0; j < count; ++j) {
     saliency[j] = distribution_weight * std::exp(-scattered[j]) +
                   (1 - distribution_weight) * (1 - std::exp(-unique[j]));
   }
-  return min_max_normalized(saliency);
+  return min_max_normalised(saliency);
 }
 
 // s_i: mean over the clusters in reach, weighted by w_ik / m_k. Taken as a difference from its own cluster's,

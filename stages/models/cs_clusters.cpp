@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "stages/core/check.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/models/cs_cells.h"
 
 namespace salbench {
@@ -52,7 +52,7 @@ GroupMeans cluster_means(const Voxels& voxels, const Labels& labels, std::size_t
 // Twice the radius of a ball that holds a cluster's share of voxels, the median over a sample. Where a
 // cluster would have less than two: the spacing of the voxels, root mean square over their nearest.
 double seed_leaf(const Voxels& voxels, std::size_t clusters) {
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   if (voxels.size() > 2 * clusters) {
     const std::size_t share = voxels.size() / clusters;  // the voxel itself included
     std::vector<double> reaches;
@@ -69,7 +69,7 @@ double seed_leaf(const Voxels& voxels, std::size_t clusters) {
   for (const Vec3& centre : voxels.means.centres) {
     voxels.tree.nearest(centre, kSurroundings, found);
     const double others = std::max(static_cast<double>(found.size()) - 1, 1.0);
-    for (const Neighbor& neighbor : found) sum += neighbor.distance_squared / others;
+    for (const Neighbour& neighbour : found) sum += neighbour.distance_squared / others;
   }
   return std::sqrt(sum / static_cast<double>(voxels.size()));
 }
@@ -80,12 +80,12 @@ double seed_leaf(const Voxels& voxels, std::size_t clusters) {
 Labels seed_labels(std::span<const Vec3> points, const Labels& voxel_of, const Voxels& voxels, double radius,
                    const OccupiedCells& seeds) {
   Labels labels = seeds.find(voxels.means.centres);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (std::size_t j = 0; j < labels.size(); ++j) {
     if (labels[j] != OccupiedCells::kEmpty) continue;
     voxels.tree.within(voxels.centre(j), radius, found);
-    const auto near = std::find_if(found.begin(), found.end(), [&](const Neighbor& neighbor) {
-      return label_of(labels, neighbor.index) != OccupiedCells::kEmpty;
+    const auto near = std::find_if(found.begin(), found.end(), [&](const Neighbour& neighbour) {
+      return label_of(labels, neighbour.index) != OccupiedCells::kEmpty;
     });
     if (near != found.end()) {
       labels[j] = label_of(labels, near->index);
@@ -148,7 +148,7 @@ class KMeans {
     for (std::size_t k = 0; k < clusters_.size(); ++k) {
       if (clusters_.sizes[k] == 0) continue;
       voxels_.tree.within(clusters_.centres[k], reach_, found_);
-      for (const Neighbor& voxel : found_) {
+      for (const Neighbour& voxel : found_) {
         const auto j = static_cast<std::size_t>(voxel.index);
         const double chi2 = chi_square(voxels_.means.descriptors.row(j), clusters_.descriptors.row(k));
         if (labels_[j] == static_cast<std::int32_t>(k)) next.include(voxel.distance_squared, chi2);
@@ -179,16 +179,16 @@ class KMeans {
   double rest_;
   double descriptor_weight_;
   std::vector<double> least_cost_;  // by voxel, over all rounds
-  std::vector<Neighbor> found_;
+  std::vector<Neighbour> found_;
 };
 
 // A voxel of whose surroundings, itself included, fewer than a third are in its cluster joins the nearest
 // other one. One after the other, each seeing what became of those before.
 void repair_connectivity(const Voxels& voxels, Labels& labels) {
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (std::size_t j = 0; j < labels.size(); ++j) {
     voxels.tree.nearest(voxels.centre(j), kSurroundings, found);
-    const auto shares = [&](const Neighbor& near) { return label_of(labels, near.index) == labels[j]; };
+    const auto shares = [&](const Neighbour& near) { return label_of(labels, near.index) == labels[j]; };
     const auto sharing = static_cast<std::size_t>(std::count_if(found.begin(), found.end(), shares));
     if (sharing < found.size() / 3)
       labels[j] = label_of(labels, std::find_if_not(found.begin(), found.end(), shares)->index);

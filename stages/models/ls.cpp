@@ -14,7 +14,7 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/models/chi2_search.h"
 
 namespace salbench {
@@ -41,13 +41,13 @@ std::vector<std::int32_t> largest(const ScalarField& field, std::size_t count) {
 // Centred, in units of R.
 std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
   if (points.empty()) throw InputError("the shape has no points");
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   const double radius = bounding_radius(points);
   if (!std::isfinite(radius)) throw InputError("the shape has a coordinate that is not finite");
   if (radius == 0) throw InputError("all points of the shape coincide");
   std::vector<Vec3> result;
   result.reserve(points.size());
-  for (const Vec3& p : points) result.push_back((p - center) / radius);
+  for (const Vec3& p : points) result.push_back((p - centre) / radius);
   return result;
 }
 
@@ -57,7 +57,7 @@ ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descri
                          Dissimilarity&& dissimilarity) {
   const std::size_t selected = std::max<std::size_t>(count_of(selected_share, points.size()), 1);
   ScalarField result(points.size());
-  Chi2Search(descriptors).for_each(selected, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+  Chi2Search(descriptors).for_each(selected, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     double sum = 0;
     for (const auto& [j, chi2] : nearest)
       sum += dissimilarity(static_cast<double>(chi2) / kHistogramTotal,

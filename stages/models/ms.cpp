@@ -14,7 +14,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/models/simplified.h"
 #include "stages/models/spectrum.h"
 
@@ -33,9 +33,9 @@ std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // From the centroid, in units of R: the solvers' thresholds are absolute.
 std::vector<Vec3> normalised(std::span<const Vec3> points, double radius) {
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   std::vector<Vec3> result(points.begin(), points.end());
-  for (Vec3& p : result) p = (p - center) / radius;
+  for (Vec3& p : result) p = (p - centre) / radius;
   return result;
 }
 
@@ -96,7 +96,7 @@ template <class Value>
 std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree,
                                 const std::vector<Value>& values) {
   std::vector<Value> result(points.size());
-  std::vector<Neighbor> nearest;
+  std::vector<Neighbour> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.nearest(points[i], kInterpolated, nearest);
     if (nearest.front().distance_squared == 0) nearest.resize(1);
@@ -164,12 +164,12 @@ ScalarField spectral_saliency(const Mesh& mesh, const Adjacency& adjacency, cons
 // How far the Gaussian mean of the shape around each point lies from the point.
 std::vector<Vec3> smoothing_moves(const std::vector<Vec3>& points, const KdTree& tree, double variance) {
   std::vector<Vec3> moves(points.size());
-  std::vector<Neighbor> around;
+  std::vector<Neighbour> around;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.within(points[i], kSmoothingReach * std::sqrt(variance), around);
     Vec3 sum = Vec3::Zero();
     double weights = 0;
-    for (const Neighbor& n : around) {
+    for (const Neighbour& n : around) {
       const double weight = std::exp(-n.distance_squared / (2 * variance));
       sum += weight * (points[index(n.index)] - points[i]);
       weights += weight;

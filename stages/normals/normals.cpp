@@ -9,7 +9,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/support.h"
 #include "stages/normals/orient.h"
 #include "stages/normals/planes.h"
@@ -88,9 +88,9 @@ OrientationSeed outermost(std::span<const Vec3> points, const Normals& normals,
 Normals hoppe_mesh_normals(const std::vector<Vec3>& points, const MeshNormalsOptions& options) {
   if (points.empty()) throw InputError("a mesh without vertices has no normals");
   const KdTree tree(points);
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   const auto outwards = [&](std::size_t i) -> Vec3 {
-    return points[i] == center ? Vec3::UnitZ() : Vec3(points[i] - center);
+    return points[i] == centre ? Vec3::UnitZ() : Vec3(points[i] - centre);
   };
   Normals normals = plane_normals(points, tree, plane_neighbours(points, tree, options), outwards);
   const auto seed_of = [&](std::span<const std::int32_t> part) { return outermost(points, normals, part); };

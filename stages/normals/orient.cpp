@@ -41,10 +41,10 @@ std::vector<Component> connected_parts(std::span<const Vec3> points, const KdTre
   const double longest_squared = graph.longest_edge * graph.longest_edge;
   const double least_cosine = std::cos(graph.largest_turn);
   DisjointSets sets(points.size());
-  std::vector<Neighbor> near;
+  std::vector<Neighbour> near;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.nearest(points[i], static_cast<std::size_t>(graph.neighbours) + 1, near);
-    for (const Neighbor& n : near) {
+    for (const Neighbour& n : near) {
       const auto j = static_cast<std::size_t>(n.index);
       if (j > i && n.distance_squared <= longest_squared &&
           std::abs(normals[i].dot(normals[j])) >= least_cosine)

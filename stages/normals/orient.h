@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
 
 namespace salbench {

@@ -21,16 +21,16 @@ Vec3 perpendicular(const Vec3& preferred, const Vec3& line) {
 Normals plane_normals(std::span<const Vec3> points, const KdTree& tree, std::int32_t neighbours,
                       const PreferredDirection& preferred) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  std::vector<Neighbor> near;
+  std::vector<Neighbour> near;
   Normals normals(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.nearest(points[i], static_cast<std::size_t>(neighbours), near);
     // Relative to the point itself: far from the origin, sums of squares would lose the shape.
     Vec3 mean = Vec3::Zero();
-    for (const Neighbor& n : near) mean += points[static_cast<std::size_t>(n.index)] - points[i];
+    for (const Neighbour& n : near) mean += points[static_cast<std::size_t>(n.index)] - points[i];
     mean /= static_cast<double>(near.size());
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const Neighbor& n : near) {
+    for (const Neighbour& n : near) {
       const Vec3 p = points[static_cast<std::size_t>(n.index)] - points[i] - mean;
       covariance += p * p.transpose();
     }

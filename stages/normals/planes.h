@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
 
 namespace salbench {

@@ -19,7 +19,7 @@ struct Summary {
 };
 
 // Mean, standard deviation and Student's confidence interval mean -+ t(n - 1) sd / sqrt(n).
-Summary summarize(std::span<const double> values);
+Summary summarise(std::span<const double> values);
 
 // The value below which a fraction q of the defined values lies, 0 <= q <= 1, linear between the values at
 // q (n - 1); NaN where there is none. [hyndman1996, definition 7]

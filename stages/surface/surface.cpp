@@ -20,7 +20,7 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/support.h"
 
 namespace salbench {
@@ -40,12 +40,12 @@ void silence_pcl() {
 }
 
 Cloud::Ptr cloud_in_spacings(const std::vector<Vec3>& points, const Normals& normals, double spacing) {
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   auto cloud = pcl::make_shared<Cloud>();
   cloud->reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     pcl::PointNormal p;
-    p.getVector3fMap() = ((points[i] - center) / spacing).cast<float>();
+    p.getVector3fMap() = ((points[i] - centre) / spacing).cast<float>();
     p.getNormalVector3fMap() = normals[i].cast<float>();
     cloud->push_back(p);
   }

@@ -21,8 +21,8 @@ Adjacency adjacency_of(std::size_t n, const Edges& edges) {
       if (b == i) row.push_back(a);
     }
     std::sort(row.begin(), row.end());
-    adjacency.neighbors.insert(adjacency.neighbors.end(), row.begin(), row.end());
-    adjacency.offsets.push_back(static_cast<std::int32_t>(adjacency.neighbors.size()));
+    adjacency.neighbours.insert(adjacency.neighbours.end(), row.begin(), row.end());
+    adjacency.offsets.push_back(static_cast<std::int32_t>(adjacency.neighbours.size()));
   }
   return adjacency;
 }
