@@ -152,8 +152,8 @@ GroupScorer group_scorer(const Histogram& reference, const MetricsOptions& optio
 
 std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
   if (!config.simulated())
-    return [](const DatasetItem& item) { return item.picks.size() >= kFewestParticipants; };
-  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kFewestParticipants;
+    return [](const DatasetItem& item) { return item.picks.size() >= kMinParticipants; };
+  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
   return [enough](const DatasetItem&) { return enough; };
 }
 
@@ -173,7 +173,7 @@ void add_people(ChainBuilder& chain, const Config& config, const Model& model) {
              .seeded = true,
              .applies = has_participants(config),
              .run = [scorer](const StageInputs& in) -> Value {
-               return one_against_rest(in.get<Mesh>(0), in.get<GroundTruth>(1), scorer(in));
+               return leave_one_out(in.get<Mesh>(0), in.get<GroundTruth>(1), scorer(in));
              }});
   chain.add({.name = curve,
              .version = model.version,

@@ -1,6 +1,6 @@
-// The simplified histograms (SPFH) are computed once for every point that is some asked point's neighbour,
-// and combined then. Differences from the original publication are those of PCL and of the benchmark's
-// authors: absolute values of the three features, and the weights that FpfhWeighting names.
+// The simplified histograms (SPFH) of the requested points and their neighbours are computed once each, and
+// then combined. Differences from the original publication are those of PCL and of the benchmark's authors:
+// absolute values of the three features, and the weights that FpfhWeighting names.
 #include "stages/core/fpfh.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kBlockBins = 11;  // of each feature
 constexpr std::size_t kBins = kFpfhBins;
-constexpr double kBlockTotal = 100;      // of each block in the published weighting
-constexpr double kLargestWeight = 1e12;  // R over a distance: nearer than that, it is rounding
+constexpr double kBlockTotal = 100;  // of each block in the published weighting
+constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distance is rounding
 
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
@@ -33,23 +33,23 @@ std::size_t bin_of_magnitude(double value, double limit) {
 // The SPFHs of some points. Row of point i: rows[row_of[i] * 33 ...].
 struct SimplifiedHistograms {
   std::vector<float> rows;
-  std::vector<std::size_t> row_of;  // by point; valid only for the points asked for
+  std::vector<std::size_t> row_of;  // by point; valid only for the requested points
 
   const float* of(std::int32_t point) const {
     return rows.data() + row_of[static_cast<std::size_t>(point)] * kBins;
   }
 };
 
-// neighbours.of(i) belongs to the point asked[i].
+// neighbours.of(i) belongs to the point requested[i].
 SimplifiedHistograms simplified_histograms(std::span<const Vec3> points, std::span<const Vec3> normals,
-                                           std::span<const std::int32_t> asked,
+                                           std::span<const std::int32_t> requested,
                                            const Neighbourhoods& neighbours, bool swap) {
-  SimplifiedHistograms result{std::vector<float>(asked.size() * kBins),
+  SimplifiedHistograms result{std::vector<float>(requested.size() * kBins),
                               std::vector<std::size_t>(points.size())};
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    result.row_of[static_cast<std::size_t>(asked[i])] = i;
-    const Vec3& p = at(points, asked[i]);
-    const Vec3& n_p = at(normals, asked[i]);
+  for (std::size_t i = 0; i < requested.size(); ++i) {
+    result.row_of[static_cast<std::size_t>(requested[i])] = i;
+    const Vec3& p = at(points, requested[i]);
+    const Vec3& n_p = at(normals, requested[i]);
     const auto found = neighbours.of(i);
     const auto distances_squared = neighbours.distances_squared_of(i);
     std::array<double, kBins> votes{};
@@ -67,8 +67,8 @@ SimplifiedHistograms simplified_histograms(std::span<const Vec3> points, std::sp
   return result;
 }
 
-// Weights relative to that of the nearest neighbour, which cancels in the scaling: no distance overflows
-// them.
+// Weights are relative to that of the nearest neighbour, which cancels in the scaling, so that they never
+// overflow.
 void combine_published(std::span<const std::int32_t> found, std::span<const double> distances_squared,
                        const SimplifiedHistograms& spfh, std::array<double, kBins>& sum) {
   const auto apart = std::upper_bound(distances_squared.begin(), distances_squared.end(), 0.0);
@@ -93,7 +93,7 @@ void combine_text(std::int32_t point, double unit, std::span<const std::int32_t>
   for (std::size_t b = 0; b < kBins; ++b) sum[b] = static_cast<double>(own[b]);
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (distances_squared[k] == 0) continue;
-    const double weight = std::min(unit / std::sqrt(distances_squared[k]), kLargestWeight) / others;
+    const double weight = std::min(unit / std::sqrt(distances_squared[k]), kMaxWeight) / others;
     const float* row = spfh.of(found[k]);
     for (std::size_t b = 0; b < kBins; ++b) sum[b] += weight * static_cast<double>(row[b]);
   }
@@ -123,7 +123,8 @@ void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) 
   const auto bad =
       std::find_if_not(normals.begin(), normals.end(), [](const Vec3& n) { return n.allFinite(); });
   if (bad != normals.end())
-    throw InputError("the normal of point " + std::to_string(bad - normals.begin()) + " is not finite");
+    throw InputError("the normal of point " + std::to_string(bad - normals.begin()) +
+                     " (0-based) is not finite");
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ bool closer(const Neighbour& a, const Neighbour& b) {
                                                   : a.index < b.index;
 }
 
-// Above the limit by more than rounding, also where the limit is 0.
+// Raises the limit by more than rounding, even if it is 0.
 double widened(double limit) { return limit * (1 + 1e-12) + std::numeric_limits<double>::min(); }
 
 // Result set of nanoflann: keeps the k best by (distance, index) in a sorted array.
@@ -42,8 +42,8 @@ class NearestSet {
   bool full() const { return best_.size() == k_; }
   std::size_t size() const { return best_.size(); }
   double worstDist() const {
-    // A little more than the k-th distance: candidates exactly there are still offered, so that the index
-    // can decide between them, whatever the tree's own bounds have lost to rounding.
+    // Slightly above the k-th distance, so that the tree still offers candidates exactly there, despite the
+    // rounding of its own bounds, and the index can decide between them.
     return full() ? widened(best_.back().distance_squared) : std::numeric_limits<double>::max();
   }
   bool addPoint(double distance_squared, std::uint32_t index) {

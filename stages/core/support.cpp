@@ -26,10 +26,10 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw InputError("the shape has no points");
   SupportRadius support{factor * bounding_radius(points), 0};
-  // Ends for finite coordinates alone: at 2 R every point is within reach of every other.
+  // The loop below ends only for finite coordinates: at 2 R every point reaches every other.
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
     throw InputError("the shape has a coordinate that is not finite");
-  const auto enough = static_cast<std::int32_t>(std::min<std::size_t>(kFewestNeighbours, points.size() - 1));
+  const auto enough = static_cast<std::int32_t>(std::min<std::size_t>(kMinMeanNeighbours, points.size() - 1));
   while (true) {
     support.neighbours = static_cast<std::int32_t>(mean_neighbour_count(points, tree, support.radius));
     if (support.neighbours >= enough) return support;

@@ -1,4 +1,4 @@
-// The descriptors of a shape that several models share.
+// The descriptors of a shape, shared by several models.
 #pragma once
 
 #include <array>

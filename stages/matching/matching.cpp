@@ -19,8 +19,8 @@ Edges cumulative(const Histogram& density) {
   return sums;
 }
 
-// Piecewise linear through the points (from, to), clamped at both ends. Where `from` stands still, the last
-// of the equal points counts. Ascending `from`.
+// Piecewise linear through the points (from, to), clamped at both ends. `from` ascends; the last of equal
+// entries counts.
 double interpolated(double x, const Edges& from, const Edges& to) {
   if (x < from.front()) return to.front();
   if (x >= from.back()) return to.back();

@@ -64,7 +64,7 @@ inline Histogram reference_histogram(const path& folder) {
   return histogram;
 }
 
-// One line of published_scores.csv (item,model,auc,nss,cc); NaN where it has none.
+// One line of published_scores.csv (item,model,auc,nss,cc); NaN if the line has none.
 inline Scores scores(const path& folder, int mesh, const std::string& model) {
   std::ifstream in = opened(folder / "reference" / "published_scores.csv");
   const std::string start = std::to_string(mesh) + "," + model + ",";

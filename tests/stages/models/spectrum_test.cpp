@@ -27,7 +27,7 @@ Adjacency adjacency_of(std::size_t n, const Edges& edges) {
   return adjacency;
 }
 
-// Of edges of unit length.
+// All edges have unit length.
 std::vector<double> path_spectrum(int n) {
   std::vector<double> values;
   for (int k = 0; k < n; ++k) values.push_back(2 - 2 * std::cos(std::numbers::pi * k / n));

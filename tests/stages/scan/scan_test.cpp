@@ -233,7 +233,7 @@ TEST(SimulateScan, SlenderShapeThatPassesTheCameraIsCutAtTheWidestField) {
     const Vec3 ray = p - scan.camera;
     widest = std::max(widest, std::acos(forward.dot(ray) / ray.norm()));
   }
-  EXPECT_GT(widest, 0.9 * kWidestHalfField);
+  EXPECT_GT(widest, 0.9 * kMaxHalfField);
   EXPECT_LT(widest, std::numbers::pi / 2);
 }
 
