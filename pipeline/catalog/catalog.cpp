@@ -125,7 +125,7 @@ void add_human_performance(Catalog& catalog, const ShapeRows& shape, const RowOf
       Shapes::meshes, {scores, version, has_participants(config)},
       [scores](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
                const MetricsOptions& options, const RandomSource& random) {
-        return one_against_rest(shape_of, truth, group_scorer(reference, options, random.rng(scores)));
+        return leave_one_out(shape_of, truth, group_scorer(reference, options, random.rng(scores)));
       },
       mesh, shape.ground_truth, shape.reference, section("metrics", config.metrics));
   catalog.add(

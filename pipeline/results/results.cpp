@@ -82,7 +82,7 @@ Table summary_table(const std::vector<ResultRow>& rows) {
       std::vector<double> values;
       for (const ResultRow& row : rows)
         if (row.dataset == dataset && row.model == model) values.push_back(value_of(row.scores, metric.name));
-      const Summary summary = summarize(values);
+      const Summary summary = summarise(values);
       table.rows.push_back({dataset, model, std::string(metric.name), summary.n, summary.mean, summary.sd,
                             summary.ci_low, summary.ci_high});
     }

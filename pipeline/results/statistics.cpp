@@ -47,7 +47,7 @@ void add_class_rows(Table& table, const std::string& dataset, const std::string&
     if (row.dataset == dataset && row.category == category) by_model[row.model].push_back(value_of(row.scores, "auc"));
   std::vector<double> means;
   const auto add = [&](const std::string& model, const std::vector<double>& values) {
-    const Summary summary = summarize(values);
+    const Summary summary = summarise(values);
     table.rows.push_back(
         {dataset, category, model, summary.n, summary.mean, (summary.ci_high - summary.ci_low) / 2});
     means.push_back(summary.mean);
@@ -71,7 +71,7 @@ void add_significance_rows(Table& table, const std::vector<DatasetAndModel>& mod
       std::vector<double> differences;
       for (std::size_t k = 0; k < x.size(); ++k) differences.push_back(x[k] - y[k]);
       added.push_back({models[i].dataset, std::string(metric.name), models[i].model, models[j].model,
-                       static_cast<std::int64_t>(x.size()), summarize(differences).mean, rank_sum.z,
+                       static_cast<std::int64_t>(x.size()), summarise(differences).mean, rank_sum.z,
                        rank_sum.p_value, signed_rank.statistic, signed_rank.p_value});
       p_values.push_back(signed_rank.p_value);
     }
@@ -120,7 +120,7 @@ Table human_curve_table(const std::vector<HumanCurve>& curves) {
       std::vector<double> values;
       for (const HumanCurve& curve : curves)
         if (i < curve.size()) values.push_back(value_of(curve[i], metric.name));
-      const Summary summary = summarize(values);
+      const Summary summary = summarise(values);
       table.rows.push_back({static_cast<std::int64_t>(i + 1), std::string(metric.name), summary.n, summary.mean,
                             summary.sd, summary.ci_low, summary.ci_high});
     }

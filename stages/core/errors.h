@@ -20,7 +20,7 @@ struct ConfigError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// One option has a value it cannot have; who read the option adds where it stands.
+// An option has an invalid value. The reader of the option adds where it was set.
 struct OptionError : ConfigError {
   OptionError(std::string option_key, std::string wrong)
       : ConfigError(option_key + " " + wrong), key(std::move(option_key)), what_is_wrong(std::move(wrong)) {}
@@ -33,7 +33,7 @@ struct StorageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Within a handler, of any other exception: what to tell of it (exit status 70).
+// The message for any other exception (exit status 70). Call it inside a catch block.
 inline std::string current_defect() {
   try {
     throw;

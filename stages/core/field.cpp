@@ -7,7 +7,7 @@
 
 namespace salbench {
 
-ScalarField min_max_normalized(std::span<const double> field) {
+ScalarField min_max_normalised(std::span<const double> field) {
   ScalarField result(field.begin(), field.end());
   for (double& value : result)
     if (std::isnan(value)) value = 0;

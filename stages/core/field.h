@@ -10,12 +10,12 @@
 namespace salbench {
 
 // Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. [tasse2016]
-ScalarField min_max_normalized(std::span<const double> field);
+ScalarField min_max_normalised(std::span<const double> field);
 
 bool is_constant(std::span<const double> field);  // also true of an empty field
 
 // Density histogram over the field's own range [min, max]: bin i holds count_i / (n * width_i), the last bin
-// closed on the right. Of a constant field the range is [value - 0.5, value + 0.5], as NumPy has it.
+// closed on the right. The range of a constant field is [value - 0.5, value + 0.5], as in NumPy.
 struct BinnedDensity {
   Histogram density;
   std::array<double, kHistogramBins + 1> edges;

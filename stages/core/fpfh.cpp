@@ -1,6 +1,6 @@
-// The simplified histograms (SPFH) are computed once for every point that is some asked point's neighbour,
-// and combined then. Differences from the original publication are those of PCL and of the benchmark's
-// authors: absolute values of the three features, and the weights that FpfhWeighting names.
+// The simplified histograms (SPFH) of the requested points and their neighbours are computed once each, and
+// then combined. Differences from the original publication are those of PCL and of the benchmark's authors:
+// absolute values of the three features, and the weights that FpfhWeighting names.
 #include "stages/core/fpfh.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kBlockBins = 11;  // of each feature
 constexpr std::size_t kBins = kFpfhBins;
-constexpr double kBlockTotal = 100;      // of each block in the published weighting
-constexpr double kLargestWeight = 1e12;  // R over a distance: nearer than that, it is rounding
+constexpr double kBlockTotal = 100;  // of each block in the published weighting
+constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distance is rounding
 
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
@@ -33,25 +33,25 @@ std::size_t bin_of_magnitude(double value, double limit) {
 // The SPFHs of some points. Row of point i: rows[row_of[i] * 33 ...].
 struct SimplifiedHistograms {
   std::vector<float> rows;
-  std::vector<std::size_t> row_of;  // by point; valid only for the points asked for
+  std::vector<std::size_t> row_of;  // by point; valid only for the requested points
 
   const float* of(std::int32_t point) const {
     return rows.data() + row_of[static_cast<std::size_t>(point)] * kBins;
   }
 };
 
-// neighbors.of(i) belongs to the point asked[i].
+// neighbours.of(i) belongs to the point requested[i].
 SimplifiedHistograms simplified_histograms(std::span<const Vec3> points, std::span<const Vec3> normals,
-                                           std::span<const std::int32_t> asked,
-                                           const Neighborhoods& neighbors, bool swap) {
-  SimplifiedHistograms result{std::vector<float>(asked.size() * kBins),
+                                           std::span<const std::int32_t> requested,
+                                           const Neighbourhoods& neighbours, bool swap) {
+  SimplifiedHistograms result{std::vector<float>(requested.size() * kBins),
                               std::vector<std::size_t>(points.size())};
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    result.row_of[static_cast<std::size_t>(asked[i])] = i;
-    const Vec3& p = at(points, asked[i]);
-    const Vec3& n_p = at(normals, asked[i]);
-    const auto found = neighbors.of(i);
-    const auto distances_squared = neighbors.distances_squared_of(i);
+  for (std::size_t i = 0; i < requested.size(); ++i) {
+    result.row_of[static_cast<std::size_t>(requested[i])] = i;
+    const Vec3& p = at(points, requested[i]);
+    const Vec3& n_p = at(normals, requested[i]);
+    const auto found = neighbours.of(i);
+    const auto distances_squared = neighbours.distances_squared_of(i);
     std::array<double, kBins> votes{};
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (distances_squared[k] == 0) continue;
@@ -67,8 +67,8 @@ SimplifiedHistograms simplified_histograms(std::span<const Vec3> points, std::sp
   return result;
 }
 
-// Weights relative to that of the nearest neighbour, which cancels in the scaling: no distance overflows
-// them.
+// Weights are relative to that of the nearest neighbour, which cancels in the scaling, so that they never
+// overflow.
 void combine_published(std::span<const std::int32_t> found, std::span<const double> distances_squared,
                        const SimplifiedHistograms& spfh, std::array<double, kBins>& sum) {
   const auto apart = std::upper_bound(distances_squared.begin(), distances_squared.end(), 0.0);
@@ -93,7 +93,7 @@ void combine_text(std::int32_t point, double unit, std::span<const std::int32_t>
   for (std::size_t b = 0; b < kBins; ++b) sum[b] = static_cast<double>(own[b]);
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (distances_squared[k] == 0) continue;
-    const double weight = std::min(unit / std::sqrt(distances_squared[k]), kLargestWeight) / others;
+    const double weight = std::min(unit / std::sqrt(distances_squared[k]), kMaxWeight) / others;
     const float* row = spfh.of(found[k]);
     for (std::size_t b = 0; b < kBins; ++b) sum[b] += weight * static_cast<double>(row[b]);
   }
@@ -107,11 +107,11 @@ std::vector<Vec3> points_at(std::span<const Vec3> points, std::span<const std::i
 }
 
 // The subset and all its neighbours, ascending.
-std::vector<std::int32_t> with_neighbors(std::size_t n, std::span<const std::int32_t> subset,
-                                         const Neighborhoods& neighbors) {
+std::vector<std::int32_t> with_neighbours(std::size_t n, std::span<const std::int32_t> subset,
+                                          const Neighbourhoods& neighbours) {
   std::vector<bool> taken(n, false);
   for (const std::int32_t i : subset) taken[static_cast<std::size_t>(i)] = true;
-  for (const std::int32_t i : neighbors.indices) taken[static_cast<std::size_t>(i)] = true;
+  for (const std::int32_t i : neighbours.indices) taken[static_cast<std::size_t>(i)] = true;
   std::vector<std::int32_t> result;
   for (std::size_t i = 0; i < n; ++i)
     if (taken[i]) result.push_back(static_cast<std::int32_t>(i));
@@ -123,7 +123,8 @@ void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) 
   const auto bad =
       std::find_if_not(normals.begin(), normals.end(), [](const Vec3& n) { return n.allFinite(); });
   if (bad != normals.end())
-    throw InputError("the normal of point " + std::to_string(bad - normals.begin()) + " is not finite");
+    throw InputError("the normal of point " + std::to_string(bad - normals.begin()) +
+                     " (0-based) is not finite");
 }
 
 }  // namespace
@@ -147,23 +148,23 @@ DarbouxTriple pair_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const
   return {v.dot(*other), u->dot(line), std::atan2(u->cross(v).dot(*other), u->dot(*other))};
 }
 
-Neighborhoods neighborhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support) {
+Neighbourhoods neighbourhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support) {
   CHECK_LE(0, support.neighbours);
-  Neighborhoods result;
+  Neighbourhoods result;
   result.offsets.reserve(queries.size() + 1);
   result.offsets.push_back(0);
   const auto k = static_cast<std::size_t>(support.neighbours);
   result.indices.reserve(queries.size() * k);
   result.distances_squared.reserve(queries.size() * k);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (const Vec3& query : queries) {
     if (k > 0)
       tree.nearest(query, k, found);
     else
       tree.within(query, support.radius, found);
-    for (const Neighbor& neighbor : found) {
-      result.indices.push_back(neighbor.index);
-      result.distances_squared.push_back(neighbor.distance_squared);
+    for (const Neighbour& neighbour : found) {
+      result.indices.push_back(neighbour.index);
+      result.distances_squared.push_back(neighbour.distance_squared);
     }
     result.offsets.push_back(result.indices.size());
   }
@@ -174,14 +175,14 @@ Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, co
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset) {
   CHECK_EQ(points.size(), tree.size());
   check_normals(points, normals);
-  const Neighborhoods of_subset = neighborhoods(tree, points_at(points, subset), support);
-  const std::vector<std::int32_t> needed = with_neighbors(points.size(), subset, of_subset);
+  const Neighbourhoods of_subset = neighbourhoods(tree, points_at(points, subset), support);
+  const std::vector<std::int32_t> needed = with_neighbours(points.size(), subset, of_subset);
   const bool swap = weighting == FpfhWeighting::published;
   const SimplifiedHistograms spfh =
       std::equal(needed.begin(), needed.end(), subset.begin(), subset.end())
           ? simplified_histograms(points, normals, needed, of_subset, swap)
           : simplified_histograms(points, normals, needed,
-                                  neighborhoods(tree, points_at(points, needed), support), swap);
+                                  neighbourhoods(tree, points_at(points, needed), support), swap);
 
   const double unit = weighting == FpfhWeighting::text ? bounding_radius(points) : 1;
   Descriptors result{std::vector<float>(subset.size() * kBins), support.radius, support.neighbours};

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/options.h"
 #include "stages/core/types.h"
 
@@ -20,20 +20,20 @@ struct DarbouxTriple {
   double theta = 0;  // atan2(w . n_q, u . n_q), in [-pi, pi]
 };
 
-// All 0 for coincident points and where the frame is undefined (q straight above p). Normals of unit length.
-// `swap`: the point whose normal makes the smaller angle with the line between them becomes the source, which
+// All 0 if the points coincide or the frame is undefined (q straight above p). Normals have unit length. With
+// `swap` the point whose normal makes the smaller angle with the line between them becomes the source, which
 // makes the triple symmetric in p and q. [rusu2009]
 DarbouxTriple pair_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_q, bool swap);
 
-// What counts as a neighbour of a point: so many nearest points or, where that is 0, all within the radius.
+// The neighbours of a point: its `neighbours` nearest points or, if that is 0, all points within `radius`.
 struct Support {
   std::int32_t neighbours = 0;  // the point itself included
   double radius = 0;            // in the shape's unit, the boundary included
 };
 
-// Compressed rows: the neighbours of query i, itself included, ordered by (distance, index), are the entries
-// offsets[i] .. offsets[i + 1] - 1.
-struct Neighborhoods {
+// The neighbours of m queries in compressed rows. Those of query i, itself included, are the entries
+// offsets[i] .. offsets[i + 1] - 1, ordered by (distance, index).
+struct Neighbourhoods {
   std::vector<std::size_t> offsets;       // m + 1
   std::vector<std::int32_t> indices;      // point index
   std::vector<double> distances_squared;  // > 0 except for the point itself and those coincident with it
@@ -47,7 +47,7 @@ struct Neighborhoods {
   }
 };
 
-Neighborhoods neighborhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support);
+Neighbourhoods neighbourhoods(const KdTree& tree, std::span<const Vec3> queries, const Support& support);
 
 enum class FpfhWeighting {
   published,  // sum of SPFH(q) / |p - q|^2 over the neighbours, each block of 11 bins scaled to 100
@@ -60,7 +60,7 @@ struct EnumNames<FpfhWeighting> {
 
 // The histograms (m x 33) of the points in `subset`, in its order, or of all points. `tree` is over `points`;
 // normals n x 3, unit. A point without neighbours at a distance has an empty histogram, all 0. Throws
-// InputError where a normal is not finite. [rusu2009] [tasse2016]
+// InputError if a normal is not finite. [rusu2009] [tasse2016]
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset);
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,

@@ -20,7 +20,7 @@ const Vec3& corner(const Mesh& mesh, const Triangle& face, std::size_t i) {
 void check_coordinates(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     if (!mesh.vertices[i].allFinite())
-      throw InputError("vertex " + std::to_string(i) + " has a coordinate that is not a finite number");
+      throw InputError("vertex " + std::to_string(i) + " (0-based) has a coordinate that is not finite");
 }
 
 void check_indices(const Mesh& mesh) {
@@ -28,17 +28,17 @@ void check_indices(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
     for (const std::int32_t v : mesh.faces[i])
       if (v < 0 || v >= n)
-        throw InputError("face " + std::to_string(i) + " names vertex " + std::to_string(v) + " of " +
-                         std::to_string(n) + " (counted from 0)");
+        throw InputError("face " + std::to_string(i) + " (0-based) refers to vertex " + std::to_string(v) +
+                         ", but the vertices are 0 to " + std::to_string(n - 1));
 }
 
 bool repeats_a_vertex(const Triangle& face) {
   return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
 }
 
-// Coordinates carry a rounding of half a unit in the last place, and a height over the longest edge that is
-// no larger says nothing: collinear vertices rarely come out at exactly zero. Lengths are taken relative to
-// that edge, so the test is the same at any scale.
+// Collinear vertices rarely have a height of exactly zero, because each coordinate is rounded to half a unit
+// in the last place. A height over the longest edge within that rounding counts as zero. Lengths are relative
+// to that edge, so the test is the same at any scale.
 bool has_no_area(const Mesh& mesh, const Triangle& face) {
   double longest = 0, largest_coordinate = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -52,7 +52,7 @@ bool has_no_area(const Mesh& mesh, const Triangle& face) {
   return !(relative_height > 4 * std::numeric_limits<double>::epsilon() * (largest_coordinate / longest));
 }
 
-// Of the faces over the same vertices the first stays.
+// Keeps the first of several faces over the same vertices.
 std::int64_t drop_duplicate_faces(std::vector<Triangle>& faces) {
   std::vector<std::pair<Triangle, std::size_t>> by_vertices(faces.size());
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -74,7 +74,7 @@ void count_parts(const Mesh& mesh, MeshReport& report) {
   const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
   for (std::size_t i = 0; i < adjacency.size(); ++i) report.isolated_vertices += adjacency.of(i).empty();
   const std::vector<std::int32_t> labels = connected_components(adjacency);
-  // Each isolated vertex is a component of its own to the labelling.
+  // The labelling counts each isolated vertex as a component.
   const std::int64_t all = 1 + *std::max_element(labels.begin(), labels.end());
   report.components = static_cast<std::int32_t>(all - report.isolated_vertices);
 }
@@ -111,7 +111,7 @@ void count_edges(std::span<const Triangle> faces, MeshReport& report) {
 
 CheckedMesh check_mesh(Mesh mesh) {
   if (mesh.vertices.empty()) throw InputError("the mesh has no vertices");
-  if (mesh.faces.empty()) throw InputError("the mesh has no faces: point clouds cannot be used");
+  if (mesh.faces.empty()) throw InputError("no faces: this is a point cloud, and salbench needs a mesh");
   check_coordinates(mesh);
   check_indices(mesh);
   MeshReport report;
@@ -120,26 +120,26 @@ CheckedMesh check_mesh(Mesh mesh) {
   count_edges(mesh.faces, report);
   report.degenerate_faces += static_cast<std::int64_t>(
       std::erase_if(mesh.faces, [&](const Triangle& face) { return has_no_area(mesh, face); }));
-  if (mesh.faces.empty()) throw InputError("none of the mesh's faces has an area");
+  if (mesh.faces.empty()) throw InputError("all faces are degenerate: each repeats a vertex or has no area");
   if (!std::isnormal(surface_area(mesh)))
-    throw InputError("the mesh's surface area is beyond floating point: scale its coordinates");
+    throw InputError("the surface area overflows or underflows: scale the coordinates");
   count_parts(mesh, report);
   return {std::move(mesh), report};
 }
 
 std::vector<std::string> warnings(const MeshReport& report) {
   std::vector<std::string> lines;
-  const auto warn_of = [&](std::int64_t count, std::string_view what) {
+  const auto warn_about = [&](std::int64_t count, std::string_view what) {
     if (count > 0) lines.push_back(std::to_string(count) + " " + std::string(what));
   };
-  warn_of(report.degenerate_faces, "degenerate faces (repeated vertex or no area) dropped");
-  warn_of(report.duplicate_faces, "duplicate faces dropped");
-  warn_of(report.isolated_vertices, "isolated vertices kept: no face uses them");
-  warn_of(report.components > 1 ? report.components : 0, "connected components: the surface is in pieces");
-  warn_of(report.boundary_edges, "boundary edges: the surface is not closed");
-  warn_of(report.nonmanifold_edges, "edges in more than two faces: the surface is not a manifold");
-  warn_of(report.misoriented_edges,
-          "edges between faces of opposite orientation: normals may be wrong there");
+  warn_about(report.degenerate_faces, "degenerate faces (repeated vertex or no area) dropped");
+  warn_about(report.duplicate_faces, "duplicate faces dropped");
+  warn_about(report.isolated_vertices, "isolated vertices kept: no face uses them");
+  warn_about(report.components > 1 ? report.components : 0, "connected components: the surface is in pieces");
+  warn_about(report.boundary_edges, "boundary edges: the surface is not closed");
+  warn_about(report.nonmanifold_edges, "edges in more than two faces: the surface is not a manifold");
+  warn_about(report.misoriented_edges,
+             "edges between faces of opposite orientation: normals may be wrong there");
   return lines;
 }
 

@@ -1,4 +1,4 @@
-// What a mesh must be before anything is computed from it, and what is odd about it.
+// Validation of a mesh before anything is computed from it, and counts of its defects.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace salbench {
 struct MeshReport {
   std::int64_t degenerate_faces = 0;   // dropped: a repeated vertex, or no area
   std::int64_t duplicate_faces = 0;    // dropped: the same three vertices as an earlier face, in any order
-  std::int64_t isolated_vertices = 0;  // kept: in none of the faces left
-  std::int32_t components = 0;         // connected parts of the surface; isolated vertices are none
+  std::int64_t isolated_vertices = 0;  // kept: no remaining face uses them
+  std::int32_t components = 0;         // connected parts of the surface; isolated vertices do not count
   // Faces without area count here, since they hold a surface together:
   std::int64_t boundary_edges = 0;     // in one face only
   std::int64_t nonmanifold_edges = 0;  // in three faces or more
@@ -25,13 +25,13 @@ struct CheckedMesh {
   MeshReport report;
 };
 
-// Drops the faces that cannot be used, and counts what is odd but can be. A face has no area if its height is
-// within the rounding of its coordinates. Throws InputError for a mesh without a usable face, a face that
-// names a vertex which does not exist, a coordinate that is not finite, or a size that floating point cannot
-// square.
+// Drops the faces that cannot be used, and counts the defects that do no harm. A face has no area if its
+// height is within the rounding of its coordinates. Throws InputError for a mesh without a usable face, a
+// face with a vertex index out of range, a coordinate that is not finite, or coordinates whose squares
+// overflow or underflow.
 CheckedMesh check_mesh(Mesh mesh);
 
-// One line for each thing that is odd.
+// One line per kind of defect; empty for a clean mesh.
 std::vector<std::string> warnings(const MeshReport& report);
 
 }  // namespace salbench

@@ -21,9 +21,9 @@ Vec3 centroid(std::span<const Vec3> points) {
 }
 
 double bounding_radius(std::span<const Vec3> points) {
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   double largest = 0;
-  for (const Vec3& p : points) largest = std::max(largest, (p - center).squaredNorm());
+  for (const Vec3& p : points) largest = std::max(largest, (p - centre).squaredNorm());
   return std::sqrt(largest);
 }
 
@@ -63,10 +63,10 @@ Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) 
   std::erase_if(edges, [](const auto& edge) { return edge.first == edge.second; });  // degenerate faces
 
   Adjacency adjacency{std::vector<std::int32_t>(n_points + 1, 0), {}};
-  adjacency.neighbors.reserve(edges.size());
+  adjacency.neighbours.reserve(edges.size());
   for (const auto& [from, to] : edges) {
     ++adjacency.offsets[static_cast<std::size_t>(from) + 1];
-    adjacency.neighbors.push_back(to);
+    adjacency.neighbours.push_back(to);
   }
   for (std::size_t i = 0; i < n_points; ++i) adjacency.offsets[i + 1] += adjacency.offsets[i];
   return adjacency;
@@ -84,10 +84,10 @@ std::vector<std::int32_t> connected_components(const Adjacency& adjacency) {
       const std::size_t i = open.back();
       open.pop_back();
       for (const std::int32_t j : adjacency.of(i)) {
-        const auto neighbor = static_cast<std::size_t>(j);
-        if (label[neighbor] >= 0) continue;
-        label[neighbor] = next;
-        open.push_back(neighbor);
+        const auto neighbour = static_cast<std::size_t>(j);
+        if (label[neighbour] >= 0) continue;
+        label[neighbour] = next;
+        open.push_back(neighbour);
       }
     }
     ++next;

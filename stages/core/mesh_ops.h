@@ -20,15 +20,15 @@ Vec3 face_area_vector(const Mesh& mesh, const Triangle& face);
 double surface_area(const Mesh& mesh);
 Vec3 area_centroid(const Mesh& mesh);  // area-weighted mean of the face centres; the surface area is > 0
 
-// Compressed rows: the sorted, distinct neighbours of i along edges are
-// neighbors[offsets[i]] .. neighbors[offsets[i + 1] - 1].
+// Neighbours along edges in compressed rows: those of point i, sorted and distinct, are
+// neighbours[offsets[i]] .. neighbours[offsets[i + 1] - 1].
 struct Adjacency {
   std::vector<std::int32_t> offsets;  // n + 1
-  std::vector<std::int32_t> neighbors;
+  std::vector<std::int32_t> neighbours;
 
   std::size_t size() const { return offsets.size() - 1; }
   std::span<const std::int32_t> of(std::size_t i) const {
-    return {neighbors.data() + offsets[i], neighbors.data() + offsets[i + 1]};
+    return {neighbours.data() + offsets[i], neighbours.data() + offsets[i + 1]};
   }
 };
 
@@ -42,8 +42,8 @@ struct Reached {
   double distance;
 };
 
-// Shortest paths along edges from one source, the source included, cut at distance <= reach. The workspace
-// is reused between calls on the same mesh, so a small reach costs only what it reaches.
+// Shortest paths along edges from one source, the source included, up to distance <= reach. The workspace is
+// reused between calls on the same mesh, so the cost of a call depends only on the points reached.
 class EdgeDistances {
  public:
   EdgeDistances(std::span<const Vec3> points, const Adjacency& adjacency);

@@ -1,4 +1,4 @@
-// Progress of a long loop, for whoever waits for it.
+// Progress reports of a long loop.
 #pragma once
 
 #include <cstddef>

@@ -22,8 +22,8 @@ class Rng {
   std::uint64_t state_[4];
 };
 
-// Where a stage gets its random numbers. They depend on the seed of the run and the name of the item, and on
-// nothing else: two stages that draw under different names are independent of each other.
+// The source of a stage's random numbers. They depend on the seed of the run and the item's name, and on
+// nothing else; each stage draws its own stream under its own name.
 struct RandomSource {
   std::uint64_t seed = 0;  // of the run
   std::string item = {};   // name of the shape, such as "9" or "9_0"

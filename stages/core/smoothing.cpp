@@ -29,7 +29,8 @@ std::vector<std::int32_t> picked_vertices(Picks picks, std::size_t n_vertices) {
     for (const std::int32_t vertex : picks[k]) {
       if (vertex < 0 || static_cast<std::size_t>(vertex) >= n_vertices)
         throw InputError("participant " + std::to_string(k) + " picked vertex " + std::to_string(vertex) +
-                         " of a mesh with " + std::to_string(n_vertices) + " vertices");
+                         " of a mesh with " + std::to_string(n_vertices) +
+                         " vertices (0-based): the picks are those of another mesh");
       picked.push_back(vertex);
     }
   }
@@ -62,7 +63,7 @@ PickSmoother::PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions
   for (const std::int32_t vertex : picked) {
     auto& gaussian = gaussians_.emplace_back();
     for (const auto& [reached, distance] : distances.from(vertex, options.cut * sigma)) {
-      // Where the mesh has no surface, sigma is 0 and only distance 0 is in reach.
+      // If the mesh has no surface, sigma is 0 and only distance 0 is in reach.
       const double deviations = distance == 0 ? 0 : distance / sigma;
       gaussian.push_back({reached, std::exp(-deviations * deviations / 2)});
     }
@@ -71,13 +72,13 @@ PickSmoother::PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions
 
 ScalarField PickSmoother::operator()(std::span<const std::size_t> participants) const {
   if (participants.empty() && per_participant_)
-    throw InputError("no participant picked anything on this mesh: there is no ground truth to compute");
+    throw InputError("no participants: the ground truth, a mean over participants, cannot be computed");
   std::vector<std::int32_t> counts(gaussians_.size(), 0);
   for (const std::size_t k : participants) {
     CHECK_LT(k, sites_of_.size());
     for (const std::size_t site : sites_of_[k]) ++counts[site];
   }
-  // Vertex after vertex, not participant after participant: the sum is then the same in any order of them.
+  // Summed per vertex and not per participant, so that the order of the participants does not matter.
   ScalarField field(n_vertices_, 0.0);
   for (std::size_t site = 0; site < counts.size(); ++site) {
     if (counts[site] == 0) continue;

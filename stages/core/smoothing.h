@@ -1,4 +1,4 @@
-// From the points that people picked to a saliency over the mesh.
+// Ground-truth saliency over a mesh, from the vertices that participants picked.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,18 @@ struct SmoothingOptions {
 };
 void check(const SmoothingOptions& options);
 
-using Picks = std::span<const std::vector<std::int32_t>>;  // per participant: the vertices picked
+using Picks = std::span<const std::vector<std::int32_t>>;  // the vertices picked, per participant
 
 // val(v) = (1/P) sum_k count_k exp(-d(v, k)^2 / (2 s^2)), cut at d <= 3 s, where d is the shortest path along
 // edges, s = 0.01 sqrt(surface area), P the number of participants, those without a pick included, and
 // count_k how many of them picked vertex k. [chen2012]
 //
 // n, one value per vertex; does not depend on the order of participants or picks. Throws InputError for a
-// pick that is no vertex, and for no participants at all where the result is per participant.
+// pick outside the mesh, and if the result is divided by the number of participants and there are none.
 ScalarField smoothed_picks(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
 
-// The same for any group of the participants, to the bit. Every pick's Gaussian is computed once and kept, so
-// the map of a group costs no more than to add them up. Safe to share between threads.
+// The same for any group of the participants, bit for bit. Each pick's Gaussian is computed once and kept, so
+// the map of a group costs only the additions. Safe to share between threads.
 class PickSmoother {
  public:
   PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
@@ -51,7 +51,7 @@ class PickSmoother {
   std::size_t n_vertices_;
   bool per_participant_;
   std::vector<std::vector<std::size_t>> sites_of_;  // per participant: distinct, indices of picked vertices
-  std::vector<std::vector<Weight>> gaussians_;      // per picked vertex, ascending: what is in its reach
+  std::vector<std::vector<Weight>> gaussians_;      // per picked vertex, ascending: its reach
 };
 
 }  // namespace salbench

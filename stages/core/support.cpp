@@ -10,10 +10,10 @@
 
 namespace salbench {
 
-double mean_neighbor_count(std::span<const Vec3> points, const KdTree& tree, double radius) {
+double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, double radius) {
   CHECK_EQ(points.size(), tree.size());
   CHECK_GT(points.size(), 0U);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   std::size_t others = 0;
   for (const Vec3& p : points) {
     tree.within(p, radius, found);
@@ -26,12 +26,12 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw InputError("the shape has no points");
   SupportRadius support{factor * bounding_radius(points), 0};
-  // Ends for finite coordinates alone: at 2 R every point is within reach of every other.
+  // The loop below ends only for finite coordinates: at 2 R every point reaches every other.
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
     throw InputError("the shape has a coordinate that is not finite");
-  const auto enough = static_cast<std::int32_t>(std::min<std::size_t>(kFewestNeighbors, points.size() - 1));
+  const auto enough = static_cast<std::int32_t>(std::min<std::size_t>(kMinMeanNeighbours, points.size() - 1));
   while (true) {
-    support.neighbours = static_cast<std::int32_t>(mean_neighbor_count(points, tree, support.radius));
+    support.neighbours = static_cast<std::int32_t>(mean_neighbour_count(points, tree, support.radius));
     if (support.neighbours >= enough) return support;
     support.radius *= 1.1;
   }
@@ -44,7 +44,7 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, double factor) 
 double median_spacing(std::span<const Vec3> points, const KdTree& tree) {
   std::vector<double> squared;
   squared.reserve(points.size());
-  std::vector<Neighbor> near;
+  std::vector<Neighbour> near;
   for (const Vec3& p : points) {
     tree.nearest(p, 2, near);
     squared.push_back(near.back().distance_squared);

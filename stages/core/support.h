@@ -4,17 +4,17 @@
 #include <cstdint>
 #include <span>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
 
 namespace salbench {
 
-inline constexpr std::int32_t kFewestNeighbors = 6;  // on average, the point itself excluded
+inline constexpr std::int32_t kMinMeanNeighbours = 6;  // the point itself excluded
 
 // Mean over the points of how many others lie at distance <= radius; n > 0, `tree` is over `points`.
-double mean_neighbor_count(std::span<const Vec3> points, const KdTree& tree, double radius);
+double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, double radius);
 
-// Median distance of a point to its nearest other one; 0 of fewer than two points. `tree` is over `points`.
+// Median distance of a point to its nearest other one; 0 for fewer than two points. `tree` is over `points`.
 double median_spacing(std::span<const Vec3> points, const KdTree& tree);
 
 struct SupportRadius {
@@ -22,9 +22,9 @@ struct SupportRadius {
   std::int32_t neighbours = 0;  // mean number of others within it, truncated
 };
 
-// factor * R, times 1.1 until the truncated mean number of neighbours is at least 6. A shape of fewer than
-// seven points can have no more than n - 1: the radius then grows until it holds them all. Of coincident
-// points it is 0. Throws InputError where there is no point or one is not finite; factor > 0. [tasse2016]
+// factor * R, multiplied by 1.1 until the truncated mean number of neighbours is at least 6 or, for fewer
+// than seven points, n - 1. The radius is 0 if all points coincide. Throws InputError if there are no points
+// or one is not finite; factor > 0. [tasse2016]
 SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor);
 SupportRadius grown_support_radius(std::span<const Vec3> points, double factor);  // builds the tree
 

@@ -11,7 +11,7 @@ namespace salbench {
 namespace {
 
 Support support_of(std::span<const Vec3> points, const KdTree& tree, const FpfhOptions& options) {
-  if (options.neighbourhood == FpfhNeighborhood::nearest) return {options.neighbours, 0};
+  if (options.neighbourhood == FpfhNeighbourhood::nearest) return {options.neighbours, 0};
   if (options.grow) return {0, grown_support_radius(points, tree, options.radius).radius};
   return {0, options.radius * bounding_radius(points)};
 }
@@ -29,7 +29,7 @@ Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, co
   check(options);
   if (points.empty()) throw InputError("the shape has no points");
   if (!centroid(points).allFinite() || !std::isfinite(bounding_radius(points)))
-    throw InputError("the shape has a coordinate that is not finite or too large");
+    throw InputError("the shape has a coordinate that is not finite, or whose square overflows");
   const KdTree tree(points);
   return fpfh(points, normals, tree, support_of(points, tree, options), options.weighting);
 }

@@ -1,4 +1,4 @@
-// The descriptors of a shape that several models share.
+// The descriptors of a shape, shared by several models.
 #pragma once
 
 #include <array>
@@ -12,21 +12,21 @@
 
 namespace salbench {
 
-enum class FpfhNeighborhood { nearest, radius };
+enum class FpfhNeighbourhood { nearest, radius };
 template <>
-struct EnumNames<FpfhNeighborhood> {
+struct EnumNames<FpfhNeighbourhood> {
   static constexpr std::array<std::string_view, 2> names{"nearest", "radius"};
 };
 
 struct FpfhOptions {
-  FpfhNeighborhood neighbourhood = FpfhNeighborhood::nearest;
+  FpfhNeighbourhood neighbourhood = FpfhNeighbourhood::nearest;
   std::int32_t neighbours = 9;
   double radius = 0.01;
   bool grow = true;
   FpfhWeighting weighting = FpfhWeighting::published;
 
   static FpfhOptions text() {  // the paper's words
-    return {.neighbourhood = FpfhNeighborhood::radius, .weighting = FpfhWeighting::text};
+    return {.neighbourhood = FpfhNeighbourhood::radius, .weighting = FpfhWeighting::text};
   }
 
   template <class Self, class Visit>

@@ -1,6 +1,7 @@
 // Explicit diffusion of the positions over edges: a step moves vertex i towards the mean of its neighbours.
-// Where edges have the mean squared length e, that mean lies (e / 4) * Laplacian away, so a vertex moves by
-// the share step / e of it and every part of the mesh diffuses at one speed, however densely it is sampled.
+// If the edges have the mean squared length e, that mean lies (e / 4) * Laplacian away. A vertex moves by the
+// fraction step / e of it, so that every part of the mesh diffuses at one speed, however densely it is
+// sampled.
 #include "stages/ground_truth/protrusion.h"
 
 #include <algorithm>
@@ -39,12 +40,12 @@ std::vector<Vec3> diffused(const Mesh& mesh, double unit) {
   const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
   const std::vector<double> squares = mean_squared_edges(mesh.vertices, adjacency);
   const double wanted = 4 * unit * unit;
-  // A vertex cannot move by more than all the way: steps of half the median leave room for shorter edges.
+  // A vertex moves at most all the way to the mean: steps of half the median leave room for shorter edges.
   const double step_square = median_of_positive(squares) / 2;
   const double steps = std::clamp(std::ceil(wanted / step_square), 1.0, kMaxSteps);
-  std::vector<double> share(squares.size(), 0.0);
-  for (std::size_t i = 0; i < share.size(); ++i)
-    if (squares[i] > 0) share[i] = std::min(1.0, wanted / steps / squares[i]);
+  std::vector<double> fraction(squares.size(), 0.0);
+  for (std::size_t i = 0; i < fraction.size(); ++i)
+    if (squares[i] > 0) fraction[i] = std::min(1.0, wanted / steps / squares[i]);
 
   std::vector<Vec3> points = mesh.vertices, next(points.size());
   for (double step = 0; step < steps; ++step) {
@@ -52,7 +53,7 @@ std::vector<Vec3> diffused(const Mesh& mesh, double unit) {
       Vec3 sum = Vec3::Zero();
       for (const std::int32_t j : adjacency.of(i)) sum += at(points, j) - points[i];
       next[i] = points[i];
-      if (share[i] > 0) next[i] += share[i] / static_cast<double>(adjacency.of(i).size()) * sum;
+      if (fraction[i] > 0) next[i] += fraction[i] / static_cast<double>(adjacency.of(i).size()) * sum;
     }
     std::swap(points, next);
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "stages/core/errors.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 
 namespace salbench {
 namespace {
@@ -14,16 +14,16 @@ constexpr std::int32_t kHidden = -1;  // no scan point has this vertex as its ne
 
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-void require_truth_of(const Mesh& mesh, const GroundTruth& truth) {
+void require_fits(const Mesh& mesh, const GroundTruth& truth) {
   const std::size_t n = mesh.vertices.size();
   if (!truth.saliency.empty() && truth.saliency.size() != n)
     throw InputError("the ground truth has " + std::to_string(truth.saliency.size()) +
-                     " saliency values, the mesh " + std::to_string(n) + " vertices");
+                     " saliency values, but the mesh has " + std::to_string(n) + " vertices");
   for (const auto& participant : truth.picks)
     for (const std::int32_t vertex : participant)
       if (vertex < 0 || index(vertex) >= n)
         throw InputError("the ground truth has a pick at vertex " + std::to_string(vertex) +
-                         " of a mesh with " + std::to_string(n) + " vertices");
+                         " (0-based), but the mesh has " + std::to_string(n) + " vertices");
 }
 
 std::vector<std::int32_t> nearest_vertices(const Scan& scan, const Mesh& mesh) {
@@ -38,7 +38,7 @@ std::vector<std::int32_t> nearest_vertices(const Scan& scan, const Mesh& mesh) {
 }  // namespace
 
 GroundTruth scan_ground_truth(const Scan& scan, const Mesh& mesh, const GroundTruth& mesh_truth) {
-  require_truth_of(mesh, mesh_truth);
+  require_fits(mesh, mesh_truth);
   const std::vector<std::int32_t> nearest = nearest_vertices(scan, mesh);
 
   GroundTruth truth;

@@ -1,4 +1,4 @@
-// What people marked on a mesh, as seen by one scan of it.
+// The ground truth of a mesh, transferred to one scan of it.
 #pragma once
 
 #include "stages/core/types.h"
@@ -7,8 +7,8 @@ namespace salbench {
 
 // A scan point takes the saliency of the nearest mesh vertex. A pick exists in the scan if some scan point
 // has the picked vertex as its nearest; it is then the first such point, once per participant. Participants
-// whose picks are all hidden stay, with none. Saliency is empty where the mesh has none. Throws InputError
-// where the ground truth is not one of this mesh. [tasse2016]
+// whose picks are all hidden stay, without picks. Saliency is empty if the mesh has none. Throws InputError
+// if the ground truth does not fit the mesh. [tasse2016]
 GroundTruth scan_ground_truth(const Scan& scan, const Mesh& mesh, const GroundTruth& mesh_truth);
 
 }  // namespace salbench

@@ -12,15 +12,16 @@
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"
-#include "stages/ground_truth/protrusion.h"
 #include "stages/core/smoothing.h"
+#include "stages/ground_truth/protrusion.h"
 
 namespace salbench {
 namespace {
 
 constexpr double kFlat = 1e-9;   // bulges below this, in units of their scale, are rounding
 constexpr double kHollow = 0.5;  // attraction of a hollow, beside a bulge of the same size
-constexpr int kTries = 64;       // draws in a row too near to earlier picks before a participant stops
+constexpr int kMaxTries =
+    64;  // a participant stops after so many draws in a row that are too near to earlier picks
 
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
@@ -32,7 +33,7 @@ void require_not_negative(const char* key, double value) {
   require(value >= 0 && std::isfinite(value), key, "0 or a positive number", value);
 }
 
-// Draws indices with probability proportional to their weights, of which there is at least one.
+// Draws indices with probability proportional to their weights; there is at least one weight.
 class WeightedDraw {
  public:
   explicit WeightedDraw(const std::vector<double>& weights) : cumulative_(weights.size()) {
@@ -50,7 +51,7 @@ class WeightedDraw {
   std::vector<double> cumulative_;
 };
 
-// A third of the area of the incident faces; 1 everywhere where no face has an area.
+// A third of the area of the incident faces; 1 everywhere if no face has an area.
 std::vector<double> vertex_areas(const Mesh& mesh) {
   std::vector<double> areas(mesh.vertices.size(), 0.0);
   for (const Triangle& face : mesh.faces) {
@@ -61,7 +62,7 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
   return areas;
 }
 
-// How strongly each vertex attracts picks, at most 1; 0 everywhere where the mesh is flat.
+// The attraction of each vertex for picks, at most 1; 0 everywhere if the mesh is flat.
 ScalarField attraction(const Mesh& mesh, const SimulationOptions& options) {
   ScalarField field = protrusion(mesh, options.scale);
   for (double& value : field) value = std::max(value, -kHollow * value);
@@ -70,7 +71,7 @@ ScalarField attraction(const Mesh& mesh, const SimulationOptions& options) {
   return field;
 }
 
-// Keeps the tops of a field, greatest first, that no greater top is within reach of; the rest becomes 0.
+// Keeps the maxima of a field that lie beyond the reach of every greater one; all other values become 0.
 ScalarField tops_of(const ScalarField& field, EdgeDistances& distances, double reach) {
   std::vector<std::int32_t> order(field.size());
   std::iota(order.begin(), order.end(), 0);
@@ -87,7 +88,7 @@ ScalarField tops_of(const ScalarField& field, EdgeDistances& distances, double r
   return tops;
 }
 
-// One mesh, looked at by one participant after the other.
+// Draws the picks of one participant after another on one mesh.
 class Picker {
  public:
   Picker(const Mesh& mesh, const SimulationOptions& options)
@@ -101,12 +102,12 @@ class Picker {
 
   std::vector<std::int32_t> picks_of_one(Rng& rng) {
     const auto mean = static_cast<std::uint64_t>(options_.picks);
-    const std::uint64_t fewest = (mean + 1) / 2;
-    const std::uint64_t wanted = fewest + rng.below(2 * (mean - fewest) + 1);  // even around the mean
+    const std::uint64_t least = (mean + 1) / 2;
+    const std::uint64_t wanted = least + rng.below(2 * (mean - least) + 1);  // even around the mean
     taken_.assign(taken_.size(), false);
     std::vector<std::int32_t> picks;
     int failed = 0;
-    while (picks.size() < wanted && failed < kTries) {
+    while (picks.size() < wanted && failed < kMaxTries) {
       const std::int32_t vertex = candidate(rng);
       if (taken_[index(vertex)]) {
         ++failed;
@@ -129,7 +130,7 @@ class Picker {
   }
 
   SimulationOptions options_;
-  double unit_;  // of lengths: square root of the surface area
+  double unit_;  // square root of the surface area
   Adjacency adjacency_;
   EdgeDistances distances_;
   WeightedDraw anywhere_, tops_;
@@ -152,7 +153,7 @@ void check(const SimulationOptions& options) {
 GroundTruth simulated_ground_truth(const Mesh& mesh, const SimulationOptions& options, std::uint64_t seed,
                                    std::string_view item) {
   check(options);
-  if (mesh.vertices.empty()) throw InputError("a mesh without vertices cannot be picked from");
+  if (mesh.vertices.empty()) throw InputError("the mesh has no vertices: picks cannot be simulated");
   Picker picker(mesh, options);
   GroundTruth truth;
   truth.simulated = true;

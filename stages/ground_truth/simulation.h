@@ -1,4 +1,4 @@
-// Ground truth for meshes that nobody has looked at: for demonstrations and tests, never for conclusions.
+// Simulated ground truth, for demonstrations and tests. It says nothing about people.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace salbench {
 
 struct SimulationOptions {
   std::int32_t participants = 23;
-  std::int32_t picks = 10;  // per participant: the mean; each draws from half to one and a half times as many
-  double random_share = 0.1;  // of the picks that fall anywhere on the surface
+  std::int32_t picks = 10;    // mean per participant; each draws from half to one and a half times as many
+  double random_share = 0.1;  // fraction of the picks that fall anywhere on the surface
   double separation = 0.05;   // least distance of a participant's picks, in square roots of the surface area
-  double scale = 0.03;        // of the bulges that attract picks, in the same unit
-  double scatter = 0.01;      // of the picks around the top of a bulge, in the same unit
-  double sharpness = 3;       // a bulge is picked in proportion to this power of it
+  double scale = 0.03;        // size of the bulges that attract picks, in the same unit
+  double scatter = 0.01;      // distance of picks from the top of a bulge, in the same unit
+  double sharpness = 3;       // a bulge attracts picks in proportion to this power of its height
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -32,10 +32,10 @@ struct SimulationOptions {
 void check(const SimulationOptions& options);
 
 // Each participant picks distinct vertices, well apart, most of them near the tops of bulges, and some
-// anywhere on the surface; saliency is smoothed_picks() of all. One who finds no more room on the mesh stops
-// early. The result depends on the options and on (seed, item), participant k not on how many others there
-// are. A flat mesh is picked from evenly by area, one without any area evenly by vertex. Throws InputError
-// for a mesh without vertices.
+// anywhere on the surface; saliency is smoothed_picks() of all. A participant who finds no more room on the
+// mesh stops early. The result depends on the options and on (seed, item) alone, and participant k does not
+// depend on how many others there are. Picks are uniform by area on a flat mesh, and uniform by vertex on a
+// mesh without area. Throws InputError for a mesh without vertices.
 GroundTruth simulated_ground_truth(const Mesh& mesh, const SimulationOptions& options, std::uint64_t seed,
                                    std::string_view item);
 

@@ -19,8 +19,8 @@ Edges cumulative(const Histogram& density) {
   return sums;
 }
 
-// Piecewise linear through the points (from, to), clamped at both ends. Where `from` stands still, the last
-// of the equal points counts. Ascending `from`.
+// Piecewise linear through the points (from, to), clamped at both ends. `from` ascends; the last of equal
+// entries counts.
 double interpolated(double x, const Edges& from, const Edges& to) {
   if (x < from.front()) return to.front();
   if (x >= from.back()) return to.back();
@@ -32,7 +32,7 @@ double interpolated(double x, const Edges& from, const Edges& to) {
 }  // namespace
 
 Histogram normalised_histogram(std::span<const double> field) {
-  return binned_density(min_max_normalized(field)).density;
+  return binned_density(min_max_normalised(field)).density;
 }
 
 Histogram mean_histogram(std::span<const Histogram> histograms) {
@@ -44,7 +44,7 @@ Histogram mean_histogram(std::span<const Histogram> histograms) {
 }
 
 ScalarField matched(std::span<const double> map, const Histogram& reference) {
-  ScalarField values = min_max_normalized(map);
+  ScalarField values = min_max_normalised(map);
   if (is_constant(values)) return values;
   const BinnedDensity own = binned_density(values);
   const Edges own_cumulative = cumulative(own.density);
@@ -53,7 +53,7 @@ ScalarField matched(std::span<const double> map, const Histogram& reference) {
   std::transform(own_cumulative.begin(), own_cumulative.end(), moved.begin(),
                  [&](double c) { return interpolated(c, reference_cumulative, own.edges); });
   for (double& value : values) value = interpolated(value, own.edges, moved);
-  return min_max_normalized(values);
+  return min_max_normalised(values);
 }
 
 }  // namespace salbench

@@ -126,12 +126,12 @@ double auc_exact(std::span<const double> map, std::span<const std::int32_t> pick
 double nss(std::span<const double> map, std::span<const std::int32_t> picked) {
   if (picked.empty()) return kUndefined;
   if (is_constant(map)) return 0;
-  const double center = mean(map);
+  const double centre = mean(map);
   double squares = 0;
-  for (const double value : map) squares += (value - center) * (value - center);
+  for (const double value : map) squares += (value - centre) * (value - centre);
   const double deviation = std::sqrt(squares / static_cast<double>(map.size()));
   double sum = 0;
-  for (const std::int32_t i : picked) sum += at(map, i) - center;
+  for (const std::int32_t i : picked) sum += at(map, i) - centre;
   return sum / (static_cast<double>(picked.size()) * deviation);
 }
 
@@ -159,7 +159,7 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
   check(options);
   const std::vector<std::int32_t> picked = picked_points(truth);
   check_fits(matched.size(), truth, picked);
-  const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalized(truth.saliency);
+  const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
   const MetricInput input{matched, picked, saliency, options, rng};
   Scores scores;
   for (const Metric& metric : metrics) scores.values.push_back(metric.value(input));

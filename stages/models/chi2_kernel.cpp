@@ -10,7 +10,7 @@
 namespace salbench::chi2_kernel {
 namespace {
 
-// Makes 0 / 0 into 0, and is lost in any sum that is not 0. Far above the denormal numbers, which are slow.
+// Turns 0 / 0 into 0, and is lost in any other sum. It is far above the denormal numbers, which are slow.
 constexpr float kTiny = 1e-18F;
 
 template <std::size_t width>
@@ -55,7 +55,7 @@ void compare_baseline(const float* table, std::size_t groups, std::size_t bins, 
   compare<16>(table, groups, bins, queries, distances);
 }
 
-// Bit i: values[i] <= limit, of 16 values.
+// Bit i is set if values[i] <= limit; there are 16 values.
 std::uint32_t mask_up_to(__m128 limit, const float* values) {
   const auto compared = [&](std::size_t i) {
     return _mm_castps_si128(_mm_cmple_ps(_mm_loadu_ps(values + i), limit));

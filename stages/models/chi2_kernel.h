@@ -1,6 +1,6 @@
 // Chi-square distances of a few histograms to all others, with the widest instructions that the machine has.
-// Plain pointers only: nothing that is compiled for one machine's instructions may leak into code that is
-// not.
+// The interface has plain pointers only, so that no code compiled for special instructions leaks into the
+// rest of the program.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 namespace salbench::chi2_kernel {
 
 inline constexpr std::size_t kLanes = 16;   // histograms in a group
-inline constexpr std::size_t kQueries = 4;  // histograms that are compared at a time
+inline constexpr std::size_t kQueries = 4;  // histograms compared with all others in one call
 
 // Every variant does the same operations in the same order on each pair: the same bytes on every machine.
 enum class Instructions { baseline, avx2, avx512 };

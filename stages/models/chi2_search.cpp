@@ -22,16 +22,16 @@ using chi2_kernel::kQueries;
 constexpr std::size_t kBins = kFpfhBins;
 constexpr std::size_t kSample = 256;
 constexpr std::size_t kBuckets = 256;
-constexpr float kSmallest = 1e-30F;  // distances below that share a bucket
-constexpr float kLargest = 1e18F;    // the squares of larger values overflow
+constexpr float kMinDistance = 1e-30F;  // smaller ones share a bucket
+constexpr float kMaxValue = 1e18F;      // the squares of larger values overflow
 
 std::vector<std::size_t> used_bins_of(const Descriptors& descriptors) {
   std::array<bool, kBins> used{};
   for (std::size_t i = 0; i < descriptors.values.size(); ++i) {
     const float value = descriptors.values[i];
-    if (!(value >= 0 && value <= kLargest))
-      throw InputError("the descriptor of point " + std::to_string(i / kBins) + " has the value " +
-                       std::to_string(value) + ": it must be at least 0 and finite");
+    if (!(value >= 0 && value <= kMaxValue))
+      throw InputError("the descriptor of point " + std::to_string(i / kBins) + " (0-based) has the value " +
+                       std::to_string(value) + ", expected a number from 0 to 1e18");
     if (value > 0) used[i % kBins] = true;
   }
   std::vector<std::size_t> bins;
@@ -48,10 +48,10 @@ class Selection {
   Selection(std::size_t n, std::size_t k) : n_(n), k_(k), indices_(padded(n)), values_(n), selected_(n) {}
 
   // `row` holds n distances, filled up with infinity to a multiple of 16.
-  std::span<const Chi2Neighbor> nearest(const float* row) {
+  std::span<const Chi2Neighbour> nearest(const float* row) {
     float bound = sampled_bound(row);
     std::size_t found = indices_up_to(bound, row, indices_.size(), indices_.data());
-    if (found < k_) {  // the sample misled
+    if (found < k_) {  // the sampled bound is too low
       bound = *std::max_element(row, row + n_);
       found = indices_up_to(bound, row, indices_.size(), indices_.data());
     }
@@ -71,9 +71,10 @@ class Selection {
     return *ranked;
   }
 
-  // Of the candidates, by buckets of their values: only the bucket with the k-th has to be ordered.
+  // Sorts the candidates into buckets of their values, so that only the bucket with the k-th has to be
+  // ordered.
   float kth_smallest(const float* row, std::size_t found, float bound) {
-    const float scale = bound > kSmallest ? static_cast<float>(kBuckets - 1) / bound : 0;
+    const float scale = bound > kMinDistance ? static_cast<float>(kBuckets - 1) / bound : 0;
     const auto bucket_of = [&](std::size_t c) {
       return static_cast<std::uint32_t>(row[indices_[c]] * scale);
     };
@@ -93,21 +94,21 @@ class Selection {
     return *kth;
   }
 
-  // All candidates below the k-th smallest, and the last ones of those equal to it.
-  std::span<const Chi2Neighbor> select(const float* row, std::size_t found, float kth) {
+  // Selects all candidates below the k-th smallest and, of those equal to it, the last ones.
+  std::span<const Chi2Neighbour> select(const float* row, std::size_t found, float kth) {
     std::size_t below = 0, equal = 0;
     for (std::size_t c = 0; c < found; ++c) {
       below += row[indices_[c]] < kth;
       equal += row[indices_[c]] == kth;
     }
-    std::size_t passed_over = equal - (k_ - below);
+    std::size_t to_skip = equal - (k_ - below);
     std::size_t selected = 0;
     for (std::size_t c = 0; c < found && selected < k_; ++c) {
       const float distance = row[indices_[c]];
-      const bool pass_over = distance == kth && passed_over > 0;
-      passed_over -= pass_over;
+      const bool skip = distance == kth && to_skip > 0;
+      to_skip -= skip;
       selected_[selected] = {indices_[c], distance};
-      selected += distance <= kth && !pass_over;
+      selected += distance <= kth && !skip;
     }
     return {selected_.data(), k_};
   }
@@ -115,7 +116,7 @@ class Selection {
   std::size_t n_, k_;
   std::vector<std::int32_t> indices_;  // candidates, ascending
   std::vector<float> values_;
-  std::vector<Chi2Neighbor> selected_;
+  std::vector<Chi2Neighbour> selected_;
 };
 
 }  // namespace
@@ -138,7 +139,7 @@ void Chi2Search::for_each(std::size_t k, const Visit& visit) const {
   std::vector<float> distances(kQueries * row);
   Selection selection(size_, k);
   for (std::size_t first = 0; first < size_; first += kQueries) {
-    // A group is a multiple of the queries: the last queries may be filling, but they exist.
+    // A group holds a multiple of kQueries histograms, so the last queries exist, though they may be padding.
     const float* group = table_.data() + first / kLanes * bins_ * kLanes;
     for (std::size_t q = 0; q < kQueries; ++q)
       for (std::size_t b = 0; b < bins_; ++b) queries[q * bins_ + b] = group[b * kLanes + first % kLanes + q];

@@ -1,4 +1,5 @@
-// The histograms nearest to each in chi-square distance, sum (a - b)^2 / (a + b), exactly and in O(n) memory.
+// Exact search for the histograms nearest to each in chi-square distance, sum (a - b)^2 / (a + b), in O(n)
+// memory.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +12,15 @@
 
 namespace salbench {
 
-struct Chi2Neighbor {
+struct Chi2Neighbour {
   std::int32_t index;
   float chi2;
 };
 
 class Chi2Search {
  public:
-  // Bins that are 0 in every histogram are left out. Throws InputError where a value is negative or not
-  // finite.
+  // Leaves out bins that are 0 in every histogram. Throws InputError if a value is negative, not finite, or
+  // so large that its square overflows.
   explicit Chi2Search(const Descriptors& descriptors,
                       chi2_kernel::Instructions instructions = chi2_kernel::widest_supported());
 
@@ -27,9 +28,9 @@ class Chi2Search {
   std::size_t used_bins() const { return bins_; }
 
   // Calls visit(i, nearest) for i = 0..n-1 in order. `nearest`, valid during the call, holds the k histograms
-  // of smallest distance to i, i itself among them, by ascending index; of those at equal distance where the
-  // k end, the ones of higher index. 1 <= k <= n.
-  using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbor> nearest)>;
+  // of smallest distance to i, i itself among them, by ascending index. Ties at the k-th distance go to the
+  // higher index. 1 <= k <= n.
+  using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbour> nearest)>;
   void for_each(std::size_t k, const Visit& visit) const;
 
  private:

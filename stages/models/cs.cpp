@@ -11,8 +11,8 @@
 //   100 clusters                                                         .911  .289
 //   grids in single precision; distances and rest in the mesh's unit     as they are
 //   a radius larger or smaller by 1e-5                                   .996  .973-.979
-// The last line is the noise of the method: where a border of the grid falls decides which way k-means goes,
-// and what is left of the difference is of that size.
+// The last line is the noise of the method: the place of the grid's borders decides which way k-means goes,
+// and the remaining difference is of that size.
 #include "stages/models/cs.h"
 
 #include <algorithm>
@@ -27,30 +27,30 @@
 #include "stages/core/field.h"
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/support.h"
 #include "stages/models/cs_clusters.h"
 
 namespace salbench {
 namespace {
 
-constexpr int kRings = 3;                 // clusters so many steps of adjacency away share in a point
-constexpr std::size_t kFallbackNear = 9;  // nearest points, where none is within the radius
-constexpr double kDescriptorRate = 2.5;   // of chi2 over its variance, in a point's likeness to a cluster
+constexpr int kRings = 3;                 // a point depends on clusters up to so many steps of adjacency away
+constexpr std::size_t kFallbackNear = 9;  // nearest points, used if none is within the radius
+constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the affinity of a point to a cluster
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
 
-// Clusters with points within the radius of one of a cluster's own, ascending.
+// For each cluster the others that have a point within the radius of one of its points, ascending.
 Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, double radius,
                              const Clusters& clusters) {
   Neighbours adjacent(clusters.count);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.within(points[i], radius, found);
     if (found.size() <= 1) tree.nearest(points[i], kFallbackNear, found);
     auto& of_own = adjacent[static_cast<std::size_t>(clusters.of_point[i])];
-    for (const Neighbor& neighbor : found) {
-      const std::int32_t other = clusters.of_point[static_cast<std::size_t>(neighbor.index)];
+    for (const Neighbour& neighbour : found) {
+      const std::int32_t other = clusters.of_point[static_cast<std::size_t>(neighbour.index)];
       if (other != clusters.of_point[i]) of_own.push_back(other);
     }
   }
@@ -82,7 +82,7 @@ Neighbours clusters_in_reach(const Neighbours& adjacent) {
   return reached;
 }
 
-// Of the clusters' centres and mean descriptors, about the mean over the clusters.
+// Variances of the clusters' centres and mean descriptors about the mean over the clusters.
 struct Variances {
   double distance_squared = 0;
   double chi2 = 0;
@@ -100,19 +100,19 @@ Variances variances(const GroupMeans& clusters) {
   return result;
 }
 
-// Clusters that do not vary are not told apart by what does not vary.
+// A quantity that does not vary does not tell clusters apart.
 double relative(double distance, double variance) { return variance > 0 ? distance / variance : 0; }
 
-// How much each cluster in reach has to do with a point, w_ik, and the sums over the points.
-struct Likeness {
+// Affinity w_ik of each point to each cluster in reach, and its sums over the points.
+struct Affinity {
   std::vector<double> weights;       // of point i: one for each cluster in reach of its own, from offsets[i]
   std::vector<std::size_t> offsets;  // n
   std::vector<double> masses;        // m_k, by cluster
 };
 
-Likeness likeness(std::span<const Vec3> points, const Descriptors& descriptors, const Clusters& of,
-                  const GroupMeans& clusters, const Neighbours& in_reach, const Variances& variance) {
-  Likeness result;
+Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptors, const Clusters& of,
+                     const GroupMeans& clusters, const Neighbours& in_reach, const Variances& variance) {
+  Affinity result;
   result.offsets.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     result.offsets.push_back(result.weights.size());
@@ -124,7 +124,7 @@ Likeness likeness(std::span<const Vec3> points, const Descriptors& descriptors, 
                                kDescriptorRate * relative(chi2, variance.chi2));
     }
   }
-  // A common factor cancels in all that follows: relative to the largest weight, they cannot all vanish.
+  // A common factor cancels below. Relative to the largest weight, they cannot all vanish.
   const double largest = *std::max_element(result.weights.begin(), result.weights.end());
   for (double& weight : result.weights) weight = std::exp(weight - largest);
 
@@ -137,7 +137,8 @@ Likeness likeness(std::span<const Vec3> points, const Descriptors& descriptors, 
   return result;
 }
 
-// U_j: how unlike the other clusters' the descriptor is, near ones and heavy ones counting most. `unit` is R.
+// U_j: how much the descriptor differs from those of the other clusters; near and heavy ones count most.
+// `unit` is R.
 double uniqueness(std::size_t j, const GroupMeans& clusters, std::span<const double> shares,
                   std::span<const double> chi2, double unit) {
   double sum = 0, total = 0;
@@ -149,7 +150,7 @@ double uniqueness(std::size_t j, const GroupMeans& clusters, std::span<const dou
   return sum / total;
 }
 
-// D_j: how far what resembles the cluster is scattered in space. In units of R squared.
+// D_j: how far the clusters that resemble this one are scattered in space, in units of R squared.
 double distribution(const GroupMeans& clusters, std::span<const double> shares, std::span<const double> chi2,
                     const Variances& variance, double unit) {
   std::vector<double> resemblance(clusters.size());
@@ -182,18 +183,19 @@ ScalarField cluster_saliency(const GroupMeans& clusters, const Variances& varian
     unique[j] = uniqueness(j, clusters, shares, chi2, unit);
     scattered[j] = distribution(clusters, shares, chi2, variance, unit);
   }
-  unique = min_max_normalized(unique);
-  scattered = min_max_normalized(scattered);
+  unique = min_max_normalised(unique);
+  scattered = min_max_normalised(scattered);
   for (std::size_t j = 0; j < count; ++j) {
     saliency[j] = distribution_weight * std::exp(-scattered[j]) +
                   (1 - distribution_weight) * (1 - std::exp(-unique[j]));
   }
-  return min_max_normalized(saliency);
+  return min_max_normalised(saliency);
 }
 
-// s_i: mean over the clusters in reach, weighted by w_ik / m_k. Taken as a difference from its own cluster's,
-// which keeps a constant map constant, and is all that a point unlike every cluster gets.
-ScalarField point_saliency(const Clusters& of, const Neighbours& in_reach, const Likeness& likeness,
+// s_i: mean over the clusters in reach, weighted by w_ik / m_k. It is computed as a difference from the
+// point's own cluster, which keeps a constant map constant; a point unlike every cluster takes the value of
+// its own.
+ScalarField point_saliency(const Clusters& of, const Neighbours& in_reach, const Affinity& affinity,
                            const ScalarField& of_clusters) {
   ScalarField saliency(of.of_point.size());
   for (std::size_t i = 0; i < saliency.size(); ++i) {
@@ -201,8 +203,8 @@ ScalarField point_saliency(const Clusters& of, const Neighbours& in_reach, const
     double sum = 0, total = 0;
     for (std::size_t c = 0; c < in_reach[own].size(); ++c) {
       const auto k = static_cast<std::size_t>(in_reach[own][c]);
-      if (likeness.masses[k] == 0) continue;
-      const double weight = likeness.weights[likeness.offsets[i] + c] / likeness.masses[k];
+      if (affinity.masses[k] == 0) continue;
+      const double weight = affinity.weights[affinity.offsets[i] + c] / affinity.masses[k];
       sum += weight * (of_clusters[k] - of_clusters[own]);
       total += weight;
     }
@@ -245,10 +247,10 @@ ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& 
   const GroupMeans clusters = group_means(points, descriptors, of.of_point, of.count);
   const Variances variance = variances(clusters);
   const Neighbours in_reach = clusters_in_reach(adjacent_clusters(points, tree, support.radius, of));
-  const Likeness like = likeness(points, descriptors, of, clusters, in_reach, variance);
+  const Affinity affinity = affinity_of(points, descriptors, of, clusters, in_reach, variance);
   const ScalarField of_clusters =
-      cluster_saliency(clusters, variance, like.masses, unit, options.distribution_weight);
-  return point_saliency(of, in_reach, like, of_clusters);
+      cluster_saliency(clusters, variance, affinity.masses, unit, options.distribution_weight);
+  return point_saliency(of, in_reach, affinity, of_clusters);
 }
 
 }  // namespace salbench

@@ -1,5 +1,5 @@
-// CS, cluster-based point set saliency: a cluster of points is salient where its descriptors are unlike those
-// of its surroundings, and where what resembles it lies close together; a point takes the mean of the
+// CS, cluster-based point set saliency. A cluster of points is salient if its descriptors are unlike those of
+// its surroundings, and if the clusters that resemble it lie close together. A point takes the mean of the
 // clusters that it resembles.
 #pragma once
 

@@ -1,14 +1,14 @@
-// Supervoxels: the points are gathered in the cells of a fine grid (voxels), and the voxels clustered by
-// k-means over position and descriptor, which starts from the cells of a coarse grid (seeds) and compares a
-// voxel with the clusters nearby only, as SLIC does.
+// Supervoxels: the points are gathered in the cells of a fine grid (voxels), and the voxels are clustered by
+// k-means over position and descriptor. k-means starts from the cells of a coarse grid (seeds) and compares a
+// voxel only with the clusters nearby, as SLIC does.
 //
 // Departures from the textbook are those of the authors' program, which the published maps depend on:
-// - A voxel changes its cluster only for a cost below the least it ever had, not below its present cost. With
-//   the costs' scale changing from round to round, most meshes so come to rest after a few rounds.
+// - A voxel changes its cluster only for a cost below the least it ever had, not below its present cost. As
+//   the scale of the costs changes from round to round, most meshes then come to rest after a few rounds.
 // - Clusters are visited in order, and the largest distances, which scale the costs of the next round, are
 //   those to the voxels that a cluster still has when its turn comes.
-// - A voxel with hardly a neighbour in its cluster joins the nearest other one in the end.
-// What each is worth is told at the top of cs.cpp.
+// - At the end, a voxel with few neighbours in its own cluster joins the nearest other cluster.
+// The top of cs.cpp says what each departure is worth.
 #include "stages/models/cs_clusters.h"
 
 #include <algorithm>
@@ -18,16 +18,16 @@
 #include <utility>
 
 #include "stages/core/check.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/models/cs_cells.h"
 
 namespace salbench {
 namespace {
 
 constexpr std::size_t kBins = kFpfhBins;
-constexpr std::size_t kSampledVoxels = 100;  // whose surroundings tell how large a seed has to be
+constexpr std::size_t kSampledVoxels = 100;  // sample that decides the size of the seeds
 constexpr std::size_t kSurroundings = 9;     // nearest voxels, the voxel itself included
-constexpr double kRest = 1e-4;  // the centres' movement in total, in units of R: k-means has ended
+constexpr double kRest = 1e-4;  // k-means ends when the centres move less in total, in units of R
 
 using Labels = std::vector<std::int32_t>;  // by voxel: its seed or cluster
 
@@ -49,10 +49,11 @@ GroupMeans cluster_means(const Voxels& voxels, const Labels& labels, std::size_t
   return group_means(voxels.means.centres, voxels.means.descriptors, labels, count);
 }
 
-// Twice the radius of a ball that holds a cluster's share of voxels, the median over a sample. Where a
-// cluster would have less than two: the spacing of the voxels, root mean square over their nearest.
+// Side of the seeds' cells. It is twice the radius of a ball that holds a cluster's share of voxels, the
+// median over a sample. If a cluster would have fewer than two voxels, it is the spacing of the voxels, root
+// mean square over their nearest.
 double seed_leaf(const Voxels& voxels, std::size_t clusters) {
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   if (voxels.size() > 2 * clusters) {
     const std::size_t share = voxels.size() / clusters;  // the voxel itself included
     std::vector<double> reaches;
@@ -69,23 +70,23 @@ double seed_leaf(const Voxels& voxels, std::size_t clusters) {
   for (const Vec3& centre : voxels.means.centres) {
     voxels.tree.nearest(centre, kSurroundings, found);
     const double others = std::max(static_cast<double>(found.size()) - 1, 1.0);
-    for (const Neighbor& neighbor : found) sum += neighbor.distance_squared / others;
+    for (const Neighbour& neighbour : found) sum += neighbour.distance_squared / others;
   }
   return std::sqrt(sum / static_cast<double>(voxels.size()));
 }
 
-// The seed whose cell holds the voxel's centre. That cell may hold no point, the voxel being cut by its
-// border: the nearest voxel within the radius that has a seed then passes it on and, where there is none, the
-// voxel's first point.
+// The seed of a voxel is the one whose cell holds the voxel's centre. That cell may hold no point if its
+// border cuts the voxel. The voxel then takes the seed of the nearest voxel within the radius that has one
+// or, if there is none, the seed of its own first point.
 Labels seed_labels(std::span<const Vec3> points, const Labels& voxel_of, const Voxels& voxels, double radius,
                    const OccupiedCells& seeds) {
   Labels labels = seeds.find(voxels.means.centres);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (std::size_t j = 0; j < labels.size(); ++j) {
     if (labels[j] != OccupiedCells::kEmpty) continue;
     voxels.tree.within(voxels.centre(j), radius, found);
-    const auto near = std::find_if(found.begin(), found.end(), [&](const Neighbor& neighbor) {
-      return label_of(labels, neighbor.index) != OccupiedCells::kEmpty;
+    const auto near = std::find_if(found.begin(), found.end(), [&](const Neighbour& neighbour) {
+      return label_of(labels, neighbour.index) != OccupiedCells::kEmpty;
     });
     if (near != found.end()) {
       labels[j] = label_of(labels, near->index);
@@ -97,7 +98,7 @@ Labels seed_labels(std::span<const Vec3> points, const Labels& voxel_of, const V
   return labels;
 }
 
-// Largest distances between voxels and the clusters they are in: the scale of the costs.
+// Largest distances between voxels and their clusters: the scale of the costs.
 struct Largest {
   double distance_squared = 0;
   double chi2 = 0;
@@ -118,7 +119,7 @@ Largest largest_distances(const Voxels& voxels, const Labels& labels, const Grou
   return largest;
 }
 
-// Where no voxel is away from its cluster, another cluster's distance is infinitely large beside that.
+// If every voxel coincides with its cluster, `largest` is 0 and the distance to any other cluster infinite.
 double relative(double distance, double largest) { return distance == 0 ? 0 : distance / largest; }
 
 class KMeans {
@@ -148,7 +149,7 @@ class KMeans {
     for (std::size_t k = 0; k < clusters_.size(); ++k) {
       if (clusters_.sizes[k] == 0) continue;
       voxels_.tree.within(clusters_.centres[k], reach_, found_);
-      for (const Neighbor& voxel : found_) {
+      for (const Neighbour& voxel : found_) {
         const auto j = static_cast<std::size_t>(voxel.index);
         const double chi2 = chi_square(voxels_.means.descriptors.row(j), clusters_.descriptors.row(k));
         if (labels_[j] == static_cast<std::int32_t>(k)) next.include(voxel.distance_squared, chi2);
@@ -163,7 +164,7 @@ class KMeans {
     return next;
   }
 
-  // Sum over the centres of how far they have moved, along the axes.
+  // Returns how far the centres have moved: the sum of the absolute differences along the axes.
   double update_means() {
     const std::vector<Vec3> before = std::move(clusters_.centres);
     clusters_ = cluster_means(voxels_, labels_, before.size());
@@ -175,27 +176,27 @@ class KMeans {
   Labels labels_;
   GroupMeans clusters_;
   Largest largest_;
-  double reach_;  // stays as wide as at first
+  double reach_;  // of the first round, kept for all
   double rest_;
   double descriptor_weight_;
   std::vector<double> least_cost_;  // by voxel, over all rounds
-  std::vector<Neighbor> found_;
+  std::vector<Neighbour> found_;
 };
 
-// A voxel of whose surroundings, itself included, fewer than a third are in its cluster joins the nearest
-// other one. One after the other, each seeing what became of those before.
+// A voxel joins the nearest other cluster if fewer than a third of its surroundings, itself included, are in
+// its own. Voxels are visited in order, and each sees the changes before it.
 void repair_connectivity(const Voxels& voxels, Labels& labels) {
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (std::size_t j = 0; j < labels.size(); ++j) {
     voxels.tree.nearest(voxels.centre(j), kSurroundings, found);
-    const auto shares = [&](const Neighbor& near) { return label_of(labels, near.index) == labels[j]; };
+    const auto shares = [&](const Neighbour& near) { return label_of(labels, near.index) == labels[j]; };
     const auto sharing = static_cast<std::size_t>(std::count_if(found.begin(), found.end(), shares));
     if (sharing < found.size() / 3)
       labels[j] = label_of(labels, std::find_if_not(found.begin(), found.end(), shares)->index);
   }
 }
 
-// Clusters in the order of their seeds, those that have lost all their voxels left out.
+// Numbers the clusters in the order of their seeds and leaves out those that have lost all their voxels.
 Clusters numbered(const Labels& voxel_of, const Labels& labels, std::size_t seeds) {
   std::vector<std::int32_t> number(seeds, 0);
   for (const std::int32_t label : labels) number[static_cast<std::size_t>(label)] = 1;

@@ -13,7 +13,7 @@ namespace salbench {
 // sum (a - b)^2 / (a + b), bins where both are 0 adding nothing; values >= 0. Not halved.
 double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b);
 
-// Means over groups of points; those of a group without points are 0.
+// Means over groups of points; 0 for a group without points.
 struct GroupMeans {
   std::vector<Vec3> centres;        // m x 3
   Descriptors descriptors;          // m x 33
@@ -28,11 +28,12 @@ GroupMeans group_means(std::span<const Vec3> points, const Descriptors& descript
 
 struct Clusters {
   std::vector<std::int32_t> of_point;  // n: 0..count-1
-  std::size_t count = 0;               // none is empty
+  std::size_t count = 0;               // no cluster is empty
 };
 
 // points n x 3, descriptors n x 33, n > 0; `radius` > 0 is the grown support radius and `unit` > 0 the
-// shape's R. About options.clusters of them, from about half to one and a half times as many. [tasse2015]
+// shape's R. The number of clusters is about options.clusters, from half to one and a half times as many.
+// [tasse2015]
 Clusters cs_clusters(std::span<const Vec3> points, const Descriptors& descriptors, double radius, double unit,
                      const CsOptions& options);
 

@@ -20,7 +20,7 @@ namespace {
 
 using Group = std::span<const std::size_t>;  // distinct participants
 
-// The mean of each metric over where it is defined.
+// The mean of each metric over the comparisons where it is defined.
 class MeanOfScores {
  public:
   explicit MeanOfScores(std::size_t n_metrics) : sums_(n_metrics), counts_(n_metrics) {}
@@ -34,7 +34,7 @@ class MeanOfScores {
     }
   }
 
-  // Over the counts of `scores`, which are kept.
+  // The means, with the counts of `scores`.
   Scores with_counts_of(Scores scores) const {
     scores.values.clear();
     for (std::size_t m = 0; m < sums_.size(); ++m)
@@ -55,14 +55,13 @@ SmoothingOptions undivided() {
 }
 
 void require_participants(const GroundTruth& truth) {
-  if (truth.picks.size() < kFewestParticipants)
-    throw InputError("HS does not apply: it compares participants with each other, and of this mesh there " +
-                     (truth.picks.empty()
-                          ? std::string("are no picks")
-                          : std::string("is one list of picks, of one participant or pooled")));
+  if (truth.picks.size() < kMinParticipants)
+    throw InputError("HS does not apply: it compares participants with each other, and this mesh has " +
+                     (truth.picks.empty() ? std::string("no picks")
+                                          : std::string("one list of picks (one participant, or pooled)")));
 }
 
-// Any group of the participants of one mesh against any other.
+// Compares groups of the participants of one mesh.
 class Participants {
  public:
   Participants(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer)
@@ -98,7 +97,7 @@ std::vector<std::size_t> everyone(const Participants& participants) {
   return all;
 }
 
-// Puts a random `count` of the elements to the front, in random order (Fisher and Yates, broken off).
+// Moves `count` random elements to the front, in random order (a partial Fisher-Yates shuffle).
 void draw_to_front(std::vector<std::size_t>& elements, std::size_t count, Rng& rng) {
   for (std::size_t i = 0; i < count; ++i)
     std::swap(elements[i], elements[i + rng.below(elements.size() - i)]);
@@ -113,7 +112,7 @@ void check(const HsOptions& options) {
     throw OptionError("largest_group", "must be at least 1, not " + std::to_string(options.largest_group));
 }
 
-Scores one_against_rest(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer) {
+Scores leave_one_out(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer) {
   require_participants(truth);
   const Participants participants(mesh, truth, scorer);
   std::vector<std::size_t> order = everyone(participants);

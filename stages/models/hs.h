@@ -1,5 +1,5 @@
-// HS, human performance: how well people predict what other people mark. What a model is measured against,
-// and no model of a shape itself: it reads the picks of the participants, and only meshes have those.
+// HS, human performance: how well participants predict what other participants mark. It is the yardstick for
+// the models. It reads the picks of the participants, which only meshes have.
 #pragma once
 
 #include <cstddef>
@@ -23,28 +23,28 @@ struct HsOptions {
 };
 void check(const HsOptions& options);  // throws OptionError
 
-inline constexpr std::size_t kFewestParticipants = 2;  // below, there is nobody to predict
+inline constexpr std::size_t kMinParticipants = 2;  // one predicts, one is predicted
 
-// Scores the map of one group against the others: their map is `saliency`, their picks are `picks`. Both maps
-// are smoothed_picks() without the division by participants, as they are: to normalise and match them is the
-// scorer's part. Equal arguments must get equal scores.
+// Scores the map of one group of participants against another group, whose map and picks are in `others`.
+// Both maps are smoothed_picks() without the division by participants; the scorer normalises and matches
+// them. Equal arguments must get equal scores.
 struct GroupScorer {
   std::size_t n_metrics;  // values of the Scores that it makes
   std::function<Scores(const ScalarField& map, const GroundTruth& others)> score;
 };
 
-// Of both functions: a group that picked nothing has a map of zeros, and is scored; where the others picked
-// nothing there is nothing to predict, and the comparison is left out. A metric is the mean over where it is
-// defined, NaN where it never is; the counts are those of the mesh, all participants together. Both throw
-// InputError for fewer than two participants, and for a pick that is no vertex.
+// Both functions score a group without picks: its map is all zeros. They leave out a comparison with others
+// who picked nothing, since there is nothing to predict. Each metric is the mean over the comparisons where
+// it is defined, NaN if there are none; the counts are those of the mesh, all participants together. Both
+// throw InputError for fewer than two participants, and for a pick outside the mesh.
 
-// Each participant in turn against all the others; the mean over the participants, in whatever order they
-// come (to rounding). [tasse2016]
-Scores one_against_rest(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer);
+// The mean over all participants of one against all the others. Their order does not matter, up to rounding.
+// [tasse2016]
+Scores leave_one_out(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer);
 
-// Entry n - 1: a random n participants against another n, disjoint; the mean over the draws. As long as
-// there are 2n participants and n <= largest_group. The draws depend on `rng` and the number of participants
-// alone, those for n not on largest_group. [tasse2016]
+// Entry n - 1: the mean over random draws of n participants against n others, for each n with 2n participants
+// and n <= largest_group. The draws depend only on `rng` and the number of participants; those for n do not
+// depend on largest_group. [tasse2016]
 HumanCurve human_curve(const Mesh& mesh, const GroundTruth& truth, const HsOptions& options,
                        const GroupScorer& scorer, Rng rng);
 

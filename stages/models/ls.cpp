@@ -1,7 +1,7 @@
 // Shtrom, Leifman and Tal 2013, as the benchmark's authors ran it. It departs from the publication in that a
 // point is compared only with the points most similar to it, and in that the high level describes only the
-// most distinct points anew: their descriptors are compared with all others' low-level ones. What the
-// paper's text describes are other values of the same options.
+// most distinct points anew: their descriptors are compared with all others' low-level ones.
+// LsOptions::text() is the model as the paper describes it.
 #include "stages/models/ls.h"
 
 #include <algorithm>
@@ -14,19 +14,19 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/models/chi2_search.h"
 
 namespace salbench {
 namespace {
 
-constexpr double kHistogramTotal = 300;  // of a descriptor in the published weighting: 3 blocks of 100
+constexpr double kHistogramTotal = 300;  // sum of a descriptor in the published weighting: 3 blocks of 100
 
 std::size_t count_of(double share, std::size_t n) {
   return static_cast<std::size_t>(share * static_cast<double>(n));
 }
 
-// The `count` points of largest value, ascending; of equal values the higher index stays.
+// The `count` points of largest value, ascending; ties go to the higher index.
 std::vector<std::int32_t> largest(const ScalarField& field, std::size_t count) {
   std::vector<std::int32_t> points(field.size());
   std::iota(points.begin(), points.end(), 0);
@@ -38,16 +38,17 @@ std::vector<std::int32_t> largest(const ScalarField& field, std::size_t count) {
   return points;
 }
 
-// Centred, in units of R.
+// Points relative to the centroid, in units of R.
 std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
   if (points.empty()) throw InputError("the shape has no points");
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   const double radius = bounding_radius(points);
-  if (!std::isfinite(radius)) throw InputError("the shape has a coordinate that is not finite");
+  if (!std::isfinite(radius))
+    throw InputError("the shape has a coordinate that is not finite, or whose square overflows");
   if (radius == 0) throw InputError("all points of the shape coincide");
   std::vector<Vec3> result;
   result.reserve(points.size());
-  for (const Vec3& p : points) result.push_back((p - center) / radius);
+  for (const Vec3& p : points) result.push_back((p - centre) / radius);
   return result;
 }
 
@@ -57,7 +58,7 @@ ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descri
                          Dissimilarity&& dissimilarity) {
   const std::size_t selected = std::max<std::size_t>(count_of(selected_share, points.size()), 1);
   ScalarField result(points.size());
-  Chi2Search(descriptors).for_each(selected, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+  Chi2Search(descriptors).for_each(selected, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     double sum = 0;
     for (const auto& [j, chi2] : nearest)
       sum += dissimilarity(static_cast<double>(chi2) / kHistogramTotal,
@@ -86,13 +87,13 @@ ScalarField association(std::span<const Vec3> points, const ScalarField& low, co
   return result;
 }
 
-// The low-level descriptors, those of the most distinct points replaced by high-level ones.
-Descriptors mixed_descriptors(Points points, const Normals& normals, const Descriptors& of_low_level,
+// The low-level descriptors, except that the most distinct points have high-level ones.
+Descriptors mixed_descriptors(Points points, const Normals& normals, const Descriptors& low_level,
                               const ScalarField& low, const LsOptions& options) {
   const std::vector<std::int32_t> distinct = largest(low, count_of(options.high_share, low.size()));
   const Support support{0, options.high_radius * bounding_radius(points)};
   const Descriptors high = fpfh(points, normals, KdTree(points), support, options.high_weighting, distinct);
-  Descriptors mixed = of_low_level;
+  Descriptors mixed = low_level;
   for (std::size_t h = 0; h < distinct.size(); ++h) {
     const auto row = high.row(h);
     std::copy(row.begin(), row.end(),

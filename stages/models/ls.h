@@ -1,5 +1,5 @@
-// LS, saliency of large point sets: a point is salient where its surroundings are unlike those that resemble
-// them most, at two scales, or where it lies near such a point.
+// LS, saliency of large point sets. A point is salient if its surroundings differ, at two scales, even from
+// the surroundings that resemble them most, or if it lies near such a point.
 #pragma once
 
 #include "stages/core/fpfh.h"
@@ -8,8 +8,9 @@
 
 namespace salbench {
 
-// As the benchmark's authors ran it; lengths in units of R, the largest distance to the centroid. Of a share
-// of the points the number is rounded down; there is always one selected point and one focus.
+// The defaults are those of the benchmark's authors. Lengths are in units of R, the largest distance to the
+// centroid. The number of points in a share is rounded down, but there is at least one selected point and one
+// focus.
 struct LsOptions {
   double selected_share = 0.05;
   double foci_share = 0.2;

@@ -1,8 +1,8 @@
-// Song, Liu, Martin and Rosin 2014 as the benchmark's authors ran it, found by fitting their published maps
-// and scores: the width of the window is 9, the zero eigenvalue stays in the spectrum (as the round-off of a
-// dense solver left it), and the sums over neighbours are divided by areas. With it in the spectrum the
-// irregularity of all frequencies that its window does not reach is negligible, so a few eigenpairs do for
-// the whole decomposition.
+// Song, Liu, Martin and Rosin 2014 as the benchmark's authors ran it. Fitting their published maps and scores
+// gave: the width of the window is 9, the zero eigenvalue stays in the spectrum (as the round-off of a dense
+// solver left it), and the sums over neighbours are divided by areas. With the zero eigenvalue in the
+// spectrum, the irregularity of all frequencies beyond the reach of its window is negligible, so a few
+// eigenpairs replace the whole decomposition.
 #include "stages/models/ms.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/models/simplified.h"
 #include "stages/models/spectrum.h"
 
@@ -24,18 +24,18 @@ namespace {
 constexpr double kZeroEigenvalue = 1e-17;  // of the largest one
 constexpr std::size_t kInterpolated = 3;   // nearest simplified vertices that a vertex takes its value from
 constexpr int kScales = 5;
-constexpr double kSmoothingReach = 2.5;  // standard deviations
-constexpr double kSmallestShare = 1e-6;  // of the mean area: what a vertex of degenerate faces has
+constexpr double kSmoothingReach = 2.5;    // standard deviations
+constexpr double kMinAreaFraction = 1e-6;  // least area of a vertex, relative to the mean
 
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 // --- the part of the shape that the model sees
 
-// From the centroid, in units of R: the solvers' thresholds are absolute.
+// Points relative to the centroid, in units of R, because the solvers' thresholds are absolute.
 std::vector<Vec3> normalised(std::span<const Vec3> points, double radius) {
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   std::vector<Vec3> result(points.begin(), points.end());
-  for (Vec3& p : result) p = (p - center) / radius;
+  for (Vec3& p : result) p = (p - centre) / radius;
   return result;
 }
 
@@ -45,7 +45,7 @@ struct Part {
 };
 
 Part largest_component(std::span<const Vec3> points, std::span<const Triangle> all_faces) {
-  std::vector<Triangle> faces;  // those that are triangles: the others hold nothing together
+  std::vector<Triangle> faces;  // without degenerate ones, which connect nothing
   for (const Triangle& face : all_faces)
     if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) faces.push_back(face);
   const std::vector<std::int32_t> label = connected_components(edge_adjacency(points.size(), faces));
@@ -67,7 +67,7 @@ Part largest_component(std::span<const Vec3> points, std::span<const Triangle> a
   return part;
 }
 
-// The other points take the value of the nearest vertex.
+// Points outside the part take the value of its nearest vertex.
 ScalarField on_all_points(std::span<const Vec3> points, const Part& part, const ScalarField& values) {
   const KdTree tree(part.mesh.vertices);
   ScalarField all(points.size());
@@ -96,7 +96,7 @@ template <class Value>
 std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree,
                                 const std::vector<Value>& values) {
   std::vector<Value> result(points.size());
-  std::vector<Neighbor> nearest;
+  std::vector<Neighbour> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.nearest(points[i], kInterpolated, nearest);
     if (nearest.front().distance_squared == 0) nearest.resize(1);
@@ -117,14 +117,14 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
   std::vector<double> areas(mesh.vertices.size(), 0);
   for (const Triangle& face : mesh.faces)
     for (const std::int32_t v : face) areas[index(v)] += face_area_vector(mesh, face).norm() / 6;
-  const double smallest = kSmallestShare * surface_area(mesh) / static_cast<double>(areas.size());
+  const double smallest = kMinAreaFraction * surface_area(mesh) / static_cast<double>(areas.size());
   for (double& area : areas) area = std::max(area, smallest);
   return areas;
 }
 
 // --- the spectrum
 
-// w_f = exp |g(f) - A(f)| - 1 with g = ln lambda, of which A is the moving average; beyond its low end the
+// w_f = exp |g(f) - A(f)| - 1, where g = ln lambda and A is its moving average. Below its low end the
 // spectrum repeats its first value.
 Eigen::VectorXd irregularities(const Eigen::VectorXd& eigenvalues, const MsOptions& options) {
   const Eigen::VectorXd log_spectrum = eigenvalues.array().log();
@@ -138,7 +138,7 @@ Eigen::VectorXd irregularities(const Eigen::VectorXd& eigenvalues, const MsOptio
   return irregularity;
 }
 
-// s_i = sum over the neighbours j of (B diag(w) B')_ij, weighted; empty where the eigensolve failed.
+// s_i = sum over the neighbours j of (B diag(w) B')_ij, weighted; empty if the eigensolve failed.
 ScalarField spectral_saliency(const Mesh& mesh, const Adjacency& adjacency, const MsOptions& options) {
   const SparseMatrix weights = inverse_square_weights(mesh.vertices, adjacency);
   const SparseMatrix laplacian = graph_laplacian(weights);
@@ -161,15 +161,15 @@ ScalarField spectral_saliency(const Mesh& mesh, const Adjacency& adjacency, cons
   return saliency;
 }
 
-// How far the Gaussian mean of the shape around each point lies from the point.
+// The offset from each point to the Gaussian mean of the shape around it.
 std::vector<Vec3> smoothing_moves(const std::vector<Vec3>& points, const KdTree& tree, double variance) {
   std::vector<Vec3> moves(points.size());
-  std::vector<Neighbor> around;
+  std::vector<Neighbour> around;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.within(points[i], kSmoothingReach * std::sqrt(variance), around);
     Vec3 sum = Vec3::Zero();
     double weights = 0;
-    for (const Neighbor& n : around) {
+    for (const Neighbour& n : around) {
       const double weight = std::exp(-n.distance_squared / (2 * variance));
       sum += weight * (points[index(n.index)] - points[i]);
       weights += weight;
@@ -179,9 +179,8 @@ std::vector<Vec3> smoothing_moves(const std::vector<Vec3>& points, const KdTree&
   return moves;
 }
 
-// Sum over the scales of |s(t_k+1) - s(t_k)|; empty where an eigensolve failed. The Gaussians are narrower
-// than the faces of the simplified mesh, so the full mesh is smoothed and the simplified one moves along with
-// it.
+// Sum over the scales of |s(t_k+1) - s(t_k)|; empty if an eigensolve failed. The Gaussians are narrower than
+// the faces of the simplified mesh, so the full mesh is smoothed and the simplified one moves along with it.
 ScalarField multiscale_saliency(const Mesh& full, const Mesh& coarse, const Adjacency& adjacency,
                                 const MsOptions& options) {
   const KdTree tree(full.vertices);
@@ -199,7 +198,8 @@ ScalarField multiscale_saliency(const Mesh& full, const Mesh& coarse, const Adja
   return total;
 }
 
-// ln, of what is not positive that of the smallest positive value; empty where nothing is.
+// The natural logarithm; values that are not positive count as the smallest positive one. Empty if no value
+// is positive.
 ScalarField logarithm(ScalarField values) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const double v : values)
@@ -227,7 +227,8 @@ void check_input(Points points, Surface surface) {
   for (const Triangle& face : surface)
     for (const std::int32_t v : face)
       if (v < 0 || v >= n)
-        throw InputError("a face names point " + std::to_string(v) + ", but there are " + std::to_string(n));
+        throw InputError("a face refers to point " + std::to_string(v) + " (0-based), but the shape has " +
+                         std::to_string(n) + " points");
   for (const Vec3& p : points)
     if (!p.allFinite()) throw InputError("a point has a coordinate that is not finite");
 }
@@ -264,7 +265,7 @@ ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options
   if (points.empty()) return {};
   const ScalarField failed(points.size(), 0);
   const double radius = bounding_radius(points);
-  if (!std::isfinite(radius)) throw InputError("a size that floating point cannot square");
+  if (!std::isfinite(radius)) throw InputError("coordinates too large: their squares overflow");
   if (radius == 0) return failed;
   const std::vector<Vec3> places = normalised(points, radius);
   const Part part = largest_component(places, surface);

@@ -21,7 +21,7 @@ Axis first_principal_axis(const Rows& centred) {
   return solver.eigenvectors().col(kFpfhBins - 1);  // eigenvalues ascend
 }
 
-// An eigenvector has no sign of its own.
+// The sign of an eigenvector is arbitrary.
 void turn_away_from_flat(Axis& axis) {
   double along_flat = 0;
   for (const Eigen::Index bin : kFlatBins) along_flat += axis[bin];

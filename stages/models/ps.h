@@ -1,5 +1,5 @@
-// PS, saliency by principal components: how far a point's descriptor lies along the direction in which the
-// descriptors of the shape vary most.
+// PS, saliency by principal components. The saliency of a point is how far its descriptor lies along the
+// direction in which the descriptors of the shape vary most.
 #pragma once
 
 #include "stages/core/options.h"

@@ -1,4 +1,4 @@
-// RS, the model that knows nothing: what a score means without any agreement.
+// RS, random saliency: the baseline without any agreement.
 #pragma once
 
 #include "stages/core/options.h"

@@ -3,8 +3,8 @@
 // mesh.
 //
 // The queue holds every edge once for each state of its end points; an entry whose end points have changed
-// since is skipped when it comes up. A collapse that is refused may become possible when the faces around it
-// have changed: when the queue runs dry it is filled again, until a whole round changes nothing.
+// since is skipped when it comes up. A refused collapse may become possible when the faces around it have
+// changed, so an empty queue is filled again until a whole round changes nothing.
 #include "stages/models/simplified.h"
 
 #include <algorithm>
@@ -28,10 +28,9 @@ namespace {
 using Edge = std::pair<std::size_t, std::size_t>;  // ascending
 
 constexpr double kBorderWeight = 1;  // of a border edge's plane, per squared length of the edge
-constexpr double kEvenness = 1e-8;   // what an edge's squared length adds to its error; settles flat places
-constexpr double kFlattest =
-    1e-5;  // share of the largest eigenvalue below which a direction counts as unseen
-constexpr double kLeastCosine = 0.2;  // of the turn of a face in one collapse
+constexpr double kEvenness = 1e-8;  // factor of an edge's squared length in its error; decides in flat places
+constexpr double kMinStiffness = 1e-5;  // relative to the largest eigenvalue: below, a direction is free
+constexpr double kMinCosine = 0.2;      // of the angle by which one collapse turns a face
 
 // Sum of weighted squared distances to planes: x'Ax + 2b'x + c.
 struct Quadric {
@@ -55,15 +54,14 @@ struct Quadric {
   double operator()(const Vec3& x) const { return std::max(0.0, x.dot(a * x) + 2 * b.dot(x) + c); }
 };
 
-// The point of least error; of those along a direction that the quadric does not see, the one nearest to
-// `near`.
+// The point of least error. Along directions that the quadric leaves free it is the one nearest to `near`.
 Vec3 optimum(const Quadric& quadric, const Vec3& near) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(quadric.a);
   const Vec3 pull = -(quadric.b + quadric.a * near);
   Vec3 place = near;
   for (int k = 0; k < 3; ++k) {
     const double stiffness = axes.eigenvalues()[k];
-    if (stiffness <= kFlattest * axes.eigenvalues()[2]) continue;
+    if (stiffness <= kMinStiffness * axes.eigenvalues()[2]) continue;
     const Vec3 axis = axes.eigenvectors().col(k);
     place += axis * (axis.dot(pull) / stiffness);
   }
@@ -86,7 +84,7 @@ class EdgeCollapse {
     }
   };
 
-  struct Moved {  // both ends of an edge, to one place
+  struct Moved {  // both ends of an edge are moved to one place
     Edge edge;
     Vec3 place;
   };
@@ -209,8 +207,8 @@ bool EdgeCollapse::is_current(const Candidate& candidate) const {
          states_[candidate.edge.second] == candidate.state_b;
 }
 
-// The link condition, by which the surface before and after are homeomorphic where it is a manifold; a
-// triangle that alone holds its corner to the rest stays, so that connected points remain connected.
+// The link condition: where the surface is a manifold, it is homeomorphic before and after. A triangle that
+// alone connects a corner to the rest stays, so that connected points remain connected.
 bool EdgeCollapse::keeps_topology(const Edge& edge) const {
   const auto [a, b] = edge;
   const std::vector<std::size_t> ring_a = ring(a), ring_b = ring(b);
@@ -242,7 +240,7 @@ bool EdgeCollapse::folds(const Edge& edge, const Vec3& place) const {
   const auto turns_over = [&](std::size_t face) {
     if (has(face, edge.first) && has(face, edge.second)) return false;  // it vanishes
     const Vec3 before = area_vector(face, {}), after = area_vector(face, Moved{edge, place});
-    return before.norm() > 0 && before.dot(after) <= kLeastCosine * before.norm() * after.norm();
+    return before.norm() > 0 && before.dot(after) <= kMinCosine * before.norm() * after.norm();
   };
   return std::any_of(faces_of_[edge.first].begin(), faces_of_[edge.first].end(), turns_over) ||
          std::any_of(faces_of_[edge.second].begin(), faces_of_[edge.second].end(), turns_over);

@@ -7,11 +7,11 @@
 
 namespace salbench {
 
-// The mesh with at most `target_faces` faces, or as few as collapses can leave that neither change the
-// topology nor fold a face over; each collapse puts the new vertex where its quadric error is least.
-// Duplicate faces, degenerate ones and unreferenced vertices are gone. Takes any soup of triangles: open,
-// non-manifold, of several components, and of inconsistent orientation; connected points stay connected.
-// Indices valid, coordinates finite. [garland1997]
+// Collapses edges until the mesh has at most `target_faces` faces, or until every further collapse would
+// change the topology or fold a face over. Each new vertex is placed where its quadric error is least.
+// Duplicate faces, degenerate faces and unreferenced vertices are removed; connected points stay connected.
+// Takes any soup of triangles: open, non-manifold, with several components, and with inconsistent
+// orientation. Indices must be valid and coordinates finite. [garland1997]
 Mesh simplified(const Mesh& mesh, std::size_t target_faces);
 
 }  // namespace salbench

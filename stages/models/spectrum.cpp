@@ -12,12 +12,12 @@
 namespace salbench {
 namespace {
 
-constexpr double kShift = 1e-10;  // below zero, of the largest eigenvalue: the matrix itself is singular
+constexpr double kShift = 1e-10;  // below zero, relative to the largest eigenvalue: L itself is singular
 constexpr double kLargestPerDegree = 1.3;
-constexpr double kShortestEdge = 1e-4;  // of the mean edge
-constexpr double kTolerance = 1e-11;    // of an eigenvalue of the inverse, relative
-constexpr double kSameValue = 1e-8;     // relative difference of eigenvalues that are taken for one
-constexpr Eigen::Index kMostRestarts = 1000;
+constexpr double kMinEdge = 1e-4;     // relative to the mean edge
+constexpr double kTolerance = 1e-11;  // of an eigenvalue of the inverse, relative
+constexpr double kSameValue = 1e-8;   // relative difference of eigenvalues that are taken for one
+constexpr Eigen::Index kMaxRestarts = 1000;
 
 // (L - shift)^-1 on the complement of the vectors already known. Spectra's own operator would take twice as
 // long, for it does not know that L is symmetric.
@@ -33,7 +33,7 @@ class DeflatedInverse {
   void deflate(const Eigen::MatrixXd& known) { known_ = known; }
   Eigen::VectorXd deflated(const Eigen::VectorXd& x) const { return x - known_ * (known_.transpose() * x); }
 
-  // What Spectra asks of an operator.
+  // The interface that Spectra requires of an operator.
   Eigen::Index rows() const { return n_; }
   Eigen::Index cols() const { return n_; }
   void set_shift(double) {}  // known since construction: the factors serve several solves
@@ -48,7 +48,7 @@ class DeflatedInverse {
   Eigen::MatrixXd known_;  // n x m, orthonormal columns
 };
 
-// Has a part along any vector of a mesh, symmetric or not, and does not depend on chance.
+// A fixed vector with a component along every eigenvector, even if the mesh is symmetric.
 Eigen::VectorXd start_vector(Eigen::Index n) {
   constexpr double kGoldenRatio = 0.6180339887498949;
   Eigen::VectorXd start(n);
@@ -59,24 +59,22 @@ Eigen::VectorXd start_vector(Eigen::Index n) {
   return start;
 }
 
-// The `count` lowest pairs that `inverse` has not been deflated of; no columns where the solver fails.
+// The `count` lowest pairs that `inverse` has not been deflated of; no columns if the solver fails.
 Eigenpairs further_pairs(DeflatedInverse& inverse, Eigen::Index count, double shift) {
   const Eigen::Index subspace = std::min(inverse.rows(), std::max<Eigen::Index>(3 * count, 20));
   Spectra::SymEigsShiftSolver<DeflatedInverse> solver(inverse, count, subspace, shift);
   const Eigen::VectorXd start = inverse.deflated(start_vector(inverse.rows()));
   try {
     solver.init(start.data());
-    solver.compute(Spectra::SortRule::LargestMagn, kMostRestarts, kTolerance,
-                   Spectra::SortRule::SmallestAlge);
-  } catch (
-      const std::exception&) {  // no part of the start is left, or its tridiagonal problem did not converge
-    return {};
+    solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance, Spectra::SortRule::SmallestAlge);
+  } catch (const std::exception&) {
+    return {};  // the start vector is all deflated, or the tridiagonal problem did not converge
   }
   if (solver.info() != Spectra::CompInfo::Successful) return {};
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-// Puts the pairs of `more` among those of `pairs`, ascending, and keeps the k lowest.
+// Merges `more` into `pairs`, ascending, and keeps the k lowest.
 Eigenpairs merged(const Eigenpairs& pairs, const Eigenpairs& more, Eigen::Index k) {
   Eigen::VectorXd values(pairs.values.size() + more.values.size());
   Eigen::MatrixXd vectors(pairs.vectors.rows(), values.size());
@@ -102,8 +100,7 @@ SparseMatrix inverse_square_weights(std::span<const Vec3> points, const Adjacenc
       entries.emplace_back(i, j, length);
     }
   }
-  const double shortest =
-      kShortestEdge * lengths / static_cast<double>(std::max<std::size_t>(entries.size(), 1));
+  const double shortest = kMinEdge * lengths / static_cast<double>(std::max<std::size_t>(entries.size(), 1));
   for (auto& entry : entries) {
     const double length = std::max(entry.value(), shortest);
     entry = {entry.row(), entry.col(), 1 / (length * length)};
@@ -129,14 +126,15 @@ Eigenpairs lowest_eigenpairs(const SparseMatrix& laplacian, Eigen::Index k) {
   DeflatedInverse inverse(laplacian, shift);
   if (!inverse.succeeded()) return {};
 
-  // The constant vector is known, and left in it would drown the others: its share of the inverse is 1 /
-  // shift.
+  // The constant vector is known. Left in, it would drown the others, since its eigenvalue of the inverse is
+  // 1 / shift.
   Eigenpairs pairs{Eigen::VectorXd::Zero(1),
                    Eigen::MatrixXd::Constant(n, 1, 1 / std::sqrt(static_cast<double>(n)))};
   inverse.deflate(pairs.vectors);
   Eigenpairs more = further_pairs(inverse, k - 1, shift);
 
-  // A Krylov space holds but one direction of a repeated eigenvalue: look for others until none is lower.
+  // A Krylov space holds only one direction of a repeated eigenvalue, so further searches follow until none
+  // finds a lower pair.
   while (more.values.size() > 0) {
     pairs = merged(pairs, more, k);
     inverse.deflate(pairs.vectors);

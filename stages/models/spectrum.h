@@ -29,7 +29,7 @@ struct Eigenpairs {
 };
 
 // The k lowest eigenpairs of the Laplacian of a connected graph, repeated eigenvalues as often as they occur;
-// 1 < k < n - 1. No columns where the solver fails. The same bytes on every call.
+// 1 < k < n - 1. There are no columns if the solver fails. The result has the same bytes on every call.
 Eigenpairs lowest_eigenpairs(const SparseMatrix& laplacian, Eigen::Index k);
 
 }  // namespace salbench

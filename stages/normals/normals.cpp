@@ -9,7 +9,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/support.h"
 #include "stages/normals/orient.h"
 #include "stages/normals/planes.h"
@@ -23,10 +23,11 @@ const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[sta
 
 void require_finite(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (!points[i].allFinite()) throw InputError(fmt::format("point {} is not finite", i));
+    if (!points[i].allFinite())
+      throw InputError(fmt::format("point {} (0-based) has a coordinate that is not finite", i));
 }
 
-// Zero where the faces tell nothing.
+// Zero for a vertex without faces, and if the area vectors of its faces cancel.
 Normals area_weighted_normals(const Mesh& mesh) {
   Normals sums(mesh.vertices.size(), Vec3::Zero());
   std::vector<double> areas(mesh.vertices.size(), 0);
@@ -39,7 +40,7 @@ Normals area_weighted_normals(const Mesh& mesh) {
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double length = sums[i].norm();
-    sums[i] = length > 1e-12 * areas[i] ? Vec3(sums[i] / length) : Vec3::Zero();  // below, what cancelled
+    sums[i] = length > 1e-12 * areas[i] ? Vec3(sums[i] / length) : Vec3::Zero();  // below: rounding
   }
   return sums;
 }
@@ -48,7 +49,7 @@ void fill_from_nearest(const std::vector<Vec3>& points, Normals& normals) {
   std::vector<std::size_t> known, unknown;
   for (std::size_t i = 0; i < normals.size(); ++i) (normals[i].isZero(0) ? unknown : known).push_back(i);
   if (unknown.empty()) return;
-  if (known.empty()) throw InputError("no face has an area: the mesh has no normals");
+  if (known.empty()) throw InputError("no face has an area: normals cannot be computed");
   std::vector<Vec3> known_points;
   known_points.reserve(known.size());
   for (const std::size_t i : known) known_points.push_back(points[i]);
@@ -64,8 +65,8 @@ std::int32_t plane_neighbours(const std::vector<Vec3>& points, const KdTree& tre
   return std::min(others, options.most_neighbours);
 }
 
-// The six outermost points along the axes are on the hull, so outwards is known there. Of these the one that
-// faces its axis most: where the surface runs along the axis, noise would decide.
+// The six outermost points along the axes are on the hull, so outwards is known there. The one that faces its
+// axis most is chosen: where the surface runs along the axis, noise would decide.
 OrientationSeed outermost(std::span<const Vec3> points, const Normals& normals,
                           std::span<const std::int32_t> component) {
   OrientationSeed best{component.front(), Vec3::UnitX()};
@@ -86,11 +87,11 @@ OrientationSeed outermost(std::span<const Vec3> points, const Normals& normals,
 }
 
 Normals hoppe_mesh_normals(const std::vector<Vec3>& points, const MeshNormalsOptions& options) {
-  if (points.empty()) throw InputError("a mesh without vertices has no normals");
+  if (points.empty()) throw InputError("the mesh has no vertices: normals cannot be computed");
   const KdTree tree(points);
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   const auto outwards = [&](std::size_t i) -> Vec3 {
-    return points[i] == center ? Vec3::UnitZ() : Vec3(points[i] - center);
+    return points[i] == centre ? Vec3::UnitZ() : Vec3(points[i] - centre);
   };
   Normals normals = plane_normals(points, tree, plane_neighbours(points, tree, options), outwards);
   const auto seed_of = [&](std::span<const std::int32_t> part) { return outermost(points, normals, part); };
@@ -117,7 +118,7 @@ void check(const ScanNormalsOptions& options) {
   require_between("neighbours", options.neighbours, 3, kMostNeighbours);
   require_between("orientation_neighbours", options.orientation_neighbours, 2, kMostNeighbours);
   require_between("gap", options.gap, 1, 1e6);
-  require_between("steepest_degrees", options.steepest_degrees, 1, 90);
+  require_between("steepest_degrees", options.max_normal_angle_degrees, 1, 90);
 }
 
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options) {
@@ -144,7 +145,7 @@ Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
     return {nearest, to_camera(static_cast<std::size_t>(nearest))};
   };
   const OrientationGraph graph{options.orientation_neighbours, options.gap * median_spacing(points, tree),
-                               options.steepest_degrees * std::numbers::pi / 180};
+                               options.max_normal_angle_degrees * std::numbers::pi / 180};
   orient_normals(points, tree, graph, nearest_to_camera, normals);
   return normals;
 }

@@ -38,35 +38,36 @@ struct MeshNormalsOptions {
 void check(const MeshNormalsOptions& options);
 
 // n x 3, outward as far as the method can tell.
-//   faces: sum of the face normals weighted by area; a vertex whose faces have no area, or cancel, takes the
-//          normal of the nearest vertex that has one. Throws InputError where no vertex has one.
-//   pca:   the vertices as a point set: the plane of the nearest points, then Hoppe's tree; of each component
-//          of the graph the outermost point along the axis that it faces most is turned outwards. Where a
-//          neighbourhood spans no plane the direction from the centroid decides. [hoppe1992]
+//   faces: sum of the face normals weighted by area. A vertex whose faces have no area, or cancel, takes the
+//          normal of the nearest vertex that has one. Throws InputError if no vertex has one.
+//   pca:   takes the vertices as a point set: planes of the nearest points, oriented by Hoppe's tree. In each
+//          component of the graph one outermost point is turned outwards, the one that faces its axis most.
+//          If a neighbourhood spans no plane, its normal points away from the centroid. [hoppe1992]
 // Throws InputError for vertices that are not finite.
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options = {});
 
 struct ScanNormalsOptions {
   std::int32_t neighbours = 9;              // nearest points a plane is fitted to, the point itself included
   std::int32_t orientation_neighbours = 6;  // nearest others that orientation passes to
-  double gap = 3;                           // beyond so many median point spacings it does not pass
-  double steepest_degrees = 45;             // nor between normals that are further from parallel
+  double gap = 3;                           // orientation does not pass beyond so many median point spacings
+  double max_normal_angle_degrees = 45;     // nor between normals at a larger angle, regardless of sign
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("neighbours", self.neighbours, "nearest points of a plane, itself included");
     visit("orientation_neighbours", self.orientation_neighbours, "nearest others in Hoppe's graph");
     visit("gap", self.gap, "longest edge of Hoppe's graph in median point spacings: beyond, depth jumps");
-    visit("steepest_degrees", self.steepest_degrees,
+    visit("steepest_degrees", self.max_normal_angle_degrees,
           "largest angle between normals across an edge of the graph");
   }
 };
 void check(const ScanNormalsOptions& options);
 
-// n x 3: the plane of the nearest points, then Hoppe's tree; of each component of the graph the point nearest
-// to the camera is turned towards it. The graph bridges neither depth jumps nor sharp folds: there, a normal
-// tells nothing of its neighbour's. Where a neighbourhood spans no plane the direction to the camera decides.
-// An empty scan has no normals. Throws InputError for points that are not finite. [hoppe1992]
+// n x 3: planes of the nearest points, oriented by Hoppe's tree. In each component of the graph the point
+// nearest to the camera is turned towards it. The graph crosses neither depth jumps nor sharp folds, where a
+// normal says nothing about its neighbours. If a neighbourhood spans no plane, its normal points to the
+// camera. The result is empty for an empty scan. Throws InputError for points that are not finite.
+// [hoppe1992]
 Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options = {});
 
 }  // namespace salbench

@@ -1,7 +1,7 @@
-// CGAL builds the graph, finds its minimum spanning tree and passes the orientation on; it says nothing of
-// the parts that hold no seed. So the components are found here first, and each is given to CGAL by itself
-// with its one seed. CGAL's graph has the edge (i, j), i < j, where j is among the points nearest to i; the
-// other way round does not count, and so it is here.
+// CGAL builds the graph, finds its minimum spanning tree and passes the orientation on, but leaves parts
+// without a seed as they are. So the components are found here first, and each is given to CGAL by itself
+// with its one seed. CGAL's graph has the edge (i, j), i < j, only if j is among the points nearest to i; the
+// other way round does not count, and the same rule holds here.
 #include "stages/normals/orient.h"
 
 #include <algorithm>
@@ -41,10 +41,10 @@ std::vector<Component> connected_parts(std::span<const Vec3> points, const KdTre
   const double longest_squared = graph.longest_edge * graph.longest_edge;
   const double least_cosine = std::cos(graph.largest_turn);
   DisjointSets sets(points.size());
-  std::vector<Neighbor> near;
+  std::vector<Neighbour> near;
   for (std::size_t i = 0; i < points.size(); ++i) {
     tree.nearest(points[i], static_cast<std::size_t>(graph.neighbours) + 1, near);
-    for (const Neighbor& n : near) {
+    for (const Neighbour& n : near) {
       const auto j = static_cast<std::size_t>(n.index);
       if (j > i && n.distance_squared <= longest_squared &&
           std::abs(normals[i].dot(normals[j])) >= least_cosine)
@@ -74,7 +74,7 @@ Component pass_on(std::span<const Vec3> points, const Component& part, std::int3
       CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<kPosition, CloudPoint>())
           .normal_map(CGAL::Nth_of_tuple_property_map<kNormal, CloudPoint>())
           .point_is_constrained_map(CGAL::Nth_of_tuple_property_map<kIsSeed, CloudPoint>()));
-  // It has reordered the points, the reached ones first.
+  // CGAL has reordered the points, the reached ones first.
   Component left;
   for (auto p = cloud.begin(); p != cloud.end(); ++p) {
     const Kernel::Vector_3& n = std::get<kNormal>(*p);
@@ -89,8 +89,9 @@ Component pass_on(std::span<const Vec3> points, const Component& part, std::int3
 void orient_normals(std::span<const Vec3> points, const KdTree& tree, const OrientationGraph& graph,
                     const SeedRule& seed_of, Normals& normals) {
   for (Component& part : connected_parts(points, tree, graph, normals)) {
-    // Once, as a rule. But of equally distant neighbours CGAL may take others than KdTree, and it stops at a
-    // right angle: what is left is a part of its own. It ends, since at least the seed is reached each time.
+    // Usually one pass suffices. CGAL may choose other neighbours than KdTree among equally distant ones, and
+    // it stops at a right angle; the points left over then form a part of their own. The loop ends because
+    // each pass reaches at least the seed.
     while (!part.empty()) {
       const OrientationSeed seed = seed_of(part);
       Vec3& normal = normals[static_cast<std::size_t>(seed.point)];

@@ -7,17 +7,17 @@
 #include <numbers>
 #include <span>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
 
 namespace salbench {
 
-// The graph along which orientation passes: each point with its nearest ones, the point itself not counted.
-// Parts that are joined only by edges beyond the limits are components of their own.
+// The graph along which orientation passes. It joins each point to its nearest ones, the point itself not
+// counted, by edges within the limits.
 struct OrientationGraph {
   std::int32_t neighbours;  // >= 2
   double longest_edge = std::numeric_limits<double>::infinity();
-  double largest_turn = std::numbers::pi / 2;  // between the normals of an edge, of whatever sign; radians
+  double largest_turn = std::numbers::pi / 2;  // between the normals of an edge, regardless of sign; radians
 };
 
 // A point whose orientation is known: its normal makes no obtuse angle with `towards`.

@@ -5,17 +5,18 @@
 #include <functional>
 #include <span>
 
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
 
 namespace salbench {
 
-// What the normal of point i should be like where its neighbourhood does not tell; any length but 0.
+// The direction preferred for the normal of a point whose neighbourhood spans no plane; any length but 0.
 using PreferredDirection = std::function<Vec3(std::size_t point)>;
 
-// Normal of the least-squares plane through the `neighbours` points nearest to each point, itself included;
-// of either sign. Neighbourhoods on one line take the preferred direction made perpendicular to the line,
-// those in one place the preferred direction itself. `tree` is over `points`; neighbours >= 1.
+// The normal of the least-squares plane through the `neighbours` points nearest to each point, itself
+// included; its sign is arbitrary. If the neighbourhood lies on one line, the normal is the preferred
+// direction made perpendicular to the line; if it coincides in one place, the preferred direction itself.
+// `tree` is over `points`; neighbours >= 1.
 Normals plane_normals(std::span<const Vec3> points, const KdTree& tree, std::int32_t neighbours,
                       const PreferredDirection& preferred);
 

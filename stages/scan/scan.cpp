@@ -1,7 +1,7 @@
 // Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
-// where the ray meets it, is decided in double. Every candidate comes to the filter and is refused there, so
-// Embree never shortens the ray: the result depends neither on the order in which it visits its tree, which
-// differs with the number of threads that built it, nor on the reciprocal estimates of the processor's maker.
+// where the ray meets it, is decided in double. The filter receives every candidate and refuses it, so Embree
+// never shortens the ray: the result depends neither on the order in which it visits its tree, which differs
+// with the number of threads that built it, nor on the reciprocal estimates of the processor.
 //
 // Frame of tracing, "local": the centroid at the origin, the square root of the surface area as unit.
 #include "stages/scan/scan.h"
@@ -48,7 +48,7 @@ struct LocalFrame {
 LocalFrame local_frame(const Mesh& mesh) {
   const double area = surface_area(mesh);
   if (!(area > 0) || !std::isfinite(area))
-    throw InputError(fmt::format("the surface area is {}: nothing can be scanned", area));
+    throw InputError(fmt::format("the surface area is {}: the mesh cannot be scanned", area));
   return {area_centroid(mesh), std::sqrt(area)};
 }
 
@@ -75,8 +75,8 @@ int half_grid(const std::vector<Vec3>& local_vertices, const Mesh& mesh, const S
     for (const std::int32_t v : face)
       radius = std::max(radius, local_vertices[static_cast<std::size_t>(v)].norm());
   const double half_field = radius < options.distance
-                                ? std::min(std::asin(radius / options.distance), kWidestHalfField)
-                                : kWidestHalfField;
+                                ? std::min(std::asin(radius / options.distance), kMaxHalfField)
+                                : kMaxHalfField;
   return static_cast<int>(
       std::ceil(std::tan(half_field) / std::tan(options.step_degrees * kRadiansPerDegree)));
 }
@@ -91,8 +91,9 @@ struct Release {
 using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>>;
 using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release<rtcReleaseGeometry>>;
 
-// The one device of the process, never released: a second one, or one thread for this one, would change the
-// thread pool of everybody else. Pinned to one instruction set, for the same candidates on every machine.
+// The only device of the process, never released. A second one, or a limit of one thread for this one, would
+// change the thread pool of all other users. Pinned to one instruction set, for the same candidates on every
+// machine.
 RTCDevice device() {
   static RTCDevice device = rtcNewDevice("isa=sse2");
   if (device == nullptr) throw std::runtime_error("Embree cannot be started");
@@ -119,7 +120,7 @@ Scene build_scene(const std::vector<Vec3>& local_vertices, const std::vector<Tri
   rtcCommitGeometry(geometry.get());
 
   Scene scene(rtcNewScene(device()));
-  // Not robust, 3-4 % of the rays slip through between two faces.
+  // Without ROBUST, 3-4 % of the rays slip through between two faces.
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);  // few rays: building is most of the time
   rtcAttachGeometry(scene.get(), geometry.get());
@@ -138,8 +139,8 @@ struct NearestHit : RTCIntersectContext {
   std::uint32_t face = RTC_INVALID_GEOMETRY_ID;
   Vec3 point_in_mesh = Vec3::Zero();
 
-  // Embree found the face in float. Weights that come out negative in double are rounding there: the point
-  // stays on the face. A face seen exactly edge-on is left to its neighbours.
+  // Embree found the face in float. Weights that are negative in double come from that rounding: clamping
+  // keeps the point on the face. A face seen exactly edge-on is left to its neighbours.
   void offer(std::uint32_t candidate) {
     const Triangle& corners = mesh.faces[candidate];
     std::array<Vec3, 3> v;
@@ -218,7 +219,7 @@ Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
       if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh);
     }
   }
-  if (scan.points.empty()) throw InputError(fmt::format("view {} sees nothing of the mesh", view));
+  if (scan.points.empty()) throw InputError(fmt::format("view {}: no ray meets the mesh", view));
   return scan;
 }
 

@@ -1,8 +1,9 @@
-// Simulated range images: what a depth camera sees of a mesh from the corners of an icosahedron. [tasse2016]
+// Simulated range images: the points that a depth camera sees of a mesh from the corners of an icosahedron.
+// [tasse2016]
 //
 // The camera looks at the area-weighted centroid of the mesh, with Y up. Its rays form a square grid in the
 // image plane with one ray through the centroid, wide enough for the sphere around the centroid that holds
-// the mesh, but for at most kWidestHalfField. A point of the scan is the nearest hit of one ray.
+// the mesh, up to kMaxHalfField. A point of the scan is the nearest hit of one ray.
 #pragma once
 
 #include <numbers>
@@ -14,11 +15,12 @@ namespace salbench {
 
 inline constexpr int kViews = 12;
 
-// A shape so slender that it passes the camera would need rays in all directions. The grid stops here.
-inline constexpr double kWidestHalfField = std::numbers::pi / 3;
+// Largest angle between a ray and the central one. A shape so slender that it reaches past the camera would
+// need rays in all directions.
+inline constexpr double kMaxHalfField = std::numbers::pi / 3;
 
 struct ScanOptions {
-  double distance = 3;          // of the camera from the centroid, in sqrt(surface area)
+  double distance = 3;          // camera to area centroid, in sqrt(surface area)
   double step_degrees = 0.125;  // the image plane's step is the tangent of this angle
 
   template <class Self, class Visit>
@@ -34,7 +36,7 @@ void check(const ScanOptions& options);
 // two-sided; vertices without a face do not count.
 //
 // Depends on nothing but its arguments: several threads may scan at once, and x86-64 machines agree.
-// Throws InputError where the surface area is 0 or not finite, or where no ray meets the mesh.
+// Throws InputError if the surface area is 0 or not finite, or if no ray meets the mesh.
 Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options = {});
 
 }  // namespace salbench

@@ -1,5 +1,5 @@
-// Correlation of paired samples of one length. Pairs with a NaN are left out; the result is NaN where a
-// sample is constant or fewer than two pairs remain.
+// Correlation of paired samples of one length. Pairs with a NaN are left out; the result is NaN if a sample
+// is constant or fewer than two pairs remain.
 #pragma once
 
 #include <span>

@@ -6,7 +6,7 @@
 namespace salbench {
 
 // Kolmogorov-Smirnov distance at the bin edges: the largest difference of the normalised cumulative sums, in
-// [0, 1]. NaN where a histogram is empty. Densities and counts give the same.
+// [0, 1]. NaN if a histogram is empty. Densities and counts give the same result.
 double kolmogorov_smirnov(const Histogram& a, const Histogram& b);
 
 }  // namespace salbench

@@ -6,8 +6,9 @@
 
 namespace salbench {
 
-// Holm's step-down adjustment: reject where the adjusted value is at most the level, and the probability of
-// any false rejection is at most the level. NaN stays NaN and does not count as a test. [holm1979]
+// Holm's step-down adjustment. Rejecting each hypothesis whose adjusted value is at most the level keeps the
+// probability of any false rejection at most the level. NaN stays NaN and does not count as a test.
+// [holm1979]
 std::vector<double> holm_adjusted(std::span<const double> p_values);
 
 }  // namespace salbench

@@ -1,6 +1,6 @@
 // The conventions are those of SciPy (1.11 and later for the signed ranks: older versions take the exact
-// distribution for tied differences too, where it does not hold). Departures: where all values agree, SciPy
-// gives NaN or an error; here nothing speaks against the hypothesis, so p = 1.
+// distribution for tied differences too, where it does not hold). One departure: if all values agree, SciPy
+// gives NaN or an error; here p = 1, since nothing speaks against the hypothesis.
 #include "stages/stats/rank_tests.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace salbench {
 namespace {
 
-constexpr std::size_t kExactPairs = 50;
+constexpr std::size_t kMaxExactPairs = 50;
 
 double two_sided(double z) { return std::erfc(std::abs(z) / std::numbers::sqrt2); }
 
@@ -93,7 +93,7 @@ SignedRank signed_rank_test(std::span<const double> x, std::span<const double> y
   double sum_positive = 0, sum_negative = 0;
   for (std::size_t i = 0; i < sizes.size(); ++i) (positive[i] ? sum_positive : sum_negative) += ranks.rank[i];
   result.statistic = std::min(sum_positive, sum_negative);
-  result.exact = sizes.size() <= kExactPairs && result.n_equal == 0 && ranks.ties == 0;
+  result.exact = sizes.size() <= kMaxExactPairs && result.n_equal == 0 && ranks.ties == 0;
   result.p_value =
       result.exact
           ? std::min(1.0, 2 * signed_rank_tail(sizes.size(), static_cast<std::size_t>(result.statistic)))

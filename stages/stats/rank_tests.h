@@ -1,4 +1,4 @@
-// Wilcoxon's two tests, two-sided. NaN is an undefined score: it is left out, with its partner where paired.
+// Wilcoxon's two tests, two-sided. NaN is an undefined score: it is left out, with its partner in a pair.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace salbench {
 
-// Equal values always share their mean rank. That also narrows the distribution of the statistic:
+// Equal values always share their mean rank, which also reduces the variance of the statistic.
 enum class TieVariance {
-  ignored,   // which is not taken into account: the test errs to the safe side (SciPy's ranksums)
-  corrected  // which is (SciPy's mannwhitneyu, asymptotic and without continuity correction)
+  ignored,   // as if there were no ties: the test errs on the safe side (SciPy's ranksums)
+  corrected  // reduced for ties (SciPy's mannwhitneyu, asymptotic and without continuity correction)
 };
 
 template <>
@@ -22,7 +22,7 @@ struct EnumNames<TieVariance> {
   static constexpr std::array<std::string_view, 2> names = {"ignored", "corrected"};
 };
 
-// NaN throughout where a sample is empty. Where all values of both are equal, z = 0 and p = 1.
+// All NaN if a sample is empty; z = 0 and p = 1 if all values of both are equal.
 struct RankSum {
   std::int64_t n_x = 0, n_y = 0;                              // values used
   double u = std::numeric_limits<double>::quiet_NaN();        // pairs with x above y, ties one half
@@ -34,11 +34,11 @@ struct RankSum {
 RankSum rank_sum_test(std::span<const double> x, std::span<const double> y,
                       TieVariance ties = TieVariance::ignored);
 
-// NaN where there is no pair. Where all pairs are equal, p = 1.
+// NaN if there are no pairs; p = 1 if all pairs are equal.
 struct SignedRank {
   std::int64_t n = 0;                                           // pairs that differ
-  std::int64_t n_equal = 0;                                     // pairs that do not: left out
-  bool exact = false;                                           // else the normal approximation
+  std::int64_t n_equal = 0;                                     // pairs that do not differ: left out
+  bool exact = false;                                           // false: the normal approximation
   double statistic = std::numeric_limits<double>::quiet_NaN();  // the smaller of both sums of ranks
   double p_value = std::numeric_limits<double>::quiet_NaN();    // two-sided
 };

@@ -37,7 +37,7 @@ double student_quantile(double degrees_of_freedom) {
 
 }  // namespace
 
-Summary summarize(std::span<const double> values) {
+Summary summarise(std::span<const double> values) {
   const std::vector<double> sample = defined(values);
   Summary summary;
   summary.n = static_cast<std::int64_t>(sample.size());

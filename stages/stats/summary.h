@@ -12,17 +12,17 @@ inline constexpr double kConfidence = 0.95;  // of every interval in the reports
 struct Summary {
   std::int64_t n = 0;                                         // values that are defined
   std::int64_t n_undefined = 0;                               // values that are NaN
-  double mean = std::numeric_limits<double>::quiet_NaN();     // NaN where n = 0
-  double sd = std::numeric_limits<double>::quiet_NaN();       // of the sample, by n - 1; NaN where n < 2
-  double ci_low = std::numeric_limits<double>::quiet_NaN();   // 95 % interval of the mean; NaN where n < 2
+  double mean = std::numeric_limits<double>::quiet_NaN();     // NaN if n = 0
+  double sd = std::numeric_limits<double>::quiet_NaN();       // of the sample, by n - 1; NaN if n < 2
+  double ci_low = std::numeric_limits<double>::quiet_NaN();   // 95 % interval of the mean; NaN if n < 2
   double ci_high = std::numeric_limits<double>::quiet_NaN();  // likewise
 };
 
 // Mean, standard deviation and Student's confidence interval mean -+ t(n - 1) sd / sqrt(n).
-Summary summarize(std::span<const double> values);
+Summary summarise(std::span<const double> values);
 
 // The value below which a fraction q of the defined values lies, 0 <= q <= 1, linear between the values at
-// q (n - 1); NaN where there is none. [hyndman1996, definition 7]
+// q (n - 1); NaN if no value is defined. [hyndman1996, definition 7]
 double quantile(std::span<const double> values, double q);
 double median(std::span<const double> values);
 

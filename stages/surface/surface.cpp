@@ -1,5 +1,5 @@
-// PCL's triangulation works in float, and its limits are lengths: the points are handed over relative to
-// their mean and in median spacings, so that neither the mesh's place nor its unit matters.
+// PCL's triangulation works in float, and its limits are lengths. The points are passed relative to their
+// mean and in units of the median spacing, so that neither the position nor the unit of the mesh matters.
 #include "stages/surface/surface.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "stages/core/support.h"
 
 namespace salbench {
@@ -30,7 +30,8 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
 
-// PCL tells the standard error of each point whose neighbours did not suffice: some on every scan.
+// Without this, PCL writes a line to standard error for each point with too few neighbours, which every scan
+// has.
 void silence_pcl() {
   static const bool silenced = [] {
     pcl::console::setVerbosityLevel(pcl::console::L_ERROR);
@@ -40,20 +41,20 @@ void silence_pcl() {
 }
 
 Cloud::Ptr cloud_in_spacings(const std::vector<Vec3>& points, const Normals& normals, double spacing) {
-  const Vec3 center = centroid(points);
+  const Vec3 centre = centroid(points);
   auto cloud = pcl::make_shared<Cloud>();
   cloud->reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     pcl::PointNormal p;
-    p.getVector3fMap() = ((points[i] - center) / spacing).cast<float>();
+    p.getVector3fMap() = ((points[i] - centre) / spacing).cast<float>();
     p.getNormalVector3fMap() = normals[i].cast<float>();
     cloud->push_back(p);
   }
   return cloud;
 }
 
-// Towards the normals of its corners, whichever way PCL went round.
-Triangle turned(Triangle face, const std::vector<Vec3>& points, const Normals& normals) {
+// Orients the face towards the normals of its corners, whatever order PCL gave them.
+Triangle oriented(Triangle face, const std::vector<Vec3>& points, const Normals& normals) {
   const auto at = [&face](const auto& of, std::size_t corner) -> const Vec3& {
     return of[static_cast<std::size_t>(face[corner])];
   };
@@ -62,9 +63,9 @@ Triangle turned(Triangle face, const std::vector<Vec3>& points, const Normals& n
   return face;
 }
 
-// PCL's faces overlap in places, and some come twice. Of those that pass an edge in the same direction the
-// first is kept: what is left is a surface with one side.
-Faces one_sided(const Faces& faces) {
+// PCL's faces overlap in places, and some come twice. Keeps the first of several faces that pass an edge in
+// the same direction, so that the faces are oriented consistently.
+Faces consistently_oriented(const Faces& faces) {
   const auto key = [](std::int32_t from, std::int32_t to) {
     return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint64_t>(to);
   };
@@ -92,7 +93,7 @@ void check(const SurfaceOptions& options) {
   require("reach", options.reach, 1, 100);
   require("longest_edge", options.longest_edge, 1, 1000);
   require("neighbours", options.neighbours, 3, 1000);
-  require("steepest_degrees", options.steepest_degrees, 1, 180);
+  require("steepest_degrees", options.max_normal_angle_degrees, 1, 180);
   require("smallest_angle", options.smallest_angle, 0, 60);
   require("largest_angle", options.largest_angle, 60, 180);
 }
@@ -108,7 +109,7 @@ Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOption
   triangulation.setMu(options.reach);
   triangulation.setSearchRadius(options.longest_edge);
   triangulation.setMaximumNearestNeighbors(options.neighbours);
-  triangulation.setMaximumSurfaceAngle(options.steepest_degrees * kRadiansPerDegree);
+  triangulation.setMaximumSurfaceAngle(options.max_normal_angle_degrees * kRadiansPerDegree);
   triangulation.setMinimumAngle(options.smallest_angle * kRadiansPerDegree);
   triangulation.setMaximumAngle(options.largest_angle * kRadiansPerDegree);
   triangulation.setNormalConsistency(true);
@@ -122,9 +123,9 @@ Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOption
   for (const pcl::Vertices& polygon : polygons) {
     const auto& v = polygon.vertices;
     CHECK_EQ(v.size(), 3U);
-    faces.push_back(turned({v[0], v[1], v[2]}, scan.points, normals));
+    faces.push_back(oriented({v[0], v[1], v[2]}, scan.points, normals));
   }
-  return one_sided(faces);
+  return consistently_oriented(faces);
 }
 
 }  // namespace salbench

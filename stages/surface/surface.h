@@ -9,19 +9,19 @@
 namespace salbench {
 
 struct SurfaceOptions {
-  double reach = 2.5;            // of the edges of a point, in distances to its nearest other point
-  double longest_edge = 8;       // in median distances to the nearest other point
-  std::int32_t neighbours = 30;  // nearest points that an edge may lead to
-  double steepest_degrees = 60;  // between the normals of a face's corners
-  double smallest_angle = 10;    // of a face, in degrees; met where possible
-  double largest_angle = 120;    // of a face, in degrees
+  double reach = 2.5;                    // longest edge, in distances to the point's nearest other point
+  double longest_edge = 8;               // longest edge, in median distances to the nearest other point
+  std::int32_t neighbours = 30;          // nearest points that an edge may lead to
+  double max_normal_angle_degrees = 60;  // between the normals of a face's corners
+  double smallest_angle = 10;            // of a face, in degrees, where possible
+  double largest_angle = 120;            // of a face, in degrees
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("reach", self.reach, "longest edge in distances to the point's nearest other point");
     visit("longest_edge", self.longest_edge, "longest edge in median distances to the nearest other point");
     visit("neighbours", self.neighbours, "nearest points that an edge may lead to");
-    visit("steepest_degrees", self.steepest_degrees, "largest angle between normals across a face");
+    visit("steepest_degrees", self.max_normal_angle_degrees, "largest angle between normals across a face");
     visit("smallest_angle", self.smallest_angle, "smallest angle of a face in degrees, where possible");
     visit("largest_angle", self.largest_angle, "largest angle of a face in degrees");
   }
@@ -30,8 +30,9 @@ void check(const SurfaceOptions& options);
 
 // f x 3 indices of the scan's points, by greedy projection triangulation; counter-clockwise seen from the
 // side that the normals point to. No two faces pass an edge in the same direction. Depth jumps stay open, and
-// there are holes and points without a face. Fewer than three points, or none apart, have no faces. One unit
-// normal per point, everything finite. [marton2009]
+// there may be holes and points without a face. The result is empty for fewer than three points, and if the
+// median distance to the nearest other point is 0. Takes one unit normal per point; all values are finite.
+// [marton2009]
 Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options = {});
 
 }  // namespace salbench

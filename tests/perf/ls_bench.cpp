@@ -46,7 +46,7 @@ void chi2_search(benchmark::State& state, chi2_kernel::Instructions instructions
   const Shape shape(static_cast<std::size_t>(state.range(0)));
   const Chi2Search search(shape.descriptors, instructions);
   for (auto _ : state)
-    search.for_each(search.size() / 20, [](std::size_t, std::span<const Chi2Neighbor> nearest) {
+    search.for_each(search.size() / 20, [](std::size_t, std::span<const Chi2Neighbour> nearest) {
       benchmark::DoNotOptimize(nearest.data());
     });
 }

@@ -31,7 +31,7 @@ TEST(Config, AnEmptyFileIsThePublishedProtocolWithAllModels) {
 
 TEST(Config, TheTextProtocolHasThePapersWords) {
   const Config config = config_of("protocol: text\nmodels: {PS: }");
-  EXPECT_EQ(config.fpfh.neighbourhood, FpfhNeighborhood::radius);
+  EXPECT_EQ(config.fpfh.neighbourhood, FpfhNeighbourhood::radius);
   EXPECT_EQ(config.fpfh.weighting, FpfhWeighting::text);
   EXPECT_EQ(config.normals.method, MeshNormalsMethod::pca);
   EXPECT_EQ(config.models[0].options, "absolute: true\n");

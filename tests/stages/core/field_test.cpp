@@ -13,13 +13,13 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(MinMaxNormalized, SpansTheUnitIntervalAndTakesNanAsZero) {
-  EXPECT_THAT(min_max_normalized(std::vector<double>{-1, std::nan(""), 3}), ElementsAre(0, 0.25, 1));
+TEST(MinMaxNormalised, SpansTheUnitIntervalAndTakesNanAsZero) {
+  EXPECT_THAT(min_max_normalised(std::vector<double>{-1, std::nan(""), 3}), ElementsAre(0, 0.25, 1));
 }
 
-TEST(MinMaxNormalized, LeavesAConstantFieldAsItIs) {
-  EXPECT_THAT(min_max_normalized(std::vector<double>{5, 5, 5}), ElementsAre(5, 5, 5));
-  EXPECT_TRUE(min_max_normalized(std::vector<double>{}).empty());
+TEST(MinMaxNormalised, LeavesAConstantFieldAsItIs) {
+  EXPECT_THAT(min_max_normalised(std::vector<double>{5, 5, 5}), ElementsAre(5, 5, 5));
+  EXPECT_TRUE(min_max_normalised(std::vector<double>{}).empty());
 }
 
 TEST(BinnedDensity, IntegratesToOneOverItsEdges) {

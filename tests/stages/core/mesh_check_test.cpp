@@ -119,20 +119,21 @@ TEST(MeshCheck, RefusesMeshesThatNothingCanBeComputedFrom) {
   const Mesh good = shapes::tetrahedron();
   refusal({}, "no vertices");
   refusal({good.vertices, {}}, "no faces");
-  refusal({good.vertices, {{0, 0, 1}, {2, 2, 2}}}, "none of the mesh's faces has an area");
-  refusal({std::vector<Vec3>(4, Vec3(1, 2, 3)), good.faces}, "none of the mesh's faces has an area");
-  refusal({good.vertices, {{0, 1, 2}, {0, 1, 4}}}, "face 1 names vertex 4 of 4");
-  refusal({good.vertices, {{0, 1, -1}}}, "face 0 names vertex -1");
+  refusal({good.vertices, {{0, 0, 1}, {2, 2, 2}}}, "all faces are degenerate");
+  refusal({std::vector<Vec3>(4, Vec3(1, 2, 3)), good.faces}, "all faces are degenerate");
+  refusal({good.vertices, {{0, 1, 2}, {0, 1, 4}}},
+          "face 1 (0-based) refers to vertex 4, but the vertices are 0 to 3");
+  refusal({good.vertices, {{0, 1, -1}}}, "face 0 (0-based) refers to vertex -1");
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Mesh mesh = good;
     mesh.vertices[2].y() = bad;
-    refusal(mesh, "vertex 2 has a coordinate that is not a finite number");
+    refusal(mesh, "vertex 2 (0-based) has a coordinate that is not finite");
   }
   for (const double scale : {1e-170, 1e300}) {
     Mesh mesh = good;
     for (Vec3& vertex : mesh.vertices) vertex *= scale;
-    refusal(mesh, "scale its coordinates");
+    refusal(mesh, "scale the coordinates");
   }
 }
 

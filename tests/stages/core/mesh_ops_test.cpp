@@ -26,7 +26,7 @@ TEST(MeshOps, AreaCentroidIgnoresVertexDensity) {
 TEST(MeshOps, AdjacencyIsSortedDistinctAndSymmetric) {
   const Mesh mesh = shapes::sphere(2);
   const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
-  EXPECT_EQ(adjacency.neighbors.size(), mesh.faces.size() * 3);  // closed: each edge in two faces
+  EXPECT_EQ(adjacency.neighbours.size(), mesh.faces.size() * 3);  // closed: each edge in two faces
   for (std::size_t i = 0; i < adjacency.size(); ++i) {
     const auto row = adjacency.of(i);
     EXPECT_TRUE(std::is_sorted(row.begin(), row.end()));

@@ -21,7 +21,7 @@ TEST(Fpfh, StoresTheSupportThatWasUsed) {
   EXPECT_EQ(nearest.neighbours, 9);
   EXPECT_EQ(nearest.radius, 0);
 
-  options.neighbourhood = FpfhNeighborhood::radius;
+  options.neighbourhood = FpfhNeighbourhood::radius;
   const Descriptors grown = fpfh(points, normals, options);
   EXPECT_EQ(grown.neighbours, 0);
   EXPECT_EQ(grown.radius, grown_support_radius(points, 0.01).radius);

@@ -25,7 +25,7 @@ struct Twin {
   Support support;
   FpfhWeighting weighting;
 
-  std::vector<std::pair<double, std::size_t>> neighbors_of(std::size_t i) const {
+  std::vector<std::pair<double, std::size_t>> neighbours_of(std::size_t i) const {
     std::vector<std::pair<double, std::size_t>> all;
     for (std::size_t j = 0; j < points.size(); ++j) all.emplace_back((points[j] - points[i]).norm(), j);
     std::sort(all.begin(), all.end());
@@ -38,8 +38,8 @@ struct Twin {
 
   Row spfh(std::size_t i) const {
     Row row{};
-    const auto neighbors = neighbors_of(i);
-    for (const auto& [distance, j] : neighbors) {
+    const auto neighbours = neighbours_of(i);
+    for (const auto& [distance, j] : neighbours) {
       if (distance == 0) continue;
       Vec3 line = (points[j] - points[i]) / distance, u = normals[i], n = normals[j];
       if (weighting == FpfhWeighting::published &&
@@ -52,7 +52,7 @@ struct Twin {
                                  std::abs(v.dot(n)), std::abs(u.dot(line))};
       for (std::size_t f = 0; f < 3; ++f)
         row[11 * f + static_cast<std::size_t>(std::min(std::floor(11 * (features[f] + 1) / 2), 10.0))] +=
-            1 / (static_cast<double>(neighbors.size()) - 1);
+            1 / (static_cast<double>(neighbours.size()) - 1);
     }
     return row;
   }
@@ -60,13 +60,13 @@ struct Twin {
   Row fpfh(std::size_t i) const {
     const bool text = weighting == FpfhWeighting::text;
     const double radius = bounding_radius(points);
-    const auto neighbors = neighbors_of(i);
+    const auto neighbours = neighbours_of(i);
     Row sum = text ? spfh(i) : Row{};
-    for (const auto& [distance, j] : neighbors) {
+    for (const auto& [distance, j] : neighbours) {
       if (distance == 0) continue;
       const Row row = spfh(j);
       const double weight =
-          text ? radius / distance / (static_cast<double>(neighbors.size()) - 1) : 1 / (distance * distance);
+          text ? radius / distance / (static_cast<double>(neighbours.size()) - 1) : 1 / (distance * distance);
       for (std::size_t b = 0; b < row.size(); ++b) sum[b] += weight * row[b];
     }
     if (text) return sum;
@@ -225,12 +225,12 @@ TEST(PairFeatures, WithTheSwapAreSymmetric) {
   }
 }
 
-TEST(Neighborhoods, AreTheSearchesOfTheTree) {
+TEST(Neighbourhoods, AreTheSearchesOfTheTree) {
   const auto points = shapes::random_cloud(100, 35);
   const KdTree tree(points);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   for (const Support& support : {kNine, Support{0, 0.25}}) {
-    const Neighborhoods all = neighborhoods(tree, points, support);
+    const Neighbourhoods all = neighbourhoods(tree, points, support);
     ASSERT_EQ(all.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (support.neighbours > 0)

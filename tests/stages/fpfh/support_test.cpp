@@ -19,10 +19,10 @@ double brute_force_mean(const std::vector<Vec3>& points, double radius) {
   return pairs / static_cast<double>(points.size()) - 1;
 }
 
-TEST(MeanNeighborCount, EqualsBruteForce) {
+TEST(MeanNeighbourCount, EqualsBruteForce) {
   const auto cloud = shapes::random_cloud(300, 11);
   for (const double radius : {0.0, 0.05, 0.2, 2.0})
-    EXPECT_DOUBLE_EQ(mean_neighbor_count(cloud, KdTree(cloud), radius), brute_force_mean(cloud, radius));
+    EXPECT_DOUBLE_EQ(mean_neighbour_count(cloud, KdTree(cloud), radius), brute_force_mean(cloud, radius));
 }
 
 TEST(GrownSupportRadius, IsTheFirstPowerThatHoldsSix) {

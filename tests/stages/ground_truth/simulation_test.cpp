@@ -41,7 +41,8 @@ std::size_t number_of_picks(const GroundTruth& truth) {
                          [](std::size_t sum, const auto& own) { return sum + own.size(); });
 }
 
-// What holds on every mesh: participants with at least one pick, distinct vertices, the saliency of them.
+// Invariants on every mesh: participants with at least one pick, distinct vertices, and the saliency of the
+// picks.
 void expect_sound(const GroundTruth& truth, const Mesh& mesh) {
   EXPECT_TRUE(truth.simulated);
   EXPECT_THAT(truth.picks, SizeIs(SimulationOptions{}.participants));

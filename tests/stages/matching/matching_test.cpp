@@ -59,7 +59,7 @@ TEST(MeanHistogram, IsTheMeanOfEachBin) {
 TEST(Matched, ToItsOwnHistogramIsTheNormalisedMap) {
   const ScalarField field = skewed_field(5000, 2, 1);
   const ScalarField result = matched(field, normalised_histogram(field));
-  const ScalarField expected = min_max_normalized(field);
+  const ScalarField expected = min_max_normalised(field);
   for (std::size_t i = 0; i < field.size(); ++i) ASSERT_NEAR(result[i], expected[i], 1e-12);
 }
 

@@ -103,7 +103,7 @@ MeanErrors mean_errors(const path& folder, const std::string& model, const MapOf
     const GroundTruth truth = ground_truth(folder, mesh);
     const ScalarField map = matched(map_of(folder, mesh), histogram);
     errors.nss += std::abs(nss(map, picked_points(truth)) - expected.nss);
-    errors.cc += std::abs(cc(map, min_max_normalized(truth.saliency)) - expected.cc);
+    errors.cc += std::abs(cc(map, min_max_normalised(truth.saliency)) - expected.cc);
     ++errors.meshes;
   }
   errors.nss /= errors.meshes;

@@ -34,10 +34,10 @@ Descriptors one_bin(const std::vector<float>& heights) {
 
 std::vector<std::vector<std::int32_t>> indices_of(const Chi2Search& search, std::size_t k) {
   std::vector<std::vector<std::int32_t>> result;
-  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     EXPECT_EQ(i, result.size());
     result.emplace_back();
-    for (const Chi2Neighbor& neighbor : nearest) result.back().push_back(neighbor.index);
+    for (const Chi2Neighbour& neighbour : nearest) result.back().push_back(neighbour.index);
   });
   return result;
 }
@@ -53,7 +53,7 @@ float chi2(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins
 void expect_equals_brute_force(const Descriptors& descriptors, std::size_t k, Instructions instructions) {
   const std::size_t n = descriptors.size();
   Chi2Search(descriptors, instructions)
-      .for_each(k, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+      .for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
         std::vector<std::pair<float, std::size_t>> all;
         for (std::size_t j = 0; j < n; ++j) all.emplace_back(chi2(descriptors.row(i), descriptors.row(j)), j);
         std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
@@ -103,11 +103,11 @@ TEST(Chi2Search, OrdersDistancesOfAnyMagnitude) {
     for (std::size_t i = 0; i < heights.size(); ++i)
       heights[i] = magnitude * static_cast<float>(i * 7 % 1200) / 1200;
     std::size_t rows = 0;
-    Chi2Search(one_bin(heights)).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+    Chi2Search(one_bin(heights)).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
       ++rows;
       ASSERT_EQ(nearest.size(), 60U);
       ASSERT_TRUE(std::any_of(nearest.begin(), nearest.end(),
-                              [&](const Chi2Neighbor& neighbor) { return neighbor.chi2 == 0; }))
+                              [&](const Chi2Neighbour& neighbour) { return neighbour.chi2 == 0; }))
           << i << " at " << magnitude;
     });
     EXPECT_EQ(rows, heights.size());
@@ -162,7 +162,7 @@ TEST(Chi2Kernel, EveryVariantGivesTheSameBytes) {
 
 TEST(Chi2Kernel, IsExactToSinglePrecision) {
   const Descriptors histograms = random_histograms(60, 1U << 20U, 4);
-  Chi2Search(histograms).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbor> nearest) {
+  Chi2Search(histograms).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     for (const auto& [j, distance] : nearest) {
       double sum = 0;
       for (std::size_t bin = 0; bin < kFpfhBins; ++bin) {

@@ -205,7 +205,7 @@ TEST(CsClusters, ComeToRest) {
   EXPECT_EQ(clusters_after(30, 1e9), clusters_after(1, 1));
 }
 
-// How many clusters hold points of both sides of x = 13.37.
+// Number of clusters with points on both sides of x = 13.37.
 int mixed_clusters(const std::vector<Vec3>& points, const Clusters& clusters) {
   std::vector<std::set<bool>> sides(clusters.count);
   for (std::size_t i = 0; i < points.size(); ++i)

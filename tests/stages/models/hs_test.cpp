@@ -117,12 +117,12 @@ TEST(OneAgainstRest, EqualsItsDefinition) {
     const Scores scores = scorer.score(smoothed_picks(mesh, PicksOfAll{truth.picks[k]}, sum), others);
     for (std::size_t m = 0; m < scorer.n_metrics; ++m) expected.values[m] += scores.values[m] / 6;
   }
-  expect_near(one_against_rest(mesh, truth, scorer), expected, 1e-12);
+  expect_near(leave_one_out(mesh, truth, scorer), expected, 1e-12);
 }
 
 TEST(OneAgainstRest, ComparesEachWithAllTheOthers) {
   std::vector<Comparison> comparisons;
-  one_against_rest(kCloud, one_pick_each(4), recorder(comparisons));
+  leave_one_out(kCloud, one_pick_each(4), recorder(comparisons));
   EXPECT_THAT(comparisons, ElementsAre(Comparison{{0}, {1, 2, 3}}, Comparison{{1}, {0, 2, 3}},
                                        Comparison{{2}, {0, 1, 3}}, Comparison{{3}, {0, 1, 2}}));
 }
@@ -130,7 +130,7 @@ TEST(OneAgainstRest, ComparesEachWithAllTheOthers) {
 TEST(OneAgainstRest, OfTwoWhoPickTheSameIsPerfect) {
   const Mesh mesh = shapes::bumpy_sphere(4);
   const GroundTruth truth = truth_of({{0, 1, 2, 3}, {3, 2, 1, 0}});  // far apart: corners of the icosahedron
-  const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
+  const Scores scores = leave_one_out(mesh, truth, matching_scorer(mesh, truth));
   EXPECT_DOUBLE_EQ(value_of(scores, "auc_exact"), 1);
   EXPECT_NEAR(value_of(scores, "cc"), 1, 1e-12);
   EXPECT_GT(value_of(scores, "nss"), 5);
@@ -139,7 +139,7 @@ TEST(OneAgainstRest, OfTwoWhoPickTheSameIsPerfect) {
 TEST(OneAgainstRest, OfTwoWhoPickApartIsNoBetterThanChance) {
   const Mesh mesh = shapes::bumpy_sphere(4);
   const GroundTruth truth = truth_of({{0, 1, 2, 3}, {4, 5, 6, 7}});
-  const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
+  const Scores scores = leave_one_out(mesh, truth, matching_scorer(mesh, truth));
   EXPECT_LT(value_of(scores, "auc_exact"), 0.5);
   EXPECT_LT(value_of(scores, "nss"), 0);
   EXPECT_LT(value_of(scores, "cc"), 0);
@@ -150,17 +150,17 @@ TEST(OneAgainstRest, DoesNotDependOnTheOrderOfParticipants) {
   const Mesh mesh = shapes::bumpy_sphere(4);
   GroundTruth truth = simulated(mesh, 7);
   const GroupScorer scorer = matching_scorer(mesh, truth);
-  const Scores before = one_against_rest(mesh, truth, scorer);
+  const Scores before = leave_one_out(mesh, truth, scorer);
   std::rotate(truth.picks.begin(), truth.picks.begin() + 3, truth.picks.end());
   std::swap(truth.picks[0], truth.picks[1]);
   for (auto& own : truth.picks) std::reverse(own.begin(), own.end());
-  expect_near(one_against_rest(mesh, truth, scorer), before, 1e-12);
+  expect_near(leave_one_out(mesh, truth, scorer), before, 1e-12);
 }
 
 TEST(OneAgainstRest, AParticipantWithoutPicksScoresAsAConstantMapAndIsNotPredicted) {
   const Mesh mesh = shapes::bumpy_sphere(3);
   const GroundTruth truth = truth_of({{0, 1}, {}});
-  const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
+  const Scores scores = leave_one_out(mesh, truth, matching_scorer(mesh, truth));
   EXPECT_DOUBLE_EQ(value_of(scores, "auc"), 0.5);
   EXPECT_DOUBLE_EQ(value_of(scores, "auc_exact"), 0.5);
   EXPECT_EQ(value_of(scores, "nss"), 0);
@@ -174,7 +174,7 @@ TEST(OneAgainstRest, WhereNobodyPickedIsUndefined) {
                             ADD_FAILURE() << "there is nothing to predict";
                             return {};
                           }};
-  const Scores scores = one_against_rest(shapes::tetrahedron(), truth, never);
+  const Scores scores = leave_one_out(shapes::tetrahedron(), truth, never);
   EXPECT_THAT(scores.values, AllOf(SizeIs(3), Each(IsNan())));
   const HumanCurve curve = human_curve(shapes::tetrahedron(), truth, {}, never, draws());
   ASSERT_THAT(curve, SizeIs(1));
@@ -190,7 +190,7 @@ TEST(OneAgainstRest, IsTheMeanOfEachMetricOverWhereItIsDefined) {
                              return Scores{.values = {call == 2 ? kUndefined : call, kUndefined, -1.0 * call,
                                                       call == 1 ? 0.5 : kUndefined, 0}};
                            }};
-  const Scores scores = one_against_rest(kCloud, one_pick_each(3), scorer);
+  const Scores scores = leave_one_out(kCloud, one_pick_each(3), scorer);
   EXPECT_THAT(scores.values, ElementsAre(2 /* of 1 and 3 */, IsNan(), -2, 0.5, 0));
 }
 
@@ -268,7 +268,7 @@ TEST(HumanCurve, OfTwoIsOneAgainstTheOther) {
   const GroupScorer scorer = matching_scorer(mesh, truth);
   const HumanCurve curve = human_curve(mesh, truth, {}, scorer, draws());
   ASSERT_THAT(curve, SizeIs(1));
-  EXPECT_NEAR(value_of(curve[0], "cc"), value_of(one_against_rest(mesh, truth, scorer), "cc"), 1e-12);
+  EXPECT_NEAR(value_of(curve[0], "cc"), value_of(leave_one_out(mesh, truth, scorer), "cc"), 1e-12);
 }
 
 TEST(HumanCurve, MoreSimulatedPeopleAgreeBetter) {
@@ -299,10 +299,10 @@ TEST(HumanPerformance, DoesNotApplyToFewerThanTwoParticipants) {
   const GroupScorer scorer{0, [](const ScalarField&, const GroundTruth&) { return Scores{}; }};
   const Mesh mesh = shapes::tetrahedron();
   for (const auto& [picks, why] : std::vector<std::pair<PicksOfAll, std::string>>{
-           {{}, "there are no picks"}, {{{0, 1, 2}}, "one list of picks, of one participant or pooled"}}) {
+           {{}, "this mesh has no picks"}, {{{0, 1, 2}}, "one list of picks (one participant, or pooled)"}}) {
     const GroundTruth truth = truth_of(picks);
     const auto says_why = ThrowsMessage<InputError>(AllOf(HasSubstr("HS does not apply"), HasSubstr(why)));
-    EXPECT_THAT([&] { one_against_rest(mesh, truth, scorer); }, says_why);
+    EXPECT_THAT([&] { leave_one_out(mesh, truth, scorer); }, says_why);
     EXPECT_THAT([&] { human_curve(mesh, truth, {}, scorer, draws()); }, says_why);
   }
 }
@@ -310,7 +310,7 @@ TEST(HumanPerformance, DoesNotApplyToFewerThanTwoParticipants) {
 TEST(HumanPerformance, NamesThePickThatIsNoVertex) {
   const GroupScorer scorer{0, [](const ScalarField&, const GroundTruth&) { return Scores{}; }};
   const GroundTruth truth = truth_of({{0}, {4}});
-  EXPECT_THAT([&] { one_against_rest(shapes::tetrahedron(), truth, scorer); },
+  EXPECT_THAT([&] { leave_one_out(shapes::tetrahedron(), truth, scorer); },
               ThrowsMessage<InputError>(HasSubstr("participant 1 picked vertex 4 ")));
 }
 

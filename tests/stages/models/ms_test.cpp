@@ -81,8 +81,8 @@ TEST(Ms, FewEigenpairsEqualTheWholeDecomposition) {
     for (const Mesh& mesh : {ellipsoid(3), shapes::bumpy_sphere(3)}) {
       MsOptions options;
       options.weight = weight;
-      const ScalarField few = min_max_normalized(ms(mesh, options));
-      const ScalarField all = min_max_normalized(dense_saliency(mesh, weight));
+      const ScalarField few = min_max_normalised(ms(mesh, options));
+      const ScalarField all = min_max_normalised(dense_saliency(mesh, weight));
       EXPECT_LT(largest_difference(few, all), 1e-4) << name_of(weight);
     }
   }
@@ -90,7 +90,7 @@ TEST(Ms, FewEigenpairsEqualTheWholeDecomposition) {
 
 TEST(Ms, MirroredPlacesAreEquallySalient) {
   const Mesh mesh = ellipsoid(3);
-  const ScalarField saliency = min_max_normalized(ms(mesh));
+  const ScalarField saliency = min_max_normalised(ms(mesh));
   for (const Vec3& mirror : {Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(1, 1, -1)}) {
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       const Vec3 image = mesh.vertices[i].cwiseProduct(mirror);
@@ -105,19 +105,19 @@ TEST(Ms, MirroredPlacesAreEquallySalient) {
 
 TEST(Ms, DoesNotDependOnPlaceSizeOrOrder) {
   Mesh mesh = shapes::bumpy_sphere(3);
-  const ScalarField expected = min_max_normalized(ms(mesh));
+  const ScalarField expected = min_max_normalised(ms(mesh));
   Mesh moved = mesh, small = mesh, huge = mesh, reversed;
   for (Vec3& v : moved.vertices) v += Vec3(100, -70, 30);
   for (Vec3& v : small.vertices) v *= 1e-100;
   for (Vec3& v : huge.vertices) v *= 1e100;
-  EXPECT_LT(largest_difference(min_max_normalized(ms(moved)), expected), 1e-6);
-  EXPECT_LT(largest_difference(min_max_normalized(ms(small)), expected), 1e-6);
-  EXPECT_LT(largest_difference(min_max_normalized(ms(huge)), expected), 1e-6);
+  EXPECT_LT(largest_difference(min_max_normalised(ms(moved)), expected), 1e-6);
+  EXPECT_LT(largest_difference(min_max_normalised(ms(small)), expected), 1e-6);
+  EXPECT_LT(largest_difference(min_max_normalised(ms(huge)), expected), 1e-6);
 
   const auto n = static_cast<std::int32_t>(mesh.vertices.size());
   reversed.vertices.assign(mesh.vertices.rbegin(), mesh.vertices.rend());
   for (const auto& [a, b, c] : mesh.faces) reversed.faces.push_back({n - 1 - a, n - 1 - b, n - 1 - c});
-  ScalarField back = min_max_normalized(ms(reversed));
+  ScalarField back = min_max_normalised(ms(reversed));
   std::reverse(back.begin(), back.end());
   EXPECT_LT(largest_difference(back, expected), 1e-6);
 }
@@ -163,7 +163,7 @@ TEST(Ms, ComponentBeforeTheOthersInOrderIsNotPreferred) {
   for (const auto& [a, b, c] : large.faces) mesh.faces.push_back({a + n, b + n, c + n});
   const ScalarField alone = ms(large), together = ms(mesh);
   const ScalarField tail(together.begin() + n, together.end());
-  EXPECT_LT(largest_difference(min_max_normalized(tail), min_max_normalized(alone)), 1e-6);
+  EXPECT_LT(largest_difference(min_max_normalised(tail), min_max_normalised(alone)), 1e-6);
 }
 
 TEST(Ms, MultiscaleMapDiffersFromTheSingleOneAndIsFinite) {

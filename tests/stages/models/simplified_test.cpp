@@ -13,7 +13,7 @@
 namespace salbench {
 namespace {
 
-// How many faces each edge is in.
+// Number of faces at each edge.
 std::map<std::pair<std::int32_t, std::int32_t>, int> edge_uses(const Mesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
   for (const auto& [a, b, c] : mesh.faces)

@@ -21,13 +21,13 @@ Adjacency adjacency_of(std::size_t n, const Edges& edges) {
       if (b == i) row.push_back(a);
     }
     std::sort(row.begin(), row.end());
-    adjacency.neighbors.insert(adjacency.neighbors.end(), row.begin(), row.end());
-    adjacency.offsets.push_back(static_cast<std::int32_t>(adjacency.neighbors.size()));
+    adjacency.neighbours.insert(adjacency.neighbours.end(), row.begin(), row.end());
+    adjacency.offsets.push_back(static_cast<std::int32_t>(adjacency.neighbours.size()));
   }
   return adjacency;
 }
 
-// Of edges of unit length.
+// All edges have unit length.
 std::vector<double> path_spectrum(int n) {
   std::vector<double> values;
   for (int k = 0; k < n; ++k) values.push_back(2 - 2 * std::cos(std::numbers::pi * k / n));

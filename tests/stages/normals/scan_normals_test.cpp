@@ -107,7 +107,7 @@ TEST(ScanNormalsOptions, NameTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
   EXPECT_EQ(wrong_field(Options{.orientation_neighbours = 0}), "orientation_neighbours");
   EXPECT_EQ(wrong_field(Options{.gap = 0.5}), "gap");
-  EXPECT_EQ(wrong_field(Options{.steepest_degrees = 91}), "steepest_degrees");
+  EXPECT_EQ(wrong_field(Options{.max_normal_angle_degrees = 91}), "steepest_degrees");
 }
 
 }  // namespace

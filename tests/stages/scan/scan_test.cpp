@@ -12,7 +12,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 #include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
@@ -233,7 +233,7 @@ TEST(SimulateScan, SlenderShapeThatPassesTheCameraIsCutAtTheWidestField) {
     const Vec3 ray = p - scan.camera;
     widest = std::max(widest, std::acos(forward.dot(ray) / ray.norm()));
   }
-  EXPECT_GT(widest, 0.9 * kWidestHalfField);
+  EXPECT_GT(widest, 0.9 * kMaxHalfField);
   EXPECT_LT(widest, std::numbers::pi / 2);
 }
 

@@ -64,7 +64,7 @@ void add_paired_cases(std::vector<Case>& cases, Rng& rng, double step) {
 
 void add_one_sample_cases(std::vector<Case>& cases, Rng& rng, double step) {
   const Sample x = draw(rng, 2 + rng.below(60), step);
-  const Summary summary = summarize(x);
+  const Summary summary = summarise(x);
   cases.push_back({"summary", {x}, {summary.mean, summary.sd, summary.ci_low, summary.ci_high}});
   const double q = rng.uniform();
   cases.push_back(

@@ -10,8 +10,8 @@ namespace {
 
 const double kNan = std::nan("");
 
-TEST(Summarize, FiveValuesByHand) {
-  const Summary s = summarize(std::vector<double>{1, 2, 3, 4, 5});
+TEST(Summarise, FiveValuesByHand) {
+  const Summary s = summarise(std::vector<double>{1, 2, 3, 4, 5});
   EXPECT_EQ(s.n, 5);
   EXPECT_DOUBLE_EQ(s.mean, 3);
   EXPECT_DOUBLE_EQ(s.sd, std::sqrt(2.5));
@@ -20,22 +20,22 @@ TEST(Summarize, FiveValuesByHand) {
   EXPECT_NEAR(s.ci_high, 3 + half, 1e-12);
 }
 
-TEST(Summarize, TwoValuesHaveTheCauchyInterval) {
-  const Summary s = summarize(std::vector<double>{-1, 1});
+TEST(Summarise, TwoValuesHaveTheCauchyInterval) {
+  const Summary s = summarise(std::vector<double>{-1, 1});
   EXPECT_NEAR(s.ci_high, 12.706204736174698, 1e-9);  // tan(0.475 pi)
   EXPECT_NEAR(s.ci_low, -12.706204736174698, 1e-9);
 }
 
-TEST(Summarize, CountsAndLeavesOutTheUndefined) {
-  const Summary s = summarize(std::vector<double>{kNan, 2, kNan, 4});
+TEST(Summarise, CountsAndLeavesOutTheUndefined) {
+  const Summary s = summarise(std::vector<double>{kNan, 2, kNan, 4});
   EXPECT_EQ(s.n, 2);
   EXPECT_EQ(s.n_undefined, 2);
   EXPECT_DOUBLE_EQ(s.mean, 3);
   EXPECT_DOUBLE_EQ(s.sd, std::sqrt(2.0));
 }
 
-TEST(Summarize, OneValueHasAMeanAndNoInterval) {
-  const Summary s = summarize(std::vector<double>{7, kNan});
+TEST(Summarise, OneValueHasAMeanAndNoInterval) {
+  const Summary s = summarise(std::vector<double>{7, kNan});
   EXPECT_EQ(s.n, 1);
   EXPECT_DOUBLE_EQ(s.mean, 7);
   EXPECT_TRUE(std::isnan(s.sd));
@@ -43,9 +43,9 @@ TEST(Summarize, OneValueHasAMeanAndNoInterval) {
   EXPECT_TRUE(std::isnan(s.ci_high));
 }
 
-TEST(Summarize, NothingHasNoMean) {
+TEST(Summarise, NothingHasNoMean) {
   for (const std::vector<double>& sample : {std::vector<double>{}, {kNan, kNan}}) {
-    const Summary s = summarize(sample);
+    const Summary s = summarise(sample);
     EXPECT_EQ(s.n, 0);
     EXPECT_EQ(s.n_undefined, static_cast<std::int64_t>(sample.size()));
     EXPECT_TRUE(std::isnan(s.mean));
@@ -53,15 +53,15 @@ TEST(Summarize, NothingHasNoMean) {
   }
 }
 
-TEST(Summarize, EqualValuesDoNotVaryAtAll) {
-  const Summary s = summarize(std::vector<double>(3, 0.1));  // 0.1 + 0.1 + 0.1 rounds
+TEST(Summarise, EqualValuesDoNotVaryAtAll) {
+  const Summary s = summarise(std::vector<double>(3, 0.1));  // 0.1 + 0.1 + 0.1 rounds
   EXPECT_EQ(s.mean, 0.1);
   EXPECT_EQ(s.sd, 0);
   EXPECT_EQ(s.ci_low, 0.1);
 }
 
-TEST(Summarize, KeepsItsDigitsFarFromZero) {
-  const Summary s = summarize(std::vector<double>{1e9 + 1, 1e9 + 2, 1e9 + 3});
+TEST(Summarise, KeepsItsDigitsFarFromZero) {
+  const Summary s = summarise(std::vector<double>{1e9 + 1, 1e9 + 2, 1e9 + 3});
   EXPECT_DOUBLE_EQ(s.mean, 1e9 + 2);
   EXPECT_DOUBLE_EQ(s.sd, 1);
 }

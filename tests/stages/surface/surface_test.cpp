@@ -40,7 +40,7 @@ double longest_edge(const Scan& scan, const Faces& faces) {
 }
 
 // Every edge passed at most once in each direction, so in at most two faces.
-void expect_one_sided(const Faces& faces, std::size_t n_points) {
+void expect_consistently_oriented(const Faces& faces, std::size_t n_points) {
   std::set<std::pair<std::int32_t, std::int32_t>> passed;
   for (const Triangle& face : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -58,7 +58,7 @@ TEST(PartialMesh, OfASphereIsItsVisibleCap) {
   for (const int view : {0, 4, 9}) {
     const Scan scan = simulate_scan(mesh, view);
     const Faces faces = partial_mesh(scan, scan_normals(scan));
-    expect_one_sided(faces, scan.points.size());
+    expect_consistently_oriented(faces, scan.points.size());
     EXPECT_GT(share_covered(scan, faces), 0.98) << "view " << view;
 
     // Of the cap, the zone that the camera sees at less than 60 degrees: 2 pi times its height. Further out
@@ -106,7 +106,7 @@ TEST(PartialMesh, LeavesDepthJumpsOpen) {
 TEST(PartialMesh, FillsAGridWithTwoFacesACell) {
   const Scan scan{shapes::grid(20).vertices, {0, 0, 5}};
   const Faces faces = partial_mesh(scan, Normals(scan.points.size(), Vec3::UnitZ()));
-  expect_one_sided(faces, scan.points.size());
+  expect_consistently_oriented(faces, scan.points.size());
   EXPECT_GT(share_covered(scan, faces), 0.95);
   EXPECT_NEAR(surface_area({scan.points, faces}), 1, 0.05);
 }
@@ -171,7 +171,7 @@ TEST(PartialMesh, CoversRealScans) {
     const Scan scan = simulate_scan(read_mesh(path), number % kViews);
     const Faces faces = partial_mesh(scan, scan_normals(scan));
     EXPECT_GT(share_covered(scan, faces), 0.97) << number;
-    expect_one_sided(faces, scan.points.size());
+    expect_consistently_oriented(faces, scan.points.size());
   }
 }
 
@@ -181,7 +181,7 @@ TEST(SurfaceOptions, NameTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(Options{.reach = 0}), "reach");
   EXPECT_EQ(wrong_field(Options{.longest_edge = std::nan("")}), "longest_edge");
   EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
-  EXPECT_EQ(wrong_field(Options{.steepest_degrees = 0}), "steepest_degrees");
+  EXPECT_EQ(wrong_field(Options{.max_normal_angle_degrees = 0}), "steepest_degrees");
   EXPECT_EQ(wrong_field(Options{.smallest_angle = 61}), "smallest_angle");
   EXPECT_EQ(wrong_field(Options{.largest_angle = 59}), "largest_angle");
 }

@@ -1,4 +1,4 @@
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 
 #include <algorithm>
 
@@ -10,19 +10,19 @@ namespace salbench {
 namespace {
 
 // The brute-force twin: every distance, sorted by (distance, index).
-std::vector<Neighbor> all_sorted(const std::vector<Vec3>& points, const Vec3& query) {
-  std::vector<Neighbor> all;
+std::vector<Neighbour> all_sorted(const std::vector<Vec3>& points, const Vec3& query) {
+  std::vector<Neighbour> all;
   for (std::size_t i = 0; i < points.size(); ++i)
     all.push_back({static_cast<std::int32_t>(i), (points[i] - query).squaredNorm()});
-  std::sort(all.begin(), all.end(), [](const Neighbor& a, const Neighbor& b) {
+  std::sort(all.begin(), all.end(), [](const Neighbour& a, const Neighbour& b) {
     return std::pair(a.distance_squared, a.index) < std::pair(b.distance_squared, b.index);
   });
   return all;
 }
 
-std::vector<std::int32_t> indices(const std::vector<Neighbor>& found) {
+std::vector<std::int32_t> indices(const std::vector<Neighbour>& found) {
   std::vector<std::int32_t> result;
-  for (const Neighbor& n : found) result.push_back(n.index);
+  for (const Neighbour& n : found) result.push_back(n.index);
   return result;
 }
 
@@ -32,7 +32,7 @@ TEST(KdTree, NearestEqualsBruteForceAlsoOnTies) {
   for (int i = 0; i < 512; ++i) clouds[1].emplace_back(i / 64, i / 8 % 8, i % 8);
   for (const auto& cloud : clouds) {
     const KdTree tree(cloud);
-    std::vector<Neighbor> found;
+    std::vector<Neighbour> found;
     for (std::size_t i = 0; i < cloud.size(); i += 7) {
       auto expected = all_sorted(cloud, cloud[i]);
       tree.nearest(cloud[i], 10, found);
@@ -45,21 +45,21 @@ TEST(KdTree, NearestEqualsBruteForceAlsoOnTies) {
 TEST(KdTree, WithinTakesTheBoundary) {
   const std::vector<Vec3> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   const KdTree tree(line);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   tree.within(line[1], 1.0, found);
   EXPECT_EQ(indices(found), (std::vector<std::int32_t>{1, 0, 2}));
 }
 
 TEST(KdTree, AsksForMoreThanThereIs) {
   const std::vector<Vec3> two = {{0, 0, 0}, {1, 0, 0}};
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   KdTree(two).nearest(two[0], 9, found);
   EXPECT_EQ(found.size(), 2U);
 }
 
 TEST(KdTree, CoincidentPointsComeInOrderOfIndex) {
   const std::vector<Vec3> same(100, Vec3(1, 2, 3));
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   KdTree(same).nearest(same[50], 4, found);
   EXPECT_EQ(indices(found), (std::vector<std::int32_t>{0, 1, 2, 3}));
 }

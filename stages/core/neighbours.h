@@ -11,7 +11,7 @@
 
 namespace salbench {
 
-struct Neighbor {
+struct Neighbour {
   std::int32_t index;
   double distance_squared;
 };
@@ -26,11 +26,11 @@ class KdTree {
   ~KdTree();
 
   // The min(k, n) nearest points, the query's own point included if it is one of them.
-  void nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found) const;
+  void nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const;
   std::int32_t nearest(const Vec3& query) const;  // index of the nearest point; n > 0
 
   // All points with distance <= radius.
-  void within(const Vec3& query, double radius, std::vector<Neighbor>& found) const;
+  void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
 
   std::size_t size() const;
 

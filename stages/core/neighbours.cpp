@@ -1,6 +1,6 @@
 // nanoflann keeps the first of equally distant candidates that it meets. To be independent of the tree's
 // layout, a k-search also takes candidates at exactly the k-th distance and lets the index decide.
-#include "stages/core/neighbors.h"
+#include "stages/core/neighbours.h"
 
 #include <algorithm>
 #include <limits>
@@ -27,27 +27,27 @@ struct Adaptor {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>, Adaptor, 3,
                                                  std::uint32_t>;
 
-bool closer(const Neighbor& a, const Neighbor& b) {
+bool closer(const Neighbour& a, const Neighbour& b) {
   return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared
                                                   : a.index < b.index;
 }
 
-// Above the limit by more than rounding, also where the limit is 0.
+// Raises the limit by more than rounding, even if it is 0.
 double widened(double limit) { return limit * (1 + 1e-12) + std::numeric_limits<double>::min(); }
 
 // Result set of nanoflann: keeps the k best by (distance, index) in a sorted array.
 class NearestSet {
  public:
-  NearestSet(std::vector<Neighbor>& best, std::size_t k) : best_(best), k_(k) { best_.clear(); }
+  NearestSet(std::vector<Neighbour>& best, std::size_t k) : best_(best), k_(k) { best_.clear(); }
   bool full() const { return best_.size() == k_; }
   std::size_t size() const { return best_.size(); }
   double worstDist() const {
-    // A little more than the k-th distance: candidates exactly there are still offered, so that the index
-    // can decide between them, whatever the tree's own bounds have lost to rounding.
+    // Slightly above the k-th distance, so that the tree still offers candidates exactly there, despite the
+    // rounding of its own bounds, and the index can decide between them.
     return full() ? widened(best_.back().distance_squared) : std::numeric_limits<double>::max();
   }
   bool addPoint(double distance_squared, std::uint32_t index) {
-    const Neighbor candidate{static_cast<std::int32_t>(index), distance_squared};
+    const Neighbour candidate{static_cast<std::int32_t>(index), distance_squared};
     if (full()) {
       if (!closer(candidate, best_.back())) return true;
       best_.pop_back();
@@ -57,13 +57,13 @@ class NearestSet {
   }
 
  private:
-  std::vector<Neighbor>& best_;
+  std::vector<Neighbour>& best_;
   std::size_t k_;
 };
 
 class WithinSet {
  public:
-  WithinSet(std::vector<Neighbor>& found, double radius_squared)
+  WithinSet(std::vector<Neighbour>& found, double radius_squared)
       : found_(found), radius_squared_(radius_squared) {
     found_.clear();
   }
@@ -77,7 +77,7 @@ class WithinSet {
   }
 
  private:
-  std::vector<Neighbor>& found_;
+  std::vector<Neighbour>& found_;
   double radius_squared_;
 };
 
@@ -97,7 +97,7 @@ KdTree::~KdTree() = default;
 
 std::size_t KdTree::size() const { return impl_->adaptor.points.size(); }
 
-void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found) const {
+void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const {
   NearestSet set(found, std::min(k, size()));
   if (k == 0 || size() == 0) return;
   impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
@@ -105,13 +105,13 @@ void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& fo
 
 std::int32_t KdTree::nearest(const Vec3& query) const {
   CHECK_GT(size(), 0U);
-  std::vector<Neighbor> found;
+  std::vector<Neighbour> found;
   found.reserve(1);
   nearest(query, 1, found);
   return found.front().index;
 }
 
-void KdTree::within(const Vec3& query, double radius, std::vector<Neighbor>& found) const {
+void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
   WithinSet set(found, radius * radius);
   if (size() == 0) return;
   impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
