@@ -1,11 +1,11 @@
 // Vec3 and Triangle are plain triples, so a vector of them is an n x 3 array as it lies in memory.
 #include "io/value.h"
 
-#include <array>
 #include <cstring>
 
 #include <fmt/format.h>
 
+#include "stages/core/check.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -184,55 +184,59 @@ struct Layout<Histogram> {
   }
 };
 
-using ScoreRow = std::array<double, 5>;
-constexpr const char* kScoreColumns = "auc, auc_exact, nss, cc, lcc; NaN where undefined";
+// The names of later metrics are in results.csv and the data dictionary: no layer below the table of metrics
+// knows them.
+constexpr const char* kScoreColumns =
+    "one value per metric, in the order of results.csv: auc, auc_exact, nss, cc, lcc, then those added "
+    "since; "
+    "NaN where undefined";
 constexpr const char* kCountColumns = "n_points, n_picks";
-
-ScoreRow row_from(const Scores& s) { return {s.auc, s.auc_exact, s.nss, s.cc, s.lcc}; }
-Scores scores_from(const double* s, const std::int64_t* n) {
-  return {s[0], s[1], s[2], s[3], s[4], n[0], n[1]};
-}
 
 template <>
 struct Layout<Scores> {
   static constexpr std::string_view kind = "scores";
   static Arrays write(const Scores& scores) {
-    const ScoreRow row = row_from(scores);
-    return {column<double>("scores", {row.begin(), row.end()}, "1", kScoreColumns),
+    return {column("scores", scores.values, "1", kScoreColumns),
             column<std::int64_t>("counts", {scores.n_points, scores.n_picks}, "1", kCountColumns)};
   }
   static Scores read(const Arrays& arrays) {
     const auto& scores = values_of<double>(arrays, "scores");
     const auto& counts = values_of<std::int64_t>(arrays, "counts");
-    if (scores.size() != 5 || counts.size() != 2)
-      throw InputError("the data sets 'scores' and 'counts' have other sizes");
-    return scores_from(scores.data(), counts.data());
+    if (counts.size() != 2)
+      throw InputError(fmt::format("data set 'counts': expected 2 values, found {}", counts.size()));
+    return {scores, counts[0], counts[1]};
   }
 };
 
-// One row a size of the groups: n = 1, 2, ...
+// One row per size of the groups: n = 1, 2, ...
 template <>
 struct Layout<HumanCurve> {
   static constexpr std::string_view kind = "human_curve";
   static Arrays write(const HumanCurve& curve) {
     std::vector<double> scores;
     std::vector<std::int64_t> counts;
+    const std::size_t metrics = curve.empty() ? 0 : curve.front().values.size();
     for (const Scores& point : curve) {
-      const ScoreRow row = row_from(point);
-      scores.insert(scores.end(), row.begin(), row.end());
+      CHECK_EQ(point.values.size(), metrics);
+      scores.insert(scores.end(), point.values.begin(), point.values.end());
       counts.insert(counts.end(), {point.n_points, point.n_picks});
     }
-    return {{"scores", {curve.size(), 5}, std::move(scores), "1", kScoreColumns},
+    return {{"scores", {curve.size(), metrics}, std::move(scores), "1", kScoreColumns},
             {"counts", {curve.size(), 2}, std::move(counts), "1", kCountColumns}};
   }
   static HumanCurve read(const Arrays& arrays) {
     const auto& scores = values_of<double>(arrays, "scores");
     const auto& counts = values_of<std::int64_t>(arrays, "counts");
     const std::size_t n = counts.size() / 2;
-    if (scores.size() != 5 * n || counts.size() != 2 * n)
-      throw InputError("the data sets 'scores' and 'counts' have other sizes");
+    const std::size_t metrics = n == 0 ? 0 : scores.size() / n;
+    if (counts.size() != 2 * n || scores.size() != metrics * n)
+      throw InputError(fmt::format("data sets 'scores' and 'counts': {} and {} values are not n rows of each",
+                                   scores.size(), counts.size()));
     HumanCurve curve;
-    for (std::size_t i = 0; i < n; ++i) curve.push_back(scores_from(&scores[5 * i], &counts[2 * i]));
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto row = scores.begin() + static_cast<std::ptrdiff_t>(metrics * i);
+      curve.push_back({{row, row + static_cast<std::ptrdiff_t>(metrics)}, counts[2 * i], counts[2 * i + 1]});
+    }
     return curve;
   }
 };

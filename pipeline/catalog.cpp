@@ -129,7 +129,7 @@ void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, co
                }});
   }
   chain.add({.name = "scores." + model.name,
-             .version = 1,
+             .version = scores_version(),
              .kind = "scores",
              .options = {{"metrics", options_text(config.metrics)}},
              .inputs = {chain.shape(matched_map), chain.shape(parts.ground_truth)},
@@ -143,10 +143,11 @@ void add_model(ChainBuilder& chain, const Parts& parts, const Config& config, co
 // A group's map is matched like a model's, and so is the map of the others, which stands for the ground
 // truth.
 GroupScorer group_scorer(const Histogram& reference, const MetricsOptions& options, const Rng& rng) {
-  return [=](const ScalarField& map, const GroundTruth& others) {
-    const GroundTruth matched_others{matched(others.saliency, reference), others.picks, others.simulated};
-    return score(matched(map, reference), matched_others, options, rng);
-  };
+  return {
+      metric_table().size(), [=](const ScalarField& map, const GroundTruth& others) {
+        const GroundTruth matched_others{matched(others.saliency, reference), others.picks, others.simulated};
+        return score(matched(map, reference), matched_others, options, rng);
+      }};
 }
 
 std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
@@ -161,11 +162,12 @@ void add_people(ChainBuilder& chain, const Config& config, const Model& model) {
   const std::string scores = "scores." + model.name, curve = "curve." + model.name;
   const std::vector<Input> inputs = {chain.shape("mesh"), chain.shape("ground_truth"),
                                      ChainBuilder::reference()};
+  const std::int32_t version = model.version + scores_version() - 1;  // grows with either
   const auto scorer = [options = config.metrics, scores](const StageInputs& in) {
     return group_scorer(in.get<Histogram>(2), options, Rng(in.seed, scores, in.item));
   };
   chain.add({.name = scores,
-             .version = model.version,
+             .version = version,
              .kind = "scores",
              .options = {{"metrics", options_text(config.metrics)}},
              .inputs = inputs,
@@ -175,7 +177,7 @@ void add_people(ChainBuilder& chain, const Config& config, const Model& model) {
                return one_against_rest(in.get<Mesh>(0), in.get<GroundTruth>(1), scorer(in));
              }});
   chain.add({.name = curve,
-             .version = model.version,
+             .version = version,
              .kind = "human_curve",
              .options = {{"models." + model.name, model.options}, {"metrics", options_text(config.metrics)}},
              .inputs = inputs,

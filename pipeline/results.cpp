@@ -12,6 +12,7 @@
 #include "pipeline/given_maps.h"
 #include "pipeline/statistics.h"
 #include "stages/core/errors.h"
+#include "stages/metrics/metrics.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
@@ -124,13 +125,14 @@ std::vector<HumanCurve> collect_human_curves(const Config& config, const Context
 }
 
 Table results_table(const std::vector<ResultRow>& rows) {
-  Table table{.columns = {"dataset", "item", "class", "view", "model", "auc", "auc_exact", "nss", "cc", "lcc",
-                          "n_points", "n_picks"},
-              .rows = {}};
+  Table table{.columns = {"dataset", "item", "class", "view", "model"}, .rows = {}};
+  for (const Metric& metric : metric_table()) table.columns.emplace_back(metric.name);
+  table.columns.insert(table.columns.end(), {"n_points", "n_picks"});
   for (const ResultRow& row : rows) {
-    const Scores& s = row.scores;
-    table.rows.push_back({row.dataset, row.item, row.category, row.view, row.model, s.auc, s.auc_exact, s.nss,
-                          s.cc, s.lcc, s.n_points, s.n_picks});
+    auto& cells =
+        table.rows.emplace_back(std::vector<Cell>{row.dataset, row.item, row.category, row.view, row.model});
+    for (const Metric& metric : metric_table()) cells.emplace_back(value_of(row.scores, metric.name));
+    cells.insert(cells.end(), {row.scores.n_points, row.scores.n_picks});
   }
   return table;
 }
@@ -139,13 +141,13 @@ Table summary_table(const std::vector<ResultRow>& rows) {
   Table table{.columns = {"dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"},
               .rows = {}};
   for (const auto& [dataset, model] : datasets_and_models(rows)) {
-    for (const Metric& metric : kMetrics) {
+    for (const Metric& metric : metric_table()) {
       std::vector<double> values;
       for (const ResultRow& row : rows)
-        if (row.dataset == dataset && row.model == model) values.push_back(row.scores.*metric.value);
+        if (row.dataset == dataset && row.model == model) values.push_back(value_of(row.scores, metric.name));
       const Summary summary = summarize(values);
-      table.rows.push_back({dataset, model, metric.name, summary.n, summary.mean, summary.sd, summary.ci_low,
-                            summary.ci_high});
+      table.rows.push_back({dataset, model, std::string(metric.name), summary.n, summary.mean, summary.sd,
+                            summary.ci_low, summary.ci_high});
     }
   }
   return table;

@@ -1,7 +1,6 @@
 // Results of a run, item by item, and the files they are written to.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -26,14 +25,6 @@ struct ResultRow {
   std::string model;
   Scores scores;
 };
-
-struct Metric {
-  const char* name;
-  double Scores::*value;
-};
-inline constexpr std::array kMetrics = {Metric{"auc", &Scores::auc}, Metric{"auc_exact", &Scores::auc_exact},
-                                        Metric{"nss", &Scores::nss}, Metric{"cc", &Scores::cc},
-                                        Metric{"lcc", &Scores::lcc}};
 
 struct DatasetAndModel {
   std::string dataset, model;

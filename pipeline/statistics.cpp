@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "stages/metrics/metrics.h"
 #include "stages/stats/multiple.h"
 #include "stages/stats/rank_tests.h"
 #include "stages/stats/summary.h"
@@ -18,7 +19,7 @@ ByShape scores_by_shape(const std::vector<ResultRow>& rows, const DatasetAndMode
   ByShape scores;
   for (const ResultRow& row : rows)
     if (row.dataset == of.dataset && row.model == of.model)
-      scores[row.item + "/" + row.view] = row.scores.*metric.value;
+      scores[row.item + "/" + row.view] = value_of(row.scores, metric.name);
   return scores;
 }
 
@@ -44,7 +45,8 @@ void add_class_rows(Table& table, const std::string& dataset, const std::string&
                     const std::vector<ResultRow>& rows) {
   std::map<std::string, std::vector<double>> by_model;
   for (const ResultRow& row : rows)
-    if (row.dataset == dataset && row.category == category) by_model[row.model].push_back(row.scores.auc);
+    if (row.dataset == dataset && row.category == category)
+      by_model[row.model].push_back(value_of(row.scores, "auc"));
   std::vector<double> means;
   const auto add = [&](const std::string& model, const std::vector<double>& values) {
     const Summary summary = summarize(values);
@@ -70,7 +72,7 @@ void add_significance_rows(Table& table, const std::vector<DatasetAndModel>& mod
       const SignedRank signed_rank = signed_rank_test(x, y);
       std::vector<double> differences;
       for (std::size_t k = 0; k < x.size(); ++k) differences.push_back(x[k] - y[k]);
-      added.push_back({models[i].dataset, metric.name, models[i].model, models[j].model,
+      added.push_back({models[i].dataset, std::string(metric.name), models[i].model, models[j].model,
                        static_cast<std::int64_t>(x.size()), summarize(differences).mean, rank_sum.z,
                        rank_sum.p_value, signed_rank.statistic, signed_rank.p_value});
       p_values.push_back(signed_rank.p_value);
@@ -106,7 +108,7 @@ Table significance_table(const std::vector<ResultRow>& rows) {
     std::vector<DatasetAndModel> models;
     for (const DatasetAndModel& of : datasets_and_models(rows))
       if (of.dataset == dataset) models.push_back(of);
-    for (const Metric& metric : kMetrics) add_significance_rows(table, models, metric, rows);
+    for (const Metric& metric : metric_table()) add_significance_rows(table, models, metric, rows);
   }
   return table;
 }
@@ -116,13 +118,13 @@ Table human_curve_table(const std::vector<HumanCurve>& curves) {
   std::size_t longest = 0;
   for (const HumanCurve& curve : curves) longest = std::max(longest, curve.size());
   for (std::size_t i = 0; i < longest; ++i) {
-    for (const Metric& metric : kMetrics) {
+    for (const Metric& metric : metric_table()) {
       std::vector<double> values;
       for (const HumanCurve& curve : curves)
-        if (i < curve.size()) values.push_back(curve[i].*metric.value);
+        if (i < curve.size()) values.push_back(value_of(curve[i], metric.name));
       const Summary summary = summarize(values);
-      table.rows.push_back({static_cast<std::int64_t>(i + 1), metric.name, summary.n, summary.mean,
-                            summary.sd, summary.ci_low, summary.ci_high});
+      table.rows.push_back({static_cast<std::int64_t>(i + 1), std::string(metric.name), summary.n,
+                            summary.mean, summary.sd, summary.ci_low, summary.ci_high});
     }
   }
   return table;

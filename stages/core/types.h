@@ -59,13 +59,9 @@ inline constexpr int kHistogramBins = 100;
 // Density histogram over [0, 1] of min-max-normalised values: sums to 100. [tasse2016]
 using Histogram = std::array<double, kHistogramBins>;
 
-// Agreement of one saliency map with the ground truth; NaN where a metric is undefined. [tasse2016]
+// Agreement of one saliency map with the ground truth. [tasse2016]
 struct Scores {
-  double auc = 0;        // the paper's protocol: sampled negatives, 20 thresholds
-  double auc_exact = 0;  // Mann-Whitney probability, ties one half
-  double nss = 0;        // standard deviations of the map
-  double cc = 0;         // Pearson
-  double lcc = 0;        // |cc|
+  std::vector<double> values;  // [metric], in the order of the metric table; NaN where undefined
   std::int64_t n_points = 0;
   std::int64_t n_picks = 0;  // distinct points picked
 };

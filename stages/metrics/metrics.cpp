@@ -1,9 +1,11 @@
 #include "stages/metrics/metrics.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -66,6 +68,21 @@ void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::in
                      std::to_string(picked.front() < 0 ? picked.front() : picked.back()) + " of " +
                      std::to_string(n));
 }
+
+double correlation(const MetricInput& in) {
+  return in.saliency.empty() ? kUndefined : cc(in.map, in.saliency);
+}
+
+constexpr std::array kMetricTable = {
+    Metric{"auc", "1", "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds",
+           [](const MetricInput& in) { return auc(in.map, in.picked, in.options, in.rng); }},
+    Metric{"auc_exact", "1", "probability that a picked point lies above an unpicked one, ties one half",
+           [](const MetricInput& in) { return auc_exact(in.map, in.picked); }},
+    Metric{"nss", "standard deviations", "mean height of the picks above the mean of the map",
+           [](const MetricInput& in) { return nss(in.map, in.picked); }},
+    Metric{"cc", "1", "Pearson correlation with the saliency of the ground truth", correlation},
+    Metric{"lcc", "1", "magnitude of cc", [](const MetricInput& in) { return std::abs(correlation(in)); }},
+};
 
 }  // namespace
 
@@ -133,19 +150,32 @@ double cc(std::span<const double> map, std::span<const double> saliency) {
   return products / (std::sqrt(map_squares) * std::sqrt(saliency_squares));
 }
 
-Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng) {
+std::span<const Metric> metric_table() { return kMetricTable; }
+
+std::int32_t scores_version() { return std::ranges::max_element(kMetricTable, {}, &Metric::since)->since; }
+
+Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+             const MetricsOptions& options, Rng rng) {
   check(options);
   const std::vector<std::int32_t> picked = picked_points(truth);
   check_fits(matched.size(), truth, picked);
+  const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalized(truth.saliency);
+  const MetricInput input{matched, picked, saliency, options, rng};
   Scores scores;
-  scores.auc = auc(matched, picked, options, rng);
-  scores.auc_exact = auc_exact(matched, picked);
-  scores.nss = nss(matched, picked);
-  scores.cc = truth.saliency.empty() ? kUndefined : cc(matched, min_max_normalized(truth.saliency));
-  scores.lcc = std::abs(scores.cc);
+  for (const Metric& metric : metrics) scores.values.push_back(metric.value(input));
   scores.n_points = static_cast<std::int64_t>(matched.size());
   scores.n_picks = static_cast<std::int64_t>(picked.size());
   return scores;
+}
+
+Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng) {
+  return score(metric_table(), matched, truth, options, rng);
+}
+
+double value_of(const Scores& scores, std::string_view metric) {
+  const auto* const row = std::ranges::find(kMetricTable, metric, &Metric::name);
+  if (row == kMetricTable.end()) throw std::out_of_range("no metric '" + std::string(metric) + "'");
+  return scores.values.at(static_cast<std::size_t>(row - kMetricTable.begin()));
 }
 
 }  // namespace salbench

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
@@ -39,9 +40,38 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked);
 // Pearson correlation; 0 where one of the two is constant, NaN for empty fields. [tasse2016]
 double cc(std::span<const double> map, std::span<const double> saliency);
 
-// All metrics of one map. What the ground truth has nothing for is NaN: auc, auc_exact and nss without picks,
-// cc and lcc without saliency values. Throws InputError where the ground truth is not of this shape: picks
-// out of range, or another number of points.
+// What a metric may read.
+struct MetricInput {
+  std::span<const double> map;           // n
+  std::span<const std::int32_t> picked;  // ascending
+  std::span<const double> saliency;      // n, min-max-normalised; empty where not known
+  const MetricsOptions& options;
+  Rng rng;  // a metric draws from its own copy, so all metrics see the same stream
+};
+
+struct Metric {
+  std::string_view name;  // column of results.csv
+  std::string_view unit;
+  std::string_view help;
+  double (*value)(const MetricInput&);  // NaN where undefined
+  std::int32_t since = 1;               // version of the stage `scores` with which these values came
+};
+
+// The table of metrics: a new one is a function and a row at the end. Stored scores hold one value per row,
+// in this order. A new row, or one whose values change, takes the next number as its `since`.
+std::span<const Metric> metric_table();
+
+// Version of the stage `scores`: the largest `since` of the table.
+std::int32_t scores_version();
+
+// All metrics of one map, those of `metrics` or of the table. What the ground truth has nothing for is NaN:
+// auc, auc_exact and nss without picks, cc and lcc without saliency values. Throws InputError where the
+// ground truth is not of this shape: picks out of range, or another number of points.
+Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+             const MetricsOptions& options, Rng rng);
 Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng);
+
+// Value of one metric of the table. Throws std::out_of_range for a name that is not in it.
+double value_of(const Scores& scores, std::string_view metric);
 
 }  // namespace salbench

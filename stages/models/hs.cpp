@@ -2,7 +2,6 @@
 #include "stages/models/hs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/core/smoothing.h"
@@ -20,30 +20,32 @@ namespace {
 
 using Group = std::span<const std::size_t>;  // distinct participants
 
-constexpr std::array kMetrics = {&Scores::auc, &Scores::auc_exact, &Scores::nss, &Scores::cc, &Scores::lcc};
-
 // The mean of each metric over where it is defined.
 class MeanOfScores {
  public:
+  explicit MeanOfScores(std::size_t n_metrics) : sums_(n_metrics), counts_(n_metrics) {}
+
   void add(const Scores& scores) {
-    for (std::size_t m = 0; m < kMetrics.size(); ++m) {
-      const double value = scores.*kMetrics[m];
-      if (std::isnan(value)) continue;
-      sums_[m] += value;
+    CHECK_EQ(scores.values.size(), sums_.size());
+    for (std::size_t m = 0; m < sums_.size(); ++m) {
+      if (std::isnan(scores.values[m])) continue;
+      sums_[m] += scores.values[m];
       ++counts_[m];
     }
   }
 
   // Over the counts of `scores`, which are kept.
   Scores with_counts_of(Scores scores) const {
-    for (std::size_t m = 0; m < kMetrics.size(); ++m)
-      scores.*kMetrics[m] = counts_[m] > 0 ? sums_[m] / counts_[m] : std::numeric_limits<double>::quiet_NaN();
+    scores.values.clear();
+    for (std::size_t m = 0; m < sums_.size(); ++m)
+      scores.values.push_back(counts_[m] > 0 ? sums_[m] / counts_[m]
+                                             : std::numeric_limits<double>::quiet_NaN());
     return scores;
   }
 
  private:
-  std::array<double, kMetrics.size()> sums_ = {};
-  std::array<int, kMetrics.size()> counts_ = {};
+  std::vector<double> sums_;  // [metric]
+  std::vector<int> counts_;   // [metric], of the values that are defined
 };
 
 SmoothingOptions undivided() {
@@ -80,7 +82,7 @@ class Participants {
                     [](const auto& own) { return own.empty(); }))
       return;
     predicted.saliency = smooth_(others);
-    mean.add(scorer_(smooth_(group), predicted));
+    mean.add(scorer_.score(smooth_(group), predicted));
   }
 
  private:
@@ -115,7 +117,7 @@ Scores one_against_rest(const Mesh& mesh, const GroundTruth& truth, const GroupS
   require_participants(truth);
   const Participants participants(mesh, truth, scorer);
   std::vector<std::size_t> order = everyone(participants);
-  MeanOfScores mean;
+  MeanOfScores mean(scorer.n_metrics);
   for (std::size_t k = 0; k < order.size(); ++k) {
     std::swap(order.front(), order[k]);
     participants.compare(Group(order).first(1), Group(order).subspan(1), mean);
@@ -134,7 +136,7 @@ HumanCurve human_curve(const Mesh& mesh, const GroundTruth& truth, const HsOptio
   HumanCurve curve;
   for (std::size_t n = 1; n <= largest; ++n) {
     std::vector<std::size_t> order = everyone(participants);
-    MeanOfScores mean;
+    MeanOfScores mean(scorer.n_metrics);
     for (std::int32_t draw = 0; draw < options.draws; ++draw) {
       draw_to_front(order, 2 * n, rng);
       participants.compare(Group(order).first(n), Group(order).subspan(n, n), mean);

@@ -28,7 +28,10 @@ inline constexpr std::size_t kFewestParticipants = 2;  // below, there is nobody
 // Scores the map of one group against the others: their map is `saliency`, their picks are `picks`. Both maps
 // are smoothed_picks() without the division by participants, as they are: to normalise and match them is the
 // scorer's part. Equal arguments must get equal scores.
-using GroupScorer = std::function<Scores(const ScalarField& map, const GroundTruth& others)>;
+struct GroupScorer {
+  std::size_t n_metrics;  // values of the Scores that it makes
+  std::function<Scores(const ScalarField& map, const GroundTruth& others)> score;
+};
 
 // Of both functions: a group that picked nothing has a map of zeros, and is scored; where the others picked
 // nothing there is nothing to predict, and the comparison is left out. A metric is the mean over where it is

@@ -49,28 +49,30 @@ TEST(Value, GroundTruthKeepsParticipantsWithoutPicks) {
 }
 
 TEST(Value, ScoresKeepUndefinedMetrics) {
-  const Scores back = round_trip(Scores{std::nan(""), 0.5, -1, 0.25, 0.25, 100, 0});
-  EXPECT_TRUE(std::isnan(back.auc));
-  EXPECT_EQ(back.nss, -1);
+  const Scores back = round_trip(Scores{{std::nan(""), 0.5, -1}, 100, 0});
+  ASSERT_EQ(back.values.size(), 3U);
+  EXPECT_TRUE(std::isnan(back.values[0]));
+  EXPECT_EQ(back.values[2], -1);
   EXPECT_EQ(back.n_points, 100);
 }
 
 TEST(Value, HumanCurvesKeepTheirPointsInOrder) {
-  const HumanCurve curve = {{0.5, 0.6, -1, 0.25, 0.3, 100, 7}, {std::nan(""), 0.7, 2, 0.5, 0.5, 101, 8}};
+  const HumanCurve curve = {{{0.5, 0.6, -1}, 100, 7}, {{std::nan(""), 0.7, 2}, 101, 8}};
   const HumanCurve back = round_trip(curve);
   ASSERT_EQ(back.size(), 2U);
-  EXPECT_EQ(back[0].auc, 0.5);
-  EXPECT_EQ(back[0].lcc, 0.3);
+  EXPECT_EQ(back[0].values, curve[0].values);
   EXPECT_EQ(back[0].n_picks, 7);
-  EXPECT_TRUE(std::isnan(back[1].auc));
-  EXPECT_EQ(back[1].auc_exact, 0.7);
-  EXPECT_EQ(back[1].nss, 2);
+  ASSERT_EQ(back[1].values.size(), 3U);
+  EXPECT_TRUE(std::isnan(back[1].values[0]));
+  EXPECT_EQ(back[1].values[1], 0.7);
+  EXPECT_EQ(back[1].values[2], 2);
   EXPECT_EQ(back[1].n_points, 101);
   EXPECT_TRUE(round_trip(HumanCurve{}).empty());
 }
 
 TEST(Value, AHumanCurveCutOffIsNoCurve) {
-  Arrays arrays = arrays_from(Value(HumanCurve(3)));
+  Arrays arrays = arrays_from(Value(HumanCurve(3, Scores{{0.5, 0.6}, 100, 7})));
+  EXPECT_EQ(arrays[0].shape, (std::vector<std::size_t>{3, 2}));
   std::get<std::vector<double>>(arrays[0].values).pop_back();
   EXPECT_THROW(value_from("human_curve", arrays), InputError);
 }

@@ -4,21 +4,18 @@
 // rerun with nothing to do can be measured at the size of the whole benchmark. The scores in it mean nothing.
 //   perf_full_cache CONFIG DATA CACHE
 #include <atomic>
-#include <cmath>
 #include <iostream>
 
 #include "pipeline/session.h"
 #include "stages/core/rng.h"
+#include "stages/metrics/metrics.h"
 
 namespace salbench {
 namespace {
 
 Scores made_up_scores(Rng& rng) {
-  Scores scores{
-      .auc = rng.uniform(), .auc_exact = rng.uniform(), .nss = rng.normal(), .cc = rng.normal() / 3};
-  scores.lcc = std::abs(scores.cc);
-  scores.n_points = 5000;
-  scores.n_picks = 60;
+  Scores scores{.values = {}, .n_points = 5000, .n_picks = 60};
+  for (std::size_t m = 0; m < metric_table().size(); ++m) scores.values.push_back(rng.uniform());
   return scores;
 }
 

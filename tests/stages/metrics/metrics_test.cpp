@@ -183,36 +183,37 @@ TEST(Score, CountsAPointOnceWhoeverPickedIt) {
   const Scores b = score(map, once, {}, Rng(1, "score", "x"));
   EXPECT_EQ(a.n_picks, 2);
   EXPECT_EQ(a.n_points, 5);
-  EXPECT_EQ(a.nss, b.nss);
-  EXPECT_EQ(a.auc, b.auc);
-  EXPECT_EQ(a.auc_exact, b.auc_exact);
-  EXPECT_EQ(a.cc, cc(map, often.saliency));
-  EXPECT_EQ(a.lcc, std::abs(a.cc));
+  EXPECT_EQ(value_of(a, "nss"), value_of(b, "nss"));
+  EXPECT_EQ(value_of(a, "auc"), value_of(b, "auc"));
+  EXPECT_EQ(value_of(a, "auc_exact"), value_of(b, "auc_exact"));
+  EXPECT_EQ(value_of(a, "cc"), cc(map, often.saliency));
+  EXPECT_EQ(value_of(a, "lcc"), std::abs(value_of(a, "cc")));
 }
 
 TEST(Score, LccIsTheMagnitudeOfCc) {
   const Scores scores = score({3, 2, 1}, {{1, 2, 3}, {{0}}}, {}, Rng(1, "score", "x"));
-  EXPECT_NEAR(scores.cc, -1, 1e-12);
-  EXPECT_NEAR(scores.lcc, 1, 1e-12);
+  EXPECT_NEAR(value_of(scores, "cc"), -1, 1e-12);
+  EXPECT_NEAR(value_of(scores, "lcc"), 1, 1e-12);
 }
 
 TEST(Score, IsNanWhereTheGroundTruthSaysNothing) {
   const Scores no_picks = score({1, 2, 3}, {{1, 3, 2}, {{}, {}}}, {}, Rng(1, "score", "x"));
-  EXPECT_TRUE(std::isnan(no_picks.auc) && std::isnan(no_picks.auc_exact) && std::isnan(no_picks.nss));
-  EXPECT_NEAR(no_picks.cc, 0.5, 1e-12);
+  EXPECT_TRUE(std::isnan(value_of(no_picks, "auc")) && std::isnan(value_of(no_picks, "auc_exact")) &&
+              std::isnan(value_of(no_picks, "nss")));
+  EXPECT_NEAR(value_of(no_picks, "cc"), 0.5, 1e-12);
   EXPECT_EQ(no_picks.n_picks, 0);
   const Scores no_values = score({1, 2, 3}, {{}, {{2}}}, {}, Rng(1, "score", "x"));
-  EXPECT_TRUE(std::isnan(no_values.cc) && std::isnan(no_values.lcc));
-  EXPECT_EQ(no_values.auc_exact, 1);
+  EXPECT_TRUE(std::isnan(value_of(no_values, "cc")) && std::isnan(value_of(no_values, "lcc")));
+  EXPECT_EQ(value_of(no_values, "auc_exact"), 1);
 }
 
 TEST(Score, OfAConstantMapIsThatOfChance) {
   const Scores scores = score({7, 7, 7}, {{1, 3, 2}, {{1}}}, {}, Rng(1, "score", "x"));
-  EXPECT_EQ(scores.nss, 0);
-  EXPECT_EQ(scores.cc, 0);
-  EXPECT_EQ(scores.lcc, 0);
-  EXPECT_EQ(scores.auc, 0.5);
-  EXPECT_EQ(scores.auc_exact, 0.5);
+  EXPECT_EQ(value_of(scores, "nss"), 0);
+  EXPECT_EQ(value_of(scores, "cc"), 0);
+  EXPECT_EQ(value_of(scores, "lcc"), 0);
+  EXPECT_EQ(value_of(scores, "auc"), 0.5);
+  EXPECT_EQ(value_of(scores, "auc_exact"), 0.5);
 }
 
 TEST(Score, RefusesGroundTruthOfAnotherShape) {
@@ -220,6 +221,46 @@ TEST(Score, RefusesGroundTruthOfAnotherShape) {
   EXPECT_THROW(score({1, 2, 3}, {{1, 2}, {}}, {}, rng), InputError);
   EXPECT_THROW(score({1, 2, 3}, {{1, 2, 3}, {{3}}}, {}, rng), InputError);
   EXPECT_THROW(score({1, 2, 3}, {{1, 2, 3}, {{-1}}}, {}, rng), InputError);
+}
+
+TEST(MetricTable, HasTheColumnsOfStoredScoresInTheirOrder) {
+  std::vector<std::string_view> names;
+  for (const Metric& metric : metric_table()) {
+    names.push_back(metric.name);
+    EXPECT_FALSE(metric.unit.empty() || metric.help.empty()) << metric.name;
+    EXPECT_LE(metric.since, scores_version()) << metric.name;
+  }
+  names.resize(5);  // later ones come behind
+  EXPECT_EQ(names, (std::vector<std::string_view>{"auc", "auc_exact", "nss", "cc", "lcc"}));
+  EXPECT_THROW(value_of(Scores{}, "no such metric"), std::out_of_range);
+  EXPECT_THROW(value_of(Scores{}, "auc"), std::out_of_range);
+}
+
+TEST(MetricTable, ANewMetricIsAFunctionAndARow) {
+  std::vector<Metric> metrics(metric_table().begin(), metric_table().end());
+  metrics.push_back({"picked_mean", "1", "mean of the map over the picks", [](const MetricInput& in) {
+                       double sum = 0;
+                       for (const std::int32_t i : in.picked) sum += in.map[static_cast<std::size_t>(i)];
+                       return sum / static_cast<double>(in.picked.size());
+                     }});
+  const GroundTruth truth{{1, 3, 2, 0}, {{1, 2}, {2}}};
+  const Rng rng(1, "score", "x");
+  const Scores with = score(metrics, {1, 5, 2, 0}, truth, {}, rng);
+  const Scores without = score({1, 5, 2, 0}, truth, {}, rng);
+  ASSERT_EQ(with.values.size(), without.values.size() + 1);
+  EXPECT_EQ(with.values.back(), 3.5);
+  for (std::size_t m = 0; m < without.values.size(); ++m) EXPECT_EQ(with.values[m], without.values[m]) << m;
+}
+
+TEST(MetricTable, EveryMetricDrawsFromTheSameStream) {
+  const Metric draw{"draw", "1", "a random number", [](const MetricInput& in) {
+                      Rng rng = in.rng;
+                      return rng.uniform();
+                    }};
+  const std::vector<Metric> twice = {draw, draw};
+  Rng rng(1, "score", "x");
+  const Scores scores = score(twice, {1, 2}, {}, {}, rng);
+  EXPECT_EQ(scores.values, std::vector<double>(2, rng.uniform()));
 }
 
 TEST(MetricsOptions, RefusesNoSplitsAndASingleThreshold) {

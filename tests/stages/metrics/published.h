@@ -64,12 +64,16 @@ inline Histogram reference_histogram(const path& folder) {
   return histogram;
 }
 
+struct PublishedScores {
+  double auc, nss, cc;
+};
+
 // One line of published_scores.csv (item,model,auc,nss,cc); NaN where it has none.
-inline Scores scores(const path& folder, int mesh, const std::string& model) {
+inline PublishedScores scores(const path& folder, int mesh, const std::string& model) {
   std::ifstream in = opened(folder / "reference" / "published_scores.csv");
   const std::string start = std::to_string(mesh) + "," + model + ",";
-  Scores found;
-  found.auc = found.nss = found.cc = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  PublishedScores found{kNone, kNone, kNone};
   for (std::string line; std::getline(in, line);) {
     if (!line.starts_with(start)) continue;
     const char* at = line.c_str() + start.size();
@@ -94,7 +98,7 @@ MeanErrors mean_errors(const path& folder, const std::string& model, const MapOf
   const Histogram histogram = reference_histogram(folder);
   MeanErrors errors;
   for (const int mesh : kMeshes) {
-    const Scores expected = scores(folder, mesh, model);
+    const PublishedScores expected = scores(folder, mesh, model);
     if (std::isnan(expected.nss)) continue;
     const GroundTruth truth = ground_truth(folder, mesh);
     const ScalarField map = matched(map_of(folder, mesh), histogram);

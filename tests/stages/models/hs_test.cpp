@@ -23,8 +23,10 @@ namespace salbench {
 namespace {
 
 using testing::AllOf;
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsNan;
 using testing::SizeIs;
 using testing::ThrowsMessage;
 
@@ -38,10 +40,10 @@ GroundTruth truth_of(PicksOfAll picks) { return {{}, std::move(picks), false}; }
 
 // As in a run: both maps matched to one reference, then scored.
 GroupScorer matching_scorer(const Histogram& reference) {
-  return [=](const ScalarField& map, const GroundTruth& others) {
-    return score(matched(map, reference), {matched(others.saliency, reference), others.picks, false}, {},
-                 Rng(1, "scores", "x"));
-  };
+  return {metric_table().size(), [=](const ScalarField& map, const GroundTruth& others) {
+            return score(matched(map, reference), {matched(others.saliency, reference), others.picks, false},
+                         {}, Rng(1, "scores", "x"));
+          }};
 }
 
 GroupScorer matching_scorer(const Mesh& mesh, const GroundTruth& truth) {
@@ -49,11 +51,7 @@ GroupScorer matching_scorer(const Mesh& mesh, const GroundTruth& truth) {
 }
 
 void expect_near(const Scores& a, const Scores& b, double tolerance) {
-  EXPECT_NEAR(a.auc, b.auc, tolerance);
-  EXPECT_NEAR(a.auc_exact, b.auc_exact, tolerance);
-  EXPECT_NEAR(a.nss, b.nss, tolerance);
-  EXPECT_NEAR(a.cc, b.cc, tolerance);
-  EXPECT_NEAR(a.lcc, b.lcc, tolerance);
+  EXPECT_THAT(a.values, testing::Pointwise(testing::DoubleNear(tolerance), b.values));
   EXPECT_EQ(a.n_points, b.n_points);
   EXPECT_EQ(a.n_picks, b.n_picks);
 }
@@ -88,13 +86,13 @@ std::vector<std::size_t> points_of(const ScalarField& map) {
 }
 
 GroupScorer recorder(std::vector<Comparison>& comparisons) {
-  return [&](const ScalarField& map, const GroundTruth& others) {
-    comparisons.push_back({points_of(map), points_of(others.saliency)});
-    std::vector<std::size_t> picked;
-    for (const std::int32_t v : picked_points(others)) picked.push_back(static_cast<std::size_t>(v));
-    EXPECT_EQ(picked, comparisons.back().others);
-    return Scores{};
-  };
+  return {0, [&](const ScalarField& map, const GroundTruth& others) {
+            comparisons.push_back({points_of(map), points_of(others.saliency)});
+            std::vector<std::size_t> picked;
+            for (const std::int32_t v : picked_points(others)) picked.push_back(static_cast<std::size_t>(v));
+            EXPECT_EQ(picked, comparisons.back().others);
+            return Scores{};
+          }};
 }
 
 std::vector<Comparison> comparisons_of_curve(std::size_t participants, const HsOptions& options, Rng rng) {
@@ -109,17 +107,15 @@ TEST(OneAgainstRest, EqualsItsDefinition) {
   const GroupScorer scorer = matching_scorer(mesh, truth);
   SmoothingOptions sum;
   sum.per_participant = false;
-  Scores expected{.n_points = 2562, .n_picks = static_cast<std::int64_t>(picked_points(truth).size())};
+  Scores expected{.values = std::vector<double>(scorer.n_metrics),
+                  .n_points = 2562,
+                  .n_picks = static_cast<std::int64_t>(picked_points(truth).size())};
   for (std::size_t k = 0; k < 6; ++k) {
     GroundTruth others{{}, truth.picks, false};
     others.picks.erase(others.picks.begin() + static_cast<std::ptrdiff_t>(k));
     others.saliency = smoothed_picks(mesh, others.picks, sum);
-    const Scores scores = scorer(smoothed_picks(mesh, PicksOfAll{truth.picks[k]}, sum), others);
-    expected.auc += scores.auc / 6;
-    expected.auc_exact += scores.auc_exact / 6;
-    expected.nss += scores.nss / 6;
-    expected.cc += scores.cc / 6;
-    expected.lcc += scores.lcc / 6;
+    const Scores scores = scorer.score(smoothed_picks(mesh, PicksOfAll{truth.picks[k]}, sum), others);
+    for (std::size_t m = 0; m < scorer.n_metrics; ++m) expected.values[m] += scores.values[m] / 6;
   }
   expect_near(one_against_rest(mesh, truth, scorer), expected, 1e-12);
 }
@@ -135,19 +131,19 @@ TEST(OneAgainstRest, OfTwoWhoPickTheSameIsPerfect) {
   const Mesh mesh = shapes::bumpy_sphere(4);
   const GroundTruth truth = truth_of({{0, 1, 2, 3}, {3, 2, 1, 0}});  // far apart: corners of the icosahedron
   const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
-  EXPECT_DOUBLE_EQ(scores.auc_exact, 1);
-  EXPECT_NEAR(scores.cc, 1, 1e-12);
-  EXPECT_GT(scores.nss, 5);
+  EXPECT_DOUBLE_EQ(value_of(scores, "auc_exact"), 1);
+  EXPECT_NEAR(value_of(scores, "cc"), 1, 1e-12);
+  EXPECT_GT(value_of(scores, "nss"), 5);
 }
 
 TEST(OneAgainstRest, OfTwoWhoPickApartIsNoBetterThanChance) {
   const Mesh mesh = shapes::bumpy_sphere(4);
   const GroundTruth truth = truth_of({{0, 1, 2, 3}, {4, 5, 6, 7}});
   const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
-  EXPECT_LT(scores.auc_exact, 0.5);
-  EXPECT_LT(scores.nss, 0);
-  EXPECT_LT(scores.cc, 0);
-  EXPECT_DOUBLE_EQ(scores.lcc, -scores.cc);
+  EXPECT_LT(value_of(scores, "auc_exact"), 0.5);
+  EXPECT_LT(value_of(scores, "nss"), 0);
+  EXPECT_LT(value_of(scores, "cc"), 0);
+  EXPECT_DOUBLE_EQ(value_of(scores, "lcc"), -value_of(scores, "cc"));
 }
 
 TEST(OneAgainstRest, DoesNotDependOnTheOrderOfParticipants) {
@@ -165,42 +161,37 @@ TEST(OneAgainstRest, AParticipantWithoutPicksScoresAsAConstantMapAndIsNotPredict
   const Mesh mesh = shapes::bumpy_sphere(3);
   const GroundTruth truth = truth_of({{0, 1}, {}});
   const Scores scores = one_against_rest(mesh, truth, matching_scorer(mesh, truth));
-  EXPECT_DOUBLE_EQ(scores.auc, 0.5);
-  EXPECT_DOUBLE_EQ(scores.auc_exact, 0.5);
-  EXPECT_EQ(scores.nss, 0);
-  EXPECT_EQ(scores.cc, 0);
+  EXPECT_DOUBLE_EQ(value_of(scores, "auc"), 0.5);
+  EXPECT_DOUBLE_EQ(value_of(scores, "auc_exact"), 0.5);
+  EXPECT_EQ(value_of(scores, "nss"), 0);
+  EXPECT_EQ(value_of(scores, "cc"), 0);
   EXPECT_EQ(scores.n_picks, 2);
 }
 
 TEST(OneAgainstRest, WhereNobodyPickedIsUndefined) {
   const GroundTruth truth = truth_of({{}, {}, {}});
-  const auto never = [](const ScalarField&, const GroundTruth&) -> Scores {
-    ADD_FAILURE() << "there is nothing to predict";
-    return {};
-  };
+  const GroupScorer never{3, [](const ScalarField&, const GroundTruth&) -> Scores {
+                            ADD_FAILURE() << "there is nothing to predict";
+                            return {};
+                          }};
   const Scores scores = one_against_rest(shapes::tetrahedron(), truth, never);
-  for (const double value : {scores.auc, scores.auc_exact, scores.nss, scores.cc, scores.lcc})
-    EXPECT_TRUE(std::isnan(value)) << value;
+  EXPECT_THAT(scores.values, AllOf(SizeIs(3), Each(IsNan())));
+  const HumanCurve curve = human_curve(shapes::tetrahedron(), truth, {}, never, draws());
+  ASSERT_THAT(curve, SizeIs(1));
+  EXPECT_THAT(curve[0].values, AllOf(SizeIs(3), Each(IsNan())));
   EXPECT_EQ(scores.n_points, 4);
   EXPECT_EQ(scores.n_picks, 0);
 }
 
 TEST(OneAgainstRest, IsTheMeanOfEachMetricOverWhereItIsDefined) {
   int call = 0;
-  const Scores scores =
-      one_against_rest(kCloud, one_pick_each(3), [&](const ScalarField&, const GroundTruth&) {
-        ++call;
-        return Scores{.auc = call == 2 ? kUndefined : call,
-                      .auc_exact = kUndefined,
-                      .nss = -1.0 * call,
-                      .cc = call == 1 ? 0.5 : kUndefined,
-                      .lcc = 0};
-      });
-  EXPECT_EQ(scores.auc, 2);  // of 1 and 3
-  EXPECT_TRUE(std::isnan(scores.auc_exact));
-  EXPECT_EQ(scores.nss, -2);
-  EXPECT_EQ(scores.cc, 0.5);
-  EXPECT_EQ(scores.lcc, 0);
+  const GroupScorer scorer{5, [&](const ScalarField&, const GroundTruth&) {
+                             ++call;
+                             return Scores{.values = {call == 2 ? kUndefined : call, kUndefined, -1.0 * call,
+                                                      call == 1 ? 0.5 : kUndefined, 0}};
+                           }};
+  const Scores scores = one_against_rest(kCloud, one_pick_each(3), scorer);
+  EXPECT_THAT(scores.values, ElementsAre(2 /* of 1 and 3 */, IsNan(), -2, 0.5, 0));
 }
 
 TEST(HumanCurve, SetsGroupsOfEverySizeAgainstEachOther) {
@@ -256,16 +247,16 @@ TEST(HumanCurve, EndsWhereThereAreNoTwoGroupsLeft) {
 
 TEST(HumanCurve, IsTheMeanOverTheDraws) {
   std::vector<double> drawn;
-  const HumanCurve curve = human_curve(
-      kCloud, one_pick_each(4), {.draws = 3, .largest_group = 11},
-      [&](const ScalarField&, const GroundTruth&) {
-        drawn.push_back(std::exp2(drawn.size()));
-        return Scores{.cc = drawn.back()};
-      },
-      draws());
+  const HumanCurve curve = human_curve(kCloud, one_pick_each(4), {.draws = 3, .largest_group = 11},
+                                       {1,
+                                        [&](const ScalarField&, const GroundTruth&) {
+                                          drawn.push_back(std::exp2(drawn.size()));
+                                          return Scores{.values = {drawn.back()}};
+                                        }},
+                                       draws());
   ASSERT_THAT(curve, SizeIs(2));
-  EXPECT_DOUBLE_EQ(curve[0].cc, (1 + 2 + 4) / 3.0);
-  EXPECT_DOUBLE_EQ(curve[1].cc, (8 + 16 + 32) / 3.0);
+  EXPECT_DOUBLE_EQ(curve[0].values.at(0), (1 + 2 + 4) / 3.0);
+  EXPECT_DOUBLE_EQ(curve[1].values.at(0), (8 + 16 + 32) / 3.0);
   EXPECT_EQ(curve[1].n_points, 23);
   EXPECT_EQ(curve[1].n_picks, 4);
 }
@@ -277,7 +268,7 @@ TEST(HumanCurve, OfTwoIsOneAgainstTheOther) {
   const GroupScorer scorer = matching_scorer(mesh, truth);
   const HumanCurve curve = human_curve(mesh, truth, {}, scorer, draws());
   ASSERT_THAT(curve, SizeIs(1));
-  EXPECT_NEAR(curve[0].cc, one_against_rest(mesh, truth, scorer).cc, 1e-12);
+  EXPECT_NEAR(value_of(curve[0], "cc"), value_of(one_against_rest(mesh, truth, scorer), "cc"), 1e-12);
 }
 
 TEST(HumanCurve, MoreSimulatedPeopleAgreeBetter) {
@@ -285,7 +276,8 @@ TEST(HumanCurve, MoreSimulatedPeopleAgreeBetter) {
   const GroundTruth truth = simulated(mesh, 24);
   const HumanCurve curve = human_curve(mesh, truth, {}, matching_scorer(mesh, truth), draws());
   ASSERT_THAT(curve, SizeIs(11));
-  for (const std::size_t n : {2U, 4U, 6U, 8U, 10U}) EXPECT_GT(curve[n].cc, curve[n - 2].cc) << "n " << n + 1;
+  for (const std::size_t n : {2U, 4U, 6U, 8U, 10U})
+    EXPECT_GT(value_of(curve[n], "cc"), value_of(curve[n - 2], "cc")) << "n " << n + 1;
 }
 
 TEST(HumanCurve, LeavesOutDrawsAgainstPeopleWithoutPicks) {
@@ -304,7 +296,7 @@ TEST(HumanCurve, LeavesOutDrawsAgainstPeopleWithoutPicks) {
 }
 
 TEST(HumanPerformance, DoesNotApplyToFewerThanTwoParticipants) {
-  const auto scorer = [](const ScalarField&, const GroundTruth&) { return Scores{}; };
+  const GroupScorer scorer{0, [](const ScalarField&, const GroundTruth&) { return Scores{}; }};
   const Mesh mesh = shapes::tetrahedron();
   for (const auto& [picks, why] : std::vector<std::pair<PicksOfAll, std::string>>{
            {{}, "there are no picks"}, {{{0, 1, 2}}, "one list of picks, of one participant or pooled"}}) {
@@ -316,7 +308,7 @@ TEST(HumanPerformance, DoesNotApplyToFewerThanTwoParticipants) {
 }
 
 TEST(HumanPerformance, NamesThePickThatIsNoVertex) {
-  const auto scorer = [](const ScalarField&, const GroundTruth&) { return Scores{}; };
+  const GroupScorer scorer{0, [](const ScalarField&, const GroundTruth&) { return Scores{}; }};
   const GroundTruth truth = truth_of({{0}, {4}});
   EXPECT_THAT([&] { one_against_rest(shapes::tetrahedron(), truth, scorer); },
               ThrowsMessage<InputError>(HasSubstr("participant 1 picked vertex 4 ")));
