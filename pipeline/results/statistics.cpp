@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "stages/metrics/metrics.h"
 #include "stages/stats/multiple.h"
 #include "stages/stats/rank_tests.h"
 #include "stages/stats/summary.h"

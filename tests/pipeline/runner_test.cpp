@@ -305,8 +305,8 @@ TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   ASSERT_THAT(curves, SizeIs(2));
   const Table table = human_curve_table(curves);
   EXPECT_THAT(table.columns, ElementsAre("n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"));
-  ASSERT_THAT(table.rows, SizeIs(2 * kMetrics.size()));  // four participants: 1 and 2 against as many
-  const auto& cc_of_two = table.rows[kMetrics.size() + 3];
+  ASSERT_THAT(table.rows, SizeIs(2 * metric_table().size()));  // four participants: 1 and 2 against as many
+  const auto& cc_of_two = table.rows[metric_table().size() + 3];
   EXPECT_EQ(cc_of_two[0], Cell(std::int64_t{2}));
   EXPECT_EQ(cc_of_two[1], Cell("cc"));
   EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));
