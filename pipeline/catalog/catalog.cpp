@@ -72,8 +72,8 @@ GroupScorer group_scorer(const Histogram& reference, const MetricsOptions& optio
 
 std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
   if (!config.simulated())
-    return [](const DatasetItem& item) { return item.picks.size() >= kFewestParticipants; };
-  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kFewestParticipants;
+    return [](const DatasetItem& item) { return item.picks.size() >= kMinParticipants; };
+  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
   return [enough](const DatasetItem&) { return enough; };
 }
 

@@ -12,7 +12,7 @@ namespace salbench {
 namespace {
 
 constexpr const char* kPartialNote =
-    "PARTIAL: the run was interrupted; these are the items that were finished, and their scores are final.";
+    "PARTIAL: the run was interrupted; these are the scores of what it finished and they are final.";
 
 // No tables: what they compare is in the other shares.
 void finish_shard(const Session& session, const RunRecord& record, const Arguments& arguments) {
@@ -38,7 +38,8 @@ void write_results(Session& session, const RunRecord& record, const Arguments& a
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
   if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
-  write_tables(session.setup.output, record.run, rows, remarks);
+  if (!record.interrupted || !rows.empty())
+    write_tables(session.setup.output, record.run, rows, remarks);
   write_record(session.setup.output, record);
   if (!arguments.quiet && !record.interrupted) print_summary(session, rows);
   if (record.interrupted)

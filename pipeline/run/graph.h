@@ -14,13 +14,13 @@ namespace salbench {
 // What the nodes do; they know no TBB. Called from several threads at once, for different jobs.
 struct GraphBodies {
   // Whether a job is to be settled in this stream. Asked once for each, before the first is.
-  std::function<bool(const JobRef&)> open;
+  std::function<bool(const JobRef&)> open = {};
   // A family has a token and may begin. False: it cannot now, and its jobs stay open.
-  std::function<bool(std::size_t family)> enter;
+  std::function<bool(std::size_t family)> enter = {};
   // Everything that the job reads is settled. False: it cannot be settled now (sets only).
-  std::function<bool(const JobRef&)> settle;
+  std::function<bool(const JobRef&)> settle = {};
   // The last job of a family is settled, or the stream has ended early; once per family that entered.
-  std::function<void(std::size_t family)> leave;
+  std::function<void(std::size_t family)> leave = {};
 };
 
 struct GraphLimits {

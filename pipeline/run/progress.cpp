@@ -56,7 +56,8 @@ class TerminalProgress final : public Progress {
     const double rate = static_cast<double>(done_) / std::max(elapsed, 1e-3);
     const std::string left = duration_text(static_cast<double>(items_ - done_) / rate);
     const std::string now = at_work_ ? at_work_() : "";
-    const std::string text = fmt::format("{}: {}/{}, {:.1f}/s, {} left{}{}", what_, done_, items_, rate, left,
+    const char* unit = at_work_ ? "jobs" : "items";
+    const std::string text = fmt::format("{}: {}/{} {}, {:.1f} {}/s, {} left{}{}", what_, done_, items_, unit, rate, unit, left,
                                          now.empty() ? "" : "; now ", now);
     if (on_terminal_) {
       constexpr std::size_t kWidth = 24;

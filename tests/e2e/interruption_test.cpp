@@ -1,6 +1,7 @@
 // Whatever ends a run, the next one goes on from there and comes to the same results.
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -8,6 +9,7 @@
 
 #include "stages/core/rng.h"
 #include "tests/e2e/workspace.h"
+#include "stages/scan/scan.h"
 #include "tests/support/job_counts.h"
 
 namespace salbench {
@@ -20,8 +22,8 @@ using testing::SizeIs;
 
 // Of the second mesh, by another process, which is the test: a run can then not come to its end by itself.
 std::unique_ptr<Claim> claim_of_second_mesh(const Workspace& toy) { return toy.claim_family("2"); }
-// Artefacts that such a run can store.
-std::size_t beside_second_mesh() { return JobCounts(kToyConfig, 1).before_reference(); }
+// Artefacts that such a run can store: the reference goes first, and waits for the second mesh.
+std::size_t beside_second_mesh() { return JobCounts(kToyConfig, 1).of_reference(); }
 
 TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {
   const Workspace toy;
@@ -116,6 +118,36 @@ TEST_P(Signal, EndsTheRunInOrderAndTheLinePrintedResumesIt) {
 }
 INSTANTIATE_TEST_SUITE_P(Interruption, Signal, testing::Values(SIGINT, SIGTERM),
                          [](const auto& test) { return test.param == SIGINT ? "Interrupt" : "Terminate"; });
+
+// Half of the artefacts are there: of the items that were finished the scores are final, and are shown.
+TEST(Interruption, HalfWayThereAreFinalScoresOfTheItemsThatWereFinished) {
+  const Workspace toy("scan: {step_degrees: 1}\n");  // every model
+  for (const char* mesh : {"3", "4", "5"})
+    write_toy_item(toy.data(), mesh, shapes::bumpy_sphere(2, 0.1 * std::atoi(mesh)));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::vector<std::string> complete = lines_with(toy.results(), ",");
+  const std::size_t half = toy.contents().size() / 2;
+  const std::size_t shapes = 5 * (1 + kViews);
+  EXPECT_THAT(toy.salbench("status").out, HasSubstr("(finished)"));
+  toy.forget_everything();
+
+  const Outcome ended = run_process(
+      with_signal_at_rename(toy.command("run"), std::to_string(half) + " after", SIGTERM));
+  EXPECT_EQ(ended.status, 130) << ended.err;
+  EXPECT_THAT(toy.results(), testing::StartsWith("# PARTIAL: "));
+  const std::vector<std::string> partial = lines_with(toy.results(), ",");
+  EXPECT_THAT(complete, testing::IsSupersetOf(partial));
+
+  const std::string status = toy.salbench("status").out;
+  const std::size_t at = status.find("(partial, ");
+  ASSERT_NE(at, std::string::npos) << status;
+  const int finished = std::stoi(status.substr(at + 10));
+  EXPECT_GE(finished, 0.4 * static_cast<double>(shapes));
+  EXPECT_THAT(status, HasSubstr(" of " + std::to_string(shapes) + " shapes have all scores)"));
+
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(lines_with(toy.results(), ","), complete);
+}
 
 }  // namespace
 }  // namespace salbench

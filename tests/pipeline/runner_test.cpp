@@ -104,6 +104,28 @@ TEST_F(RunnerTest, WithTwoThreadsTwoScansOfAMeshAreWorkedOnAtTheSameTime) {
   EXPECT_TRUE(both.met());
 }
 
+TEST_F(RunnerTest, WithTwoThreadsTwoModelsOfOneShapeRunAtTheSameTime) {
+  ToyRun toy(data_.path(), store_, kToyConfig, "1");
+  Meeting both(2);
+  for (const char* model : {"map.PS", "map.RS"})
+    do_before(toy.catalog.rows[toy.row(model)], [&](const JobInputs&) { EXPECT_TRUE(both.join()); });
+  toy.run(2);
+  EXPECT_TRUE(both.met());
+}
+
+TEST_F(RunnerTest, EveryComputedArtefactPassedThroughTheNodeOfItsRow) {
+  ToyRun toy(data_.path(), store_);
+  toy.run();
+  std::map<std::string, std::size_t> computed, saved;
+  for (std::size_t row = 0; row < toy.catalog.rows.size(); ++row) {
+    const NodeRecord& node = toy.runner.records()[row];
+    EXPECT_EQ(node.settled, toy.plan.jobs[row].size()) << toy.catalog.rows[row].name;
+    computed[toy.catalog.rows[row].name] += node.seconds.size();
+  }
+  for (const std::string& artefact : store_.take_saved()) ++saved[artefact.substr(0, artefact.find('@'))];
+  EXPECT_EQ(computed, saved);
+}
+
 // The caller's thread cannot do two things at once; as in graph_test.cpp.
 TEST_F(RunnerTest, WithOneThreadEveryStageRunsInTheCallersThread) {
   ToyRun toy(data_.path(), store_);
