@@ -33,10 +33,10 @@ struct DatasetOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("layout", self.layout, "how the folder is laid out");
-    visit("meshes", self.meshes, "evaluate the meshes themselves");
-    visit("scans", self.scans, "evaluate 12 simulated scans of each mesh");
-    visit("participants", self.participants, "ground truth from files, or made up for a demonstration");
+    visit("layout", self.layout, {"how the folder is laid out"});
+    visit("meshes", self.meshes, {"evaluate the meshes themselves"});
+    visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
+    visit("participants", self.participants, {"ground truth from files, or made up for a demonstration"});
   }
 };
 void check(const DatasetOptions& options);

@@ -68,11 +68,11 @@ std::string option_text(const Value& value) {
   }
 }
 
-// One `key: value` a line, in the order of the struct.
+// One `key: value` per line, in the order of the struct.
 template <class Options>
 std::string options_text(const Options& options) {
   std::string lines;
-  Options::fields(options, [&](std::string_view key, const auto& value, std::string_view) {
+  Options::fields(options, [&](std::string_view key, const auto& value, const OptionHelp&) {
     lines += fmt::format("{}: {}\n", key, option_text(value));
   });
   return lines;

@@ -19,7 +19,7 @@ struct FarOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("power", self.power, "of the distance");
+    visit("power", self.power, {"of the distance", {}, at_least(0)});
   }
 };
 
@@ -39,6 +39,7 @@ TEST(AddAModel, ItsSectionIsReadOverTheProtocolsDefaults) {
   EXPECT_EQ(far_model("", Protocol::text).options, "power: 2\n");
   EXPECT_EQ(far_model("power: 3", Protocol::text).options, "power: 3\n");
   EXPECT_THROW(far_model("powr: 3", Protocol::text), ConfigError);
+  EXPECT_THROW(far_model("power: -1", Protocol::text), ConfigError);
 }
 
 TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
