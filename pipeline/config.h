@@ -66,4 +66,7 @@ Config read_config(const Section& root, const std::string& name);
 // which no configuration names.
 std::string config_yaml(const Config& config);
 
+// The same with a comment above each option: its meaning, unit and the values accepted.
+std::string annotated_config_yaml(const Config& config);
+
 }  // namespace salbench

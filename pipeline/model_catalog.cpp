@@ -20,7 +20,8 @@ ModelRow row_of_people(std::string_view name, std::int32_t version) {
                          .version = version,
                          .options = options_text(options),
                          .people = [=](const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer,
-                                       Rng rng) { return human_curve(mesh, truth, options, scorer, rng); }};
+                                       Rng rng) { return human_curve(mesh, truth, options, scorer, rng); },
+                         .annotated_options = annotated_options_text(options)};
           }};
 }
 

@@ -39,6 +39,8 @@ struct Model {
 
   std::shared_ptr<const GivenMaps> given = {};
 
+  std::string annotated_options = {};  // the options with a comment above each, for annotated_config_yaml()
+
   bool is_map() const { return saliency != nullptr || given != nullptr; }
 };
 
@@ -55,8 +57,12 @@ ModelRow model_row(std::string_view name, std::int32_t version, unsigned reads,
   return {name, [=](const Section& section, Protocol protocol) {
             auto options = preset<Options>(protocol);
             section.read(options);
-            return Model{std::string(name), version, reads, options_text(options),
-                         [=](const ModelInput& input) { return saliency(input, options); }};
+            return Model{.name = std::string(name),
+                         .version = version,
+                         .reads = reads,
+                         .options = options_text(options),
+                         .saliency = [=](const ModelInput& input) { return saliency(input, options); },
+                         .annotated_options = annotated_options_text(options)};
           }};
 }
 

@@ -40,6 +40,7 @@ TEST(AddAModel, ItsSectionIsReadOverTheProtocolsDefaults) {
   EXPECT_EQ(far_model("power: 3", Protocol::text).options, "power: 3\n");
   EXPECT_THROW(far_model("powr: 3", Protocol::text), ConfigError);
   EXPECT_THROW(far_model("power: -1", Protocol::text), ConfigError);
+  EXPECT_EQ(far_model("power: 3", Protocol::text).annotated_options, "# of the distance (>= 0)\npower: 3\n");
 }
 
 TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {

@@ -104,6 +104,14 @@ TEST(OptionsText, ReadsBackToTheBit) {
   EXPECT_EQ(options_text(back), options_text(sample));
 }
 
+TEST(OptionsText, AnnotatedSaysMeaningUnitAndWhatIsAccepted) {
+  EXPECT_EQ(annotated_options_text(Sample{}),
+            "# a switch\nflag: false\n"
+            "# how many (points)\ncount: 9\n"
+            "# how far (R; > 0)\nradius: 0.01\n"
+            "# how (faces, pca)\nmethod: faces\n");
+}
+
 TEST(OptionsText, ProtocolsHaveTheirPresets) {
   EXPECT_TRUE(preset<Sample>(Protocol::text).flag);
   EXPECT_FALSE(preset<Sample>(Protocol::published).flag);
