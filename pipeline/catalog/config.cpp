@@ -40,6 +40,33 @@ std::string indented(std::string_view lines, std::string_view by) {
   return result;
 }
 
+std::string written(const Config& config, bool annotated) {
+  std::string yaml;
+  const auto add = [&](std::string_view key, std::string_view value, std::string_view note) {
+    if (annotated) yaml += fmt::format("# {}\n", note);
+    yaml += fmt::format("{}: {}\n", key, value);
+  };
+  const auto begin_section = [&](std::string_view key) {
+    yaml += fmt::format("{}{}:\n", annotated ? "\n" : "", key);
+  };
+  add("protocol", name_of(config.protocol),
+      option_note<Protocol>({"defaults of the options: what the authors ran, or the words of their paper"}));
+  add("seed", option_text(config.seed), "of all random numbers");
+  if (!config.data.empty()) add("data", yaml_quoted(config.data), "folder of the data set");
+  if (!config.cache.empty()) add("cache", yaml_quoted(config.cache), "folder of the artefacts");
+  if (!config.output.empty()) add("output", yaml_quoted(config.output), "folder of the tables");
+  for_each_section(config, [&](std::string_view key, const auto& options) {
+    begin_section(key);
+    yaml += indented(options_text(options, annotated), "  ");
+  });
+  begin_section("models");
+  for (const Model& model : config.models)
+    if (!model.given)
+      yaml += fmt::format("  {}:\n{}", model.name,
+                          indented(annotated ? model.annotated_options : model.options, "    "));
+  return yaml;
+}
+
 }  // namespace
 
 void check(const DatasetOptions& options) {
@@ -66,18 +93,8 @@ Config read_config(const Section& root, const std::string& name) {
   return config;
 }
 
-std::string config_yaml(const Config& config) {
-  std::string yaml = fmt::format("protocol: {}\nseed: {}\n", name_of(config.protocol), config.seed);
-  for (const auto& [key, folder] : {std::pair("data", &config.data), std::pair("cache", &config.cache),
-                                    std::pair("output", &config.output)})
-    if (!folder->empty()) yaml += fmt::format("{}: {}\n", key, yaml_quoted(*folder));
-  for_each_section(config, [&](std::string_view key, const auto& options) {
-    yaml += fmt::format("{}:\n{}", key, indented(options_text(options), "  "));
-  });
-  yaml += "models:\n";
-  for (const Model& model : config.models)
-    if (!model.given) yaml += fmt::format("  {}:\n{}", model.name, indented(model.options, "    "));
-  return yaml;
-}
+std::string config_yaml(const Config& config) { return written(config, false); }
+
+std::string annotated_config_yaml(const Config& config) { return written(config, true); }
 
 }  // namespace salbench

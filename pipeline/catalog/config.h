@@ -33,10 +33,10 @@ struct DatasetOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("layout", self.layout, "how the folder is laid out");
-    visit("meshes", self.meshes, "evaluate the meshes themselves");
-    visit("scans", self.scans, "evaluate 12 simulated scans of each mesh");
-    visit("participants", self.participants, "ground truth from files, or made up for a demonstration");
+    visit("layout", self.layout, {"how the folder is laid out"});
+    visit("meshes", self.meshes, {"evaluate the meshes themselves"});
+    visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
+    visit("participants", self.participants, {"ground truth from files, or made up for a demonstration"});
   }
 };
 void check(const DatasetOptions& options);
@@ -65,5 +65,8 @@ Config read_config(const Section& root, const std::string& name);
 // The complete configuration as YAML that read_config reads back as the same, but for models with given maps,
 // which no configuration names.
 std::string config_yaml(const Config& config);
+
+// The same with a comment above each option: its meaning, unit and the values accepted.
+std::string annotated_config_yaml(const Config& config);
 
 }  // namespace salbench

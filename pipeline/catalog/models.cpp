@@ -18,6 +18,7 @@ ModelRow human_row(std::string_view name, std::int32_t version) {
             return Model{.name = std::string(name),
                          .version = version,
                          .options = options_text(options),
+                         .annotated_options = annotated_options_text(options),
                          .human = options};
           }};
 }

@@ -35,7 +35,8 @@ struct ShapeRows {
 struct Model {
   std::string name;
   std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
-  std::string options = {};  // canonical text
+  std::string options = {};            // canonical text
+  std::string annotated_options = {};  // with a comment above each option
   std::function<RowOf<ScalarField>(Catalog&, const ShapeRows&, RowHead)> add_map = {};
   std::optional<HsOptions> human = {};
   std::shared_ptr<const GivenMaps> given = {};
@@ -86,7 +87,11 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
                   },
                   std::tuple_cat(binding::argument_for<std::decay_t<Parameters>>(rows, bound)...));
             };
-            return Model{std::string(name), version, options_text(options), add_map, {}, {}};
+            return Model{.name = std::string(name),
+                         .version = version,
+                         .options = options_text(options),
+                         .annotated_options = annotated_options_text(options),
+                         .add_map = add_map};
           }};
 }
 

@@ -14,7 +14,7 @@ Subcommand config_subcommand(Arguments& arguments) {
           [&arguments](const std::atomic<bool>&) {
             const Section written = arguments.config.empty() ? Section::from_text("", "defaults")
                                                              : Section::from_file(arguments.config);
-            fmt::print("{}", config_yaml(read_config(written, "")));
+            fmt::print("{}", annotated_config_yaml(read_config(written, "")));
             return kAllDone;
           }};
 }

@@ -68,14 +68,31 @@ std::string option_text(const Value& value) {
   }
 }
 
-// One `key: value` a line, in the order of the struct.
+// Meaning, unit, and the values accepted: "support radius (R; > 0)", "how the folder is laid out (a, b)".
+template <class Value>
+std::string option_note(const OptionHelp& help) {
+  std::string accepted = help.range.text();
+  if constexpr (std::is_enum_v<Value>) accepted = fmt::format("{}", fmt::join(EnumNames<Value>::names, ", "));
+  if (help.unit.empty() && accepted.empty()) return std::string(help.text);
+  const char* separator = help.unit.empty() || accepted.empty() ? "" : "; ";
+  return fmt::format("{} ({}{}{})", help.text, help.unit, separator, accepted);
+}
+
+// One `key: value` per line, in the order of the struct; annotated: each below a comment, its note.
 template <class Options>
-std::string options_text(const Options& options) {
+std::string options_text(const Options& options, bool annotated = false) {
   std::string lines;
-  Options::fields(options, [&](std::string_view key, const auto& value, std::string_view) {
-    lines += fmt::format("{}: {}\n", key, option_text(value));
-  });
+  Options::fields(options,
+                  [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
+                    if (annotated) lines += fmt::format("# {}\n", option_note<Value>(help));
+                    lines += fmt::format("{}: {}\n", key, option_text(value));
+                  });
   return lines;
+}
+
+template <class Options>
+std::string annotated_options_text(const Options& options) {
+  return options_text(options, true);
 }
 
 // The paper's words in place of what its authors ran, where the struct tells them apart.

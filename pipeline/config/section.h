@@ -39,7 +39,7 @@ class Section {
   template <class Options>
   void read(Options& options) const {
     std::vector<std::string_view> known;
-    Options::fields(options, [&](std::string_view key, auto& value, std::string_view) {
+    Options::fields(options, [&](std::string_view key, auto& value, const OptionHelp&) {
       known.push_back(key);
       read_value(key, value);
     });

@@ -1,19 +1,23 @@
 // Options structs list their fields once, and everything that handles options walks that list: the
-// configuration reader, the canonical text that enters a cache key, run.yaml and the help.
+// configuration reader, the check of their ranges, the canonical text that enters a cache key, run.yaml and
+// the annotated configuration.
 //
-//   struct PsOptions {
-//     bool absolute = false;
+//   struct XsOptions {
+//     double radius = 0.02;
+//     bool grow = true;
 //     template <class Self, class Visit>
 //     static void fields(Self& self, Visit&& visit) {
-//       visit("absolute", self.absolute, "take the magnitude of the projection");
+//       visit("radius", self.radius, {"support radius", "R", above(0)});
+//       visit("grow", self.grow, {"enlarge the radius until it holds 6 other points on average"});
 //     }
 //   };
-//   void check(const PsOptions&);   // throws OptionError; a struct without it accepts every value
 //
-// A field is a bool, std::int32_t, std::uint64_t, double, std::string or an enum with EnumNames.
+// A field is a bool, std::int32_t, std::uint64_t, double, std::string or an enum with EnumNames. Conditions
+// between fields are an overload: void check(const XsOptions& options) { check_ranges(options); ... }
 #pragma once
 
-#include <span>
+#include <limits>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -29,12 +33,49 @@ constexpr std::string_view name_of(Enum value) {
   return EnumNames<Enum>::names[static_cast<std::size_t>(value)];
 }
 
+// Numbers that an option accepts; any finite number if there is no bound.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_included = true;
+
+  bool contains(double value) const;  // false for infinities and NaN
+  std::string text() const;           // ">= 1", "0 < x <= 1"; empty if there is no bound
+};
+constexpr Range at_least(double low) { return {.low = low}; }
+constexpr Range above(double low) { return {.low = low, .low_included = false}; }
+constexpr Range between(double low, double high) { return {.low = low, .high = high}; }
+constexpr Range above_and_up_to(double low, double high) {
+  return {.low = low, .high = high, .low_included = false};
+}
+
+struct OptionHelp {
+  std::string_view text;
+  std::string_view unit = {};  // "R": the largest distance of a point to the centroid; empty: a plain number
+  Range range = {};
+};
+
+// Throws OptionError: key "must be at least 1, not 0".
+void check_range(std::string_view key, double value, const Range& range);
+
+// The range of every number among the fields. Throws OptionError for the first that is outside.
+template <class Options>
+void check_ranges(const Options& options) {
+  Options::fields(options, []<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
+    if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>)
+      check_range(key, static_cast<double>(value), help.range);
+  });
+}
+
+// Throws OptionError.
+template <class Options>
+void check(const Options& options) {
+  check_ranges(options);
+}
+
 struct NoOptions {
   template <class Self, class Visit>
   static void fields(Self&, Visit&&) {}
 };
-
-template <class Options>
-void check(const Options&) {}  // overloaded by the structs that have something to check
 
 }  // namespace salbench

@@ -12,11 +12,6 @@
 namespace salbench {
 namespace {
 
-void require_positive(const char* key, double value) {
-  if (!(value > 0 && std::isfinite(value)))
-    throw OptionError(key, "must be a positive number, not " + std::to_string(value));
-}
-
 void sort_and_deduplicate(std::vector<std::int32_t>& vertices) {
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -39,11 +34,6 @@ std::vector<std::int32_t> picked_vertices(Picks picks, std::size_t n_vertices) {
 }
 
 }  // namespace
-
-void check(const SmoothingOptions& options) {
-  require_positive("sigma", options.sigma);
-  require_positive("cut", options.cut);
-}
 
 PickSmoother::PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions& options)
     : n_vertices_(mesh.vertices.size()), per_participant_(options.per_participant) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "stages/core/options.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -16,13 +17,11 @@ struct SmoothingOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("sigma", self.sigma,
-          "standard deviation of a pick's Gaussian, in square roots of the surface area");
-    visit("cut", self.cut, "reach of a pick's Gaussian, in standard deviations");
-    visit("per_participant", self.per_participant, "divide by the number of participants");
+    visit("sigma", self.sigma, {"standard deviation of a pick's Gaussian", "sqrt(surface area)", above(0)});
+    visit("cut", self.cut, {"reach of a pick's Gaussian", "standard deviations", above(0)});
+    visit("per_participant", self.per_participant, {"divide by the number of participants"});
   }
 };
-void check(const SmoothingOptions& options);
 
 using Picks = std::span<const std::vector<std::int32_t>>;  // the vertices picked, per participant
 

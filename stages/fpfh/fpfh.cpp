@@ -1,7 +1,6 @@
 #include "stages/fpfh/fpfh.h"
 
 #include <cmath>
-#include <string>
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
@@ -17,13 +16,6 @@ Support support_of(std::span<const Vec3> points, const KdTree& tree, const FpfhO
 }
 
 }  // namespace
-
-void check(const FpfhOptions& options) {
-  if (options.neighbours < 2)
-    throw OptionError("neighbours", "must be at least 2, not " + std::to_string(options.neighbours));
-  if (!(options.radius > 0) || !std::isfinite(options.radius))
-    throw OptionError("radius", "must be a number above 0, not " + std::to_string(options.radius));
-}
 
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const FpfhOptions& options) {
   check(options);

@@ -31,14 +31,14 @@ struct FpfhOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("neighbourhood", self.neighbourhood, "take so many nearest points, or all within a radius");
-    visit("neighbours", self.neighbours, "nearest points, the point itself included");
-    visit("radius", self.radius, "support radius in units of R, the largest distance to the centroid");
-    visit("grow", self.grow, "enlarge the radius until it holds 6 other points on average");
-    visit("weighting", self.weighting, "how the neighbours' histograms are combined");
+    visit("neighbourhood", self.neighbourhood, {"take so many nearest points, or all within a radius"});
+    visit("neighbours", self.neighbours,
+          {"nearest points, the point itself included", "points", at_least(2)});
+    visit("radius", self.radius, {"support radius", "R", above(0)});
+    visit("grow", self.grow, {"enlarge the radius until it holds 6 other points on average"});
+    visit("weighting", self.weighting, {"how the neighbours' histograms are combined"});
   }
 };
-void check(const FpfhOptions& options);  // throws OptionError
 
 // n x 33; points and normals n x 3, normals of unit length. The support that was used is stored with the
 // histograms. Throws InputError for a shape without points or with a coordinate that is not finite.

@@ -25,15 +25,7 @@ constexpr int kMaxTries =
 
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-void require(bool holds, const char* key, const std::string& what, double value) {
-  if (!holds) throw OptionError(key, "must be " + what + ", not " + std::to_string(value));
-}
-
-void require_not_negative(const char* key, double value) {
-  require(value >= 0 && std::isfinite(value), key, "0 or a positive number", value);
-}
-
-// Draws indices with probability proportional to their weights; there is at least one weight.
+// Draws indices with probability proportional to their weights, of which there is at least one.
 class WeightedDraw {
  public:
   explicit WeightedDraw(const std::vector<double>& weights) : cumulative_(weights.size()) {
@@ -138,17 +130,6 @@ class Picker {
 };
 
 }  // namespace
-
-void check(const SimulationOptions& options) {
-  require(options.participants >= 1, "participants", "at least 1", options.participants);
-  require(options.picks >= 1, "picks", "at least 1", options.picks);
-  require(options.random_share >= 0 && options.random_share <= 1, "random_share", "within [0, 1]",
-          options.random_share);
-  require(options.scale > 0 && std::isfinite(options.scale), "scale", "a positive number", options.scale);
-  require_not_negative("separation", options.separation);
-  require_not_negative("scatter", options.scatter);
-  require_not_negative("sharpness", options.sharpness);
-}
 
 GroundTruth simulated_ground_truth(const Mesh& mesh, const SimulationOptions& options, std::uint64_t seed,
                                    std::string_view item) {

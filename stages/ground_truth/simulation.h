@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "stages/core/options.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -19,17 +20,20 @@ struct SimulationOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("participants", self.participants, "number of simulated participants");
-    visit("picks", self.picks, "mean number of picks of a participant");
-    visit("random_share", self.random_share, "share of the picks that fall anywhere on the surface");
+    visit("participants", self.participants,
+          {"number of simulated participants", "participants", at_least(1)});
+    visit("picks", self.picks, {"mean number of picks of a participant", "picks", at_least(1)});
+    visit("random_share", self.random_share,
+          {"picks that fall anywhere on the surface", "fraction of the picks", between(0, 1)});
     visit("separation", self.separation,
-          "least distance of a participant's picks, in square roots of the area");
-    visit("scale", self.scale, "size of the bulges that attract picks, in square roots of the area");
-    visit("scatter", self.scatter, "distance of picks from the top of a bulge, in square roots of the area");
-    visit("sharpness", self.sharpness, "power of a bulge that its share of the picks grows with");
+          {"least distance of a participant's picks", "sqrt(surface area)", at_least(0)});
+    visit("scale", self.scale, {"size of the bulges that attract picks", "sqrt(surface area)", above(0)});
+    visit("scatter", self.scatter,
+          {"distance of picks from the top of a bulge", "sqrt(surface area)", at_least(0)});
+    visit("sharpness", self.sharpness,
+          {"power of a bulge that its share of the picks grows with", {}, at_least(0)});
   }
 };
-void check(const SimulationOptions& options);
 
 // Each participant picks distinct vertices, well apart, most of them near the tops of bulges, and some
 // anywhere on the surface; saliency is smoothed_picks() of all. A participant who finds no more room on the

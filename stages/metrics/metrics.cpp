@@ -86,13 +86,6 @@ constexpr std::array kMetricTable = {
 
 }  // namespace
 
-void check(const MetricsOptions& options) {
-  if (options.splits < 1)
-    throw OptionError("splits", "must be at least 1, not " + std::to_string(options.splits));
-  if (options.thresholds < 2)
-    throw OptionError("thresholds", "must be at least 2, not " + std::to_string(options.thresholds));
-}
-
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {
   if (picked.empty() || map.size() < 2) return kUndefined;

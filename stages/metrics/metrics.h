@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "stages/core/options.h"
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
 
@@ -17,11 +18,12 @@ struct MetricsOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("splits", self.splits, "random draws of unpicked points that the AUC is averaged over");
-    visit("thresholds", self.thresholds, "points of the ROC curve, evenly spaced over the values");
+    visit("splits", self.splits,
+          {"random draws of unpicked points that the AUC is averaged over", "draws", at_least(1)});
+    visit("thresholds", self.thresholds,
+          {"points of the ROC curve, evenly spaced over the values", "points", at_least(2)});
   }
 };
-void check(const MetricsOptions& options);  // throws OptionError
 
 // Area under the ROC curve by the paper's protocol: as many negatives as there are picks are drawn with
 // replacement from all points but the first, once per split. NaN without picks or with a single point.

@@ -19,11 +19,9 @@
 #include <cmath>
 #include <numeric>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
@@ -219,19 +217,6 @@ CsOptions CsOptions::text() {
   CsOptions options;
   options.clusters = 100;
   return options;
-}
-
-void check(const CsOptions& options) {
-  const auto demand = [](bool satisfied, const char* key, const std::string& limits, auto value) {
-    if (!satisfied) throw OptionError(key, "must be " + limits + ", not " + std::to_string(value));
-  };
-  demand(options.radius > 0 && std::isfinite(options.radius), "radius", "> 0", options.radius);
-  demand(options.clusters >= 1, "clusters", "at least 1", options.clusters);
-  demand(options.rounds >= 0, "rounds", ">= 0", options.rounds);
-  demand(options.descriptor_weight >= 0 && std::isfinite(options.descriptor_weight), "descriptor_weight",
-         ">= 0", options.descriptor_weight);
-  demand(options.distribution_weight >= 0 && options.distribution_weight <= 1, "distribution_weight",
-         "between 0 and 1", options.distribution_weight);
 }
 
 ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& options) {

@@ -23,18 +23,19 @@ struct CsOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("radius", self.radius,
-          "support radius in units of R, grown until it holds 6 other points on average");
-    visit("clusters", self.clusters, "clusters aimed at; the grid of seeds makes somewhat fewer or more");
-    visit("rounds", self.rounds, "limit of the rounds of k-means");
+          {"support radius, grown until it holds 6 other points on average", "R", above(0)});
+    visit("clusters", self.clusters,
+          {"clusters aimed at; the grid of seeds makes somewhat fewer or more", "clusters", at_least(1)});
+    visit("rounds", self.rounds, {"limit of the rounds of k-means", "rounds", at_least(0)});
     visit("descriptor_weight", self.descriptor_weight,
-          "of the descriptors' distance in k-means, relative to the distance in space");
+          {"of the descriptors' distance in k-means, relative to the distance in space", {}, at_least(0)});
     visit("repair", self.repair,
-          "move voxels that k-means has cut off from their cluster to a neighbouring one");
+          {"move voxels that k-means has cut off from their cluster to a neighbouring one"});
     visit("distribution_weight", self.distribution_weight,
-          "of the clusters' distribution in space; the rest is that of their uniqueness");
+          {"of the clusters' distribution in space; the rest is that of their uniqueness", "fraction",
+           between(0, 1)});
   }
 };
-void check(const CsOptions& options);  // throws OptionError
 
 // In [0, 1]. Computes descriptors of its own. If there are no more points than clusters aimed at, each point
 // is a cluster. The map is constant if all points coincide, and if neither descriptors nor distribution tell

@@ -105,13 +105,6 @@ void draw_to_front(std::vector<std::size_t>& elements, std::size_t count, Rng& r
 
 }  // namespace
 
-void check(const HsOptions& options) {
-  if (options.draws < 1)
-    throw OptionError("draws", "must be at least 1, not " + std::to_string(options.draws));
-  if (options.largest_group < 1)
-    throw OptionError("largest_group", "must be at least 1, not " + std::to_string(options.largest_group));
-}
-
 Scores leave_one_out(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer) {
   require_participants(truth);
   const Participants participants(mesh, truth, scorer);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "stages/core/options.h"
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
 
@@ -17,11 +18,13 @@ struct HsOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("draws", self.draws, "random pairs of groups that each point of the human curve is averaged over");
-    visit("largest_group", self.largest_group, "participants in a group at the end of the human curve");
+    visit(
+        "draws", self.draws,
+        {"random pairs of groups that each point of the human curve is averaged over", "pairs", at_least(1)});
+    visit("largest_group", self.largest_group,
+          {"size of a group at the end of the human curve", "participants", at_least(1)});
   }
 };
-void check(const HsOptions& options);  // throws OptionError
 
 inline constexpr std::size_t kMinParticipants = 2;  // one predicts, one is predicted
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -102,16 +101,6 @@ Descriptors mixed_descriptors(Points points, const Normals& normals, const Descr
   return mixed;
 }
 
-void check_share(const char* key, double share) {
-  if (!(share >= 0 && share <= 1))
-    throw OptionError(key, "must be between 0 and 1, not " + std::to_string(share));
-}
-
-void check_length(const char* key, double length) {
-  if (!(length > 0) || !std::isfinite(length))
-    throw OptionError(key, "must be a number above 0, not " + std::to_string(length));
-}
-
 }  // namespace
 
 LsOptions LsOptions::text() {
@@ -122,17 +111,6 @@ LsOptions LsOptions::text() {
   options.high_weighting = FpfhWeighting::text;
   options.high_weight = 1;
   return options;
-}
-
-void check(const LsOptions& options) {
-  check_share("selected_share", options.selected_share);
-  check_share("foci_share", options.foci_share);
-  check_share("high_share", options.high_share);
-  check_length("foci_sigma", options.foci_sigma);
-  check_length("high_radius", options.high_radius);
-  if (!(options.high_weight >= 0) || !std::isfinite(options.high_weight))
-    throw OptionError("high_weight",
-                      "must be a number of at least 0, not " + std::to_string(options.high_weight));
 }
 
 ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors& fpfh,

@@ -24,16 +24,22 @@ struct LsOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("selected_share", self.selected_share, "points compared with, the most similar ones; 1: all");
-    visit("foci_share", self.foci_share, "points of largest low-level distinctness: the foci of attention");
-    visit("foci_sigma", self.foci_sigma, "reach of a focus: standard deviation of its Gaussian, in R");
-    visit("high_share", self.high_share, "points described at the high level, those of largest distinctness");
-    visit("high_radius", self.high_radius, "support radius of the high level, in R");
-    visit("high_weighting", self.high_weighting, "how the neighbours' histograms are combined there");
-    visit("high_weight", self.high_weight, "of high-level distinctness, relative to the low level");
+    visit("selected_share", self.selected_share,
+          {"points compared with, the most similar ones; 1: all", "fraction of the points", between(0, 1)});
+    visit("foci_share", self.foci_share,
+          {"points of largest low-level distinctness: the foci of attention", "fraction of the points",
+           between(0, 1)});
+    visit("foci_sigma", self.foci_sigma,
+          {"reach of a focus: standard deviation of its Gaussian", "R", above(0)});
+    visit("high_share", self.high_share,
+          {"points described at the high level, those of largest distinctness", "fraction of the points",
+           between(0, 1)});
+    visit("high_radius", self.high_radius, {"support radius of the high level", "R", above(0)});
+    visit("high_weighting", self.high_weighting, {"how the neighbours' histograms are combined there"});
+    visit("high_weight", self.high_weight,
+          {"of high-level distinctness, relative to the low level", {}, at_least(0)});
   }
 };
-void check(const LsOptions& options);  // throws OptionError
 
 // D_low + A + high_weight D_high, >= 0. `fpfh` (n x 33) are the descriptors of the low level; those of the
 // high level are computed here from points and normals. Time O(n^2), memory O(n) and the neighbourhoods of

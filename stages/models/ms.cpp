@@ -243,21 +243,18 @@ MsOptions MsOptions::text() {
 }
 
 void check(const MsOptions& options) {
-  const auto must = [](bool holds, const char* key, const char* what, auto value) {
-    if (!holds) throw OptionError(key, std::string("must be ") + what + ", not " + std::to_string(value));
+  check_ranges(options);
+  const auto must = [](bool holds, const char* key, const std::string& what, std::int32_t value) {
+    if (!holds) throw OptionError(key, "must be " + what + ", not " + std::to_string(value));
   };
-  must(options.faces >= 100, "faces", ">= 100", options.faces);
-  must(options.window >= 1 && options.window % 2 == 1, "window", "odd and > 0", options.window);
-  must(options.frequencies >= 1, "frequencies", ">= 1", options.frequencies);
+  must(options.window % 2 == 1, "window", "odd", options.window);
   const auto needed = std::int64_t{options.frequencies} + options.window / 2;
   const auto most = static_cast<std::int64_t>(kMsSmallestComponent) - 2;
-  must(needed <= most, "frequencies",
-       ("such that frequencies + window / 2 <= " + std::to_string(most)).c_str(), options.frequencies);
-  must(options.eigenpairs >= needed && options.eigenpairs <= most, "eigenpairs",
-       ("between frequencies + window / 2 = " + std::to_string(needed) + " and " + std::to_string(most))
-           .c_str(),
+  must(needed <= most, "frequencies", "such that frequencies + window / 2 <= " + std::to_string(most),
+       options.frequencies);
+  must(options.eigenpairs >= needed, "eigenpairs",
+       "between frequencies + window / 2 = " + std::to_string(needed) + " and " + std::to_string(most),
        options.eigenpairs);
-  must(options.epsilon > 0, "epsilon", "> 0", options.epsilon);
 }
 
 ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options) {

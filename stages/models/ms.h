@@ -29,6 +29,8 @@ struct EnumNames<MsWeight> {
   static constexpr std::array<std::string_view, 2> names{"area", "inverse_square"};
 };
 
+inline constexpr std::size_t kMsSmallestComponent = 20;  // vertices
+
 struct MsOptions {
   std::int32_t faces = 3000;
   std::int32_t window = 9;
@@ -42,18 +44,20 @@ struct MsOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("faces", self.faces, "larger meshes are simplified to so many faces");
-    visit("window", self.window, "width of the average over the log spectrum, odd (n in the paper)");
-    visit("frequencies", self.frequencies, "lowest frequencies whose irregularity counts");
-    visit("eigenpairs", self.eigenpairs, "lowest eigenpairs that are computed");
-    visit("weight", self.weight, "what a neighbour counts");
-    visit("scales", self.scales, "shape as it is, or the changes over the paper's five smoothings");
-    visit("epsilon", self.epsilon, "smallest smoothing, standard deviation in units of R");
+    visit("faces", self.faces, {"larger meshes are simplified to so many faces", "faces", at_least(100)});
+    visit("window", self.window,
+          {"width of the average over the log spectrum, odd (n in the paper)", "frequencies", at_least(1)});
+    visit("frequencies", self.frequencies,
+          {"lowest frequencies whose irregularity counts", "frequencies", at_least(1)});
+    visit("eigenpairs", self.eigenpairs,
+          {"lowest eigenpairs that are computed, at least frequencies + window / 2", "eigenpairs",
+           between(1, kMsSmallestComponent - 2)});
+    visit("weight", self.weight, {"what a neighbour counts"});
+    visit("scales", self.scales, {"shape as it is, or the changes over the paper's five smoothings"});
+    visit("epsilon", self.epsilon, {"smallest smoothing, as a standard deviation", "R", above(0)});
   }
 };
 void check(const MsOptions& options);  // throws OptionError
-
-inline constexpr std::size_t kMsSmallestComponent = 20;  // vertices
 
 // The model sees the largest connected component of the surface; every other point takes the value of the
 // nearest vertex of it. All points are 0 if that component has fewer than 20 vertices or the eigensolve

@@ -14,7 +14,7 @@ struct PsOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("absolute", self.absolute, "take the magnitude of the projection, as the paper's text has it");
+    visit("absolute", self.absolute, {"take the magnitude of the projection, as the paper's text has it"});
   }
 };
 

@@ -17,8 +17,6 @@
 namespace salbench {
 namespace {
 
-constexpr std::int32_t kMostNeighbours = 1000;  // beyond, a plane is no longer local
-
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
 void require_finite(std::span<const Vec3> points) {
@@ -99,26 +97,12 @@ Normals hoppe_mesh_normals(const std::vector<Vec3>& points, const MeshNormalsOpt
   return normals;
 }
 
-void require_between(const char* key, double value, double low, double high) {
-  if (!(value >= low && value <= high))
-    throw OptionError{key, fmt::format("must be in [{}, {}], not {}", low, high, value)};
-}
-
 }  // namespace
 
 void check(const MeshNormalsOptions& options) {
-  if (options.neighbours != 0) require_between("neighbours", options.neighbours, 3, kMostNeighbours);
-  if (!(options.support > 0 && options.support <= 1))
-    throw OptionError{"support", fmt::format("must be in (0, 1], not {}", options.support)};
-  require_between("most_neighbours", options.most_neighbours, 3, kMostNeighbours);
-  require_between("orientation_neighbours", options.orientation_neighbours, 2, kMostNeighbours);
-}
-
-void check(const ScanNormalsOptions& options) {
-  require_between("neighbours", options.neighbours, 3, kMostNeighbours);
-  require_between("orientation_neighbours", options.orientation_neighbours, 2, kMostNeighbours);
-  require_between("gap", options.gap, 1, 1e6);
-  require_between("steepest_degrees", options.max_normal_angle_degrees, 1, 90);
+  check_ranges(options);
+  if (options.neighbours == 1 || options.neighbours == 2)
+    throw OptionError{"neighbours", fmt::format("must be 0 or at least 3, not {}", options.neighbours)};
 }
 
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options) {

@@ -10,6 +10,8 @@
 
 namespace salbench {
 
+inline constexpr std::int32_t kMaxNeighbours = 1000;  // beyond, a plane is no longer local
+
 enum class MeshNormalsMethod { faces, pca };
 template <>
 struct EnumNames<MeshNormalsMethod> {
@@ -27,12 +29,17 @@ struct MeshNormalsOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("method", self.method, "faces: area-weighted face normals; pca: planes, oriented by Hoppe's tree");
+    visit("method", self.method,
+          {"faces: area-weighted face normals; pca: planes, oriented by Hoppe's tree"});
     visit("neighbours", self.neighbours,
-          "pca: nearest points of a plane, itself included; 0: from the support");
-    visit("support", self.support, "pca: support radius in R, grown, that gives the number of neighbours");
-    visit("most_neighbours", self.most_neighbours, "pca: limit of that number");
-    visit("orientation_neighbours", self.orientation_neighbours, "pca: nearest others in Hoppe's graph");
+          {"pca: nearest points of a plane, itself included, at least 3; 0: from the support", "points",
+           between(0, kMaxNeighbours)});
+    visit("support", self.support,
+          {"pca: support radius, grown, that gives the number of neighbours", "R", above_and_up_to(0, 1)});
+    visit("most_neighbours", self.most_neighbours,
+          {"pca: limit of that number", "points", between(3, kMaxNeighbours)});
+    visit("orientation_neighbours", self.orientation_neighbours,
+          {"pca: nearest others in Hoppe's graph", "points", between(2, kMaxNeighbours)});
   }
 };
 void check(const MeshNormalsOptions& options);
@@ -54,14 +61,16 @@ struct ScanNormalsOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("neighbours", self.neighbours, "nearest points of a plane, itself included");
-    visit("orientation_neighbours", self.orientation_neighbours, "nearest others in Hoppe's graph");
-    visit("gap", self.gap, "longest edge of Hoppe's graph in median point spacings: beyond, depth jumps");
+    visit("neighbours", self.neighbours,
+          {"nearest points of a plane, itself included", "points", between(3, kMaxNeighbours)});
+    visit("orientation_neighbours", self.orientation_neighbours,
+          {"nearest others in Hoppe's graph", "points", between(2, kMaxNeighbours)});
+    visit("gap", self.gap,
+          {"longest edge of Hoppe's graph: beyond, depth jumps", "median point spacings", between(1, 1e6)});
     visit("steepest_degrees", self.max_normal_angle_degrees,
-          "largest angle between normals across an edge of the graph");
+          {"largest angle between normals across an edge of the graph", "degrees", between(1, 90)});
   }
 };
-void check(const ScanNormalsOptions& options);
 
 // n x 3: planes of the nearest points, oriented by Hoppe's tree. In each component of the graph the point
 // nearest to the camera is turned towards it. The graph crosses neither depth jumps nor sharp folds, where a

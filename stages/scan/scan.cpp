@@ -186,15 +186,6 @@ RTCRayHit float_ray(const Vec3& origin, const Vec3& direction) {
 
 }  // namespace
 
-void check(const ScanOptions& options) {
-  const auto require = [](bool good, const char* key, const char* what, double value) {
-    if (!good) throw OptionError{key, fmt::format("must be {}, not {}", what, value)};
-  };
-  require(options.distance > 0 && options.distance <= 1e4, "distance", "in (0, 10000]", options.distance);
-  require(options.step_degrees >= 0.01 && options.step_degrees <= 10, "step_degrees", "in [0.01, 10]",
-          options.step_degrees);
-}
-
 Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
   CHECK_LE(0, view);
   CHECK_LT(view, kViews);

@@ -25,11 +25,12 @@ struct ScanOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("distance", self.distance, "camera to area centroid, in square roots of the surface area");
-    visit("step_degrees", self.step_degrees, "angle between neighbouring rays at the image centre");
+    visit("distance", self.distance,
+          {"from the camera to the area-weighted centroid", "sqrt(surface area)", above_and_up_to(0, 1e4)});
+    visit("step_degrees", self.step_degrees,
+          {"angle between neighbouring rays at the image centre", "degrees", between(0.01, 10)});
   }
 };
-void check(const ScanOptions& options);
 
 // The scan of view 0..kViews-1 in the mesh's own coordinates, row by row: rows from top to bottom, in a row
 // from left to right, as the camera sees them. Every point lies on a face, to double precision. Faces are

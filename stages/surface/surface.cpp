@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <pcl/console/print.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -18,7 +17,6 @@
 #include <pcl/surface/gp3.h>
 
 #include "stages/core/check.h"
-#include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
 #include "stages/core/support.h"
@@ -84,19 +82,6 @@ Faces consistently_oriented(const Faces& faces) {
 }
 
 }  // namespace
-
-void check(const SurfaceOptions& options) {
-  const auto require = [](const char* key, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      throw OptionError{key, fmt::format("must be in [{}, {}], not {}", low, high, value)};
-  };
-  require("reach", options.reach, 1, 100);
-  require("longest_edge", options.longest_edge, 1, 1000);
-  require("neighbours", options.neighbours, 3, 1000);
-  require("steepest_degrees", options.max_normal_angle_degrees, 1, 180);
-  require("smallest_angle", options.smallest_angle, 0, 60);
-  require("largest_angle", options.largest_angle, 60, 180);
-}
 
 Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options) {
   CHECK_EQ(normals.size(), scan.points.size());

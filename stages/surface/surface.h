@@ -18,15 +18,19 @@ struct SurfaceOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("reach", self.reach, "longest edge in distances to the point's nearest other point");
-    visit("longest_edge", self.longest_edge, "longest edge in median distances to the nearest other point");
-    visit("neighbours", self.neighbours, "nearest points that an edge may lead to");
-    visit("steepest_degrees", self.max_normal_angle_degrees, "largest angle between normals across a face");
-    visit("smallest_angle", self.smallest_angle, "smallest angle of a face in degrees, where possible");
-    visit("largest_angle", self.largest_angle, "largest angle of a face in degrees");
+    visit("reach", self.reach,
+          {"longest edge of a point", "distances to its nearest other point", between(1, 100)});
+    visit("longest_edge", self.longest_edge,
+          {"longest edge of all", "median distances to the nearest other point", between(1, 1000)});
+    visit("neighbours", self.neighbours,
+          {"nearest points that an edge may lead to", "points", between(3, 1000)});
+    visit("steepest_degrees", self.max_normal_angle_degrees,
+          {"largest angle between normals across a face", "degrees", between(1, 180)});
+    visit("smallest_angle", self.smallest_angle,
+          {"smallest angle of a face, where possible", "degrees", between(0, 60)});
+    visit("largest_angle", self.largest_angle, {"largest angle of a face", "degrees", between(60, 180)});
   }
 };
-void check(const SurfaceOptions& options);
 
 // f x 3 indices of the scan's points, by greedy projection triangulation; counter-clockwise seen from the
 // side that the normals point to. No two faces pass an edge in the same direction. Depth jumps stay open, and

@@ -27,7 +27,7 @@ struct FarOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("power", self.power, "of the distance");
+    visit("power", self.power, {"of the distance"});
   }
 };
 

@@ -1,5 +1,8 @@
 #include "pipeline/catalog/config.h"
 
+#include <algorithm>
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,10 +42,35 @@ TEST(Config, TheTextProtocolHasThePapersWords) {
 
 TEST(Config, WritesItselfSoThatItReadsBackTheSame) {
   for (const char* yaml :
-       {"", "data: 'a \"b\" \\c\u00e9'\ncache: \"two\\nlines\"\noutput: o", "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}"}) {
+       {"", "data: 'a \"b\" \\c\u00e9'\ncache: \"two\\nlines\"\noutput: o",
+        "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}"}) {
     const std::string written = config_yaml(config_of(yaml));
     EXPECT_EQ(config_yaml(config_of(written)), written);
   }
+}
+
+TEST(Config, AnnotatedReadsBackTheSame) {
+  for (const char* yaml : {"", "protocol: text", "models: {CS: , HS: {draws: 5}}",
+                           "protocol: text\ndata: 'a # b'\nmodels: {RS: , PS: {absolute: false}}\n"
+                           "fpfh: {radius: 0.03}"}) {
+    const Config config = config_of(yaml);
+    const Config back = config_of(annotated_config_yaml(config));
+    EXPECT_EQ(config_yaml(back), config_yaml(config)) << yaml;
+    EXPECT_EQ(annotated_config_yaml(back), annotated_config_yaml(config)) << yaml;
+  }
+}
+
+TEST(Config, AnnotatedExplainsEveryOption) {
+  std::istringstream yaml(annotated_config_yaml(config_of("")));
+  std::string line, above;
+  for (; std::getline(yaml, line); above = line) {
+    EXPECT_LE(line.size(), 120U) << line;
+    const std::string text = line.substr(std::min(line.find_first_not_of(' '), line.size()));
+    if (text.empty() || text.starts_with('#') || text.ends_with(':')) continue;
+    EXPECT_THAT(above, HasSubstr("# ")) << line;
+  }
+  EXPECT_THAT(annotated_config_yaml(config_of("")),
+              HasSubstr("  # support radius (R; > 0)\n  radius: 0.01\n"));
 }
 
 TEST(Config, UnknownKeysAndModelsAreErrorsWithTheNearestName) {

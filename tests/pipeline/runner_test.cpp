@@ -297,7 +297,7 @@ TEST_F(RunnerTest, AGivenReferenceReplacesTheMean) {
   ToyRun toy(data_.path(), store_);
   Histogram flat;
   flat.fill(1);
-  toy.context.given_reference = flat;
+  toy.catalog = make_catalog(toy.config, flat);
   toy.plan = make_plan(toy.context, store_);
   toy.run();
   const auto computed = store_.take_saved();
@@ -332,7 +332,7 @@ TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   EXPECT_EQ(cc_of_two[0], Cell(std::int64_t{2}));
   EXPECT_EQ(cc_of_two[1], Cell("cc"));
   EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));
-  EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]), (curves[0][1].cc + curves[1][1].cc) / 2);
+  EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]), (value_of(curves[0][1], "cc") + value_of(curves[1][1], "cc")) / 2);
 }
 
 TEST_F(RunnerTest, AHumanCurveOfAnEarlierRunIsNotLeftBehind) {
@@ -340,8 +340,7 @@ TEST_F(RunnerTest, AHumanCurveOfAnEarlierRunIsNotLeftBehind) {
   const auto run_and_write = [&](const std::string& yaml) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run();
-    write_results(out.path(), {toy.config, toy.context, toy.plan, toy.runner},
-                  toy.results());
+    write_tables(out.path(), toy.state(), toy.results(), {});
     return std::filesystem::exists(out / "human_curve.csv");
   };
   EXPECT_TRUE(run_and_write(kWithPeople));

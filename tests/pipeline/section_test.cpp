@@ -18,15 +18,16 @@ struct Sample {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("flag", self.flag, "");
-    visit("count", self.count, "");
-    visit("radius", self.radius, "");
-    visit("method", self.method, "");
+    visit("flag", self.flag, {"a switch"});
+    visit("count", self.count, {"how many", "points"});
+    visit("radius", self.radius, {"how far", "R", above(0)});
+    visit("method", self.method, {"how"});
   }
   static Sample text() { return {.flag = true}; }
 };
 void check(const Sample& sample) {
-  if (sample.radius <= 0) throw OptionError("radius", "must be > 0, not " + std::to_string(sample.radius));
+  check_ranges(sample);
+  if (sample.flag && sample.count == 0) throw OptionError("count", "must not be 0 where flag is true");
 }
 
 std::string error_of(const std::string& yaml) {
@@ -73,7 +74,10 @@ TEST(Section, ErrorsNameFileLineKeyAndTheNearestValidKey) {
   EXPECT_EQ(error_of("sample:\n  count: many"), "x.yaml:2: sample.count is 'many', not a whole number");
   EXPECT_EQ(error_of("sample:\n  count: 9.5"), "x.yaml:2: sample.count is '9.5', not a whole number");
   EXPECT_THAT(error_of("sample:\n  method: face"), HasSubstr("not one of faces, pca"));
-  EXPECT_THAT(error_of("sample:\n\n  radius: -1"), HasSubstr("x.yaml:3: sample.radius must be > 0"));
+  EXPECT_THAT(error_of("sample:\n\n  radius: -1"),
+              HasSubstr("x.yaml:3: sample.radius must be a number above 0, not -1"));
+  EXPECT_EQ(error_of("sample: {flag: true, count: 0}"),
+            "x.yaml:1: sample.count must not be 0 where flag is true");
   EXPECT_THAT(error_of("sample:\n  radius: nan"), HasSubstr("not a finite number"));
   EXPECT_THAT(error_of("sample:\n  flag: true\n  flag: false"),
               HasSubstr("x.yaml:3: the key 'flag' is given twice"));
@@ -98,6 +102,14 @@ TEST(OptionsText, ReadsBackToTheBit) {
   Sample back;
   Section::from_text(options_text(sample), "x").read(back);
   EXPECT_EQ(options_text(back), options_text(sample));
+}
+
+TEST(OptionsText, AnnotatedSaysMeaningUnitAndWhatIsAccepted) {
+  EXPECT_EQ(annotated_options_text(Sample{}),
+            "# a switch\nflag: false\n"
+            "# how many (points)\ncount: 9\n"
+            "# how far (R; > 0)\nradius: 0.01\n"
+            "# how (faces, pca)\nmethod: faces\n");
 }
 
 TEST(OptionsText, ProtocolsHaveTheirPresets) {

@@ -1,0 +1,77 @@
+#include "stages/core/options.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Sample {
+  std::int32_t count = 3;
+  double radius = 0.5;
+  double offset = 0;
+  bool flag = false;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("count", self.count, {"how many", "points", at_least(1)});
+    visit("radius", self.radius, {"how far", "R", above_and_up_to(0, 1)});
+    visit("offset", self.offset, {"any number"});
+    visit("flag", self.flag, {"a switch"});
+  }
+};
+
+std::string refusal(const Sample& sample) {
+  try {
+    check(sample);
+  } catch (const OptionError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Range, KnowsItsBounds) {
+  EXPECT_TRUE(at_least(1).contains(1) && at_least(1).contains(1e300));
+  EXPECT_FALSE(at_least(1).contains(0.999));
+  EXPECT_FALSE(above(0).contains(0));
+  EXPECT_TRUE(above(0).contains(std::numeric_limits<double>::denorm_min()));
+  EXPECT_TRUE(between(-1, 1).contains(-1) && between(-1, 1).contains(1));
+  EXPECT_FALSE(between(-1, 1).contains(-1.5) || between(-1, 1).contains(1.5));
+  EXPECT_FALSE(above_and_up_to(0, 1).contains(0));
+  EXPECT_TRUE(above_and_up_to(0, 1).contains(1));
+  EXPECT_TRUE(Range{}.contains(-1e300));
+}
+
+TEST(Range, HoldsNothingThatIsNotFinite) {
+  for (const Range& range : {Range{}, at_least(0), above(0), between(0, 1)})
+    for (const double value : {kInfinity, -kInfinity, std::nan("")}) EXPECT_FALSE(range.contains(value));
+}
+
+TEST(Range, ReadsAsAnInequality) {
+  EXPECT_EQ(at_least(1).text(), ">= 1");
+  EXPECT_EQ(above(0).text(), "> 0");
+  EXPECT_EQ(between(0.01, 10).text(), "0.01 <= x <= 10");
+  EXPECT_EQ(above_and_up_to(0, 1).text(), "0 < x <= 1");
+  EXPECT_EQ(Range{}.text(), "");
+}
+
+TEST(OptionsCheck, RefusesTheFirstFieldOutsideItsRange) {
+  EXPECT_EQ(refusal({}), "");
+  EXPECT_EQ(refusal({.count = 0, .radius = -1}), "count must be at least 1, not 0");
+  EXPECT_EQ(refusal({.radius = -0.5}), "radius must be a number above 0 and at most 1, not -0.5");
+  EXPECT_EQ(refusal({.radius = std::nan("")}), "radius must be a finite number, not nan");
+  EXPECT_EQ(refusal({.offset = -1e300}), "");
+  EXPECT_EQ(refusal({.offset = kInfinity}), "offset must be a finite number, not inf");
+}
+
+TEST(OptionsCheck, AcceptsNoOptions) { EXPECT_NO_THROW(check(NoOptions{})); }
+
+}  // namespace
+}  // namespace salbench
