@@ -4,6 +4,7 @@
 #include "io/dataset.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -32,18 +33,8 @@ struct NaturalLess {
   bool operator()(std::string_view a, std::string_view b) const { return natural_less(a, b); }
 };
 
-struct TruthFolders {
-  fs::path saliency;  // N.val
-  fs::path picks;     // N_k.pid
-};
-
-struct Place {
-  fs::path meshes;
-  std::vector<TruthFolders> truth;  // the first that has an existing folder is taken
-};
-
 struct Found {
-  Layout layout;
+  const LayoutRow* layout;
   Place place;
   std::vector<fs::path> meshes;
 };
@@ -90,63 +81,64 @@ fs::path beside(const fs::path& folder, const char* name) {
   return (folder / ".." / name).lexically_normal();
 }
 
-std::vector<Place> places_of(Layout layout, const fs::path& root) {
+std::vector<Place> gs_places(const fs::path& root) {
   std::vector<Place> places;
-  switch (layout) {
-    case Layout::gs:
-      for (const char* meshes : {"off", "Meshes"}) {
-        if (is_folder(root / "GS")) places.push_back({root / meshes, {gs_truth(root / "GS")}});
-        if (is_folder(root / "Saliency")) {
-          places.push_back({root / meshes, {gs_truth(root)}});
-          places.push_back({beside(root, meshes), {gs_truth(root)}});
-        }
-      }
-      break;
-    case Layout::schelling:
-      for (const fs::path& base : schelling_bases(root))
-        places.push_back({base / "Meshes", {schelling_truth(base)}});
-      break;
-    case Layout::princeton:
-      for (const fs::path& base : {root, root / "data", root / "MeshsegBenchmark-1.0" / "data"})
-        places.push_back({base / "off", truth_below(root)});
-      if (root.filename() == "off") places.push_back({root, truth_below(beside(root, "."))});
-      break;
-    case Layout::folder:
-      places.push_back({root, {schelling_truth(root), schelling_truth(beside(root, "."))}});
-      break;
-    case Layout::automatic:
-      break;
+  for (const char* meshes : {"off", "Meshes"}) {
+    if (is_folder(root / "GS")) places.push_back({root / meshes, {gs_truth(root / "GS")}});
+    if (is_folder(root / "Saliency")) {
+      places.push_back({root / meshes, {gs_truth(root)}});
+      places.push_back({beside(root, meshes), {gs_truth(root)}});
+    }
   }
   return places;
 }
 
-std::optional<Found> find_layout(const fs::path& root, Layout layout) {
-  for (const Place& place : places_of(layout, root)) {
+std::vector<Place> schelling_places(const fs::path& root) {
+  std::vector<Place> places;
+  for (const fs::path& base : schelling_bases(root))
+    places.push_back({base / "Meshes", {schelling_truth(base)}});
+  return places;
+}
+
+std::vector<Place> princeton_places(const fs::path& root) {
+  std::vector<Place> places;
+  for (const fs::path& base : {root, root / "data", root / "MeshsegBenchmark-1.0" / "data"})
+    places.push_back({base / "off", truth_below(root)});
+  if (root.filename() == "off") places.push_back({root, truth_below(beside(root, "."))});
+  return places;
+}
+
+std::vector<Place> folder_places(const fs::path& root) {
+  return {{root, {schelling_truth(root), schelling_truth(beside(root, "."))}}};
+}
+
+// In this order, since meshes in Meshes/ with their ground truth in GS/ would pass for the Schelling layout.
+constexpr std::array kLayouts = {LayoutRow{name_of(Layout::gs), gs_places, true},
+                                 LayoutRow{name_of(Layout::schelling), schelling_places, true},
+                                 LayoutRow{name_of(Layout::princeton), princeton_places, true},
+                                 LayoutRow{name_of(Layout::folder), folder_places, false}};
+
+std::optional<Found> find_layout(const fs::path& root, const LayoutRow& layout) {
+  for (const Place& place : layout.places(root)) {
     std::vector<fs::path> meshes = files_in(place.meshes, has_mesh_extension);
-    if (!meshes.empty()) return Found{layout, place, std::move(meshes)};
+    if (!meshes.empty()) return Found{&layout, place, std::move(meshes)};
   }
   return {};
 }
 
-std::string where_looked_for(const fs::path& root, Layout layout) {
+std::string where_looked_for(const fs::path& root, const LayoutRow& layout) {
   std::set<std::string> folders;
-  for (const Place& place : places_of(layout, root)) folders.insert(place.meshes.string());
+  for (const Place& place : layout.places(root)) folders.insert(place.meshes.string());
   if (folders.empty()) return fmt::format("{} (with neither GS/ nor Saliency/ in it)", root.string());
   return fmt::format("{}", fmt::join(folders, ", "));
 }
 
-// In this order, since meshes in Meshes/ with their ground truth in GS/ would pass for the Schelling layout.
-std::vector<Layout> layouts_to_try(Layout layout) {
-  if (layout != Layout::automatic) return {layout};
-  return {Layout::gs, Layout::schelling, Layout::princeton, Layout::folder};
-}
-
-Found find_meshes(const fs::path& root, Layout wanted) {
+Found find_meshes(const fs::path& root, std::span<const LayoutRow> layouts) {
   if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
   std::vector<std::string> searched;
-  for (const Layout layout : layouts_to_try(wanted)) {
+  for (const LayoutRow& layout : layouts) {
     if (const auto found = find_layout(root, layout)) return *found;
-    searched.push_back(fmt::format("{}: {}", name_of(layout), where_looked_for(root, layout)));
+    searched.push_back(fmt::format("{}: {}", layout.name, where_looked_for(root, layout)));
   }
   throw InputError(fmt::format("{}: no .off, .obj or .ply meshes found; looked in {}", root.string(),
                                fmt::join(searched, "; ")));
@@ -165,7 +157,7 @@ ItemsByName items_of(const Found& found) {
   ItemsByName items;
   for (const fs::path& mesh : found.meshes) {
     DatasetItem item{.name = mesh.stem(), .category = {}, .mesh = mesh, .saliency = {}, .picks = {}};
-    if (const int number = benchmark_number(item.name); number > 0 && found.layout != Layout::folder)
+    if (const int number = benchmark_number(item.name); number > 0 && found.layout->is_benchmark)
       item.category = kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)];
     const auto [twin, fresh] = items.try_emplace(item.name, item);
     if (!fresh)
@@ -231,13 +223,22 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
 
 }  // namespace
 
+std::span<const LayoutRow> layout_rows() { return kLayouts; }
+
 Dataset find_dataset(const fs::path& root, Layout layout) {
+  if (layout == Layout::automatic) return find_dataset(root, kLayouts);
+  const auto row = std::find_if(kLayouts.begin(), kLayouts.end(),
+                                [&](const LayoutRow& of) { return of.name == name_of(layout); });
+  return find_dataset(root, {row, 1});
+}
+
+Dataset find_dataset(const fs::path& root, std::span<const LayoutRow> layouts) {
   fs::path folder = root.lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "data/" is "data"
-  const Found found = find_meshes(folder, layout);
+  const Found found = find_meshes(folder, layouts);
   ItemsByName items = items_of(found);
   Dataset dataset;
-  dataset.layout = name_of(found.layout);
+  dataset.layout = found.layout->name;
   note_missing_numbers(items, dataset.notes);
   const auto truth = std::find_if(
       found.place.truth.begin(), found.place.truth.end(),

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,24 @@ struct EnumNames<Layout> {
                                                             "folder"};
 };
 
+struct TruthFolders {
+  std::filesystem::path saliency;  // N.val
+  std::filesystem::path picks;     // N_k.pid
+};
+
+struct Place {
+  std::filesystem::path meshes;
+  std::vector<TruthFolders> truth;  // the first that has an existing folder is taken
+};
+
+// The table of layouts, in the order in which `automatic` tries them.
+struct LayoutRow {
+  std::string_view name;
+  std::vector<Place> (*places)(const std::filesystem::path& root);  // the first with a mesh is taken
+  bool is_benchmark = false;  // meshes named 1 to 400 are those of SHREC'07, and have its classes
+};
+std::span<const LayoutRow> layout_rows();
+
 struct DatasetItem {
   std::string name;                          // the mesh file's name without its extension
   std::string category;                      // class of SHREC'07; empty if it has none
@@ -43,6 +62,7 @@ struct Dataset {
 // Lists folders and reads no file; the result does not depend on the order in which the system lists them.
 // Throws InputError if there are no meshes, naming the folders searched, or if two meshes have the same name.
 Dataset find_dataset(const std::filesystem::path& root, Layout layout);
+Dataset find_dataset(const std::filesystem::path& root, std::span<const LayoutRow> layouts);
 
 // A strict total order that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10".
 bool natural_less(std::string_view a, std::string_view b);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include "pipeline/run/graph.h"
 
@@ -12,13 +14,22 @@ namespace {
 
 constexpr std::chrono::milliseconds kClaimPollInterval(50);  // whether another process has given up a claim
 
-// Rows whose result the rows of shapes wait for: the reference histograms, and all that these are made of.
+// The reference histograms, and all that they are made of.
 std::vector<bool> reference_rows(const Catalog& catalog) {
   std::vector<std::size_t> references;
   for (const Row& row : catalog.rows)
     for (const std::size_t input : row.inputs)
       if (catalog.rows[input].gathers) references.push_back(input);
   return ancestors(catalog, references);
+}
+
+// What can be had without the rest of the data set.
+std::vector<bool> rows_without_reference(const Catalog& catalog) {
+  std::vector<bool> without;
+  for (const Row& row : catalog.rows)
+    without.push_back(!row.gathers && std::all_of(row.inputs.begin(), row.inputs.end(),
+                                                  [&](std::size_t input) { return without[input]; }));
+  return without;
 }
 
 // By the mesh's content: meshes of one name in two data sets are not the same work.
@@ -39,27 +50,34 @@ Runner::Runner(const Context& context, Plan& plan, Store& store, Progress& progr
       executor_(context, plan, store) {}
 
 void Runner::run(int threads) {
-  settle_all("reference", reference_rows(context_.catalog), threads);
-  settle_all("evaluation", std::vector<bool>(context_.catalog.rows.size(), true), threads);
+  const std::vector<bool> reference = reference_rows(context_.catalog);
+  settle("reference", reference, threads, Claimed::left);
+  // Where other processes hold what the reference is made of, there is still work that does without it.
+  if (open_jobs(reference) > 0)
+    settle("maps", rows_without_reference(context_.catalog), threads, Claimed::left);
+  settle("reference", reference, threads, Claimed::awaited);
+  settle("evaluation", std::vector<bool>(context_.catalog.rows.size(), true), threads, Claimed::awaited);
+}
+
+std::size_t Runner::open_jobs(const std::vector<bool>& rows) const {
+  std::size_t open = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (rows[row])
+      open += static_cast<std::size_t>(std::count_if(plan_.jobs[row].begin(), plan_.jobs[row].end(),
+                                                     [](const Job& job) { return job.open(); }));
+  return open;
 }
 
 // What other processes have claimed is left to the end; by then most of it is found in the cache. Nothing is
 // held while waiting for them, so that two processes never wait for each other.
-void Runner::settle_all(const std::string& what, const std::vector<bool>& rows, int threads) {
-  const auto open_jobs = [&] {
-    std::size_t open = 0;
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      if (rows[row])
-        open += static_cast<std::size_t>(std::count_if(plan_.jobs[row].begin(), plan_.jobs[row].end(),
-                                                       [](const Job& job) { return job.open(); }));
-    return open;
-  };
-  std::size_t open = open_jobs();
-  if (open == 0) return;
+void Runner::settle(const std::string& what, const std::vector<bool>& rows, int threads, Claimed claimed) {
+  std::size_t open = open_jobs(rows);
+  if (open == 0 || stop_) return;
   progress_.begin(what, open, [this] { return executor_.at_work(); });
   while (open > 0 && !stop_) {
     const std::size_t claimed_by_others = stream_once(rows, threads);
-    const std::size_t before = std::exchange(open, open_jobs());
+    const std::size_t before = std::exchange(open, open_jobs(rows));
+    if (claimed == Claimed::left) break;
     if (open < before || stop_) continue;
     if (claimed_by_others == 0) throw std::logic_error("jobs are left that nothing can settle");
     std::this_thread::sleep_for(kClaimPollInterval);

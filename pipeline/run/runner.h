@@ -30,7 +30,10 @@ class Runner {
   Progress& progress() const { return progress_; }
 
  private:
-  void settle_all(const std::string& what, const std::vector<bool>& rows, int threads);
+  // What happens to the jobs that other processes have claimed.
+  enum class Claimed { left, awaited };
+  void settle(const std::string& what, const std::vector<bool>& rows, int threads, Claimed claimed);
+  std::size_t open_jobs(const std::vector<bool>& rows) const;
   std::size_t stream_once(const std::vector<bool>& rows, int threads);
 
   const Context& context_;

@@ -22,8 +22,8 @@ using testing::SizeIs;
 
 // Of the second mesh, by another process, which is the test: a run can then not come to its end by itself.
 std::unique_ptr<Claim> claim_of_second_mesh(const Workspace& toy) { return toy.claim_family("2"); }
-// Artefacts that such a run can store: the reference goes first, and waits for the second mesh.
-std::size_t beside_second_mesh() { return JobCounts(kToyConfig, 1).of_reference(); }
+// Artefacts that such a run can store.
+std::size_t beside_second_mesh() { return JobCounts(kToyConfig, 1).before_reference(); }
 
 TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {
   const Workspace toy;

@@ -1,4 +1,4 @@
-// CONTRIBUTING.md, followed: a stage, a model, a metric and a subcommand that are not in the program are added
+// CONTRIBUTING.md, followed: a stage, a model, a metric, a layout and a subcommand that are not in the program are added
 // in one place each, and take part like those that are.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -139,6 +139,23 @@ TEST(AddAMetric, ItIsOneRow) {
   const GroundTruth truth{{0.5, 0, 1}, {{1}}};
   const Scores scores = score({&largest, 1}, {1, 7, 3}, truth, {}, Rng(1, "", ""));
   EXPECT_THAT(scores.values, testing::ElementsAre(7));
+}
+
+// --- a layout of data sets: its places, and a row of the table --------------------------------------------
+
+std::vector<Place> scanner_places(const std::filesystem::path& root) {
+  return {{root / "ply", {{root / "fixations", root / "clicks"}}}};
+}
+
+TEST(AddALayout, ItIsOneRow) {
+  const TemporaryFolder folder;
+  folder.write("ply/statue.off", off_text(shapes::tetrahedron()));
+  folder.write("fixations/statue.val", "0\n1\n0\n0\n");
+  const LayoutRow layout{"scanner", scanner_places};
+  const Dataset dataset = find_dataset(folder.path(), {&layout, 1});
+  EXPECT_EQ(dataset.layout, "scanner");
+  ASSERT_THAT(dataset.items, SizeIs(1));
+  EXPECT_EQ(dataset.items[0].saliency, folder / "fixations/statue.val");
 }
 
 // --- a subcommand: a function, and a row of the table ----------------------------------------------------

@@ -89,7 +89,6 @@ TEST_F(GraphTest, EveryJobIsSettledOnceAfterEverythingItReads) {
     for (const JobRef& job : order)
       for (std::size_t i = 0; i < context.row(job).inputs.size(); ++i)
         for (const JobRef& input : input_jobs(context, job, i)) ASSERT_LT(place(input), place(job));
-    EXPECT_EQ(order.back(), (JobRef{mean, Item::set()}));
   }
 }
 
@@ -256,8 +255,8 @@ using Pair = std::pair<std::string, std::string>;
 
 std::string node(const Row& row) { return row.name + " of " + std::string(name_of(row.shapes)); }
 
-std::set<Pair> edges_in(const std::string& dot) {
-  std::set<Pair> found;
+std::multiset<Pair> edges_in(const std::string& dot) {
+  std::multiset<Pair> found;
   for (std::size_t at = dot.find("\" -> \""); at != std::string::npos; at = dot.find("\" -> \"", at + 1)) {
     const std::size_t begin = dot.rfind('"', at - 1) + 1, end = dot.find('"', at + 6);
     found.emplace(dot.substr(begin, at - begin), dot.substr(at + 6, end - at - 6));
@@ -268,14 +267,13 @@ std::set<Pair> edges_in(const std::string& dot) {
 TEST(GraphText, OfTheDefaultConfigurationItIsTheCatalogNodeForNodeAndEdgeForEdge) {
   const Catalog catalog = make_catalog(toy_config(""));
   const std::string dot = graph_dot(catalog), text = graph_text(catalog);
-  std::set<Pair> expected;
+  std::multiset<Pair> expected;
   for (const Row& row : catalog.rows) {
     EXPECT_THAT(dot, testing::HasSubstr("  \"" + node(row) + "\" ["));
     EXPECT_THAT("\n" + text, testing::HasSubstr("\n" + node(row) + " (version "));
     for (const std::size_t input : row.inputs) expected.emplace(node(catalog.rows[input]), node(row));
   }
   EXPECT_EQ(edges_in(dot), expected);
-  EXPECT_THAT(edges_in(dot), SizeIs(edges(catalog).size()));
   // A few that the paper's figure has.
   EXPECT_THAT(edges_in(dot), IsSupersetOf({Pair("mesh of meshes", "scan of scans"),
                                            Pair("scan_normals of scans", "fpfh of scans"),

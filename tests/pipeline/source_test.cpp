@@ -166,9 +166,10 @@ class Thrown : public EditedDuringARun {
  protected:
   std::vector<Failure> failures_with(const std::function<Value(const JobInputs&)>& body) {
     ToyRun run(data_.path(), store_, kYaml);
-    EXPECT_EQ(run.catalog.rows[run.row("fpfh")].name, "fpfh");
     run.catalog.rows[run.row("fpfh")].run = body;
     run.run();
+    for (const Failure& failure : run.runner.failures())
+      EXPECT_EQ(run.context.row(failure.job).name, "fpfh");
     return run.runner.failures();
   }
 };

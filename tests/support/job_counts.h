@@ -53,18 +53,6 @@ class JobCounts {
     return sum;
   }
 
-  // What the reference is a mean of, and all that this is made of.
-  std::size_t of_reference() const {
-    std::vector<std::size_t> references;
-    for (std::size_t r = 0; r < catalog_.rows.size(); ++r)
-      if (catalog_.rows[r].name == "reference") references.push_back(r);
-    const std::vector<bool> needed = ancestors(catalog_, references);
-    std::size_t sum = 0;
-    for (std::size_t r = 0; r < needed.size(); ++r)
-      if (needed[r] && !catalog_.rows[r].gathers) sum += jobs_of(catalog_.rows[r]);
-    return sum;
-  }
-
   // Of one row name. A name that the catalog does not have is a mistake of the test.
   std::size_t of(std::string_view name) const {
     return expect_some(where([&](const Row& row) { return row.name == name; }), name);
