@@ -20,8 +20,7 @@ namespace {
 
 constexpr double kFlat = 1e-9;   // bulges below this, in units of their scale, are rounding
 constexpr double kHollow = 0.5;  // attraction of a hollow, beside a bulge of the same size
-constexpr int kMaxTries =
-    64;  // a participant stops after so many draws in a row that are too near to earlier picks
+constexpr int kMaxTries = 64;    // draws in a row, all too near to earlier picks, until a participant stops
 
 std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 

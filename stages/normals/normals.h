@@ -49,7 +49,7 @@ void check(const MeshNormalsOptions& options);
 //          normal of the nearest vertex that has one. Throws InputError if no vertex has one.
 //   pca:   takes the vertices as a point set: planes of the nearest points, oriented by Hoppe's tree. In each
 //          component of the graph one outermost point is turned outwards, the one that faces its axis most.
-//          If a neighbourhood spans no plane, its normal points away from the centroid. [hoppe1992]
+//          If a neighbourhood spans no plane, the direction from the centroid decides. [hoppe1992]
 // Throws InputError for vertices that are not finite.
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options = {});
 
@@ -74,8 +74,8 @@ struct ScanNormalsOptions {
 
 // n x 3: planes of the nearest points, oriented by Hoppe's tree. In each component of the graph the point
 // nearest to the camera is turned towards it. The graph crosses neither depth jumps nor sharp folds, where a
-// normal says nothing about its neighbours. If a neighbourhood spans no plane, its normal points to the
-// camera. The result is empty for an empty scan. Throws InputError for points that are not finite.
+// normal says nothing about its neighbours. If a neighbourhood spans no plane, the direction to the camera
+// decides. The result is empty for an empty scan. Throws InputError for points that are not finite.
 // [hoppe1992]
 Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options = {});
 
