@@ -149,7 +149,8 @@ Value histogram_from(const Arrays& arrays) {
 // The names of later metrics are in results.csv and the data dictionary: no layer below the table of metrics
 // knows them.
 constexpr const char* kScoreColumns =
-    "one value per metric, in the order of results.csv: auc, auc_exact, nss, cc, lcc, then those added since; "
+    "one value per metric, in the order of results.csv: auc, auc_exact, nss, cc, lcc, then those added "
+    "since; "
     "NaN where undefined";
 
 // One row per group size: n = 1, 2, ...

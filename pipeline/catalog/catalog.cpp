@@ -63,11 +63,11 @@ Histogram mean_over(const Members<T>& members) {
 // A group's map is matched like a model's, and so is the map of the others, which stands for the ground
 // truth.
 GroupScorer group_scorer(const Histogram& reference, const MetricsOptions& options, const Rng& rng) {
-  return {metric_table().size(), [=](const ScalarField& map, const GroundTruth& others) {
-            const GroundTruth matched_others{matched(others.saliency, reference), others.picks,
-                                             others.simulated};
-            return score(matched(map, reference), matched_others, options, rng);
-          }};
+  return {
+      metric_table().size(), [=](const ScalarField& map, const GroundTruth& others) {
+        const GroundTruth matched_others{matched(others.saliency, reference), others.picks, others.simulated};
+        return score(matched(map, reference), matched_others, options, rng);
+      }};
 }
 
 std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
@@ -86,7 +86,7 @@ RowOf<ScalarField> add_given_map(Catalog& catalog, const ShapeRows& shape, const
       [maps = model.given](Points points, const FilesOf<Source::map_file>& file) {
         return maps->checked(file.data[0], file.name, points.size());
       },
-      shape.points);
+      shape.points, kFiles<Source::map_file>);
 }
 
 void add_scores(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model,
@@ -96,7 +96,7 @@ void add_scores(Catalog& catalog, const ShapeRows& shape, const Config& config, 
       shape.shapes, {name, scores_version()},
       [name](const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options,
              const RandomSource& random) { return score(map, truth, options, random.rng(name)); },
-      matched_map, shape.ground_truth, section("metrics", config.metrics));
+      matched_map, shape.ground_truth, section("metrics", config.metrics), kRandom);
 }
 
 void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model) {
@@ -106,8 +106,8 @@ void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, c
     add_scores(catalog, shape, config, model, add_given_map(catalog, shape, model, matched_head));
     return;
   }
-  const RowOf<ScalarField> map = model.given ? add_given_map(catalog, shape, model, map_head)
-                                             : model.add_map(catalog, shape, map_head);
+  const RowOf<ScalarField> map =
+      model.given ? add_given_map(catalog, shape, model, map_head) : model.add_map(catalog, shape, map_head);
   const auto match = [](const ScalarField& values, const Histogram& reference) {
     return matched(values, reference);
   };
@@ -127,7 +127,7 @@ void add_human_performance(Catalog& catalog, const ShapeRows& shape, const RowOf
                const MetricsOptions& options, const RandomSource& random) {
         return leave_one_out(shape_of, truth, group_scorer(reference, options, random.rng(scores)));
       },
-      mesh, shape.ground_truth, shape.reference, section("metrics", config.metrics));
+      mesh, shape.ground_truth, shape.reference, section("metrics", config.metrics), kRandom);
   catalog.add(
       Shapes::meshes, {curve, version, has_participants(config)},
       [scores, curve](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
@@ -136,14 +136,15 @@ void add_human_performance(Catalog& catalog, const ShapeRows& shape, const RowOf
                            random.rng(curve));
       },
       mesh, shape.ground_truth, shape.reference, section("models." + model.name, *model.human),
-      section("metrics", config.metrics));
+      section("metrics", config.metrics), kRandom);
 }
 
 RowOf<GroundTruth> add_mesh_ground_truth(Catalog& catalog, const Config& config, const RowOf<Mesh>& mesh) {
   if (config.simulated())
     return catalog.add(Shapes::meshes, {"ground_truth", 1}, made_up_ground_truth, mesh,
-                       section("simulation", config.simulation));
-  return catalog.add(Shapes::meshes, {"ground_truth", 1}, load_ground_truth, mesh);
+                       section("simulation", config.simulation), kRandom);
+  return catalog.add(Shapes::meshes, {"ground_truth", 1}, load_ground_truth, mesh,
+                     kFiles<Source::truth_files>);
 }
 
 RowOf<Histogram> add_reference(Catalog& catalog, Shapes shapes, const RowOf<GroundTruth>& truth,
@@ -167,7 +168,7 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
   Catalog catalog;
   ShapeRows meshes{.shapes = Shapes::meshes}, scans{.shapes = Shapes::scans};
 
-  const RowOf<Mesh> mesh = catalog.add(Shapes::meshes, {"mesh", 1}, load_mesh);
+  const RowOf<Mesh> mesh = catalog.add(Shapes::meshes, {"mesh", 1}, load_mesh, kFiles<Source::mesh_file>);
   meshes.points = mesh;
   meshes.surface = mesh;
   meshes.ground_truth = add_mesh_ground_truth(catalog, config, mesh);
@@ -175,7 +176,7 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
 
   RowOf<Scan> scan;
   if (config.dataset.scans) {
-    scan = catalog.add(Shapes::scans, {"scan", 1}, scan_of, mesh, section("scan", config.scan));
+    scan = catalog.add(Shapes::scans, {"scan", 1}, scan_of, mesh, kView, section("scan", config.scan));
     scans.points = scan;
     scans.ground_truth = catalog.add(Shapes::scans, {"scan_ground_truth", 1}, scan_ground_truth, scan, mesh,
                                      meshes.ground_truth);
@@ -183,8 +184,8 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
   }
 
   if (config.dataset.meshes) {
-    meshes.normals = catalog.add(Shapes::meshes, {"normals", 1}, mesh_normals, mesh,
-                                 section("normals", config.normals));
+    meshes.normals =
+        catalog.add(Shapes::meshes, {"normals", 1}, mesh_normals, mesh, section("normals", config.normals));
     meshes.fpfh = add_fpfh(catalog, meshes, config);
   }
   if (config.dataset.scans) {

@@ -1,5 +1,5 @@
-// THE table of rows: everything there is to compute for a data set, from what, and how. Its order is that of the
-// paper's pipeline: load, scan, normals, descriptors, models, histogram matching, metrics.
+// THE table of rows: everything there is to compute for a data set, from what, and how. Its order is that of
+// the paper's pipeline: load, scan, normals, descriptors, models, histogram matching, metrics.
 #pragma once
 
 #include <optional>

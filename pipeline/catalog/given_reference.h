@@ -7,8 +7,8 @@
 
 namespace salbench {
 
-// A density over 100 bins from the column GS of a CSV file; a column that sums to something else is scaled, with
-// a warning. Throws InputError or ConfigError, with file and line.
+// A density over 100 bins from the column GS of a CSV file; a column that sums to something else is scaled,
+// with a warning. Throws InputError or ConfigError, with file and line.
 Histogram read_reference(const std::string& path);
 
 }  // namespace salbench

@@ -31,11 +31,12 @@ struct ShapeRows {
   RowOf<Histogram> reference = {};
 };
 
-// A model with its options bound: a map of every shape, computed or given, or, as HS alone, human performance.
+// A model with its options bound: a map of every shape, computed or given, or, as HS alone, human
+// performance.
 struct Model {
   std::string name;
   std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
-  std::string options = {};            // canonical text
+  std::string options = {};  // canonical text
   std::string annotated_options = {};  // with a comment above each option
   std::function<RowOf<ScalarField>(Catalog&, const ShapeRows&, RowHead)> add_map = {};
   std::optional<HsOptions> human = {};
@@ -52,21 +53,15 @@ struct ModelRow {
 
 namespace binding {
 
-// The argument that stands for a model's parameter; none for what comes from the job.
+// The argument that stands for a model's parameter.
 template <class Parameter, class Options>
 auto argument_for(const ShapeRows& rows, const SectionOf<Options>& section) {
-  if constexpr (std::is_same_v<Parameter, Options>)
-    return std::tuple(section);
-  else if constexpr (std::is_same_v<Parameter, Points>)
-    return std::tuple(rows.points);
-  else if constexpr (std::is_same_v<Parameter, Normals>)
-    return std::tuple(rows.normals);
-  else if constexpr (std::is_same_v<Parameter, Surface>)
-    return std::tuple(rows.surface);
-  else if constexpr (std::is_same_v<Parameter, Descriptors>)
-    return std::tuple(rows.fpfh);
-  else
-    return std::tuple();
+  if constexpr (std::is_same_v<Parameter, Options>) return section;
+  if constexpr (std::is_same_v<Parameter, Points>) return rows.points;
+  if constexpr (std::is_same_v<Parameter, Normals>) return rows.normals;
+  if constexpr (std::is_same_v<Parameter, Surface>) return rows.surface;
+  if constexpr (std::is_same_v<Parameter, Descriptors>) return rows.fpfh;
+  if constexpr (std::is_same_v<Parameter, RandomSource>) return kRandom;
 }
 
 }  // namespace binding
@@ -81,11 +76,8 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
             written.read(options);
             const auto add_map = [=](Catalog& catalog, const ShapeRows& rows, RowHead head) {
               const auto bound = section("models." + std::string(name), options);
-              return std::apply(
-                  [&](const auto&... arguments) {
-                    return catalog.add(rows.shapes, std::move(head), saliency, arguments...);
-                  },
-                  std::tuple_cat(binding::argument_for<std::decay_t<Parameters>>(rows, bound)...));
+              return catalog.add(rows.shapes, std::move(head), saliency,
+                                 binding::argument_for<std::decay_t<Parameters>>(rows, bound)...);
             };
             return Model{.name = std::string(name),
                          .version = version,

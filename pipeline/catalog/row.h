@@ -1,12 +1,13 @@
-// A row of the catalog, made from the function that does its work. What the row reads, in which order, whether
-// it draws random numbers or opens files, and the layout of its result follow from the function's signature:
+// A row of the catalog, made from the function that does its work. What the row reads, in which order,
+// whether it draws random numbers or opens files, and the layout of its result follow from the function's
+// signature:
 //
 //   const RowOf<Normals> normals = catalog.add(Shapes::meshes, {"normals", 1}, mesh_normals, mesh,
 //                                              section("normals", config.normals));
 //
-// Arguments stand for the function's parameters in their order. A RowOf<T> stands for a parameter of type T, a
-// section for one of its options type; RandomSource, View and FilesOf come from the job. Anything else does not
-// compile.
+// The arguments stand for the function's parameters, one for one: a RowOf<T> for a T, a section for its
+// options, kRandom for a RandomSource, kView for a View, kFiles<source> for a FilesOf<source>. Anything else
+// does not compile.
 #pragma once
 
 #include <array>
@@ -99,10 +100,10 @@ struct Row : RowHead {
   std::vector<OptionLines> options = {};
   std::vector<std::size_t> inputs = {};  // rows of the catalog, each before this one
   Source source = Source::none;
-  bool seeded = false;            // draws random numbers: seed and item enter the key
-  bool per_view = false;          // the view enters the key
-  bool gathers = false;           // one job for the data set, over all members of its input
-  ValuePtr given = {};             // in place of a result: known before the run, and not stored
+  bool seeded = false;    // draws random numbers: seed and item enter the key
+  bool per_view = false;  // the view enters the key
+  bool gathers = false;   // one job for the data set, over all members of its input
+  ValuePtr given = {};    // in place of a result: known before the run, and not stored
   std::function<Value(const JobInputs&)> run = {};
 
   Scope scope() const {
@@ -114,10 +115,11 @@ struct Row : RowHead {
 namespace binding {
 
 template <class Parameter, class T>
-inline constexpr bool kProvides =
-    std::is_same_v<Parameter, T> ||
-    (std::is_same_v<Parameter, Points> && (std::is_same_v<T, Mesh> || std::is_same_v<T, Scan>)) ||
-    (std::is_same_v<Parameter, Surface> && (std::is_same_v<T, Mesh> || std::is_same_v<T, Faces>));
+inline constexpr bool kProvides = std::is_same_v<Parameter, T> ||
+                                  (std::is_same_v<Parameter, Points> &&
+                                   (std::is_same_v<T, Mesh> || std::is_same_v<T, Scan>)) ||
+                                  (std::is_same_v<Parameter, Surface> &&
+                                   (std::is_same_v<T, Mesh> || std::is_same_v<T, Faces>));
 
 }  // namespace binding
 
@@ -129,8 +131,8 @@ struct RowOf {
   RowOf() = default;
   explicit RowOf(std::size_t the_row) : row(the_row) {}
   template <class Other>
-  requires binding::kProvides<T, Other>
-  RowOf(const RowOf<Other>& other) : row(other.row) {}  // NOLINT: a Mesh has Points
+  requires binding::kProvides<T, Other> RowOf(const RowOf<Other>& other)
+      : row(other.row) {}  // NOLINT: a Mesh has Points
 };
 
 template <class Options>
@@ -143,21 +145,17 @@ SectionOf<Options> section(std::string path, const Options& options) {
   return {std::move(path), options};
 }
 
-namespace binding {
-
-template <class T>
-inline constexpr Source kSourceOf = Source::none;
+// Arguments for what comes from the job.
+inline constexpr struct RandomArgument {
+} kRandom;
+inline constexpr struct ViewArgument {
+} kView;
 template <Source source>
-inline constexpr Source kSourceOf<FilesOf<source>> = source;
+struct FilesArgument {};
+template <Source source>
+inline constexpr FilesArgument<source> kFiles;
 
-template <class T>
-inline constexpr bool kGathers = false;
-template <class T>
-inline constexpr bool kGathers<Members<T>> = true;
-
-template <class T>
-inline constexpr bool kFromJob =
-    std::is_same_v<T, RandomSource> || std::is_same_v<T, View> || kSourceOf<T> != Source::none;
+namespace binding {
 
 // Whether an argument may stand for a parameter.
 template <class Parameter, class Argument>
@@ -168,82 +166,19 @@ template <class T>
 inline constexpr bool kFits<Members<T>, RowOf<T>> = true;
 template <class Options>
 inline constexpr bool kFits<Options, SectionOf<Options>> = true;
+template <>
+inline constexpr bool kFits<RandomSource, RandomArgument> = true;
+template <>
+inline constexpr bool kFits<View, ViewArgument> = true;
+template <Source source>
+inline constexpr bool kFits<FilesOf<source>, FilesArgument<source>> = true;
 
 template <class T>
-inline constexpr bool kIsRow = false;
+inline constexpr bool kGathers = false;
 template <class T>
-inline constexpr bool kIsRow<RowOf<T>> = true;
+inline constexpr bool kGathers<Members<T>> = true;
 
-template <class Parameter>
-decltype(auto) from_job(const JobInputs& in) {
-  if constexpr (std::is_same_v<Parameter, RandomSource>)
-    return (in.random);
-  else if constexpr (std::is_same_v<Parameter, View>)
-    return View{in.view};
-  else
-    return Parameter{*in.source, in.random.item, in.files};
-}
-
-template <class Parameter>
-decltype(auto) from_value(const Value& value) {
-  if constexpr (std::is_same_v<Parameter, Points>) {
-    const auto* mesh = std::get_if<Mesh>(&value);
-    return mesh != nullptr ? Points(mesh->vertices) : Points(std::get<Scan>(value).points);
-  } else if constexpr (std::is_same_v<Parameter, Surface>) {
-    const auto* mesh = std::get_if<Mesh>(&value);
-    return mesh != nullptr ? Surface(mesh->faces) : Surface(std::get<Faces>(value));
-  } else {
-    return std::get<Parameter>(value);
-  }
-}
-
-// A function's parameters held against the arguments that stand for them.
-template <class Parameters, class Arguments>
-struct Match;
-template <class... Parameters, class... Arguments>
-struct Match<std::tuple<Parameters...>, std::tuple<Arguments...>> {
-  using ParameterList = std::tuple<Parameters...>;
-  using ArgumentList = std::tuple<Arguments...>;
-  static constexpr std::array<bool, sizeof...(Parameters)> kJobs{kFromJob<Parameters>...};
-  static constexpr std::array<bool, sizeof...(Arguments)> kRows{kIsRow<Arguments>...};
-
-  static constexpr std::size_t argument_of(std::size_t parameter) {
-    std::size_t arguments = 0;
-    for (std::size_t p = 0; p < parameter; ++p) arguments += kJobs[p] ? 0U : 1U;
-    return arguments;
-  }
-  static constexpr std::size_t value_of(std::size_t argument) {
-    std::size_t rows = 0;
-    for (std::size_t a = 0; a < argument; ++a) rows += kRows[a] ? 1U : 0U;
-    return rows;
-  }
-
-  template <std::size_t parameter>
-  static constexpr bool fits() {
-    if constexpr (kJobs[parameter])
-      return true;
-    else
-      return kFits<std::tuple_element_t<parameter, ParameterList>,
-                   std::tuple_element_t<argument_of(parameter), ArgumentList>>;
-  }
-
-  template <std::size_t parameter>
-  static decltype(auto) get(const JobInputs& in, const ArgumentList& arguments) {
-    using Parameter = std::tuple_element_t<parameter, ParameterList>;
-    if constexpr (kJobs[parameter]) {
-      return from_job<Parameter>(in);
-    } else {
-      constexpr std::size_t kArgument = argument_of(parameter);
-      if constexpr (!kRows[kArgument])
-        return (std::get<kArgument>(arguments).options);
-      else if constexpr (kGathers<Parameter>)
-        return Parameter{in.members, in.member};
-      else
-        return from_value<Parameter>(*in.values[value_of(kArgument)]);
-    }
-  }
-};
-
+// What the row learns from an argument.
 template <class T>
 void describe(Row& row, const RowOf<T>& input) {
   row.inputs.push_back(input.row);
@@ -252,24 +187,63 @@ template <class Options>
 void describe(Row& row, const SectionOf<Options>& section) {
   row.options.push_back({section.path, options_text(section.options)});
 }
+inline void describe(Row& row, const RandomArgument&) { row.seeded = true; }
+inline void describe(Row& row, const ViewArgument&) { row.per_view = true; }
+template <Source source>
+void describe(Row& row, const FilesArgument<source>&) {
+  row.source = source;
+}
 
-template <class Result, class... Parameters, class... Arguments, std::size_t... P>
+// The parameter that an argument stands for. `value` is the next of the job's values, and moves on past the
+// one that is taken.
+template <class Parameter, class T>
+decltype(auto) parameter(const RowOf<T>&, const JobInputs& in, std::size_t& value) {
+  if constexpr (kGathers<Parameter>) {
+    return Parameter{in.members, in.member};
+  } else if constexpr (std::is_same_v<Parameter, Points>) {
+    const Value& shape = *in.values[value++];
+    const auto* mesh = std::get_if<Mesh>(&shape);
+    return mesh != nullptr ? Points(mesh->vertices) : Points(std::get<Scan>(shape).points);
+  } else if constexpr (std::is_same_v<Parameter, Surface>) {
+    const Value& shape = *in.values[value++];
+    const auto* mesh = std::get_if<Mesh>(&shape);
+    return mesh != nullptr ? Surface(mesh->faces) : Surface(std::get<Faces>(shape));
+  } else {
+    return std::get<Parameter>(*in.values[value++]);
+  }
+}
+template <class Parameter, class Options>
+const Options& parameter(const SectionOf<Options>& section, const JobInputs&, std::size_t&) {
+  return section.options;
+}
+template <class Parameter>
+const RandomSource& parameter(const RandomArgument&, const JobInputs& in, std::size_t&) {
+  return in.random;
+}
+template <class Parameter>
+View parameter(const ViewArgument&, const JobInputs& in, std::size_t&) {
+  return {in.view};
+}
+template <class Parameter, Source source>
+Parameter parameter(const FilesArgument<source>&, const JobInputs& in, std::size_t&) {
+  return {*in.source, in.random.item, in.files};
+}
+
+template <class Result, class... Parameters, class... Arguments>
 Row make_row(RowHead head, Shapes shapes, const std::function<Result(Parameters...)>& function,
-             std::index_sequence<P...>, const Arguments&... arguments) {
-  using Matched = Match<std::tuple<std::decay_t<Parameters>...>, std::tuple<Arguments...>>;
-  static_assert(Matched::argument_of(sizeof...(Parameters)) == sizeof...(Arguments),
-                "one argument for each parameter that does not come from the job");
-  static_assert((Matched::template fits<P>() && ...), "each argument fits the parameter in its place");
+             const Arguments&... arguments) {
+  static_assert(sizeof...(Parameters) == sizeof...(Arguments), "one argument for each parameter");
+  static_assert((kFits<std::decay_t<Parameters>, Arguments> && ...), "each argument fits its parameter");
   Row row{{std::move(head)}, shapes};
   row.kind = kind_of(Value(Result()));
   (describe(row, arguments), ...);
-  row.seeded = (std::is_same_v<std::decay_t<Parameters>, RandomSource> || ...);
-  row.per_view = (std::is_same_v<std::decay_t<Parameters>, View> || ...);
   row.gathers = (kGathers<std::decay_t<Parameters>> || ...);
-  for (const Source source : {Source::none, kSourceOf<std::decay_t<Parameters>>...})
-    if (source != Source::none) row.source = source;
-  row.run = [function, held = std::tuple(arguments...)](const JobInputs& in) -> Value {
-    return function(Matched::template get<P>(in, held)...);
+  row.run = [function, arguments...](const JobInputs& in) -> Value {
+    std::size_t value = 0;
+    // In braces the parameters are made from left to right.
+    const std::tuple<decltype(parameter<std::decay_t<Parameters>>(arguments, in, value))...> parameters{
+        parameter<std::decay_t<Parameters>>(arguments, in, value)...};
+    return std::apply(function, parameters);
   };
   return row;
 }
@@ -294,8 +268,7 @@ struct Catalog {
   template <class Result, class... Parameters, class... Arguments>
   RowOf<Result> add_row(RowHead head, Shapes shapes, const std::function<Result(Parameters...)>& function,
                         const Arguments&... arguments) {
-    rows.push_back(binding::make_row(std::move(head), shapes, function,
-                                     std::index_sequence_for<Parameters...>(), arguments...));
+    rows.push_back(binding::make_row(std::move(head), shapes, function, arguments...));
     return RowOf<Result>(rows.size() - 1);
   }
 };

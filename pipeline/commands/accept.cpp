@@ -13,6 +13,7 @@
 #include "pipeline/commands/gc.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "cache/folder_store.h"
-#include "pipeline/commands/subcommand.h"
 #include "pipeline/plan/plan.h"
 
 namespace salbench {
@@ -23,7 +22,5 @@ struct Accepted {
 // Throws ConfigError for a stage that does not exist, and StorageError.
 Accepted accept_stage(const Context& context, const std::string& stage, FolderStore& store,
                       const std::atomic<bool>& stop);
-
-Subcommand accept_subcommand(Arguments& arguments);
 
 }  // namespace salbench

@@ -1,8 +1,8 @@
-#include "pipeline/commands/config.h"
+#include "pipeline/catalog/config.h"
 
 #include <fmt/format.h>
 
-#include "pipeline/catalog/config.h"
+#include "pipeline/commands/subcommands.h"
 
 namespace salbench {
 
@@ -10,7 +10,9 @@ Subcommand config_subcommand(Arguments& arguments) {
   Parameter file = config_parameter(arguments);
   file.required = false;
   file.help += "; without it, the defaults";
-  return {"config", "print the complete configuration: every option with its help, unit and range", {file},
+  return {"config",
+          "print the complete configuration: every option with its help, unit and range",
+          {file},
           [&arguments](const std::atomic<bool>&) {
             const Section written = arguments.config.empty() ? Section::from_text("", "defaults")
                                                              : Section::from_file(arguments.config);

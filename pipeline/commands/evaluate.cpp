@@ -1,9 +1,8 @@
-#include "pipeline/commands/evaluate.h"
-
 #include <memory>
 
 #include "pipeline/catalog/given_maps.h"
 #include "pipeline/commands/run.h"
+#include "pipeline/commands/subcommands.h"
 
 namespace salbench {
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/commands/subcommand.h"
 #include "pipeline/plan/plan.h"
 
 namespace salbench {
@@ -25,7 +24,5 @@ struct Explanation {
 // In the order of the catalog. Throws ConfigError for an item or a stage that does not exist.
 std::vector<Explanation> explain(const Context& context, const Plan& plan, const std::filesystem::path& cache,
                                  const ExplainOptions& options);
-
-Subcommand explain_subcommand(Arguments& arguments);
 
 }  // namespace salbench

@@ -1,5 +1,3 @@
-#include "pipeline/commands/export.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -11,6 +9,7 @@
 #include "io/shape_file.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/results/export_file.h"
 #include "stages/core/errors.h"
@@ -146,18 +145,16 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
 
 Subcommand export_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<ExportOptions>();
-  return {"export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
-          run_parameters(
-              arguments,
-              {{"--stage", &options->stages,
-                "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
-               {"--models", &arguments.models, "only these, such as LS,PS"},
-               {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes", true},
-               {"--format", &options->format, "h5 (default), or one shape per item: csv, ply, vtp"},
-               {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"}}),
-          [&arguments, options](const std::atomic<bool>& stop) {
-            return run_export(arguments, *options, stop);
-          }};
+  return {
+      "export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
+      run_parameters(arguments,
+                     {{"--stage", &options->stages,
+                       "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
+                      {"--models", &arguments.models, "only these, such as LS,PS"},
+                      {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes", true},
+                      {"--format", &options->format, "h5 (default), or one shape per item: csv, ply, vtp"},
+                      {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"}}),
+      [&arguments, options](const std::atomic<bool>& stop) { return run_export(arguments, *options, stop); }};
 }
 
 }  // namespace salbench

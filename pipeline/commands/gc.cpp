@@ -6,6 +6,7 @@
 
 #include "io/table.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -91,9 +92,9 @@ std::size_t add_needed(const Context& context, const Plan& plan, KeepSet& needed
 Subcommand gc_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<GcOptions>();
   return {"gc", "remove from a cache what no run of these configurations needs",
-          cache_parameters(arguments, {{"CONFIG", &options->configs,
-                                        "every configuration whose artefacts are kept", true},
-                                       {"--dry-run", &options->dry_run, "only say what would be removed"}}),
+          cache_parameters(
+              arguments, {{"CONFIG", &options->configs, "every configuration whose artefacts are kept", true},
+                          {"--dry-run", &options->dry_run, "only say what would be removed"}}),
           [&arguments, options](const std::atomic<bool>&) { return run_gc(arguments, *options); }};
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 #include "pipeline/run/graph.h"
 #include "stages/core/errors.h"
 
@@ -57,9 +58,9 @@ std::string graph_text(const Catalog& catalog, const std::vector<std::size_t>& t
     std::vector<std::string> inputs;
     for (const Edge& edge : edges(catalog))
       if (edge.to == r) inputs.push_back(node_name(catalog.rows[edge.from]));
-    text += fmt::format("{} (version {}, one per {}{}){}{}\n", node_name(row), row.version,
-                        name_of(row.scope()), jobs_text(to_do, r), inputs.empty() ? "" : " <- ",
-                        fmt::join(inputs, ", "));
+    text +=
+        fmt::format("{} (version {}, one per {}{}){}{}\n", node_name(row), row.version, name_of(row.scope()),
+                    jobs_text(to_do, r), inputs.empty() ? "" : " <- ", fmt::join(inputs, ", "));
     if (const std::string options = options_of(row, ", "); !options.empty()) text += "  " + options + "\n";
   }
   return text;

@@ -4,15 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/commands/subcommand.h"
 #include "pipeline/plan/plan.h"
 
 namespace salbench {
 
-// Text with one line per node, or Graphviz with `dot`. `to_do` has the open jobs of each row; empty: not known.
+// Text with one line per node, or Graphviz with `dot`. `to_do` has the open jobs of each row; empty: not
+// known.
 std::string graph_text(const Catalog& catalog, const std::vector<std::size_t>& to_do = {});
 std::string graph_dot(const Catalog& catalog, const std::vector<std::size_t>& to_do = {});
-
-Subcommand graph_subcommand(Arguments& arguments);
 
 }  // namespace salbench

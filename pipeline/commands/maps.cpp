@@ -1,5 +1,3 @@
-#include "pipeline/commands/maps.h"
-
 #include <filesystem>
 #include <memory>
 
@@ -8,6 +6,7 @@
 #include "io/file.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 
 namespace salbench {
 namespace {
@@ -60,12 +59,12 @@ ExitStatus run_maps(const Arguments& arguments, bool matched, const std::atomic<
 
 Subcommand maps_subcommand(Arguments& arguments) {
   const auto matched = std::make_shared<bool>(false);
-  return {"maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value per line",
-          run_parameters(arguments,
-                         {{"--models", &arguments.models, "only these, such as LS,PS"},
-                          {"--to", &arguments.to, "folder that the maps are written to", true},
-                          {"--matched", matched.get(), "after histogram matching"}}),
-          [&arguments, matched](const std::atomic<bool>& stop) { return run_maps(arguments, *matched, stop); }};
+  return {
+      "maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value per line",
+      run_parameters(arguments, {{"--models", &arguments.models, "only these, such as LS,PS"},
+                                 {"--to", &arguments.to, "folder that the maps are written to", true},
+                                 {"--matched", matched.get(), "after histogram matching"}}),
+      [&arguments, matched](const std::atomic<bool>& stop) { return run_maps(arguments, *matched, stop); }};
 }
 
 }  // namespace salbench

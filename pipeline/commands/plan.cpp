@@ -1,9 +1,8 @@
-#include "pipeline/commands/plan.h"
-
 #include <fmt/format.h>
 
 #include "io/table.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 #include "pipeline/plan/causes.h"
 
 namespace salbench {

@@ -8,29 +8,18 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
-#include "pipeline/commands/accept.h"
-#include "pipeline/commands/config.h"
-#include "pipeline/commands/evaluate.h"
-#include "pipeline/commands/explain.h"
-#include "pipeline/commands/export.h"
-#include "pipeline/commands/gc.h"
-#include "pipeline/commands/graph.h"
 #include "pipeline/commands/interrupt.h"
-#include "pipeline/commands/maps.h"
-#include "pipeline/commands/plan.h"
-#include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
-#include "pipeline/commands/status.h"
-#include "pipeline/commands/verify.h"
+#include "pipeline/commands/subcommands.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
 constexpr std::array kSubcommands = {
-    run_subcommand,    maps_subcommand,  evaluate_subcommand, export_subcommand,
-    plan_subcommand,   graph_subcommand, explain_subcommand,  status_subcommand,
-    config_subcommand, verify_subcommand, gc_subcommand,      accept_subcommand,
+    run_subcommand,    maps_subcommand,   evaluate_subcommand, export_subcommand,
+    plan_subcommand,   graph_subcommand,  explain_subcommand,  status_subcommand,
+    config_subcommand, verify_subcommand, gc_subcommand,       accept_subcommand,
 };
 
 constexpr const char* kExamples = R"(Examples:

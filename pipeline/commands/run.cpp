@@ -5,6 +5,7 @@
 #include "io/file.h"
 #include "io/table.h"
 #include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/subcommands.h"
 #include "pipeline/plan/causes.h"
 #include "pipeline/results/record.h"
 
@@ -38,8 +39,7 @@ void write_results(Session& session, const RunRecord& record, const Arguments& a
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
   if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
-  if (!record.interrupted || !rows.empty())
-    write_tables(session.setup.output, record.run, rows, remarks);
+  if (!record.interrupted || !rows.empty()) write_tables(session.setup.output, record.run, rows, remarks);
   write_record(session.setup.output, record);
   if (!arguments.quiet && !record.interrupted) print_summary(session, rows);
   if (record.interrupted)
@@ -69,7 +69,8 @@ ExitStatus run_session(Session& session, const Arguments& arguments, const std::
 
 Subcommand run_subcommand(Arguments& arguments) {
   return {"run", "compute what is missing and write the tables",
-          run_parameters(arguments, {shard_parameter(arguments)}), [&arguments](const std::atomic<bool>& stop) {
+          run_parameters(arguments, {shard_parameter(arguments)}),
+          [&arguments](const std::atomic<bool>& stop) {
             Session session(arguments, stop);
             return run_session(session, arguments, stop);
           }};

@@ -7,8 +7,6 @@
 
 namespace salbench {
 
-Subcommand run_subcommand(Arguments& arguments);
-
 // Carries a session out and writes the tables; when interrupted, those of what was finished.
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop);
 

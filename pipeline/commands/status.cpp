@@ -1,11 +1,10 @@
-#include "pipeline/commands/status.h"
-
 #include <map>
 
 #include <fmt/format.h>
 
 #include "io/table.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 #include "pipeline/results/record.h"
 
 namespace salbench {

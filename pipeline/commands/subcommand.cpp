@@ -30,7 +30,9 @@ Parameter shard_parameter(Arguments& arguments) {
 
 Parameters run_parameters(Arguments& arguments, const Parameters& further) {
   return joined(
-      {config_parameter(arguments), data_parameter(arguments), cache_parameter(arguments),
+      {config_parameter(arguments),
+       data_parameter(arguments),
+       cache_parameter(arguments),
        {"--out", &arguments.output,
         "folder of the results (default: output in CONFIG, or salbench-out/NAME)"},
        {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
@@ -43,12 +45,12 @@ Parameters run_parameters(Arguments& arguments, const Parameters& further) {
 }
 
 Parameters cache_parameters(Arguments& arguments, const Parameters& further) {
-  return joined(
-      {data_parameter(arguments), cache_parameter(arguments),
-       {"--items", &arguments.items, "as of the run: only these meshes and their scans"},
-       {"--reference", &arguments.reference, "as of the run: match to this histogram"},
-       {"--quiet", &arguments.quiet, "name what is wrong, and nothing else"}},
-      further);
+  return joined({data_parameter(arguments),
+                 cache_parameter(arguments),
+                 {"--items", &arguments.items, "as of the run: only these meshes and their scans"},
+                 {"--reference", &arguments.reference, "as of the run: match to this histogram"},
+                 {"--quiet", &arguments.quiet, "name what is wrong, and nothing else"}},
+                further);
 }
 
 }  // namespace salbench

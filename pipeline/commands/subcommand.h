@@ -55,7 +55,8 @@ using SubcommandRow = Subcommand (*)(Arguments& arguments);
 // Parameters that several subcommands share.
 Parameter config_parameter(Arguments& arguments);
 Parameter shard_parameter(Arguments& arguments);
-Parameters run_parameters(Arguments& arguments, const Parameters& further = {});    // of what plans a run
-Parameters cache_parameters(Arguments& arguments, const Parameters& further = {});  // of what maintains a cache
+Parameters run_parameters(Arguments& arguments, const Parameters& further = {});  // of what plans a run
+Parameters cache_parameters(Arguments& arguments,
+                            const Parameters& further = {});  // of what maintains a cache
 
 }  // namespace salbench

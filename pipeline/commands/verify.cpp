@@ -8,6 +8,7 @@
 
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/subcommands.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -113,15 +114,13 @@ Recomputation recompute_sample(const Context& context, const Plan& plan, FolderS
 
 Subcommand verify_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<VerifyOptions>();
-  return {"verify", "read every artefact of a cache and name each bad one; changes nothing",
-          cache_parameters(
-              arguments,
-              {{"CONFIG", &options->configs, "configuration files, or none with --cache"},
-               {"--deep", &options->deep, "also compute a sample of the cached jobs again, and compare"},
-               {"--sample", &options->sample, "how many (default: 20)"}}),
-          [&arguments, options](const std::atomic<bool>& stop) {
-            return run_verify(arguments, *options, stop);
-          }};
+  return {
+      "verify", "read every artefact of a cache and name each bad one; changes nothing",
+      cache_parameters(arguments, {{"CONFIG", &options->configs, "configuration files, or none with --cache"},
+                                   {"--deep", &options->deep,
+                                    "also compute a sample of the cached jobs again, and compare"},
+                                   {"--sample", &options->sample, "how many (default: 20)"}}),
+      [&arguments, options](const std::atomic<bool>& stop) { return run_verify(arguments, *options, stop); }};
 }
 
 }  // namespace salbench

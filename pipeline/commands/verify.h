@@ -7,7 +7,6 @@
 
 #include "cache/folder_store.h"
 #include "cache/verify.h"
-#include "pipeline/commands/subcommand.h"
 #include "pipeline/plan/plan.h"
 
 namespace salbench {
@@ -20,7 +19,5 @@ struct Recomputation {
 };
 Recomputation recompute_sample(const Context& context, const Plan& plan, FolderStore& store,
                                std::size_t sample, const std::atomic<bool>& stop);
-
-Subcommand verify_subcommand(Arguments& arguments);
 
 }  // namespace salbench

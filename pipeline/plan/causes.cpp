@@ -186,8 +186,7 @@ std::string Causes::difference_line(const JobRef& job, const RecipeDifference& d
   if (!input)
     return fmt::format("{} {}", source_text(context_.source(job.item), difference.name), fate(difference));
   const std::string changed_by = origin(*input, difference.before);
-  return group_text(context_, job, difference) +
-         (changed_by.empty() ? "" : fmt::format(" ({})", changed_by));
+  return group_text(context_, job, difference) + (changed_by.empty() ? "" : fmt::format(" ({})", changed_by));
 }
 
 // From job to job, to the first that waits for nothing.

@@ -268,8 +268,8 @@ std::vector<RowCount> count_by_name(const Context& context, const Plan& plan, co
   std::vector<RowCount> counts;
   for (std::size_t r = 0; r < context.catalog.rows.size(); ++r) {
     const Row& row = context.catalog.rows[r];
-    auto count = std::find_if(counts.begin(), counts.end(),
-                              [&](const RowCount& of) { return of.stage == row.name; });
+    auto count =
+        std::find_if(counts.begin(), counts.end(), [&](const RowCount& of) { return of.stage == row.name; });
     if (count == counts.end())
       count = counts.insert(count, {.stage = row.name, .version = row.version, .reasons = {}});
     add_counts(context, plan, r, why, *count);

@@ -72,9 +72,9 @@ struct Context {
   const Catalog& catalog;
   Workload& workload;  // its digests follow files that change during a run
   std::uint64_t seed = 0;
-  Attributes attributes = {};         // written to every artefact
-  std::optional<Shard> shard = {};    // the workload is a share: no mean is taken over it
-  bool reference_given = false;       // in place of the data set's own mean
+  Attributes attributes = {};       // written to every artefact
+  std::optional<Shard> shard = {};  // the workload is a share: no mean is taken over it
+  bool reference_given = false;     // in place of the data set's own mean
 
   const Row& row(const JobRef& job) const { return catalog.rows[job.row]; }
   const DatasetItem& source(const Item& item) const { return workload.families[item.family].source; }
@@ -84,9 +84,9 @@ struct Context {
 
 // The mesh of a family, then its scans, where the catalog has rows for them.
 std::vector<Item> family_items(const Catalog& catalog, std::size_t family);
-std::vector<Item> all_items(const Context& context);                      // family by family
-std::vector<Item> items_of(const Context& context, std::size_t row);      // that the row has jobs for, in order
-std::vector<JobRef> jobs_of(const Catalog& catalog, const Item& item);    // in the order of the rows
+std::vector<Item> all_items(const Context& context);                    // family by family
+std::vector<Item> items_of(const Context& context, std::size_t row);    // that the row has jobs for, in order
+std::vector<JobRef> jobs_of(const Catalog& catalog, const Item& item);  // in the order of the rows
 std::optional<Item> find_item(const Context& context, const std::string& name);  // also "meshes", "scans"
 
 // The jobs whose results a job reads through one of its inputs: one, or all members of a set.

@@ -26,10 +26,10 @@ std::string inputs_text(const Recipe& recipe) {
 
 // Under the names that they have in the artefact.
 Attributes attributes_of(const Recipe& recipe, std::string_view kind, const Job& job) {
-  return {{"stage", recipe.stage},    {"stage_version", std::int64_t{recipe.stage_version}},
+  return {{"stage", recipe.stage},     {"stage_version", std::int64_t{recipe.stage_version}},
           {"kind", std::string(kind)}, {"options", recipe.options},
-          {"seed", recipe.seed},      {"inputs", inputs_text(recipe)},
-          {"key", job.key.hex()},     {"content", job.content.hex()}};
+          {"seed", recipe.seed},       {"inputs", inputs_text(recipe)},
+          {"key", job.key.hex()},      {"content", job.content.hex()}};
 }
 
 class Exporter {

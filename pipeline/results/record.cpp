@@ -76,7 +76,8 @@ std::string stage_lines(const RunRecord& record) {
     yaml += fmt::format("  {}: {{version: {}, why: {{{}}}}}\n", count.stage, count.version, why);
   }
   yaml +=
-      "nodes:  # of the graph, in its order: jobs settled and computed, seconds of one job and of all, share of "
+      "nodes:  # of the graph, in its order: jobs settled and computed, seconds of one job and of all, share "
+      "of "
       "the cores' time\n";
   const std::vector<NodeRecord>& nodes = record.run.runner.records();
   for (std::size_t row = 0; row < nodes.size(); ++row)
@@ -91,8 +92,8 @@ std::string run_yaml(const RunRecord& record) {
   if (config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
   yaml += fmt::format("program: salbench {}\nresults: {}\nhost: {}\n", SALBENCH_VERSION, state_line(record),
                       yaml_quoted(host_name()));
-  yaml += fmt::format("threads: {}\nseconds: {:.3f}\nartefacts_computed: {}\n", record.threads, record.seconds,
-                      runner.computed());
+  yaml += fmt::format("threads: {}\nseconds: {:.3f}\nartefacts_computed: {}\n", record.threads,
+                      record.seconds, runner.computed());
   if (context.shard) yaml += fmt::format("shard: {}\n", context.shard->text());
   yaml += fmt::format("reference: {}\n", reference_line(context));
   for (const Model& model : config.models)

@@ -52,8 +52,7 @@ std::vector<ResultRow> collect_results(const RunState& run) {
     for (const ScoresOf& of : scored) {
       const JobRef job{of.row, item};
       if (run.context.row(job).scope() == item.scope() && run.plan[job].known())
-        rows.push_back(
-            result_row(run.context, item, of.model, std::get<Scores>(*run.runner.result(job))));
+        rows.push_back(result_row(run.context, item, of.model, std::get<Scores>(*run.runner.result(job))));
     }
     run.runner.progress().item_done();
   }

@@ -40,7 +40,8 @@ struct RunState {
   Runner& runner;
 };
 
-ResultRow result_row(const Context& context, const Item& item, const std::string& model, const Scores& scores);
+ResultRow result_row(const Context& context, const Item& item, const std::string& model,
+                     const Scores& scores);
 
 // One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
 std::vector<ResultRow> collect_results(const RunState& run);
@@ -54,9 +55,9 @@ Table summary_table(const std::vector<ResultRow>& rows);
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
-// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and, where HS was
-// computed, human_curve.csv. Each begins with the remarks, as comments. Throws StorageError.
-void write_tables(const std::filesystem::path& folder, const RunState& run, const std::vector<ResultRow>& rows,
-                  const std::vector<std::string>& remarks);
+// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and, where HS
+// was computed, human_curve.csv. Each begins with the remarks, as comments. Throws StorageError.
+void write_tables(const std::filesystem::path& folder, const RunState& run,
+                  const std::vector<ResultRow>& rows, const std::vector<std::string>& remarks);
 
 }  // namespace salbench

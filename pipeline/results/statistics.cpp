@@ -45,7 +45,8 @@ void add_class_rows(Table& table, const std::string& dataset, const std::string&
                     const std::vector<ResultRow>& rows) {
   std::map<std::string, std::vector<double>> by_model;
   for (const ResultRow& row : rows)
-    if (row.dataset == dataset && row.category == category) by_model[row.model].push_back(value_of(row.scores, "auc"));
+    if (row.dataset == dataset && row.category == category)
+      by_model[row.model].push_back(value_of(row.scores, "auc"));
   std::vector<double> means;
   const auto add = [&](const std::string& model, const std::vector<double>& values) {
     const Summary summary = summarise(values);
@@ -122,8 +123,8 @@ Table human_curve_table(const std::vector<HumanCurve>& curves) {
       for (const HumanCurve& curve : curves)
         if (i < curve.size()) values.push_back(value_of(curve[i], metric.name));
       const Summary summary = summarise(values);
-      table.rows.push_back({static_cast<std::int64_t>(i + 1), std::string(metric.name), summary.n, summary.mean,
-                            summary.sd, summary.ci_low, summary.ci_high});
+      table.rows.push_back({static_cast<std::int64_t>(i + 1), std::string(metric.name), summary.n,
+                            summary.mean, summary.sd, summary.ci_low, summary.ci_high});
     }
   }
   return table;

@@ -151,8 +151,7 @@ Executor::Result Executor::run(const JobRef& job, std::vector<SourceData> files)
 
 Digest Executor::store(const JobRef& job, const Recipe& recipe, const Result& result) {
   const ArtefactNote note{context_.name(job), result.seconds, context_.attributes};
-  const Digest content =
-      store_.save(recipe, context_.row(job).kind, arrays_from(result.value), note);
+  const Digest content = store_.save(recipe, context_.row(job).kind, arrays_from(result.value), note);
   const std::lock_guard lock(mutex_);
   records_[job.row].seconds.push_back(static_cast<float>(result.seconds));
   return content;

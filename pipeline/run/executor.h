@@ -22,8 +22,8 @@ struct Failure {
 
 // What a row's node has done.
 struct NodeRecord {
-  std::size_t settled = 0;            // jobs that passed through the node
-  std::vector<float> seconds = {};    // of each job that was computed
+  std::size_t settled = 0;          // jobs that passed through the node
+  std::vector<float> seconds = {};  // of each job that was computed
 };
 
 class Executor {
@@ -34,12 +34,12 @@ class Executor {
   // All references must outlive it; it brings `plan` up to date.
   Executor(const Context& context, Plan& plan, Store& store, Damaged damaged = Damaged::restore);
 
-  // Brings an open job to its end: from wait or compute to done, cached, not applicable, failed or blocked. What
-  // it reads is settled. Several threads may settle different jobs. Throws StorageError.
+  // Brings an open job to its end: from wait or compute to done, cached, not applicable, failed or blocked.
+  // What it reads is settled. Several threads may settle different jobs. Throws StorageError.
   void settle(const JobRef& job);
 
-  // The result of a known job: in memory, from the cache, or given. A damaged artefact is computed again; only
-  // the same content will do. With Damaged::report it is an InputError.
+  // The result of a known job: in memory, from the cache, or given. A damaged artefact is computed again;
+  // only the same content will do. With Damaged::report it is an InputError.
   ValuePtr load(const JobRef& job);
 
   // Computes a known job again from what the cache has, and stores nothing.
@@ -48,9 +48,9 @@ class Executor {
   // Drops the values of a family's items.
   void forget(std::size_t family);
 
-  const std::vector<Failure>& failures() const { return failures_; }    // in no order
-  const std::vector<NodeRecord>& records() const { return records_; }   // [row]
-  std::string at_work() const;                                          // "map.LS, 2 map.CS"
+  const std::vector<Failure>& failures() const { return failures_; }   // in no order
+  const std::vector<NodeRecord>& records() const { return records_; }  // [row]
+  std::string at_work() const;                                         // "map.LS, 2 map.CS"
 
  private:
   struct Result {
@@ -70,8 +70,8 @@ class Executor {
   Plan& plan_;
   Store& store_;
   Damaged damaged_;
-  mutable std::mutex mutex_;          // of values_, failures_ and records_; held for moments only
-  std::recursive_mutex restoring_;    // a damaged value may need other damaged ones
+  mutable std::mutex mutex_;                   // of values_, failures_ and records_; held for moments only
+  std::recursive_mutex restoring_;             // a damaged value may need other damaged ones
   std::vector<std::vector<ValuePtr>> values_;  // [row][item]: of families at work, and of sets
   std::vector<Failure> failures_;
   std::vector<NodeRecord> records_;

@@ -112,8 +112,7 @@ class Stream {
           [this, row](const Ticket& ticket, RowNode::output_ports_type& out) { arrive(row, ticket, out); },
           static_cast<flow::node_priority_t>(row + 1));
     for (const Edge& edge : edges(context_.catalog)) {
-      const bool to_scans =
-          rows[edge.from].scope() == Scope::mesh && rows[edge.to].scope() == Scope::scan;
+      const bool to_scans = rows[edge.from].scope() == Scope::mesh && rows[edge.to].scope() == Scope::scan;
       if (to_scans)
         flow::make_edge(flow::output_port<kScans>(nodes_[edge.from]), nodes_[edge.to]);
       else
@@ -148,8 +147,8 @@ class Stream {
     if (missing(job) != kNotOpen && open_inputs(job) == 0) nodes_[job.row].try_put(job.item);
   }
 
-  // A ticket of a mesh stands for the mesh, or at a row of scans for the scan that it was sent for; at a row of
-  // the data set every ticket stands for the set. That a set is settled shapes know before they enter.
+  // A ticket of a mesh stands for the mesh, or at a row of scans for the scan that it was sent for; at a row
+  // of the data set every ticket stands for the set. That a set is settled shapes know before they enter.
   void arrive(std::size_t row, const Ticket& ticket, RowNode::output_ports_type& out) {
     const Row& of = context_.catalog.rows[row];
     if (ticket.is_set() && !of.gathers) return;

@@ -11,7 +11,8 @@ class Progress {
  public:
   virtual ~Progress() = default;
   // `at_work` names what is being done at the moment; it may be called from any thread until end().
-  virtual void begin(const std::string& what, std::size_t items, std::function<std::string()> at_work = {}) = 0;
+  virtual void begin(const std::string& what, std::size_t items,
+                     std::function<std::string()> at_work = {}) = 0;
   virtual void item_done() = 0;  // from any thread
   virtual void end() = 0;
 };

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
-#include "tests/e2e/workspace.h"
 #include "stages/scan/scan.h"
+#include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
 
 namespace salbench {
@@ -131,8 +131,8 @@ TEST(Interruption, HalfWayThereAreFinalScoresOfTheItemsThatWereFinished) {
   EXPECT_THAT(toy.salbench("status").out, HasSubstr("(finished)"));
   toy.forget_everything();
 
-  const Outcome ended = run_process(
-      with_signal_at_rename(toy.command("run"), std::to_string(half) + " after", SIGTERM));
+  const Outcome ended =
+      run_process(with_signal_at_rename(toy.command("run"), std::to_string(half) + " after", SIGTERM));
   EXPECT_EQ(ended.status, 130) << ended.err;
   EXPECT_THAT(toy.results(), testing::StartsWith("# PARTIAL: "));
   const std::vector<std::string> partial = lines_with(toy.results(), ",");

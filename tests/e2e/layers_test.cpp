@@ -47,13 +47,17 @@ TEST_F(Layers, EveryKindOfBreachIsNamed) {
   expect_breach("io/a.h", "#include \"cache/key.h\"\n", "io may include");
   expect_breach("cache/a.h", "#include \"pipeline/plan/plan.h\"\n", "cache may include");
   expect_breach("pipeline/plan/a.h", "#include \"tests/support/shapes.h\"\n", "pipeline/plan may include");
-  expect_breach("pipeline/config/a.h", "#include \"pipeline/catalog/catalog.h\"\n", "pipeline/config may include");
-  expect_breach("pipeline/catalog/a.h", "#include \"pipeline/plan/plan.h\"\n", "pipeline/catalog may include");
+  expect_breach("pipeline/config/a.h", "#include \"pipeline/catalog/catalog.h\"\n",
+                "pipeline/config may include");
+  expect_breach("pipeline/catalog/a.h", "#include \"pipeline/plan/plan.h\"\n",
+                "pipeline/catalog may include");
   expect_breach("pipeline/plan/a.h", "#include \"pipeline/run/runner.h\"\n", "pipeline/plan may include");
   expect_breach("pipeline/run/a.h", "#include \"pipeline/results/results.h\"\n", "pipeline/run may include");
-  expect_breach("pipeline/results/a.h", "#include \"pipeline/commands/run.h\"\n", "pipeline/results may include");
+  expect_breach("pipeline/results/a.h", "#include \"pipeline/commands/run.h\"\n",
+                "pipeline/results may include");
   expect_breach("pipeline/a.h", "#include \"io/table.h\"\n", "pipeline has rooms");
-  expect_breach("pipeline/run/a.cpp", "#include <tbb/flow_graph.h>\n", "the flow graph is already included by");
+  expect_breach("pipeline/run/a.cpp", "#include <tbb/flow_graph.h>\n",
+                "the flow graph is already included by");
   expect_breach("stages/scan/a.h", "#include <embree3/rtcore.h>\n", "Embree belongs in a .cpp");
 }
 

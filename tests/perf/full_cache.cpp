@@ -59,7 +59,8 @@ void fill(const Arguments& arguments) {
   Runner runner(setup.context, plan, store, *progress, stop);
   runner.run(thread_count(arguments));
   for (const Failure& failure : runner.failures())
-    std::cerr << setup.context.name(failure.job) << ": " << setup.context.row(failure.job).name << ": " << failure.cause << '\n';
+    std::cerr << setup.context.name(failure.job) << ": " << setup.context.row(failure.job).name << ": "
+              << failure.cause << '\n';
   std::cout << setup.workload.families.size() << " meshes, " << runner.computed() << " artefacts\n";
 }
 

@@ -1,5 +1,5 @@
-// CONTRIBUTING.md, followed: a stage, a model, a metric, a layout and a subcommand that are not in the program are added
-// in one place each, and take part like those that are.
+// CONTRIBUTING.md, followed: a stage, a model, a metric, a layout and a subcommand that are not in the
+// program are added in one place each, and take part like those that are.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -161,7 +161,9 @@ TEST(AddALayout, ItIsOneRow) {
 // --- a subcommand: a function, and a row of the table ----------------------------------------------------
 
 Subcommand greet_subcommand(Arguments& arguments) {
-  return {"greet", "say hello to a configuration", {config_parameter(arguments)},
+  return {"greet",
+          "say hello to a configuration",
+          {config_parameter(arguments)},
           [&arguments](const std::atomic<bool>&) {
             return arguments.config == "world" ? kAllDone : kSomeFailed;
           }};

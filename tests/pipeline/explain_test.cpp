@@ -145,7 +145,9 @@ TEST_F(ExplainTest, OptionsOfTwoSectionsKeepTheirPaths) {
 
 TEST_F(ExplainTest, ARaisedStageVersionIsNamed) {
   run();
-  const Change raise = [](Catalog& catalog) { catalog.rows[catalog.index(Shapes::meshes, "fpfh")].version = 2; };
+  const Change raise = [](Catalog& catalog) {
+    catalog.rows[catalog.index(Shapes::meshes, "fpfh")].version = 2;
+  };
   EXPECT_EQ(asked("fpfh", kMeshes, "1", raise), "to compute: stage version 1 -> 2");
   EXPECT_EQ(asked("map.PS", kMeshes, "1", raise), "waiting: waits for fpfh: stage version 1 -> 2");
   EXPECT_EQ(asked("map.RS", kMeshes, "1", raise), "cached: ");

@@ -213,7 +213,8 @@ Outputs toy_outputs() {
     ToyRun toy(data.path(), store, "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\n");
     toy.run();
     for (const Failure& failure : toy.runner.failures())
-      ADD_FAILURE() << toy.context.name(failure.job) << ": " << toy.context.row(failure.job).name << ": " << failure.cause;
+      ADD_FAILURE() << toy.context.name(failure.job) << ": " << toy.context.row(failure.job).name << ": "
+                    << failure.cause;
     collect(protocol, store.records(), outputs);
     collect_inputs(protocol, toy, outputs);
     expect_every_row(protocol, toy.catalog, outputs);

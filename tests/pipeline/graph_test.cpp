@@ -101,10 +101,11 @@ TEST_F(GraphTest, SettledJobsAreNeitherDoneAgainNorWaitedFor) {
   EXPECT_THAT(order, SizeIs(1));
   order.clear();
   run(3, {.open = [](const JobRef&) { return false; },
-          .enter = [](std::size_t) {
-            ADD_FAILURE() << "a family without work entered";
-            return true;
-          }});
+          .enter =
+              [](std::size_t) {
+                ADD_FAILURE() << "a family without work entered";
+                return true;
+              }});
   EXPECT_THAT(order, IsEmpty());
 }
 
@@ -181,20 +182,21 @@ TEST_F(GraphTest, LaterRowsGoFirst) {
 TEST_F(GraphTest, AsManyFamiliesAreInsideAsThereAreTokensAndNoMore) {
   std::atomic<int> inside = 0, most = 0;
   Meeting first_three(3);
-  run(100, {4, 3}, {.enter =
-                        [&](std::size_t) {
-                          const int now = ++inside;
-                          int seen = most;
-                          while (now > seen && !most.compare_exchange_weak(seen, now)) {
-                          }
-                          return true;
-                        },
-                    .settle =
-                        [&](const JobRef& job) {
-                          if (job.row == mesh && job.item.family < 3) first_three.join();
-                          return true;
-                        },
-                    .leave = [&](std::size_t) { --inside; }});
+  run(100, {4, 3},
+      {.enter =
+           [&](std::size_t) {
+             const int now = ++inside;
+             int seen = most;
+             while (now > seen && !most.compare_exchange_weak(seen, now)) {
+             }
+             return true;
+           },
+       .settle =
+           [&](const JobRef& job) {
+             if (job.row == mesh && job.item.family < 3) first_three.join();
+             return true;
+           },
+       .leave = [&](std::size_t) { --inside; }});
   EXPECT_EQ(inside, 0);
   EXPECT_EQ(most, 3);
 }

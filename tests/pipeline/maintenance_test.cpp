@@ -1,8 +1,4 @@
 // What looks after a cache, over real runs on a toy data set.
-#include "pipeline/commands/accept.h"
-#include "pipeline/commands/gc.h"
-#include "pipeline/commands/verify.h"
-
 #include <algorithm>
 #include <fstream>
 
@@ -11,6 +7,9 @@
 
 #include "cache/layout.h"
 #include "io/file.h"
+#include "pipeline/commands/accept.h"
+#include "pipeline/commands/gc.h"
+#include "pipeline/commands/verify.h"
 #include "stages/core/errors.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/temporary_folder.h"

@@ -37,7 +37,8 @@ class RunnerTest : public testing::Test {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run(threads);
     for (const Failure& failure : toy.runner.failures())
-      failures_.push_back(toy.context.name(failure.job) + ": " + toy.context.row(failure.job).name + ": " + failure.cause);
+      failures_.push_back(toy.context.name(failure.job) + ": " + toy.context.row(failure.job).name + ": " +
+                          failure.cause);
     results_ = to_csv(results_table(toy.results()));
     return store_.take_saved();
   }
@@ -332,7 +333,8 @@ TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   EXPECT_EQ(cc_of_two[0], Cell(std::int64_t{2}));
   EXPECT_EQ(cc_of_two[1], Cell("cc"));
   EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));
-  EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]), (value_of(curves[0][1], "cc") + value_of(curves[1][1], "cc")) / 2);
+  EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]),
+                   (value_of(curves[0][1], "cc") + value_of(curves[1][1], "cc")) / 2);
 }
 
 TEST_F(RunnerTest, AHumanCurveOfAnEarlierRunIsNotLeftBehind) {
@@ -358,8 +360,7 @@ TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
   EXPECT_EQ(job(1).reason, Reason::inapplicable);
   toy.run();
   EXPECT_THAT(toy.runner.failures(), IsEmpty());
-  const std::string results =
-      to_csv(results_table(toy.results()));
+  const std::string results = to_csv(results_table(toy.results()));
   EXPECT_THAT(results, HasSubstr("\nmeshes,1,human,,HS,"));
   EXPECT_THAT(results, HasSubstr("\nmeshes,2,human,,PS,"));
   EXPECT_THAT(results, Not(HasSubstr("\nmeshes,2,human,,HS,")));

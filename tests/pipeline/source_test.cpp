@@ -26,9 +26,7 @@ class EditedDuringARun : public testing::Test {
     write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
   }
 
-  static std::string results_of(ToyRun& run) {
-    return to_csv(results_table(run.results()));
-  }
+  static std::string results_of(ToyRun& run) { return to_csv(results_table(run.results())); }
   std::string results() {
     ToyRun run(data_.path(), store_, kYaml);
     run.run();
@@ -168,8 +166,7 @@ class Thrown : public EditedDuringARun {
     ToyRun run(data_.path(), store_, kYaml);
     run.catalog.rows[run.row("fpfh")].run = body;
     run.run();
-    for (const Failure& failure : run.runner.failures())
-      EXPECT_EQ(run.context.row(failure.job).name, "fpfh");
+    for (const Failure& failure : run.runner.failures()) EXPECT_EQ(run.context.row(failure.job).name, "fpfh");
     return run.runner.failures();
   }
 };
@@ -184,8 +181,7 @@ TEST_F(Thrown, BadDataIsTheItemsAndEverythingElseADefect) {
       {[](const JobInputs&) -> Value { throw InputError("1.off:3: bad"); }, false, "1.off:3: bad"},
       {[](const JobInputs&) -> Value { throw std::logic_error("broken"); }, true,
        "a defect of salbench, please report it: broken"},
-      {[](const JobInputs&) -> Value { throw std::bad_alloc(); }, true,
-       "out of memory; use fewer --threads"},
+      {[](const JobInputs&) -> Value { throw std::bad_alloc(); }, true, "out of memory; use fewer --threads"},
       {[](const JobInputs&) -> Value { throw 5; }, true, "an unknown exception"}};
   for (const Case& one : cases) {
     const std::vector<Failure> failures = failures_with(one.body);

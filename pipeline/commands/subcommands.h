@@ -1,0 +1,21 @@
+// The subcommands, each in the file of its name. THE table of them is in program.cpp.
+#pragma once
+
+#include "pipeline/commands/subcommand.h"
+
+namespace salbench {
+
+Subcommand run_subcommand(Arguments& arguments);
+Subcommand maps_subcommand(Arguments& arguments);
+Subcommand evaluate_subcommand(Arguments& arguments);
+Subcommand export_subcommand(Arguments& arguments);
+Subcommand plan_subcommand(Arguments& arguments);
+Subcommand graph_subcommand(Arguments& arguments);
+Subcommand explain_subcommand(Arguments& arguments);
+Subcommand status_subcommand(Arguments& arguments);
+Subcommand config_subcommand(Arguments& arguments);
+Subcommand verify_subcommand(Arguments& arguments);
+Subcommand gc_subcommand(Arguments& arguments);
+Subcommand accept_subcommand(Arguments& arguments);
+
+}  // namespace salbench
