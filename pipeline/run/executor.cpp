@@ -112,7 +112,9 @@ ValuePtr Executor::restored(const JobRef& ref) {
         fmt::format("stage {} gave another result than before for the same inputs: it is not "
                     "deterministic; please report this",
                     context_.row(ref).name));
-  return std::make_shared<const Value>(std::move(result.value));
+  auto value = std::make_shared<const Value>(std::move(result.value));
+  hold(ref, value);  // for those that wait for the same one
+  return value;
 }
 
 Value Executor::recompute(const JobRef& job) {

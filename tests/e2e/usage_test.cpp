@@ -137,6 +137,39 @@ TEST(Usage, PlanAndStatusChangeNothing) {
   EXPECT_EQ(toy.results(), results);
 }
 
+TEST(Usage, ConfigPrintsAConfigurationThatIsTheSameRun) {
+  const Workspace toy;
+  const Outcome printed = run_process({SALBENCH_PROGRAM, "config", toy.config().string()});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_THAT(printed.out, HasSubstr("  # nearest points, the point itself included (points; >= 2)\n"));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  toy.configure(printed.out);
+  EXPECT_THAT(toy.salbench("plan").out, HasSubstr("\n0 jobs to do"));
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "config", toy.config().string()}).out, printed.out);
+
+  const Outcome defaults = run_process({SALBENCH_PROGRAM, "config"});
+  EXPECT_EQ(defaults.status, 0);
+  EXPECT_THAT(defaults.out, AllOf(HasSubstr("protocol: published\n"), HasSubstr("\n  HS:\n")));
+}
+
+TEST(Usage, GraphCountsWhatEachNodeHasToDo) {
+  const Workspace toy;
+  const auto lines = [&](const std::vector<std::string>& further) {
+    const Outcome graph = toy.salbench("graph", further);
+    EXPECT_EQ(graph.status, 0) << graph.err;
+    return graph.out;
+  };
+  EXPECT_THAT(lines({}), HasSubstr("\nfpfh of scans (version 1, one per scan, 24 to do) <- scan of scans, "
+                                   "scan_normals of scans\n"));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_THAT(lines({}), HasSubstr("\nreference of meshes (version 1, one per set, 0 to do) <- ground_truth "
+                                   "of meshes\n"));
+  EXPECT_THAT(lines({"--format", "dot"}), testing::StartsWith("digraph salbench {"));
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "graph", toy.config().string(), "--format", "png"}).status, 2);
+  EXPECT_THAT(run_process({SALBENCH_PROGRAM, "graph", toy.config().string()}).out,
+              testing::Not(HasSubstr("to do")));
+}
+
 TEST(Usage, QuietMeansWarningsAndErrorsOnly) {
   const Workspace toy(kMeshesOnly);
   const Outcome run = toy.salbench("run", {"--quiet"});
