@@ -153,7 +153,7 @@ std::string Causes::line(const JobRef& job, const Cause& cause) {
       return joined(lines);
     }
     default:
-      return std::string(text_of(cause.reason));
+      return std::string(name_of(cause.reason));
   }
 }
 
@@ -163,9 +163,9 @@ std::string Causes::group(const JobRef& ref) {
     return {};  // without looking for its file
   const Cause cause = of(ref);
   if (cause.reason == Reason::input_pending || cause.reason == Reason::input_failed)
-    return fmt::format("{} {}", text_of(cause.reason),
+    return fmt::format("{} {}", name_of(cause.reason),
                        context_.catalog.rows[context_.row(ref).inputs[job.blocking_input]].name);
-  if (cause.differences.empty()) return std::string(text_of(cause.reason));
+  if (cause.differences.empty()) return std::string(name_of(cause.reason));
   return joined(group_texts(context_, ref, cause.differences));
 }
 
@@ -204,7 +204,7 @@ std::string Causes::waits_for_members(const JobRef& job) {
   std::vector<JobRef> open;
   for (const JobRef& member : input_jobs(context_, job, 0))
     if (plan_[member].open()) open.push_back(member);
-  if (open.empty()) return std::string(text_of(Reason::changed));
+  if (open.empty()) return std::string(name_of(Reason::changed));
   return fmt::format("waits for {} of {}{}: {}", context_.row(open[0]).name, context_.name(open[0]),
                      open.size() > 1 ? fmt::format(" and {} more", open.size() - 1) : "",
                      line(open[0], of(open[0])));

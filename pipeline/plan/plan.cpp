@@ -76,33 +76,6 @@ std::optional<Job> stopped(const Context& context, const Plan& plan, const JobRe
 
 }  // namespace
 
-std::string_view text_of(Reason reason) {
-  switch (reason) {
-    case Reason::never_computed:
-      return "not in the cache";
-    case Reason::changed:
-      return "options, inputs, seed or version changed";
-    case Reason::input_pending:
-      return "waits for";
-    case Reason::input_failed:
-      return "failed input:";
-    case Reason::no_ground_truth:
-      return "no ground truth";
-    case Reason::unreadable:
-      return "a source file cannot be read";
-    case Reason::damaged:
-      return "damaged";
-    case Reason::inapplicable:
-      return "does not apply";
-    case Reason::not_given:
-      return "not given";
-    case Reason::needs_all:
-      return "needs the mean over all shards";
-    default:
-      return "";
-  }
-}
-
 std::string Context::name(const Item& item) const {
   const std::string& mesh = source(item).name;
   return item.is_mesh() ? mesh : fmt::format("{}_{}", mesh, item.view);

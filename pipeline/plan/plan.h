@@ -5,6 +5,7 @@
 // waits, and may yet turn out to be in the cache when the input comes out as before.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -40,7 +41,20 @@ enum class Reason : std::uint8_t {
   not_given,     // a map of such items is not among those given
   needs_all,     // the mean over the whole data set, of which this is a share
 };
-std::string_view text_of(Reason reason);
+template <>
+struct EnumNames<Reason> {  // for people
+  static constexpr std::array<std::string_view, 11> names{"",
+                                                          "not in the cache",
+                                                          "options, inputs, seed or version changed",
+                                                          "waits for",
+                                                          "failed input:",
+                                                          "no ground truth",
+                                                          "a source file cannot be read",
+                                                          "damaged",
+                                                          "does not apply",
+                                                          "not given",
+                                                          "needs the mean over all shards"};
+};
 
 struct Job {
   Verdict verdict = Verdict::wait;
