@@ -33,7 +33,7 @@ std::vector<JobRef> cached_jobs(const Context& context, const Plan& plan) {
 // Recomputes a cached job and describes the first difference; empty if there is none.
 std::string recomputed_fault(Executor& executor, const JobRef& job, const Digest& expected) try {
   const Digest content = content_digest(arrays_from(executor.recompute(job)));
-  executor.forget(job.item.family);
+  for (const Item& item : {job.item, Item::mesh(job.item.family)}) executor.forget(item);
   if (content == expected) return {};
   return fmt::format(
       "computed again, its content is {}: the stage is not deterministic, or its version was not raised",

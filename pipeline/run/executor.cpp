@@ -78,9 +78,8 @@ void Executor::hold(const JobRef& job, ValuePtr value) {
   values_[job.row][job.item.index()] = std::move(value);
 }
 
-void Executor::forget(std::size_t family) {
-  for (const Item& item : family_items(context_.catalog, family))
-    for (const JobRef& job : jobs_of(context_.catalog, item)) hold(job, nullptr);
+void Executor::forget(const Item& item) {
+  for (const JobRef& job : jobs_of(context_.catalog, item)) hold(job, nullptr);
 }
 
 // Two rows that ask at the same time may load it twice; neither waits for the other.

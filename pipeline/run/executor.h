@@ -45,8 +45,8 @@ class Executor {
   // Computes a known job again from what the cache has, and stores nothing.
   Value recompute(const JobRef& job);
 
-  // Drops the values of a family's items.
-  void forget(std::size_t family);
+  // Drops the values of an item.
+  void forget(const Item& item);
 
   const std::vector<Failure>& failures() const { return failures_; }   // in no order
   const std::vector<NodeRecord>& records() const { return records_; }  // [row]

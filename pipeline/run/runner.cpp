@@ -89,6 +89,13 @@ void Runner::settle(const std::string& what, const std::vector<bool>& rows, int 
 std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
   std::vector<std::unique_ptr<Claim>> claims(context_.workload.families.size());
   std::atomic<std::size_t> claimed_by_others = 0;
+  // Only a mesh's values are read by other shapes: those of a scan can go with its last job.
+  std::vector<std::atomic<std::size_t>> open_of_scan(claims.size() * kViews);
+  const auto open = [&](const JobRef& job) {
+    const bool is_open = rows[job.row] && plan_[job].open();
+    if (is_open && job.item.scope() == Scope::scan) ++open_of_scan[job.item.index()];
+    return is_open;
+  };
   const auto settle = [&](const JobRef& job) {
     std::unique_ptr<Claim> claim;
     if (job.item.is_set()) {
@@ -96,6 +103,7 @@ std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
       if (!claim) return ++claimed_by_others, false;
     }
     executor_.settle(job);
+    if (job.item.scope() == Scope::scan && --open_of_scan[job.item.index()] == 0) executor_.forget(job.item);
     progress_.item_done();
     return true;
   };
@@ -105,10 +113,9 @@ std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
     return claims[family] != nullptr;
   };
   const auto leave = [&](std::size_t family) {
-    executor_.forget(family);
+    for (const Item& item : family_items(context_.catalog, family)) executor_.forget(item);
     claims[family].reset();
   };
-  const auto open = [&](const JobRef& job) { return rows[job.row] && plan_[job].open(); };
   stream(context_, {.threads = threads, .families = threads + 1}, stop_, {open, enter, settle, leave});
   return claimed_by_others;
 }
