@@ -77,8 +77,8 @@ void Runner::settle(const std::string& what, const std::vector<bool>& rows, int 
   while (open > 0 && !stop_) {
     const std::size_t claimed_by_others = stream_once(rows, threads);
     const std::size_t before = std::exchange(open, open_jobs(rows));
-    if (claimed == Claimed::left) break;
     if (open < before || stop_) continue;
+    if (claimed == Claimed::left) break;
     if (claimed_by_others == 0) throw std::logic_error("jobs are left that nothing can settle");
     std::this_thread::sleep_for(kClaimPollInterval);
   }

@@ -97,6 +97,23 @@ TEST(Processes, AKilledOneHoldsUpNoOther) {
   EXPECT_EQ(toy.results(), results);
 }
 
+// Families are claimed by the content of their mesh: one of the two comes in a second round of the reference,
+// and nothing else is begun before.
+TEST(Processes, TwoMeshesOfOneContentAreWorkedOnOneAfterTheOther) {
+  const Workspace toy;
+  for (const char* file : {"Meshes/%.off", "Distributions/%.val", "RawData/%_0.pid", "RawData/%_1.pid"}) {
+    const auto named = [&](const char* mesh) {
+      return toy.data() / std::string(file).replace(std::string(file).find('%'), 1, mesh);
+    };
+    fs::copy(named("1"), named("3"));
+  }
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(lines_with(run.err, "reference: "), SizeIs(1)) << run.err;
+  EXPECT_THAT(lines_with(run.err, "maps: "), IsEmpty()) << run.err;
+  EXPECT_THAT(lines_with(run.err, "evaluation: "), SizeIs(1)) << run.err;
+}
+
 TEST(Processes, AnInterruptedOneDoesNotWaitForOthers) {
   const Workspace toy;
   std::vector<std::unique_ptr<Claim>> claims;
