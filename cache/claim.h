@@ -1,4 +1,4 @@
-// Claims: one at a time of the processes that share a cache does a piece of work.
+// Claims: processes that share a cache divide the work, so that each piece is done by one of them.
 #pragma once
 
 #include <filesystem>

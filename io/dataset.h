@@ -12,7 +12,7 @@
 
 namespace salbench {
 
-// Where the files of mesh N lie below ROOT, the folder that the user names.
+// Layouts: the paths of the files of mesh N below ROOT, the folder that the user names.
 //   gs         GS/{Saliency/N.val, RawData/N_k.pid} with meshes in off/ or Meshes/; or ROOT is GS/
 //   schelling  {Meshes/N.off, Distributions/N.val, RawData/N_k.pid}, also below SchellingData/, once or twice
 //              [chen2012]

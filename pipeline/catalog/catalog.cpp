@@ -112,7 +112,7 @@ void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, c
     return matched(values, reference);
   };
   add_scores(catalog, shape, config, model,
-             catalog.add(shape.shapes, {"matched." + model.name, 1}, match, map, shape.reference));
+             catalog.add(shape.shapes, matched_head, match, map, shape.reference));
   catalog.add(shape.shapes, {"mean_histogram." + model.name, 1}, mean_over<ScalarField>, map);
 }
 
@@ -224,6 +224,10 @@ std::vector<bool> ancestors(const Catalog& catalog, const std::vector<std::size_
 bool Catalog::has(Shapes shapes, std::string_view name) const {
   return std::any_of(rows.begin(), rows.end(),
                      [&](const Row& row) { return row.shapes == shapes && row.name == name; });
+}
+
+bool Catalog::reference_is_given() const {
+  return std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.given != nullptr; });
 }
 
 std::size_t Catalog::index(Shapes shapes, std::string_view name) const {

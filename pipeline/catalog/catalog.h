@@ -17,7 +17,7 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
 // Configuration path of a row's option, such as "fpfh.radius"; the bare key if no section has it.
 std::string option_path(const Row& row, std::string_view key);
 
-// Rows without which `row` cannot be computed, itself included: [row].
+// The rows given and all that they read, directly or not: [row]. Rows with a given value read nothing.
 std::vector<bool> ancestors(const Catalog& catalog, const std::vector<std::size_t>& rows);
 
 }  // namespace salbench

@@ -36,7 +36,7 @@ struct EnumNames<Shapes> {
   static constexpr std::array<std::string_view, 2> names{"meshes", "scans"};
 };
 
-// What a row has one job for: each mesh, each scan, or the data set.
+// A row has one job per mesh, one per scan, or one for the data set.
 enum class Scope : std::uint8_t { mesh, scan, set };
 template <>
 struct EnumNames<Scope> {
@@ -68,7 +68,7 @@ struct Members {
   const std::function<ValuePtr(std::size_t)>& value;
 };
 
-// What a job hands to its row's function.
+// Inputs of one job, from which its row's function gets its parameters.
 struct JobInputs {
   std::vector<ValuePtr> values = {};  // of the rows that are read, in their order
   std::size_t members = 0;            // of a set
@@ -178,7 +178,7 @@ inline constexpr bool kGathers = false;
 template <class T>
 inline constexpr bool kGathers<Members<T>> = true;
 
-// What the row learns from an argument.
+// Records in the row what an argument makes it read.
 template <class T>
 void describe(Row& row, const RowOf<T>& input) {
   row.inputs.push_back(input.row);
@@ -261,6 +261,7 @@ struct Catalog {
   }
 
   bool has(Shapes shapes, std::string_view name) const;
+  bool reference_is_given() const;  // in place of the data set's own mean
   // Throws std::out_of_range.
   std::size_t index(Shapes shapes, std::string_view name) const;
 

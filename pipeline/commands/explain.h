@@ -10,7 +10,7 @@
 namespace salbench {
 
 struct ExplainOptions {
-  std::string item;   // "52", "52_3"; "meshes" or "scans" for the means
+  std::string item;   // "52", "52_3"
   std::string stage;  // empty: all
 };
 

@@ -1,6 +1,5 @@
 #include "pipeline/commands/graph.h"
 
-#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -33,9 +32,7 @@ std::vector<std::size_t> open_jobs(const Arguments& arguments) {
   const Setup setup(arguments);
   const FolderStore store(setup.cache, Access::read_only);
   std::vector<std::size_t> open;
-  for (const std::vector<Job>& jobs : make_plan(setup.context, store).jobs)
-    open.push_back(static_cast<std::size_t>(
-        std::count_if(jobs.begin(), jobs.end(), [](const Job& job) { return job.open(); })));
+  for (const std::vector<Job>& jobs : make_plan(setup.context, store).jobs) open.push_back(count_open(jobs));
   return open;
 }
 

@@ -70,8 +70,7 @@ Setup::Setup(const Arguments& arguments, const std::optional<Model>& given)
               .workload = workload,
               .seed = config.seed,
               .attributes = {{"protocol", std::string(name_of(config.protocol))}},
-              .shard = shard_of(arguments),
-              .reference_given = !arguments.reference.empty()},
+              .shard = shard_of(arguments)},
       cache(config.cache),
       output(config.output) {
   if (config.simulated()) context.attributes.emplace_back("participants", std::string(kSimulatedNote));

@@ -19,7 +19,7 @@ enum ExitStatus {
   kInterrupted = 130,
 };
 
-// What most subcommands are told; empty or 0 where the command line says nothing.
+// Arguments that most subcommands share; empty or 0 if the command line does not give them.
 struct Arguments {
   std::string command_line;  // as typed: the line that resumes
   std::string config;

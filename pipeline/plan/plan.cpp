@@ -205,6 +205,11 @@ Plan make_plan(const Context& context, const Index& index) {
   return plan;
 }
 
+std::size_t count_open(const std::vector<Job>& jobs) {
+  return static_cast<std::size_t>(
+      std::count_if(jobs.begin(), jobs.end(), [](const Job& job) { return job.open(); }));
+}
+
 namespace {
 
 std::size_t& tally(RowCount& count, Verdict verdict) {

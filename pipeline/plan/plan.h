@@ -88,7 +88,6 @@ struct Context {
   std::uint64_t seed = 0;
   Attributes attributes = {};       // written to every artefact
   std::optional<Shard> shard = {};  // the workload is a share: no mean is taken over it
-  bool reference_given = false;     // in place of the data set's own mean
 
   const Row& row(const JobRef& job) const { return catalog.rows[job.row]; }
   const DatasetItem& source(const Item& item) const { return workload.families[item.family].source; }
@@ -101,7 +100,7 @@ std::vector<Item> family_items(const Catalog& catalog, std::size_t family);
 std::vector<Item> all_items(const Context& context);                    // family by family
 std::vector<Item> items_of(const Context& context, std::size_t row);    // that the row has jobs for, in order
 std::vector<JobRef> jobs_of(const Catalog& catalog, const Item& item);  // in the order of the rows
-std::optional<Item> find_item(const Context& context, const std::string& name);  // also "meshes", "scans"
+std::optional<Item> find_item(const Context& context, const std::string& name);  // "52", "52_3"
 
 // The jobs whose results a job reads through one of its inputs: one, or all members of a set.
 std::vector<JobRef> input_jobs(const Context& context, const JobRef& job, std::size_t input);
@@ -117,6 +116,8 @@ using Lookup = std::function<std::optional<Digest>(std::string_view stage, const
 Job decide(const Context& context, const Plan& plan, const JobRef& job, const Lookup& lookup);
 
 Plan make_plan(const Context& context, const Index& index);
+
+std::size_t count_open(const std::vector<Job>& jobs);
 
 // Job counts per row name, for `salbench plan` and `status`; meshes and scans together.
 struct RowCount {

@@ -77,12 +77,12 @@ class Exporter {
     for (const Row& row : context_.catalog.rows)
       if (!row.gathers && named.insert(row.name).second)
         versions += fmt::format("{}: {}\n", row.name, row.version);
-    Attributes attributes = {
-        {"program", fmt::format("salbench {}", SALBENCH_VERSION)},
-        {"layout", std::string("salbench export 1")},
-        {"configuration", config_yaml(source_.run.config)},
-        {"stage_versions", std::move(versions)},
-        {"reference", std::string(context_.reference_given ? "given by --reference"
+    Attributes attributes = {{"program", fmt::format("salbench {}", SALBENCH_VERSION)},
+                             {"layout", std::string("salbench export 1")},
+                             {"configuration", config_yaml(source_.run.config)},
+                             {"stage_versions", std::move(versions)},
+                             {"reference", std::string(context_.catalog.reference_is_given()
+                                                           ? "given by --reference"
                                                            : "mean over the items of the export")}};
     attributes.insert(attributes.end(), context_.attributes.begin(), context_.attributes.end());
     file_->attributes("/", attributes);
@@ -107,7 +107,7 @@ class Exporter {
     return source_.run.plan[job].known() && stages_.contains(context_.row(job).name);
   }
 
-  // What was given is no artefact.
+  // A given result has no artefact: its arrays are written without attributes.
   void add_result(const std::string& group, const JobRef& job) {
     if (!wanted(job)) return;
     const Row& row = context_.row(job);

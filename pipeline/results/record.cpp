@@ -23,7 +23,7 @@ std::string host_name() {
 }
 
 std::string_view reference_line(const Context& context) {
-  if (context.reference_given) return "given by --reference";
+  if (context.catalog.reference_is_given()) return "given by --reference";
   return context.shard ? "none, the run was over a share of the items" : "mean over the items of the run";
 }
 
@@ -76,9 +76,8 @@ std::string stage_lines(const RunRecord& record) {
     yaml += fmt::format("  {}: {{version: {}, why: {{{}}}}}\n", count.stage, count.version, why);
   }
   yaml +=
-      "nodes:  # of the graph, in its order: jobs settled and computed, seconds of one job and of all, share "
-      "of "
-      "the cores' time\n";
+      "nodes:  # jobs settled and computed; seconds: sum, median, 95th percentile; share of the cores' "
+      "time\n";
   const std::vector<NodeRecord>& nodes = record.run.runner.records();
   for (std::size_t row = 0; row < nodes.size(); ++row)
     yaml += node_line(record.run.context.catalog.rows[row], nodes[row], record.run.plan.jobs[row].size(),

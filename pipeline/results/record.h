@@ -19,10 +19,10 @@ struct RunRecord {
 // Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
-// Of a run over a share, such as shard_2_of_4.yaml.
+// The record of a run over a share: shard_2_of_4.yaml. Throws StorageError.
 void write_shard_record(const std::filesystem::path& folder, const RunRecord& record);
 
-// Says whether the results in a folder are those of a finished run: "partial: 12 of 25 shapes have all
+// Says whether the results in a folder are those of a finished run: "partial, 12 of 25 shapes have all
 // scores". Empty if there is no record.
 std::string state_of_results(const std::filesystem::path& folder);
 

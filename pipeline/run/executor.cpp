@@ -14,6 +14,18 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// Counts a job as long as it lives, however the job ends.
+class AtWork {
+ public:
+  explicit AtWork(std::atomic<int>& jobs) : jobs_(jobs) { ++jobs_; }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork() { --jobs_; }
+
+ private:
+  std::atomic<int>& jobs_;
+};
+
 }  // namespace
 
 Executor::Executor(const Context& context, Plan& plan, Store& store, Damaged damaged)
@@ -137,17 +149,11 @@ Executor::Result Executor::run(const JobRef& job, std::vector<SourceData> files)
   inputs.members = members.size();
   inputs.member = [&](std::size_t i) { return load(members[i]); };
 
-  ++running_[job.row];
+  const AtWork at_work(running_[job.row]);
   const auto started = std::chrono::steady_clock::now();
-  try {
-    Result result{row.run(inputs), 0};
-    result.seconds = seconds_since(started);
-    --running_[job.row];
-    return result;
-  } catch (...) {
-    --running_[job.row];
-    throw;
-  }
+  Result result{row.run(inputs), 0};
+  result.seconds = seconds_since(started);
+  return result;
 }
 
 Digest Executor::store(const JobRef& job, const Recipe& recipe, const Result& result) {

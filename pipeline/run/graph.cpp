@@ -8,10 +8,10 @@
 // Later rows have priority: shapes leave before new ones enter.
 #include "pipeline/run/graph.h"
 
+#include <algorithm>
 #include <deque>
 #include <exception>
 #include <mutex>
-#include <optional>
 
 #include <tbb/flow_graph.h>
 #include <tbb/global_control.h>

@@ -62,9 +62,7 @@ void Runner::run(int threads) {
 std::size_t Runner::open_jobs(const std::vector<bool>& rows) const {
   std::size_t open = 0;
   for (std::size_t row = 0; row < rows.size(); ++row)
-    if (rows[row])
-      open += static_cast<std::size_t>(std::count_if(plan_.jobs[row].begin(), plan_.jobs[row].end(),
-                                                     [](const Job& job) { return job.open(); }));
+    if (rows[row]) open += count_open(plan_.jobs[row]);
   return open;
 }
 
