@@ -154,12 +154,11 @@ RowOf<Histogram> add_reference(Catalog& catalog, Shapes shapes, const RowOf<Grou
   return row;
 }
 
-RowOf<Descriptors> add_fpfh(Catalog& catalog, const ShapeRows& shape, const Config& config) {
+RowOf<Descriptors> add_fpfh(Catalog& catalog, const ShapeRows& shape, const SectionOf<FpfhOptions>& chosen) {
   const auto describe = [](Points points, const Normals& normals, const FpfhOptions& options) {
     return fpfh(points, normals, options);
   };
-  return catalog.add(shape.shapes, {"fpfh", 1}, describe, shape.points, shape.normals,
-                     section("fpfh", config.fpfh));
+  return catalog.add(shape.shapes, {"fpfh", 1}, describe, shape.points, shape.normals, chosen);
 }
 
 }  // namespace
@@ -186,14 +185,14 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
   if (config.dataset.meshes) {
     meshes.normals =
         catalog.add(Shapes::meshes, {"normals", 1}, mesh_normals, mesh, section("normals", config.normals));
-    meshes.fpfh = add_fpfh(catalog, meshes, config);
+    meshes.fpfh = add_fpfh(catalog, meshes, section("fpfh", config.fpfh));
   }
   if (config.dataset.scans) {
     scans.normals = catalog.add(Shapes::scans, {"scan_normals", 1}, scan_normals, scan,
                                 section("scan_normals", config.scan_normals));
     scans.surface = catalog.add(Shapes::scans, {"surface", 1}, partial_mesh, scan, scans.normals,
                                 section("surface", config.surface));
-    scans.fpfh = add_fpfh(catalog, scans, config);
+    scans.fpfh = add_fpfh(catalog, scans, section<FpfhOptions>("scan_fpfh", config.scan_fpfh));
   }
 
   for (const Model& model : config.models) {

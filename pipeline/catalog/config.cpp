@@ -17,6 +17,7 @@ void for_each_section(Self& config, Visit&& visit) {
   visit("scan_normals", config.scan_normals);
   visit("surface", config.surface);
   visit("fpfh", config.fpfh);
+  visit("scan_fpfh", config.scan_fpfh);
   visit("metrics", config.metrics);
 }
 

@@ -53,6 +53,7 @@ struct Config {
   ScanNormalsOptions scan_normals;
   SurfaceOptions surface;
   FpfhOptions fpfh;
+  ScanFpfhOptions scan_fpfh;
   MetricsOptions metrics;
   std::vector<Model> models;  // in the order of the file
 

@@ -81,10 +81,11 @@ struct JobInputs {
 
 // --- the row ----------------------------------------------------------------------------------------------
 
-// Canonical text of an options struct, with the path of its section in the configuration.
+// An options struct as text, one `key: value` per line, with the path of its section in the configuration.
 struct OptionLines {
   std::string section;  // "fpfh", "models.PS"
-  std::string text;     // one `key: value` per line
+  std::string text;     // all options
+  std::string in_key;   // those that enter the key
 };
 
 struct RowHead {
@@ -185,7 +186,7 @@ void describe(Row& row, const RowOf<T>& input) {
 }
 template <class Options>
 void describe(Row& row, const SectionOf<Options>& section) {
-  row.options.push_back({section.path, options_text(section.options)});
+  row.options.push_back({section.path, options_text(section.options), key_text(section.options)});
 }
 inline void describe(Row& row, const RandomArgument&) { row.seeded = true; }
 inline void describe(Row& row, const ViewArgument&) { row.per_view = true; }

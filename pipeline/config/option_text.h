@@ -96,6 +96,17 @@ std::string annotated_options_text(const Options& options) {
   return options_text(options, true);
 }
 
+// What enters a key: without the options at the values that older keys imply.
+template <class Options>
+std::string key_text(const Options& options) {
+  std::string lines;
+  Options::fields(options, [&](std::string_view key, const auto& value, const OptionHelp& help) {
+    const std::string text = option_text(value);
+    if (text != help.implied) lines += fmt::format("{}: {}\n", key, text);
+  });
+  return lines;
+}
+
 // The paper's words in place of what its authors ran, where the struct tells them apart.
 enum class Protocol { published, text };
 template <>

@@ -154,7 +154,7 @@ SourceFiles& sources_of(const Context& context, const JobRef& job) {
 Recipe recipe_of(const Context& context, const Plan& plan, const JobRef& job) {
   const Row& row = context.row(job);
   Recipe recipe{row.name, row.version, {}, {}, {}};
-  for (const OptionLines& options : row.options) recipe.options += options.text;
+  for (const OptionLines& options : row.options) recipe.options += options.in_key;
   if (row.per_view) recipe.options += fmt::format("view: {}\n", job.item.view);
   if (row.seeded) recipe.seed = fmt::format("{}/{}", context.seed, context.name(job));
   for (std::size_t i = 0; i < row.inputs.size(); ++i)

@@ -53,6 +53,9 @@ struct OptionHelp {
   std::string_view text;
   std::string_view unit = {};  // "R": the largest distance of a point to the centroid; empty: a plain number
   Range range = {};
+  // The value, as text, that keys leave out: of an option that came later, so that what older programs
+  // computed without it is found.
+  std::string_view implied = {};
 };
 
 // Throws OptionError: key "must be at least 1, not 0".

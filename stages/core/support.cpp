@@ -22,14 +22,15 @@ double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, do
   return static_cast<double>(others) / static_cast<double>(points.size());
 }
 
-SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor) {
+SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor,
+                                   std::int32_t enough) {
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw InputError("the shape has no points");
   SupportRadius support{factor * bounding_radius(points), 0};
   // The loop below ends only for finite coordinates: at 2 R every point reaches every other.
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
     throw InputError("the shape has a coordinate that is not finite");
-  const auto enough = static_cast<std::int32_t>(std::min<std::size_t>(kMinMeanNeighbours, points.size() - 1));
+  enough = static_cast<std::int32_t>(std::min(static_cast<std::size_t>(enough), points.size() - 1));
   while (true) {
     support.neighbours = static_cast<std::int32_t>(mean_neighbour_count(points, tree, support.radius));
     if (support.neighbours >= enough) return support;

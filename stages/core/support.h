@@ -22,10 +22,11 @@ struct SupportRadius {
   std::int32_t neighbours = 0;  // mean number of others within it, truncated
 };
 
-// factor * R, multiplied by 1.1 until the truncated mean number of neighbours is at least 6 or, for fewer
-// than seven points, n - 1. The radius is 0 if all points coincide. Throws InputError if there are no points
-// or one is not finite; factor > 0. [tasse2016]
-SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor);
+// factor * R, multiplied by 1.1 until the truncated mean number of neighbours is at least `enough` or, where
+// there are fewer other points, n - 1. The radius is 0 if all points coincide. Throws InputError if there are
+// no points or one is not finite; factor > 0. [tasse2016]
+SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor,
+                                   std::int32_t enough = kMinMeanNeighbours);
 SupportRadius grown_support_radius(std::span<const Vec3> points, double factor);  // builds the tree
 
 }  // namespace salbench

@@ -4,14 +4,14 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/support.h"
 
 namespace salbench {
 namespace {
 
 Support support_of(std::span<const Vec3> points, const KdTree& tree, const FpfhOptions& options) {
   if (options.neighbourhood == FpfhNeighbourhood::nearest) return {options.neighbours, 0};
-  if (options.grow) return {0, grown_support_radius(points, tree, options.radius).radius};
+  if (options.grow)
+    return {0, grown_support_radius(points, tree, options.radius, options.grown_neighbours).radius};
   return {0, options.radius * bounding_radius(points)};
 }
 

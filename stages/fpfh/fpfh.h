@@ -8,6 +8,7 @@
 
 #include "stages/core/fpfh.h"
 #include "stages/core/options.h"
+#include "stages/core/support.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -23,6 +24,7 @@ struct FpfhOptions {
   std::int32_t neighbours = 9;
   double radius = 0.01;
   bool grow = true;
+  std::int32_t grown_neighbours = kMinMeanNeighbours;
   FpfhWeighting weighting = FpfhWeighting::published;
 
   static FpfhOptions text() {  // the paper's words
@@ -35,9 +37,20 @@ struct FpfhOptions {
     visit("neighbours", self.neighbours,
           {"nearest points, the point itself included", "points", at_least(2)});
     visit("radius", self.radius, {"support radius", "R", above(0)});
-    visit("grow", self.grow, {"enlarge the radius until it holds 6 other points on average"});
+    visit("grow", self.grow, {"enlarge the radius until it holds enough other points on average"});
+    visit("grown_neighbours", self.grown_neighbours,
+          {"that many are enough; the mean is rounded down", "points", between(1, 1000), "6"});
     visit("weighting", self.weighting, {"how the neighbours' histograms are combined"});
   }
+};
+
+// Of scans: their authors' published scores and distributions are those of a radius, not of the nearest
+// points.
+struct ScanFpfhOptions : FpfhOptions {
+  ScanFpfhOptions() : FpfhOptions{.neighbourhood = FpfhNeighbourhood::radius, .grown_neighbours = 12} {}
+  explicit ScanFpfhOptions(const FpfhOptions& options) : FpfhOptions(options) {}
+
+  static ScanFpfhOptions text() { return ScanFpfhOptions(FpfhOptions::text()); }
 };
 
 // n x 33; points and normals n x 3, normals of unit length. The support that was used is stored with the

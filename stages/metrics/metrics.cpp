@@ -79,7 +79,7 @@ constexpr std::array kMetricTable = {
     Metric{"auc_exact", "1", "probability that a picked point lies above an unpicked one, ties one half",
            [](const MetricInput& in) { return auc_exact(in.map, in.picked); }},
     Metric{"nss", "standard deviations", "mean height of the picks above the mean of the map",
-           [](const MetricInput& in) { return nss(in.map, in.picked); }},
+           [](const MetricInput& in) { return nss(in.map, in.picked, in.options.constant_nss); }},
     Metric{"cc", "1", "Pearson correlation with the saliency of the ground truth", correlation},
     Metric{"lcc", "1", "magnitude of cc", [](const MetricInput& in) { return std::abs(correlation(in)); }},
 };
@@ -116,9 +116,9 @@ double auc_exact(std::span<const double> map, std::span<const std::int32_t> pick
   return (wins - p * p / 2) / (p * static_cast<double>(unpicked));
 }
 
-double nss(std::span<const double> map, std::span<const std::int32_t> picked) {
+double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant) {
   if (picked.empty()) return kUndefined;
-  if (is_constant(map)) return 0;
+  if (is_constant(map)) return constant;
   const double centre = mean(map);
   double squares = 0;
   for (const double value : map) squares += (value - centre) * (value - centre);

@@ -15,6 +15,7 @@ namespace salbench {
 struct MetricsOptions {
   std::int32_t splits = 100;
   std::int32_t thresholds = 20;
+  double constant_nss = 0;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -22,6 +23,7 @@ struct MetricsOptions {
           {"random draws of unpicked points that the AUC is averaged over", "draws", at_least(1)});
     visit("thresholds", self.thresholds,
           {"points of the ROC curve, evenly spaced over the values", "points", at_least(2)});
+    visit("constant_nss", self.constant_nss, {"NSS of a constant map", "standard deviations", {}, "0"});
   }
 };
 
@@ -35,9 +37,9 @@ double auc(std::span<const double> map, std::span<const std::int32_t> picked, co
 // sampling and without thresholds. O(n log n). NaN where all points or none are picked. [mann1947]
 double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked);
 
-// Mean over the picks of how many (population) standard deviations the map lies above its mean; 0 for a
-// constant map, NaN without picks. [tasse2016]
-double nss(std::span<const double> map, std::span<const std::int32_t> picked);
+// Mean over the picks of how many (population) standard deviations the map lies above its mean; `constant`
+// for a constant map, NaN without picks. [tasse2016]
+double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant = 0);
 
 // Pearson correlation; 0 where one of the two is constant, NaN for empty fields. [tasse2016]
 double cc(std::span<const double> map, std::span<const double> saliency);

@@ -121,6 +121,11 @@ Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
     return points[i] == scan.camera ? Vec3::UnitZ() : Vec3(scan.camera - points[i]);
   };
   Normals normals = plane_normals(points, tree, options.neighbours, to_camera);
+  if (options.orientation == ScanOrientation::camera) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (normals[i].dot(to_camera(i)) < 0) normals[i] = -normals[i];
+    return normals;
+  }
   const auto nearest_to_camera = [&](std::span<const std::int32_t> part) -> OrientationSeed {
     const std::int32_t nearest =
         *std::min_element(part.begin(), part.end(), [&](std::int32_t i, std::int32_t j) {

@@ -53,30 +53,49 @@ void check(const MeshNormalsOptions& options);
 // Throws InputError for vertices that are not finite.
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options = {});
 
+enum class ScanOrientation { camera, hoppe };
+template <>
+struct EnumNames<ScanOrientation> {
+  static constexpr std::array<std::string_view, 2> names = {"camera", "hoppe"};
+};
+
 struct ScanNormalsOptions {
-  std::int32_t neighbours = 9;              // nearest points a plane is fitted to, the point itself included
-  std::int32_t orientation_neighbours = 6;  // nearest others that orientation passes to
-  double gap = 3;                           // orientation does not pass beyond so many median point spacings
-  double max_normal_angle_degrees = 45;     // nor between normals at a larger angle, regardless of sign
+  std::int32_t neighbours = 18;  // nearest points a plane is fitted to, the point itself included
+  ScanOrientation orientation = ScanOrientation::camera;
+  std::int32_t orientation_neighbours = 6;  // hoppe: nearest others that orientation passes to
+  double gap = 3;  // hoppe: orientation does not pass beyond so many median point spacings
+  double max_normal_angle_degrees = 45;  // hoppe: nor between normals at a larger angle, regardless of sign
+
+  static ScanNormalsOptions text() {  // the paper's words, which give no number of neighbours
+    return {.neighbours = 9, .orientation = ScanOrientation::hoppe};
+  }
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("neighbours", self.neighbours,
           {"nearest points of a plane, itself included", "points", between(3, kMaxNeighbours)});
+    visit("orientation", self.orientation,
+          {"each normal towards the camera by itself, or Hoppe's tree from the nearest point",
+           {},
+           {},
+           "hoppe"});
     visit("orientation_neighbours", self.orientation_neighbours,
-          {"nearest others in Hoppe's graph", "points", between(2, kMaxNeighbours)});
-    visit("gap", self.gap,
-          {"longest edge of Hoppe's graph: beyond, depth jumps", "median point spacings", between(1, 1e6)});
+          {"hoppe: nearest others in the graph", "points", between(2, kMaxNeighbours)});
+    visit(
+        "gap", self.gap,
+        {"hoppe: longest edge of the graph: beyond, depth jumps", "median point spacings", between(1, 1e6)});
     visit("steepest_degrees", self.max_normal_angle_degrees,
-          {"largest angle between normals across an edge of the graph", "degrees", between(1, 90)});
+          {"hoppe: largest angle between normals across an edge", "degrees", between(1, 90)});
   }
 };
 
-// n x 3: planes of the nearest points, oriented by Hoppe's tree. In each component of the graph the point
-// nearest to the camera is turned towards it. The graph crosses neither depth jumps nor sharp folds, where a
-// normal says nothing about its neighbours. If a neighbourhood spans no plane, the direction to the camera
-// decides. The result is empty for an empty scan. Throws InputError for points that are not finite.
-// [hoppe1992]
+// n x 3: planes of the nearest points. If a neighbourhood spans no plane, the direction to the camera
+// decides.
+//   camera: each normal is turned towards the camera, which sees its point.
+//   hoppe:  by Hoppe's tree; in each component of the graph the point nearest to the camera is turned towards
+//           it. The graph crosses neither depth jumps nor sharp folds, where a normal says nothing about its
+//           neighbours. [hoppe1992]
+// The result is empty for an empty scan. Throws InputError for points that are not finite.
 Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options = {});
 
 }  // namespace salbench

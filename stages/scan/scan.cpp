@@ -60,10 +60,11 @@ struct Camera {
   Vec3 ray(double x, double y) const { return forward + x * right + y * up; }
 };
 
-Camera camera_of_view(int view, double distance) {
+Camera camera_of_view(int view, const ScanOptions& options) {
   const Vec3 direction = view_direction(view);
-  Camera camera{distance * direction, -direction, Vec3::Zero(), Vec3::Zero()};
-  camera.right = camera.forward.cross(Vec3::UnitY()).normalized();  // no view looks along Y
+  Camera camera{options.distance * direction, -direction, Vec3::Zero(), Vec3::Zero()};
+  camera.right = camera.forward.cross(options.up == UpAxis::y ? Vec3::UnitY() : Vec3::UnitZ())
+                     .normalized();  // no view looks along an axis
   camera.up = camera.right.cross(camera.forward);
   return camera;
 }
@@ -195,14 +196,18 @@ Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
   for (const Vec3& p : mesh.vertices) local_vertices.push_back(frame.local_from_mesh(p));
 
   const Scene scene = build_scene(local_vertices, mesh.faces);
-  const Camera camera = camera_of_view(view, options.distance);
+  const Camera camera = camera_of_view(view, options);
   const double step = std::tan(options.step_degrees * kRadiansPerDegree);
   const int half = half_grid(local_vertices, mesh, options);
 
   Scan scan{{}, frame.mesh_from_local(camera.position)};
   for (int row = half; row >= -half; --row) {
     for (int column = -half; column <= half; ++column) {
-      NearestHit nearest{{}, mesh, local_vertices, camera.position, camera.ray(column * step, row * step)};
+      NearestHit nearest{{},
+                         mesh,
+                         local_vertices,
+                         camera.position,
+                         camera.ray((column + options.phase) * step, (row + options.phase) * step)};
       rtcInitIntersectContext(&nearest);
       nearest.filter = offer_and_refuse;
       alignas(16) RTCRayHit ray = float_ray(nearest.origin, nearest.direction);

@@ -1,12 +1,14 @@
 // Simulated range images: the points that a depth camera sees of a mesh from the corners of an icosahedron.
 // [tasse2016]
 //
-// The camera looks at the area-weighted centroid of the mesh, with Y up. Its rays form a square grid in the
+// The camera looks at the area-weighted centroid of the mesh. Its rays form a square grid in the
 // image plane with one ray through the centroid, wide enough for the sphere around the centroid that holds
 // the mesh, up to kMaxHalfField. A point of the scan is the nearest hit of one ray.
 #pragma once
 
+#include <array>
 #include <numbers>
+#include <string_view>
 
 #include "stages/core/options.h"
 #include "stages/core/types.h"
@@ -19,9 +21,17 @@ inline constexpr int kViews = 12;
 // need rays in all directions.
 inline constexpr double kMaxHalfField = std::numbers::pi / 3;
 
+enum class UpAxis { y, z };
+template <>
+struct EnumNames<UpAxis> {
+  static constexpr std::array<std::string_view, 2> names{"y", "z"};
+};
+
 struct ScanOptions {
   double distance = 3;          // camera to area centroid, in sqrt(surface area)
   double step_degrees = 0.125;  // the image plane's step is the tangent of this angle
+  UpAxis up = UpAxis::z;
+  double phase = 0;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -29,6 +39,10 @@ struct ScanOptions {
           {"from the camera to the area-weighted centroid", "sqrt(surface area)", above_and_up_to(0, 1e4)});
     visit("step_degrees", self.step_degrees,
           {"angle between neighbouring rays at the image centre", "degrees", between(0.01, 10)});
+    visit("up", self.up, {"axis of the mesh that points up in the image: it orders the points", {}, {}, "y"});
+    visit("phase", self.phase,
+          {"shift of the grid to the right and up; 0: one ray through the centroid", "steps",
+           between(-0.5, 0.5), "0"});
   }
 };
 

@@ -104,6 +104,23 @@ TEST(OptionsText, ReadsBackToTheBit) {
   EXPECT_EQ(options_text(back), options_text(sample));
 }
 
+struct Grown {
+  double radius = 0.01;
+  std::int32_t enough = 6;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("radius", self.radius, {"how far"});
+    visit("enough", self.enough, {"how many", "points", at_least(1), "6"});
+  }
+};
+
+TEST(OptionsText, AKeyLeavesOutWhatOlderKeysImply) {
+  EXPECT_EQ(key_text(Grown{}), "radius: 0.01\n");
+  EXPECT_EQ(key_text(Grown{.enough = 12}), "radius: 0.01\nenough: 12\n");
+  EXPECT_EQ(options_text(Grown{}), "radius: 0.01\nenough: 6\n");
+}
+
 TEST(OptionsText, AnnotatedSaysMeaningUnitAndWhatIsAccepted) {
   EXPECT_EQ(annotated_options_text(Sample{}),
             "# a switch\nflag: false\n"

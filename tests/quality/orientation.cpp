@@ -56,7 +56,7 @@ double share_outward(const Mesh& mesh) {
 }
 
 double share_facing(const Scan& scan) {
-  const Normals normals = scan_normals(scan);
+  const Normals normals = scan_normals(scan, ScanNormalsOptions::text());  // by Hoppe's tree
   return share(normals.size(),
                [&](std::size_t i) { return normals[i].dot(scan.camera - scan.points[i]) > 0; });
 }

@@ -26,6 +26,10 @@ TEST(Fpfh, StoresTheSupportThatWasUsed) {
   EXPECT_EQ(grown.neighbours, 0);
   EXPECT_EQ(grown.radius, grown_support_radius(points, 0.01).radius);
 
+  options.grown_neighbours = 12;
+  EXPECT_EQ(fpfh(points, normals, options).radius,
+            grown_support_radius(points, KdTree(points), 0.01, 12).radius);
+
   options.grow = false;
   options.radius = 0.4;
   const Descriptors fixed = fpfh(points, normals, options);

@@ -154,6 +154,7 @@ TEST(Nss, CountsDeviationsAboveTheMean) {
   EXPECT_NEAR(nss(map, std::vector<std::int32_t>{0, 3}), 1 / std::sqrt(3.0), 1e-12);
   EXPECT_NEAR(nss(map, std::vector<std::int32_t>{0, 1, 2, 3}), 0, 1e-12);
   EXPECT_EQ(nss(ScalarField{2, 2, 2}, std::vector<std::int32_t>{1}), 0);
+  EXPECT_EQ(nss(ScalarField{2, 2, 2}, std::vector<std::int32_t>{1}, -0.5), -0.5);
   EXPECT_TRUE(std::isnan(nss(map, {})));
 }
 

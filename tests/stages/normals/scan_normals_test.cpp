@@ -12,6 +12,8 @@
 namespace salbench {
 namespace {
 
+const ScanNormalsOptions kHoppe = ScanNormalsOptions::text();
+
 double share_facing_camera(const Scan& scan, const Normals& normals) {
   std::size_t good = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) good += normals[i].dot(scan.camera - scan.points[i]) > 0;
@@ -49,7 +51,7 @@ TEST(ScanNormals, EachOfSeveralBodiesFacesTheCamera) {
     append(mesh, shapes::bumpy_sphere(3), shift);
   for (int view = 0; view < kViews; ++view) {
     const Scan scan = simulate_scan(mesh, view);
-    EXPECT_GE(share_facing_camera(scan, scan_normals(scan)), 0.98) << "view " << view;
+    EXPECT_GE(share_facing_camera(scan, scan_normals(scan, kHoppe)), 0.98) << "view " << view;
   }
 }
 
@@ -68,8 +70,18 @@ TEST(ScanNormals, OrientationCrossesNeitherDepthJumpsNorFolds) {
   }
   for (int view = 0; view < kViews; ++view) {
     const Scan scan = simulate_scan(mesh, view);
-    EXPECT_GE(share_facing_camera(scan, scan_normals(scan)), 0.99) << "view " << view;
+    EXPECT_GE(share_facing_camera(scan, scan_normals(scan, kHoppe)), 0.99) << "view " << view;
   }
+}
+
+TEST(ScanNormals, TurnedOneByOneAllFaceTheCameraAndAreThoseOfThePlanes) {
+  const Scan scan = simulate_scan(shapes::bumpy_sphere(3), 4);
+  const Normals normals = scan_normals(scan);
+  EXPECT_EQ(share_facing_camera(scan, normals), 1);
+  ScanNormalsOptions hoppe;
+  hoppe.orientation = ScanOrientation::hoppe;
+  const Normals planes = scan_normals(scan, hoppe);
+  for (std::size_t i = 0; i < normals.size(); ++i) EXPECT_NEAR(std::abs(normals[i].dot(planes[i])), 1, 1e-12);
 }
 
 TEST(ScanNormals, DegenerateScansFaceTheCamera) {

@@ -80,16 +80,24 @@ std::optional<Vec3> nearest_hit(const Mesh& mesh, const Vec3& from, const Vec3& 
   return from + nearest * direction;
 }
 
+struct Axes {
+  Vec3 forward, right, up;
+};
+Axes axes_of(const Scan& scan, const Mesh& mesh, const ScanOptions& options) {
+  const Vec3 forward = (area_centroid(mesh) - scan.camera).normalized();
+  const Vec3 right = forward.cross(options.up == UpAxis::y ? Vec3::UnitY() : Vec3::UnitZ()).normalized();
+  return {forward, right, right.cross(forward)};
+}
+
 // The image plane's coordinates of a point in steps: whole numbers for the points of a scan.
 struct Pixel {
   double x, y;
 };
 Pixel pixel_of(const Vec3& point, const Scan& scan, const Mesh& mesh, const ScanOptions& options) {
-  const Vec3 forward = (area_centroid(mesh) - scan.camera).normalized();
-  const Vec3 right = forward.cross(Vec3::UnitY()).normalized();
+  const Axes axes = axes_of(scan, mesh, options);
   const Vec3 ray = point - scan.camera;
-  const double unit = ray.dot(forward) * std::tan(options.step_degrees * std::numbers::pi / 180);
-  return {ray.dot(right) / unit, ray.dot(right.cross(forward)) / unit};
+  const double unit = ray.dot(axes.forward) * std::tan(options.step_degrees * std::numbers::pi / 180);
+  return {ray.dot(axes.right) / unit, ray.dot(axes.up) / unit};
 }
 
 TEST(SimulateScan, CamerasStandAtTheCornersOfAnIcosahedronInTheOrderOfTheBenchmark) {
@@ -103,19 +111,19 @@ TEST(SimulateScan, CamerasStandAtTheCornersOfAnIcosahedronInTheOrderOfTheBenchma
 
 TEST(SimulateScan, EqualsBruteForceRayCasting) {
   const Mesh mesh = two_bodies();
-  ScanOptions options;
-  options.step_degrees = 0.6;
-  const double step = std::tan(options.step_degrees * std::numbers::pi / 180);
   for (int view = 0; view < kViews; ++view) {
+    const ScanOptions options{
+        .step_degrees = 0.6, .up = view % 3 == 0 ? UpAxis::y : UpAxis::z, .phase = view % 2 == 0 ? 0.0 : 0.3};
+    const double step = std::tan(options.step_degrees * std::numbers::pi / 180);
     const Scan scan = simulate_scan(mesh, view, options);
-    const Vec3 forward = (area_centroid(mesh) - scan.camera).normalized();
-    const Vec3 right = forward.cross(Vec3::UnitY()).normalized();
-    const Vec3 up = right.cross(forward);
+    const auto [forward, right, up] = axes_of(scan, mesh, options);
     std::vector<Vec3> expected;
-    for (int y = 40; y >= -40; --y)
-      for (int x = -40; x <= 40; ++x)
-        if (const auto hit = nearest_hit(mesh, scan.camera, forward + x * step * right + y * step * up))
+    for (int row = 40; row >= -40; --row)
+      for (int column = -40; column <= 40; ++column) {
+        const double x = (column + options.phase) * step, y = (row + options.phase) * step;
+        if (const auto hit = nearest_hit(mesh, scan.camera, forward + x * right + y * up))
           expected.push_back(*hit);
+      }
     ASSERT_GT(expected.size(), 150U);
     ASSERT_EQ(scan.points.size(), expected.size()) << "view " << view;
     for (std::size_t i = 0; i < expected.size(); ++i)
@@ -154,6 +162,26 @@ TEST(SimulateScan, PointsComeRowByRowOnAGridThroughTheCentroid) {
       last = pixel;
     }
     EXPECT_TRUE(has_central_ray) << "view " << view;
+  }
+}
+
+TEST(SimulateScan, TheAxisThatPointsUpOrdersThePointsAndMovesNone) {
+  const Mesh mesh = two_bodies();
+  const auto sorted = [&](int view, UpAxis up) {
+    std::vector<Vec3> points = simulate_scan(mesh, view, {.up = up}).points;
+    std::sort(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    });
+    return points;
+  };
+  for (int view = 0; view < kViews; ++view) {
+    const auto y = sorted(view, UpAxis::y), z = sorted(view, UpAxis::z);
+    ASSERT_NEAR(static_cast<double>(y.size()), static_cast<double>(z.size()), 3) << view;  // along an outline
+    const KdTree tree(y);
+    std::size_t elsewhere = 0;
+    for (const Vec3& p : z)
+      if ((y[static_cast<std::size_t>(tree.nearest(p))] - p).norm() > 1e-6) ++elsewhere;
+    EXPECT_LE(elsewhere, 3U) << view;
   }
 }
 
@@ -261,6 +289,7 @@ TEST(ScanOptions, NameTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(Options{.distance = std::nan("")}), "distance");
   EXPECT_EQ(wrong_field(Options{.step_degrees = 0.001}), "step_degrees");
   EXPECT_EQ(wrong_field(Options{.step_degrees = 90}), "step_degrees");
+  EXPECT_EQ(wrong_field(Options{.phase = 0.7}), "phase");
 }
 
 }  // namespace
