@@ -112,10 +112,14 @@ std::int32_t KdTree::nearest(const Vec3& query) const {
 }
 
 void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
+  within_unordered(query, radius, found);
+  std::sort(found.begin(), found.end(), closer);
+}
+
+void KdTree::within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
   WithinSet set(found, radius * radius);
   if (size() == 0) return;
   impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
-  std::sort(found.begin(), found.end(), closer);
 }
 
 }  // namespace salbench

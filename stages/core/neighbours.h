@@ -31,6 +31,7 @@ class KdTree {
 
   // All points with distance <= radius.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
+  void within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
 
   std::size_t size() const;
 

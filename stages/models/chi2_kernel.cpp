@@ -2,6 +2,7 @@
 // be faster by little (the divider is the bottleneck) and differ from machine to machine.
 #include "stages/models/chi2_kernel.h"
 
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -15,48 +16,75 @@ constexpr float kTiny = 1e-18F;
 
 template <std::size_t width>
 struct Vector {
-  using Type [[gnu::vector_size(width * sizeof(float))]] = float;
+  using Floats [[gnu::vector_size(width * sizeof(float))]] = float;
+  using Integers [[gnu::vector_size(width * sizeof(float))]] = std::int32_t;
 };
 
-// Inlined into each variant below, and compiled there for the variant's instructions.
+// Vectors are handed over by reference: the calling convention of wide ones differs between the variants.
+template <class Lanes>
+[[gnu::always_inline]] inline void load(const float* values, Lanes& lanes) {
+  std::memcpy(&lanes, values, sizeof lanes);
+}
+
+// The loops below are inlined into each variant, and compiled there for the variant's instructions.
 template <std::size_t width>
-[[gnu::always_inline]] inline void compare(const float* table, std::size_t groups, std::size_t bins,
-                                           const float* queries, float* distances) {
-  using Lanes = typename Vector<width>::Type;
-  const std::size_t row = groups * kLanes;
-  for (std::size_t j = 0; j < row; j += width) {
-    const float* histograms = table + j / kLanes * kLanes * bins + j % kLanes;
-    Lanes sums[kQueries] = {};
-    for (std::size_t bin = 0; bin < bins; ++bin) {
-      Lanes b;
-      std::memcpy(&b, histograms + bin * kLanes, sizeof b);
-      for (std::size_t q = 0; q < kQueries; ++q) {
-        const float a = queries[q * bins + bin];
-        const Lanes difference = b - a;
-        sums[q] += difference * difference / (b + a + kTiny);
+[[gnu::always_inline]] inline void compare(const float* table, std::size_t bins, const float* query,
+                                           const std::int32_t* groups, std::size_t count, float* distances) {
+  using Floats = typename Vector<width>::Floats;
+  for (std::size_t g = 0; g < count; ++g) {
+    const float* group = table + static_cast<std::size_t>(groups[g]) * bins * kLanes;
+    for (std::size_t lane = 0; lane < kLanes; lane += width) {
+      Floats sum = {};
+      for (std::size_t bin = 0; bin < bins; ++bin) {
+        Floats b;
+        load(group + bin * kLanes + lane, b);
+        const float a = query[bin];
+        const auto difference = b - a;
+        sum += difference * difference / (b + a + kTiny);
       }
+      std::memcpy(distances + g * kLanes + lane, &sum, sizeof sum);
     }
-    for (std::size_t q = 0; q < kQueries; ++q) std::memcpy(distances + q * row + j, &sums[q], sizeof sums[q]);
   }
 }
 
-void compare_baseline(const float* table, std::size_t groups, std::size_t bins, const float* queries,
-                      float* distances) {
-  compare<4>(table, groups, bins, queries, distances);
+template <std::size_t width>
+[[gnu::always_inline]] inline void bound(const float* boxes, std::size_t bins, const float* query,
+                                         const std::int32_t* groups, std::size_t count, float* bounds) {
+  using Floats = typename Vector<width>::Floats;
+  for (std::size_t g = 0; g < count; ++g) {
+    const float* group = boxes + static_cast<std::size_t>(groups[g]) * bins * 2 * kLanes;
+    for (std::size_t lane = 0; lane < kLanes; lane += width) {
+      Floats sum = {};
+      for (std::size_t bin = 0; bin < bins; ++bin) {
+        Floats least, greatest;
+        load(group + bin * 2 * kLanes + lane, least);
+        load(group + (bin * 2 + 1) * kLanes + lane, greatest);
+        const float a = query[bin];
+        Floats b = least > a ? least : a + Floats{};
+        b = b > greatest ? greatest : b;
+        const auto difference = b - a;
+        sum += difference * difference / (b + a + kTiny);
+      }
+      std::memcpy(bounds + g * kLanes + lane, &sum, sizeof sum);
+    }
+  }
 }
 
-[[gnu::target("avx2")]] void compare_avx2(const float* table, std::size_t groups, std::size_t bins,
-                                          const float* queries, float* distances) {
-  compare<8>(table, groups, bins, queries, distances);
-}
-
-[[gnu::target("avx512f")]] void compare_avx512(const float* table, std::size_t groups, std::size_t bins,
-                                               const float* queries, float* distances) {
-  compare<16>(table, groups, bins, queries, distances);
+template <std::size_t width>
+[[gnu::always_inline]] inline std::size_t count_values(float limit, const float* values, std::size_t count) {
+  typename Vector<width>::Integers counts = {};
+  for (std::size_t i = 0; i < count; i += width) {
+    typename Vector<width>::Floats lanes;
+    load(values + i, lanes);
+    counts -= lanes <= limit;
+  }
+  std::size_t sum = 0;
+  for (std::size_t lane = 0; lane < width; ++lane) sum += static_cast<std::size_t>(counts[lane]);
+  return sum;
 }
 
 // Bit i is set if values[i] <= limit; there are 16 values.
-std::uint32_t mask_up_to(__m128 limit, const float* values) {
+[[gnu::always_inline]] inline std::uint32_t mask_up_to(__m128 limit, const float* values) {
   const auto compared = [&](std::size_t i) {
     return _mm_castps_si128(_mm_cmple_ps(_mm_loadu_ps(values + i), limit));
   };
@@ -65,12 +93,38 @@ std::uint32_t mask_up_to(__m128 limit, const float* values) {
   return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(low, high)));
 }
 
+std::size_t places_up_to(float limit, const float* values, std::size_t count, std::int32_t* places) {
+  const __m128 limits = _mm_set1_ps(limit);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count; i += 16)
+    for (std::uint32_t mask = mask_up_to(limits, values + i); mask != 0; mask &= mask - 1)
+      places[found++] = static_cast<std::int32_t>(i) + std::countr_zero(mask);
+  return found;
+}
+
+#define SALBENCH_VARIANT(name, isa, width)                                                                   \
+  [[gnu::target(isa)]] void distances_##name(const float* table, std::size_t bins, const float* query,       \
+                                             const std::int32_t* groups, std::size_t count, float* result) { \
+    compare<width>(table, bins, query, groups, count, result);                                               \
+  }                                                                                                          \
+  [[gnu::target(isa)]] void bounds_##name(const float* boxes, std::size_t bins, const float* query,          \
+                                          const std::int32_t* groups, std::size_t count, float* result) {    \
+    bound<width>(boxes, bins, query, groups, count, result);                                                 \
+  }                                                                                                          \
+  [[gnu::target(isa)]] std::size_t count_##name(float limit, const float* values, std::size_t count) {       \
+    return count_values<width>(limit, values, count);                                                        \
+  }
+SALBENCH_VARIANT(baseline, "sse2", 4)
+SALBENCH_VARIANT(avx2, "avx2", 8)
+SALBENCH_VARIANT(avx512, "avx512f,avx512vl", 16)
+#undef SALBENCH_VARIANT
+
 }  // namespace
 
 bool supported(Instructions instructions) {
   switch (instructions) {
     case Instructions::avx512:
-      return __builtin_cpu_supports("avx512f") != 0;
+      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0;
     case Instructions::avx2:
       return __builtin_cpu_supports("avx2") != 0;
     case Instructions::baseline:
@@ -84,25 +138,12 @@ Instructions widest_supported() {
   return supported(Instructions::avx2) ? Instructions::avx2 : Instructions::baseline;
 }
 
-void distances(Instructions instructions, const float* table, std::size_t groups, std::size_t bins,
-               const float* queries, float* distances) {
-  switch (instructions) {
-    case Instructions::avx512:
-      return compare_avx512(table, groups, bins, queries, distances);
-    case Instructions::avx2:
-      return compare_avx2(table, groups, bins, queries, distances);
-    case Instructions::baseline:
-      return compare_baseline(table, groups, bins, queries, distances);
-  }
-}
-
-std::size_t indices_up_to(float limit, const float* values, std::size_t count, std::int32_t* indices) {
-  const __m128 limits = _mm_set1_ps(limit);
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < count; i += 16)
-    for (std::uint32_t mask = mask_up_to(limits, values + i); mask != 0; mask &= mask - 1)
-      indices[found++] = static_cast<std::int32_t>(i) + std::countr_zero(mask);
-  return found;
+const Kernel& kernel(Instructions instructions) {
+  static constexpr std::array kernels = {
+      Kernel{distances_baseline, bounds_baseline, count_baseline, places_up_to},
+      Kernel{distances_avx2, bounds_avx2, count_avx2, places_up_to},
+      Kernel{distances_avx512, bounds_avx512, count_avx512, places_up_to}};
+  return kernels[static_cast<std::size_t>(instructions)];
 }
 
 }  // namespace salbench::chi2_kernel

@@ -1,6 +1,6 @@
-// Chi-square distances of a few histograms to all others, with the widest instructions that the machine has.
-// The interface has plain pointers only, so that no code compiled for special instructions leaks into the
-// rest of the program.
+// The inner loops of the chi-square search, with the widest instructions that the machine has. The interface
+// has plain pointers only, so that no code compiled for special instructions leaks into the rest of the
+// program.
 #pragma once
 
 #include <cstddef>
@@ -8,24 +8,35 @@
 
 namespace salbench::chi2_kernel {
 
-inline constexpr std::size_t kLanes = 16;   // histograms in a group
-inline constexpr std::size_t kQueries = 4;  // histograms compared with all others in one call
+inline constexpr std::size_t kLanes = 16;  // histograms, or boxes, in a group
 
 // Every variant does the same operations in the same order on each pair: the same bytes on every machine.
 enum class Instructions { baseline, avx2, avx512 };
 bool supported(Instructions instructions);  // by this machine
 Instructions widest_supported();
 
-// distances[q * groups * 16 + j] = sum over the bins of (a - b)^2 / (a + b), a = bin of query q, b = bin of
-// histogram j; bins where both are 0 add nothing. All values are finite and >= 0.
-//   table      groups x bins x 16: histograms 16 g .. 16 g + 15, bin by bin
-//   queries    4 x bins
-//   distances  4 x (16 groups)
-void distances(Instructions instructions, const float* table, std::size_t groups, std::size_t bins,
-               const float* queries, float* distances);
+// All values below are finite and >= 0, but for the filling of a last group.
+struct Kernel {
+  // distances[16 g + lane] = sum over the bins of (a - b)^2 / (a + b), a = bin of the query, b = bin of the
+  // lane-th histogram of the group groups[g]; bins where both are 0 add nothing.
+  //   table      groups x bins x 16: the histograms of a group, bin by bin
+  //   query      bins
+  //   distances  16 count
+  void (*distances)(const float* table, std::size_t bins, const float* query, const std::int32_t* groups,
+                    std::size_t count, float* distances);
 
-// Writes the indices of the values <= limit, ascending, and returns how many there are; `count` is a multiple
-// of 16 and `indices` has room for it.
-std::size_t indices_up_to(float limit, const float* values, std::size_t count, std::int32_t* indices);
+  // The same to the nearest histogram of each box: no histogram within it is nearer, but for rounding.
+  //   boxes      groups x bins x 2 x 16: least and greatest value of a bin in the boxes of a group
+  void (*bounds)(const float* boxes, std::size_t bins, const float* query, const std::int32_t* groups,
+                 std::size_t count, float* bounds);
+
+  // How many of the values are <= limit; `count` is a multiple of 16.
+  std::size_t (*count_up_to)(float limit, const float* values, std::size_t count);
+
+  // Writes the places of the values <= limit, ascending, and returns how many there are; `count` is a
+  // multiple of 16 and `places` has room for it.
+  std::size_t (*places_up_to)(float limit, const float* values, std::size_t count, std::int32_t* places);
+};
+const Kernel& kernel(Instructions instructions);
 
 }  // namespace salbench::chi2_kernel

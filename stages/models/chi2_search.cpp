@@ -1,13 +1,16 @@
-// Compares every pair, a few rows of the distance matrix at a time. The k smallest of a row are found in
-// three steps: a sample bounds the k-th smallest from above, one sweep keeps what is within the bound, and
-// buckets of the few that remain find the k-th itself.
+// Histograms that resemble each other are put in groups of 16, groups in groups of 16 and so on, each with
+// the box that holds it. A query guesses the distance of its k-th nearest from the query before, which
+// resembles it; what lies in a box farther away than the guess is not looked at. If the k-th nearest lies
+// within the guess, nothing was missed; otherwise the guess is raised.
 #include "stages/models/chi2_search.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -15,15 +18,19 @@
 namespace salbench {
 namespace {
 
-using chi2_kernel::indices_up_to;
 using chi2_kernel::kLanes;
-using chi2_kernel::kQueries;
 
 constexpr std::size_t kBins = kFpfhBins;
-constexpr std::size_t kSample = 256;
-constexpr std::size_t kBuckets = 256;
-constexpr float kMinDistance = 1e-30F;  // smaller ones share a bucket
-constexpr float kMaxValue = 1e18F;      // the squares of larger values overflow
+constexpr float kMaxValue = 1e18F;  // the squares of larger values overflow
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// A bound is computed like a distance, from fewer than 40 rounded terms: it may exceed the distance by
+// rounding.
+constexpr float kRounding = 1 + 1e-5F;
+constexpr float kGuess = 1.06F;    // times the k-th distance of the query before
+constexpr std::size_t kSpare = 8;  // so few candidates beyond the k-th are put in order, not counted again
+constexpr float kOpened = std::numeric_limits<float>::quiet_NaN();  // in place of a bound: within no limit
+
+std::size_t groups_of(std::size_t n) { return (n + kLanes - 1) / kLanes; }
 
 std::vector<std::size_t> used_bins_of(const Descriptors& descriptors) {
   std::array<bool, kBins> used{};
@@ -37,119 +44,286 @@ std::vector<std::size_t> used_bins_of(const Descriptors& descriptors) {
   std::vector<std::size_t> bins;
   for (std::size_t bin = 0; bin < kBins; ++bin)
     if (used[bin]) bins.push_back(bin);
+  if (bins.empty()) bins.push_back(0);
   return bins;
 }
 
-std::size_t padded(std::size_t n) { return (n + kLanes - 1) / kLanes * kLanes; }
+// More than any distance: no (a - b)^2 / (a + b) is above a + b.
+float beyond_all(const Descriptors& descriptors) {
+  float largest = 0;
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const auto row = descriptors.row(i);
+    largest = std::max(largest, std::accumulate(row.begin(), row.end(), 0.0F));
+  }
+  return 2.01F * largest;
+}
 
-// Working memory of the selection, reused from row to row.
-class Selection {
+// Orders the histograms so that each 16 in a row resemble each other: halves them, on the border of a group,
+// at the median of the bin that varies most. Square roots make variations of high and low bins count alike.
+class Grouping {
  public:
-  Selection(std::size_t n, std::size_t k) : n_(n), k_(k), indices_(padded(n)), values_(n), selected_(n) {}
+  Grouping(const Descriptors& descriptors, const std::vector<std::size_t>& bins) : bins_(bins) {
+    roots_.reserve(descriptors.size() * bins.size());
+    for (std::size_t i = 0; i < descriptors.size(); ++i)
+      for (const std::size_t bin : bins) roots_.push_back(std::sqrt(descriptors.values[i * kBins + bin]));
+    order_.resize(descriptors.size());
+    std::iota(order_.begin(), order_.end(), 0);
+  }
 
-  // `row` holds n distances, filled up with infinity to a multiple of 16.
-  std::span<const Chi2Neighbour> nearest(const float* row) {
-    float bound = sampled_bound(row);
-    std::size_t found = indices_up_to(bound, row, indices_.size(), indices_.data());
-    if (found < k_) {  // the sampled bound is too low
-      bound = *std::max_element(row, row + n_);
-      found = indices_up_to(bound, row, indices_.size(), indices_.data());
-    }
-    return select(row, found, kth_smallest(row, found, bound));
+  std::vector<std::int32_t> order() && {
+    split(0, order_.size());
+    return std::move(order_);
   }
 
  private:
-  // Three standard deviations above the rank that the k-th smallest is expected to have in the sample.
-  float sampled_bound(const float* row) {
-    const double expected = static_cast<double>(kSample * k_) / static_cast<double>(n_);
-    const auto rank = static_cast<std::size_t>(expected + 3 * std::sqrt(expected)) + 1;
-    if (n_ < 4 * kSample || rank >= kSample) return *std::max_element(row, row + n_);
-    const std::size_t step = n_ / kSample;
-    for (std::size_t s = 0; s < kSample; ++s) values_[s] = row[s * step];
-    const auto ranked = values_.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(values_.begin(), ranked, values_.begin() + kSample);
-    return *ranked;
+  float root(std::int32_t i, std::size_t bin) const {
+    return roots_[static_cast<std::size_t>(i) * bins_.size() + bin];
   }
 
-  // Sorts the candidates into buckets of their values, so that only the bucket with the k-th has to be
-  // ordered.
-  float kth_smallest(const float* row, std::size_t found, float bound) {
-    const float scale = bound > kMinDistance ? static_cast<float>(kBuckets - 1) / bound : 0;
-    const auto bucket_of = [&](std::size_t c) {
-      return static_cast<std::uint32_t>(row[indices_[c]] * scale);
-    };
-    std::array<std::size_t, kBuckets> counts{};
-    for (std::size_t c = 0; c < found; ++c) ++counts[bucket_of(c)];
-    std::size_t below = 0;
-    std::uint32_t bucket = 0;
-    while (below + counts[bucket] < k_) below += counts[bucket++];
-
-    std::size_t within = 0;
-    for (std::size_t c = 0; c < found; ++c) {
-      values_[within] = row[indices_[c]];
-      within += bucket_of(c) == bucket;
-    }
-    const auto kth = values_.begin() + static_cast<std::ptrdiff_t>(k_ - below - 1);
-    std::nth_element(values_.begin(), kth, values_.begin() + static_cast<std::ptrdiff_t>(within));
-    return *kth;
+  std::size_t most_varying(std::size_t first, std::size_t last) const {
+    std::array<double, kBins> sums{}, squares{};
+    for (std::size_t place = first; place < last; ++place)
+      for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
+        const double value = static_cast<double>(root(order_[place], bin));
+        sums[bin] += value;
+        squares[bin] += value * value;
+      }
+    const auto n = static_cast<double>(last - first);
+    for (std::size_t bin = 0; bin < bins_.size(); ++bin) squares[bin] -= sums[bin] * sums[bin] / n;
+    return static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
   }
 
-  // Selects all candidates below the k-th smallest and, of those equal to it, the last ones.
-  std::span<const Chi2Neighbour> select(const float* row, std::size_t found, float kth) {
-    std::size_t below = 0, equal = 0;
-    for (std::size_t c = 0; c < found; ++c) {
-      below += row[indices_[c]] < kth;
-      equal += row[indices_[c]] == kth;
-    }
-    std::size_t to_skip = equal - (k_ - below);
-    std::size_t selected = 0;
-    for (std::size_t c = 0; c < found && selected < k_; ++c) {
-      const float distance = row[indices_[c]];
-      const bool skip = distance == kth && to_skip > 0;
-      to_skip -= skip;
-      selected_[selected] = {indices_[c], distance};
-      selected += distance <= kth && !skip;
-    }
-    return {selected_.data(), k_};
+  void split(std::size_t first, std::size_t last) {
+    if (last - first <= kLanes) return;
+    const std::size_t bin = most_varying(first, last);
+    const std::size_t middle = first + (groups_of(last - first) + 1) / 2 * kLanes;
+    const auto at = [&](std::size_t place) { return order_.begin() + static_cast<std::ptrdiff_t>(place); };
+    std::nth_element(at(first), at(middle), at(last), [&](std::int32_t a, std::int32_t b) {
+      return std::pair(root(a, bin), a) < std::pair(root(b, bin), b);
+    });
+    split(first, middle);
+    split(middle, last);
   }
 
-  std::size_t n_, k_;
-  std::vector<std::int32_t> indices_;  // candidates, ascending
-  std::vector<float> values_;
-  std::vector<Chi2Neighbour> selected_;
+  const std::vector<std::size_t>& bins_;
+  std::vector<float> roots_;  // n x used bins
+  std::vector<std::int32_t> order_;
 };
+
+// groups x bins x 2 x 16: the boxes of `count` things, of which box(i, bin) gives least and greatest value. A
+// last group is filled up with boxes at infinity, whose distance is NaN and so never within a limit.
+template <class Box>
+std::vector<float> boxes_of(std::size_t count, std::size_t bins, Box&& box) {
+  std::vector<float> boxes(groups_of(count) * bins * 2 * kLanes, kInfinity);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t bin = 0; bin < bins; ++bin) {
+      const auto [least, greatest] = box(i, bin);
+      float* const place = &boxes[((i / kLanes * bins + bin) * 2) * kLanes + i % kLanes];
+      place[0] = least;
+      place[kLanes] = greatest;
+    }
+  return boxes;
+}
 
 }  // namespace
 
+// One query after the other, with working memory that is reused.
+class Chi2Query {
+ public:
+  Chi2Query(const Chi2Search& search, std::size_t k)
+      : search_(search),
+        k_(k),
+        guess_(search.beyond_all_),
+        query_(search.bins_),
+        places_(groups_of(search.size()) * kLanes),
+        nearest_(k) {
+    std::size_t groups = groups_of(search.size());
+    for (std::size_t level = 0; level <= search.boxes_.size(); ++level) {
+      levels_.emplace_back(groups);
+      groups = groups_of(groups);
+    }
+  }
+
+  // The k nearest of the histogram at a place of the table.
+  std::span<const Chi2Neighbour> nearest(std::size_t place) {
+    start(place);
+    Limit most{guess_, look(guess_)};
+    while (most.count < k_) {
+      most.value = raised(most);
+      most.count = look(most.value);
+    }
+    const Limit least = narrow(most);
+    select(least.value, most);
+    guess_ = std::min(kGuess * most.value, search_.beyond_all_);
+    return {nearest_.data(), k_};
+  }
+
+ private:
+  // Groups whose 16 members have been looked at, and the distances of, or bounds on, these members.
+  struct Level {
+    std::size_t count = 0;
+    std::vector<std::int32_t> groups;
+    std::vector<float> distances;
+
+    explicit Level(std::size_t all_groups) : groups(all_groups), distances(all_groups * kLanes) {}
+  };
+
+  void start(std::size_t place) {
+    for (std::size_t bin = 0; bin < search_.bins_; ++bin)
+      query_[bin] = search_.table_[(place / kLanes * search_.bins_ + bin) * kLanes + place % kLanes];
+    for (Level& level : levels_) level.count = 0;
+    Level& top = levels_.back();
+    top.count = top.groups.size();
+    std::iota(top.groups.begin(), top.groups.end(), 0);
+    search_.kernel_.bounds(search_.boxes_.back().data(), search_.bins_, query_.data(), top.groups.data(),
+                           top.count, top.distances.data());
+  }
+
+  // A distance, and how many of the histograms that were looked at are as near.
+  struct Limit {
+    float value;
+    std::size_t count;
+  };
+
+  // As the number of points within a distance grows with its third power or so.
+  float raised(const Limit& limit) const {
+    if (limit.value == 0) return search_.beyond_all_;
+    const float missing = static_cast<float>(k_) / static_cast<float>(std::max<std::size_t>(limit.count, 1));
+    return std::min(limit.value * std::min(1.02F + 0.5F * (missing - 1), 2.0F), search_.beyond_all_);
+  }
+
+  // Opens the members within the limit that have not been opened: adds their groups to the level below.
+  std::size_t open(Level& level, float limit, Level& below) {
+    const std::size_t within =
+        search_.kernel_.places_up_to(limit, level.distances.data(), level.count * kLanes, places_.data());
+    for (std::size_t i = 0; i < within; ++i) {
+      const auto at = static_cast<std::size_t>(places_[i]);
+      below.groups[below.count + i] = level.groups[at / kLanes] * static_cast<std::int32_t>(kLanes) +
+                                      static_cast<std::int32_t>(at % kLanes);
+      level.distances[at] = kOpened;
+    }
+    return within;
+  }
+
+  // Measures all histograms within the limit, and some beyond. Returns how many are within.
+  std::size_t look(float limit) {
+    for (std::size_t level = levels_.size() - 1; level > 0; --level) {
+      Level& below = levels_[level - 1];
+      const std::size_t more = open(levels_[level], limit * kRounding, below);
+      const std::int32_t* const groups = below.groups.data() + below.count;
+      float* const distances = below.distances.data() + below.count * kLanes;
+      below.count += more;
+      if (level > 1)
+        search_.kernel_.bounds(search_.boxes_[level - 2].data(), search_.bins_, query_.data(), groups, more,
+                               distances);
+      else
+        measure(groups, more, distances);
+    }
+    return count_up_to(limit);
+  }
+
+  std::size_t count_up_to(float limit) const {
+    return search_.kernel_.count_up_to(limit, levels_[0].distances.data(), levels_[0].count * kLanes);
+  }
+
+  void measure(const std::int32_t* groups, std::size_t count, float* distances) {
+    search_.kernel_.distances(search_.table_.data(), search_.bins_, query_.data(), groups, count, distances);
+    const std::size_t members = (search_.size() - 1) % kLanes + 1;  // of the last group, which is filled up
+    const auto last = static_cast<std::int32_t>(groups_of(search_.size()) - 1);
+    for (std::size_t g = 0; g < count; ++g)
+      if (groups[g] == last)
+        std::fill(distances + g * kLanes + members, distances + (g + 1) * kLanes, kInfinity);
+  }
+
+  // Lowers `most` while it holds k or more, until it holds k or a few more. Returns a limit that holds fewer.
+  Limit narrow(Limit& most) const {
+    Limit least{-1, 0};
+    for (int probe = 0; most.count > k_ + kSpare && probe < 16; ++probe) {
+      const float share = (static_cast<float>(k_ - least.count) + static_cast<float>(kSpare) / 2) /
+                          static_cast<float>(most.count - least.count);
+      const float low = std::max(least.value, 0.0F);
+      const float middle = low + (most.value - low) * (probe % 4 == 3 ? 0.5F : share);
+      if (!(middle > least.value && middle < most.value)) break;
+      const Limit at{middle, count_up_to(middle)};
+      (at.count >= k_ ? most : least) = at;
+    }
+    return least;
+  }
+
+  // nearest_: all that are as near as `most`, but for those that are too many: the farthest and, of equal
+  // ones, the lowest indices. What is within `least` is sure to stay.
+  void select(float least, const Limit& most) {
+    const Level& leaves = levels_[0];
+    const std::size_t found = search_.kernel_.places_up_to(most.value, leaves.distances.data(),
+                                                           leaves.count * kLanes, places_.data());
+    std::size_t sure = 0;
+    unsure_.clear();
+    for (std::size_t c = 0; c < found; ++c) {
+      const auto at = static_cast<std::size_t>(places_[c]);
+      const Chi2Neighbour near{
+          search_.order_[static_cast<std::size_t>(leaves.groups[at / kLanes]) * kLanes + at % kLanes],
+          leaves.distances[at]};
+      if (near.chi2 <= least)
+        nearest_[sure++] = near;
+      else
+        unsure_.push_back(near);
+    }
+    const auto chosen = unsure_.begin() + static_cast<std::ptrdiff_t>(k_ - sure);
+    std::nth_element(unsure_.begin(), chosen, unsure_.end(),
+                     [](const Chi2Neighbour& a, const Chi2Neighbour& b) {
+                       return a.chi2 != b.chi2 ? a.chi2 < b.chi2 : a.index > b.index;
+                     });
+    std::copy(unsure_.begin(), chosen, nearest_.begin() + static_cast<std::ptrdiff_t>(sure));
+  }
+
+  const Chi2Search& search_;
+  std::size_t k_;
+  float guess_;
+  std::vector<float> query_;
+  std::vector<std::int32_t> places_;
+  std::vector<Level> levels_;  // histograms, boxes around groups of them, boxes around groups of boxes ...
+  std::vector<Chi2Neighbour> nearest_, unsure_;
+};
+
 Chi2Search::Chi2Search(const Descriptors& descriptors, chi2_kernel::Instructions instructions)
-    : size_(descriptors.size()), groups_(padded(size_) / kLanes), instructions_(instructions) {
+    : kernel_(chi2_kernel::kernel(instructions)) {
   const std::vector<std::size_t> bins = used_bins_of(descriptors);
   bins_ = bins.size();
-  table_.resize(groups_ * bins_ * kLanes);
-  for (std::size_t i = 0; i < size_; ++i)
+  beyond_all_ = beyond_all(descriptors);
+  order_ = Grouping(descriptors, bins).order();
+  const std::size_t n = order_.size();
+  table_.resize(groups_of(n) * bins_ * kLanes);
+  for (std::size_t place = 0; place < n; ++place)
     for (std::size_t b = 0; b < bins_; ++b)
-      table_[(i / kLanes * bins_ + b) * kLanes + i % kLanes] = descriptors.values[i * kBins + bins[b]];
+      table_[(place / kLanes * bins_ + b) * kLanes + place % kLanes] =
+          descriptors.values[static_cast<std::size_t>(order_[place]) * kBins + bins[b]];
+
+  std::size_t count = groups_of(n);
+  boxes_.push_back(boxes_of(count, bins_, [&](std::size_t group, std::size_t bin) {
+    const float* const first = &table_[(group * bins_ + bin) * kLanes];
+    const auto [least, greatest] = std::minmax_element(first, first + std::min(kLanes, n - group * kLanes));
+    return std::pair(*least, *greatest);
+  }));
+  while (count > kLanes) {
+    const std::size_t below = count;
+    count = groups_of(count);
+    const std::vector<float>& lower = boxes_.back();
+    boxes_.push_back(boxes_of(count, bins_, [&](std::size_t group, std::size_t bin) {
+      const float* const least = &lower[((group * bins_ + bin) * 2) * kLanes];
+      const float* const greatest = least + kLanes;
+      const std::size_t members = std::min(kLanes, below - group * kLanes);
+      return std::pair(*std::min_element(least, least + members),
+                       *std::max_element(greatest, greatest + members));
+    }));
+  }
 }
 
 void Chi2Search::for_each(std::size_t k, const Visit& visit) const {
   CHECK_LE(1U, k);
-  CHECK_LE(k, size_);
-  const std::size_t row = groups_ * kLanes;
-  std::vector<float> queries(kQueries * bins_);
-  std::vector<float> distances(kQueries * row);
-  Selection selection(size_, k);
-  for (std::size_t first = 0; first < size_; first += kQueries) {
-    // A group holds a multiple of kQueries histograms, so the last queries exist, though they may be padding.
-    const float* group = table_.data() + first / kLanes * bins_ * kLanes;
-    for (std::size_t q = 0; q < kQueries; ++q)
-      for (std::size_t b = 0; b < bins_; ++b) queries[q * bins_ + b] = group[b * kLanes + first % kLanes + q];
-    chi2_kernel::distances(instructions_, table_.data(), groups_, bins_, queries.data(), distances.data());
-    for (std::size_t q = 0; q < kQueries && first + q < size_; ++q) {
-      float* const own = distances.data() + q * row;
-      std::fill(own + size_, own + row, std::numeric_limits<float>::infinity());
-      visit(first + q, selection.nearest(own));
-    }
-  }
+  CHECK_LE(k, size());
+  Chi2Query query(*this, k);
+  for (std::size_t place = 0; place < size(); ++place)
+    visit(static_cast<std::size_t>(order_[place]), query.nearest(place));
 }
 
 }  // namespace salbench

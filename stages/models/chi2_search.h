@@ -24,19 +24,25 @@ class Chi2Search {
   explicit Chi2Search(const Descriptors& descriptors,
                       chi2_kernel::Instructions instructions = chi2_kernel::widest_supported());
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return order_.size(); }
   std::size_t used_bins() const { return bins_; }
 
-  // Calls visit(i, nearest) for i = 0..n-1 in order. `nearest`, valid during the call, holds the k histograms
-  // of smallest distance to i, i itself among them, by ascending index. Ties at the k-th distance go to the
-  // higher index. 1 <= k <= n.
+  // Calls visit(i, nearest) once for each i, in an order that depends on the histograms alone. `nearest`,
+  // valid during the call, holds the k histograms of smallest distance to i, i itself among them, by
+  // ascending index. Ties at the k-th distance go to the higher index. 1 <= k <= n.
   using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbour> nearest)>;
   void for_each(std::size_t k, const Visit& visit) const;
 
  private:
-  std::size_t size_ = 0, groups_ = 0, bins_ = 0;
-  std::vector<float> table_;  // groups x bins x 16, the last group filled up with empty histograms
-  chi2_kernel::Instructions instructions_;
+  friend class Chi2Query;
+
+  std::size_t bins_ = 0;
+  float beyond_all_ = 0;             // distance
+  std::vector<std::int32_t> order_;  // place in the table -> index of the histogram
+  std::vector<float> table_;         // groups x bins x 16, the last group filled up with empty histograms
+  // Boxes around the groups of 16 histograms, around 16 such boxes, and so on until one group is left.
+  std::vector<std::vector<float>> boxes_;
+  chi2_kernel::Kernel kernel_;
 };
 
 }  // namespace salbench

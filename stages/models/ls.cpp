@@ -51,7 +51,7 @@ std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
   return result;
 }
 
-// 1 - exp(-mean dissimilarity to the selected points); dissimilarity(chi2, distance).
+// 1 - exp(-mean dissimilarity to the selected points). `dissimilarity` is that of chi2 1, by the distance.
 template <class Dissimilarity>
 ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descriptors, double selected_share,
                          Dissimilarity&& dissimilarity) {
@@ -60,9 +60,9 @@ ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descri
   Chi2Search(descriptors).for_each(selected, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     double sum = 0;
     for (const auto& [j, chi2] : nearest)
-      sum += dissimilarity(static_cast<double>(chi2) / kHistogramTotal,
-                           (points[i] - points[static_cast<std::size_t>(j)]).norm());
-    result[i] = 1 - std::exp(-sum / static_cast<double>(selected));
+      sum +=
+          static_cast<double>(chi2) * dissimilarity((points[i] - points[static_cast<std::size_t>(j)]).norm());
+    result[i] = 1 - std::exp(-sum / (kHistogramTotal * static_cast<double>(selected)));
   });
   return result;
 }
@@ -121,12 +121,12 @@ ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors
   const std::vector<Vec3> places = in_units_of_radius(points);
 
   // Near points count more at the low level, far ones at the high level.
-  const ScalarField low = distinctness(places, fpfh, options.selected_share,
-                                       [](double chi2, double distance) { return chi2 / (1 + distance); });
+  const ScalarField low =
+      distinctness(places, fpfh, options.selected_share, [](double distance) { return 1 / (1 + distance); });
   ScalarField saliency = association(places, low, options);
   const ScalarField high =
       distinctness(places, mixed_descriptors(points, normals, fpfh, low, options), options.selected_share,
-                   [](double chi2, double distance) { return chi2 * std::log1p(distance); });
+                   [](double distance) { return std::log(1 + distance); });
   for (std::size_t i = 0; i < saliency.size(); ++i) saliency[i] += low[i] + options.high_weight * high[i];
   return saliency;
 }

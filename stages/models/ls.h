@@ -42,10 +42,10 @@ struct LsOptions {
 };
 
 // D_low + A + high_weight D_high, >= 0. `fpfh` (n x 33) are the descriptors of the low level; those of the
-// high level are computed here from points and normals. Time O(n^2), memory O(n) and the neighbourhoods of
-// the high level. If the selected share is less than two points, each point is compared with itself alone,
-// and all values are 0. Throws InputError for a shape without points, without extent, or with a coordinate,
-// normal or descriptor that is not finite. [shtrom2013] [tasse2016]
+// high level are computed here from points and normals. Memory O(n). If the selected share is less than two
+// points, each point is compared with itself alone, and all values are 0. Throws InputError for a shape
+// without points, without extent, or with a coordinate, normal or descriptor that is not finite. [shtrom2013]
+// [tasse2016]
 ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors& fpfh,
                         const LsOptions& options);
 

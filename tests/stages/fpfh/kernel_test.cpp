@@ -3,12 +3,14 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
+#include "stages/core/pair_features.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -225,23 +227,49 @@ TEST(PairFeatures, WithTheSwapAreSymmetric) {
   }
 }
 
-TEST(Neighbourhoods, AreTheSearchesOfTheTree) {
-  const auto points = shapes::random_cloud(100, 35);
-  const KdTree tree(points);
-  std::vector<Neighbour> found;
-  for (const Support& support : {kNine, Support{0, 0.25}}) {
-    const Neighbourhoods all = neighbourhoods(tree, points, support);
-    ASSERT_EQ(all.size(), points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (support.neighbours > 0)
-        tree.nearest(points[i], 9, found);
-      else
-        tree.within(points[i], support.radius, found);
-      ASSERT_EQ(all.of(i).size(), found.size());
-      for (std::size_t k = 0; k < found.size(); ++k) {
-        EXPECT_EQ(all.of(i)[k], found[k].index);
-        EXPECT_EQ(all.distances_squared_of(i)[k], found[k].distance_squared);
-      }
+std::uint8_t bin_by_definition(double value, double limit) {
+  const auto bin = static_cast<int>((std::abs(value) / limit + 1) / 2 * 11);
+  return static_cast<std::uint8_t>(std::min(bin, 10) - 5);
+}
+
+void expect_bins_of_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_q) {
+  for (const bool swap : {false, true}) {
+    const DarbouxTriple pair = pair_features(p, n_p, q, n_q, swap);
+    const PairBins bins = pair_bins(p, n_p, q, n_q, swap);
+    EXPECT_EQ(bins.theta, bin_by_definition(pair.theta, std::numbers::pi));
+    EXPECT_EQ(bins.alpha, bin_by_definition(pair.alpha, 1));
+    EXPECT_EQ(bins.phi, bin_by_definition(pair.phi, 1));
+    if (!bins.both_ways) continue;
+    EXPECT_TRUE(swap);
+    const PairBins back = pair_bins(q, n_q, p, n_p, swap);
+    EXPECT_TRUE(back.both_ways);
+    EXPECT_EQ(std::tie(back.theta, back.alpha, back.phi), std::tie(bins.theta, bins.alpha, bins.phi));
+  }
+}
+
+TEST(PairBins, AreThoseOfTheFeatures) {
+  const auto points = shapes::random_cloud(2000, 36);
+  const auto normals = shapes::random_normals(2000, 37);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    expect_bins_of_features(points[i], normals[i], points[i + 1], normals[i + 1]);
+    const Vec3 near = (normals[i] + 1e-9 * normals[i + 1]).normalized();
+    for (const Vec3& other : {normals[i], Vec3(-normals[i]), near})
+      expect_bins_of_features(points[i], normals[i], points[i + 1], other);
+    expect_bins_of_features(points[i], normals[i], points[i] + 0.1 * normals[i], normals[i + 1]);
+  }
+}
+
+TEST(PairBins, OnTheEdgesOfBinsAreThoseOfTheFeatures) {
+  for (int bin = 0; bin <= 11; ++bin) {
+    const double part = bin / 11.0;
+    for (const double off : {0.0, 1e-16, -1e-16, 1e-12, -1e-12, 1e-8, -1e-8}) {
+      const double angle = part * std::numbers::pi + off;
+      const Vec3 tilted(std::sin(angle), 0, std::cos(angle));
+      expect_bins_of_features({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, tilted);  // theta
+      const double height = std::clamp(part + off, 0.0, 1.0);
+      const Vec3 raised(0, std::sqrt(1 - height * height), height);
+      expect_bins_of_features({0, 0, 0}, {0, 0, 1}, raised, {1, 0, 0});                   // phi
+      expect_bins_of_features({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, height, raised.y()});  // alpha
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <pcl/search/kdtree.h>
 
 #include "stages/core/fpfh.h"
+#include "stages/core/pair_features.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {

@@ -1,6 +1,7 @@
 #include "stages/models/chi2_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -32,12 +33,18 @@ Descriptors one_bin(const std::vector<float>& heights) {
   return descriptors;
 }
 
+std::vector<Chi2Neighbour> by_index(std::span<const Chi2Neighbour> nearest) {
+  std::vector<Chi2Neighbour> sorted(nearest.begin(), nearest.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Chi2Neighbour& a, const Chi2Neighbour& b) { return a.index < b.index; });
+  return sorted;
+}
+
 std::vector<std::vector<std::int32_t>> indices_of(const Chi2Search& search, std::size_t k) {
-  std::vector<std::vector<std::int32_t>> result;
+  std::vector<std::vector<std::int32_t>> result(search.size());
   search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-    EXPECT_EQ(i, result.size());
-    result.emplace_back();
-    for (const Chi2Neighbour& neighbour : nearest) result.back().push_back(neighbour.index);
+    EXPECT_THAT(result[i], testing::IsEmpty());
+    for (const Chi2Neighbour& neighbour : by_index(nearest)) result[i].push_back(neighbour.index);
   });
   return result;
 }
@@ -52,8 +59,11 @@ float chi2(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins
 // The brute-force twin: a full sort of every row, of equal distances the higher index first.
 void expect_equals_brute_force(const Descriptors& descriptors, std::size_t k, Instructions instructions) {
   const std::size_t n = descriptors.size();
+  std::size_t rows = 0;
   Chi2Search(descriptors, instructions)
-      .for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+      .for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
+        ++rows;
+        const std::vector<Chi2Neighbour> nearest = by_index(unordered);
         std::vector<std::pair<float, std::size_t>> all;
         for (std::size_t j = 0; j < n; ++j) all.emplace_back(chi2(descriptors.row(i), descriptors.row(j)), j);
         std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
@@ -67,6 +77,7 @@ void expect_equals_brute_force(const Descriptors& descriptors, std::size_t k, In
           ASSERT_EQ(nearest[c].chi2, all[c].first) << "row " << i << " of " << n;  // to the last bit
         }
       });
+  EXPECT_EQ(rows, n);
 }
 
 TEST(Chi2Search, EqualsBruteForceWhereNoDistancesAreEqual) {
@@ -82,19 +93,35 @@ TEST(Chi2Search, EqualsBruteForceWhereManyDistancesAreEqual) {
     expect_equals_brute_force(random_histograms(100, 2, k), k, Instructions::baseline);
 }
 
-TEST(Chi2Search, EqualsBruteForceWhereASampleBoundsTheSelection) {
-  for (const std::uint64_t levels : {2U, 1U << 20U}) {
-    const Descriptors histograms = random_histograms(1100, levels, levels);
-    for (const std::size_t k : {1U, 55U, 1050U})
-      expect_equals_brute_force(histograms, k, chi2_kernel::widest_supported());
+TEST(Chi2Search, EqualsBruteForceWithEveryVariantAndSeveralLevelsOfBoxes) {
+  for (const Instructions variant : {Instructions::baseline, Instructions::avx2, Instructions::avx512}) {
+    if (!chi2_kernel::supported(variant)) continue;
+    for (const std::uint64_t levels : {2U, 5U, 1U << 20U}) {
+      const Descriptors histograms = random_histograms(1100, levels, levels);
+      for (const std::size_t k : {1U, 55U, 1050U}) expect_equals_brute_force(histograms, k, variant);
+    }
   }
 }
 
-TEST(Chi2Search, RecoversFromASampleThatMisleads) {
-  // Every eighth histogram, just those of the sample, equals the first: they are fewer than asked for.
+// Histograms of a few kinds, as those of shapes are: boxes far away are passed over.
+TEST(Chi2Search, EqualsBruteForceWhereMostIsPassedOver) {
+  Rng rng(5, "kinds", "");
+  const Descriptors kinds = random_histograms(12, 100, 6);
+  Descriptors histograms;
+  for (std::size_t i = 0; i < 1500; ++i)
+    for (const float value : kinds.row(rng.below(12)))
+      histograms.values.push_back(value + static_cast<float>(rng.below(4)));
+  for (const std::size_t k : {1U, 75U, 300U})
+    expect_equals_brute_force(histograms, k, chi2_kernel::widest_supported());
+}
+
+TEST(Chi2Search, RecoversFromAGuessThatMisleads) {
+  // Places that are neighbours in the order of the search have their k-th nearest at distances far apart.
   std::vector<float> heights(2048);
-  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 8 == 0 ? 1 : 2 + static_cast<float>(i);
-  expect_equals_brute_force(one_bin(heights), 614, chi2_kernel::widest_supported());
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    heights[i] = i % 8 == 0 ? 1 : std::pow(1.04F, static_cast<float>(i % 1024));
+  for (const std::size_t k : {3U, 200U, 614U})
+    expect_equals_brute_force(one_bin(heights), k, chi2_kernel::widest_supported());
 }
 
 TEST(Chi2Search, OrdersDistancesOfAnyMagnitude) {
@@ -122,11 +149,11 @@ TEST(Chi2Search, OfEqualDistancesAtTheBoundaryTheHigherIndexStays) {
   EXPECT_THAT(indices_of(search, 4)[1], ElementsAre(1, 2, 3, 4));
 }
 
-TEST(Chi2Search, LeavesOutOnlyBinsThatAreNeverFilled) {
+TEST(Chi2Search, LeavesOutOnlyBinsThatAreNeverFilledAndKeepsOne) {
   EXPECT_EQ(Chi2Search(one_bin({0, 0, 3})).used_bins(), 1U);
   EXPECT_EQ(Chi2Search(random_histograms(50, 9, 1)).used_bins(), 33U);
   const Chi2Search empty(one_bin({0, 0, 0}));
-  EXPECT_EQ(empty.used_bins(), 0U);
+  EXPECT_EQ(empty.used_bins(), 1U);
   EXPECT_THAT(indices_of(empty, 2)[0], ElementsAre(1, 2));
 }
 
@@ -141,18 +168,24 @@ TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
 }
 
 TEST(Chi2Kernel, EveryVariantGivesTheSameBytes) {
-  const std::size_t groups = 5, bins = 17;
+  constexpr std::size_t bins = 17;
+  const std::vector<std::int32_t> groups = {4, 0, 3};
   Rng rng(3, "kernel", "");
-  std::vector<float> table(groups * bins * chi2_kernel::kLanes), queries(chi2_kernel::kQueries * bins);
+  std::vector<float> table(5 * bins * 2 * chi2_kernel::kLanes), query(bins);
   for (float& value : table) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
-  for (float& value : queries) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
+  for (float& value : query) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
   const auto run = [&](Instructions instructions) {
-    std::vector<float> result(chi2_kernel::kQueries * groups * chi2_kernel::kLanes);
-    chi2_kernel::distances(instructions, table.data(), groups, bins, queries.data(), result.data());
+    const chi2_kernel::Kernel& kernel = chi2_kernel::kernel(instructions);
+    const std::size_t count = groups.size() * chi2_kernel::kLanes;
+    std::vector<float> result(2 * count + 1);
+    kernel.distances(table.data(), bins, query.data(), groups.data(), groups.size(), result.data());
+    kernel.bounds(table.data(), bins, query.data(), groups.data(), groups.size(), result.data() + count);
+    result.back() = static_cast<float>(kernel.count_up_to(result[5], result.data(), count));
     return result;
   };
   const std::vector<float> baseline = run(Instructions::baseline);
-  EXPECT_GT(*std::min_element(baseline.begin(), baseline.end()), 0);
+  EXPECT_GT(*std::min_element(baseline.begin(), baseline.end() - 1), 0);
+  EXPECT_GT(baseline.back(), 0);
   for (const Instructions wider : {Instructions::avx2, Instructions::avx512}) {
     if (chi2_kernel::supported(wider)) {
       EXPECT_EQ(run(wider), baseline) << static_cast<int>(wider);
@@ -174,14 +207,19 @@ TEST(Chi2Kernel, IsExactToSinglePrecision) {
   });
 }
 
-TEST(Chi2Kernel, IndicesUpToTakesTheLimitAndPassesOverInfinity) {
+TEST(Chi2Kernel, PlacesAndCountTakeTheLimitAndPassOverInfinityAndNaN) {
   std::vector<float> values(48, std::numeric_limits<float>::infinity());
   values[0] = values[15] = values[16] = values[47] = 2;
   values[20] = 2.5F;
-  std::vector<std::int32_t> indices(48, -1);
-  ASSERT_EQ(chi2_kernel::indices_up_to(2, values.data(), values.size(), indices.data()), 4U);
-  indices.resize(4);
-  EXPECT_THAT(indices, ElementsAre(0, 15, 16, 47));
+  values[21] = std::numeric_limits<float>::quiet_NaN();
+  std::vector<std::int32_t> places(48, -1);
+  for (const Instructions variant : {Instructions::baseline, Instructions::avx2, Instructions::avx512}) {
+    if (!chi2_kernel::supported(variant)) continue;
+    const chi2_kernel::Kernel& kernel = chi2_kernel::kernel(variant);
+    EXPECT_EQ(kernel.count_up_to(2, values.data(), values.size()), 4U);
+    ASSERT_EQ(kernel.places_up_to(2, values.data(), values.size(), places.data()), 4U);
+    EXPECT_THAT(std::vector(places.begin(), places.begin() + 4), ElementsAre(0, 15, 16, 47));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+// Relation of two oriented points, and the bins of a histogram that it votes for. [rusu2009]
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// In the Darboux frame u, v, w of the source p.
+struct DarbouxTriple {
+  double alpha = 0;  // v . n_q, in [-1, 1]
+  double phi = 0;    // u . (q - p) / |q - p|, in [-1, 1]
+  double theta = 0;  // atan2(w . n_q, u . n_q), in [-pi, pi]
+};
+
+// All 0 if the points coincide or the frame is undefined (q straight above p). Normals have unit length. With
+// `swap` the point whose normal makes the smaller angle with the line between them becomes the source, which
+// makes the triple symmetric in p and q. [rusu2009]
+DarbouxTriple pair_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_q, bool swap);
+
+// Of 11 bins over the range of a feature only those of its absolute value are filled: the upper half of the
+// middle one, and the 5 above it.
+inline constexpr std::size_t kBlockBins = 11;
+inline constexpr std::size_t kFirstFilled = 5;
+inline constexpr std::size_t kFilledBins = kBlockBins - kFirstFilled;
+
+struct PairBins {
+  std::uint8_t theta, alpha, phi;  // 0..5, counted from the middle bin
+  bool both_ways;                  // q and p in place of p and q give the same bins
+};
+
+// The bins of pair_features(), which the sign of most differences gives without angles. p and q do not
+// coincide.
+PairBins pair_bins(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_q, bool swap);
+
+}  // namespace salbench
