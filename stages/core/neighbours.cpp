@@ -81,6 +81,22 @@ class WithinSet {
   double radius_squared_;
 };
 
+class WithinCount {
+ public:
+  explicit WithinCount(double radius_squared) : radius_squared_(radius_squared) {}
+  bool full() const { return true; }
+  std::size_t size() const { return count_; }
+  double worstDist() const { return widened(radius_squared_); }
+  bool addPoint(double distance_squared, std::uint32_t) {
+    count_ += distance_squared <= radius_squared_;
+    return true;
+  }
+
+ private:
+  double radius_squared_;
+  std::size_t count_ = 0;
+};
+
 }  // namespace
 
 struct KdTree::Impl {
@@ -114,6 +130,12 @@ std::int32_t KdTree::nearest(const Vec3& query) const {
 void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
   within_unordered(query, radius, found);
   std::sort(found.begin(), found.end(), closer);
+}
+
+std::size_t KdTree::count_within(const Vec3& query, double radius) const {
+  WithinCount set(radius * radius);
+  if (size() > 0) impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+  return set.size();
 }
 
 void KdTree::within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const {

@@ -32,6 +32,7 @@ class KdTree {
   // All points with distance <= radius.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
   void within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
+  std::size_t count_within(const Vec3& query, double radius) const;
 
   std::size_t size() const;
 

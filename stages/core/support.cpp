@@ -13,29 +13,75 @@ namespace salbench {
 double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, double radius) {
   CHECK_EQ(points.size(), tree.size());
   CHECK_GT(points.size(), 0U);
-  std::vector<Neighbour> found;
   std::size_t others = 0;
-  for (const Vec3& p : points) {
-    tree.within(p, radius, found);
-    others += found.size() - 1;
-  }
+  for (const Vec3& p : points) others += tree.count_within(p, radius) - 1;
   return static_cast<double>(others) / static_cast<double>(points.size());
 }
+
+namespace {
+
+// Radii that grow by a tenth each, and the mean number of neighbours within them.
+class Growth {
+ public:
+  Growth(std::span<const Vec3> points, const KdTree& tree, double first)
+      : points_(points), tree_(tree), radii_{first} {}
+
+  double radius(std::size_t step) {
+    while (radii_.size() <= step) radii_.push_back(radii_.back() * kFactor);
+    return radii_[step];
+  }
+  std::int32_t neighbours(std::size_t step) {
+    return static_cast<std::int32_t>(mean_neighbour_count(points_, tree_, radius(step)));
+  }
+
+  // A step that holds about so many neighbours, from a few of the points.
+  std::size_t likely(std::int32_t enough) {
+    std::vector<double> squared;
+    std::vector<Neighbour> near;
+    const std::size_t stride = points_.size() / kProbes + 1;
+    for (std::size_t i = 0; i < points_.size(); i += stride) {
+      tree_.nearest(points_[i], static_cast<std::size_t>(enough) + 1, near);
+      squared.push_back(near.back().distance_squared);
+    }
+    const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
+    std::nth_element(squared.begin(), middle, squared.end());
+    const double steps = std::log(std::sqrt(*middle) / radii_.front()) / std::log(kFactor);
+    return steps > 0 ? static_cast<std::size_t>(steps) : 0;
+  }
+
+ private:
+  static constexpr double kFactor = 1.1;
+  static constexpr std::size_t kProbes = 100;
+
+  std::span<const Vec3> points_;
+  const KdTree& tree_;
+  std::vector<double> radii_;
+};
+
+}  // namespace
 
 SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor,
                                    std::int32_t enough) {
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw InputError("the shape has no points");
-  SupportRadius support{factor * bounding_radius(points), 0};
-  // The loop below ends only for finite coordinates: at 2 R every point reaches every other.
+  // The search below ends only for finite coordinates: at 2 R every point reaches every other.
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
     throw InputError("the shape has a coordinate that is not finite");
+  const double first = factor * bounding_radius(points);
   enough = static_cast<std::int32_t>(std::min(static_cast<std::size_t>(enough), points.size() - 1));
-  while (true) {
-    support.neighbours = static_cast<std::int32_t>(mean_neighbour_count(points, tree, support.radius));
-    if (support.neighbours >= enough) return support;
-    support.radius *= 1.1;
+
+  // The count grows with the radius: from a likely step, the first that holds enough is up or down.
+  Growth growth(points, tree, first);
+  std::size_t step = first > 0 ? growth.likely(enough) : 0;
+  std::int32_t held = growth.neighbours(step);
+  while (held < enough) held = growth.neighbours(++step);
+  while (step > 0) {
+    const std::int32_t before = growth.neighbours(step - 1);
+    if (before < enough) break;
+    held = before;
+    --step;
   }
+  return {growth.radius(step), held};
 }
 
 SupportRadius grown_support_radius(std::span<const Vec3> points, double factor) {

@@ -44,7 +44,7 @@ Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, d
   Neighbours adjacent(clusters.count);
   std::vector<Neighbour> found;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    tree.within(points[i], radius, found);
+    tree.within_unordered(points[i], radius, found);
     if (found.size() <= 1) tree.nearest(points[i], kFallbackNear, found);
     auto& of_own = adjacent[static_cast<std::size_t>(clusters.of_point[i])];
     for (const Neighbour& neighbour : found) {

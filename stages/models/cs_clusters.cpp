@@ -148,7 +148,7 @@ class KMeans {
     Largest next;
     for (std::size_t k = 0; k < clusters_.size(); ++k) {
       if (clusters_.sizes[k] == 0) continue;
-      voxels_.tree.within(clusters_.centres[k], reach_, found_);
+      voxels_.tree.within_unordered(clusters_.centres[k], reach_, found_);
       for (const Neighbour& voxel : found_) {
         const auto j = static_cast<std::size_t>(voxel.index);
         const double chi2 = chi_square(voxels_.means.descriptors.row(j), clusters_.descriptors.row(k));
