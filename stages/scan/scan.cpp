@@ -16,6 +16,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
@@ -82,6 +83,35 @@ int half_grid(const std::vector<Vec3>& local_vertices, const Mesh& mesh, const S
       std::ceil(std::tan(half_field) / std::tan(options.step_degrees * kRadiansPerDegree)));
 }
 
+// Rows and columns of the grid, counted from the centre.
+struct Window {
+  int left, right, bottom, top;
+};
+
+// The part of the grid that the mesh is seen in: of the whole one, many rays pass it by.
+Window window_of(const std::vector<Vec3>& local_vertices, const Mesh& mesh, const Camera& camera,
+                 const ScanOptions& options) {
+  const int half = half_grid(local_vertices, mesh, options);
+  const Window whole{-half, half, -half, half};
+  const double step = std::tan(options.step_degrees * kRadiansPerDegree);
+  Eigen::AlignedBox2d seen;
+  for (const Triangle& face : mesh.faces)
+    for (const std::int32_t v : face) {
+      const Vec3 from_camera = local_vertices[static_cast<std::size_t>(v)] - camera.position;
+      const double depth = from_camera.dot(camera.forward);
+      if (!(depth > 1e-3 * options.distance)) return whole;  // beside the camera, or behind it
+      seen.extend(Eigen::Vector2d(from_camera.dot(camera.right), from_camera.dot(camera.up)) /
+                  (depth * step));
+    }
+  // One ray more on each side: Embree sees a little beyond edges.
+  const auto first = [&](double edge) {
+    return std::max<double>(-half, std::floor(edge - options.phase) - 1);
+  };
+  const auto last = [&](double edge) { return std::min<double>(half, std::ceil(edge - options.phase) + 1); };
+  return {static_cast<int>(first(seen.min().x())), static_cast<int>(last(seen.max().x())),
+          static_cast<int>(first(seen.min().y())), static_cast<int>(last(seen.max().y()))};
+}
+
 template <auto release>
 struct Release {
   template <class Handle>
@@ -128,6 +158,31 @@ Scene build_scene(const std::vector<Vec3>& local_vertices, const std::vector<Tri
   rtcCommitScene(scene.get());
   check_embree("build the scene");
   return scene;
+}
+
+// What is the same for all views of a mesh. A thread keeps that of its last mesh: building the hierarchy
+// takes longer than tracing one view.
+struct Traced {
+  Mesh mesh;
+  LocalFrame frame;
+  std::vector<Vec3> local_vertices;
+  Scene scene;
+
+  explicit Traced(const Mesh& of) : mesh(of), frame(local_frame(of)) {
+    local_vertices.reserve(mesh.vertices.size());
+    for (const Vec3& p : mesh.vertices) local_vertices.push_back(frame.local_from_mesh(p));
+    scene = build_scene(local_vertices, mesh.faces);
+  }
+  bool is_of(const Mesh& other) const { return mesh.vertices == other.vertices && mesh.faces == other.faces; }
+};
+
+const Traced& traced(const Mesh& mesh) {
+  static thread_local std::unique_ptr<const Traced> last;
+  if (last == nullptr || !last->is_of(mesh)) {
+    last = nullptr;  // before the next is built: one at a time in memory
+    last = std::make_unique<const Traced>(mesh);
+  }
+  return *last;
 }
 
 // The nearest hit so far of one ray; Embree hands the context on to the filter.
@@ -190,28 +245,20 @@ RTCRayHit float_ray(const Vec3& origin, const Vec3& direction) {
 Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
   CHECK_LE(0, view);
   CHECK_LT(view, kViews);
-  const LocalFrame frame = local_frame(mesh);
-  std::vector<Vec3> local_vertices;
-  local_vertices.reserve(mesh.vertices.size());
-  for (const Vec3& p : mesh.vertices) local_vertices.push_back(frame.local_from_mesh(p));
-
-  const Scene scene = build_scene(local_vertices, mesh.faces);
+  const Traced& from = traced(mesh);
   const Camera camera = camera_of_view(view, options);
   const double step = std::tan(options.step_degrees * kRadiansPerDegree);
-  const int half = half_grid(local_vertices, mesh, options);
+  const Window window = window_of(from.local_vertices, mesh, camera, options);
 
-  Scan scan{{}, frame.mesh_from_local(camera.position)};
-  for (int row = half; row >= -half; --row) {
-    for (int column = -half; column <= half; ++column) {
-      NearestHit nearest{{},
-                         mesh,
-                         local_vertices,
-                         camera.position,
-                         camera.ray((column + options.phase) * step, (row + options.phase) * step)};
+  Scan scan{{}, from.frame.mesh_from_local(camera.position)};
+  for (int row = window.top; row >= window.bottom; --row) {
+    for (int column = window.left; column <= window.right; ++column) {
+      const Vec3 direction = camera.ray((column + options.phase) * step, (row + options.phase) * step);
+      NearestHit nearest{{}, mesh, from.local_vertices, camera.position, direction};
       rtcInitIntersectContext(&nearest);
       nearest.filter = offer_and_refuse;
       alignas(16) RTCRayHit ray = float_ray(nearest.origin, nearest.direction);
-      rtcIntersect1(scene.get(), &nearest, &ray);
+      rtcIntersect1(from.scene.get(), &nearest, &ray);
       if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh);
     }
   }
