@@ -66,6 +66,15 @@ auto argument_for(const ShapeRows& rows, const SectionOf<Options>& section) {
 
 }  // namespace binding
 
+// The options of a model for meshes or for scans, where its struct tells them apart.
+template <class Options>
+Options options_for(const Options& options, Shapes shapes) {
+  if constexpr (requires { options.of_scans(); })
+    return shapes == Shapes::scans ? options.of_scans() : options.of_meshes();
+  else
+    return options;
+}
+
 // A row of the table, from the model's function; its options are the last parameter.
 template <class... Parameters>
 ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...)) {
@@ -75,7 +84,7 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
             auto options = preset<Options>(protocol);
             written.read(options);
             const auto add_map = [=](Catalog& catalog, const ShapeRows& rows, RowHead head) {
-              const auto bound = section("models." + std::string(name), options);
+              const auto bound = section("models." + std::string(name), options_for(options, rows.shapes));
               return catalog.add(rows.shapes, std::move(head), saliency,
                                  binding::argument_for<std::decay_t<Parameters>>(rows, bound)...);
             };

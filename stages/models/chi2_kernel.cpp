@@ -4,7 +4,9 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include <emmintrin.h>
 
@@ -83,23 +85,67 @@ template <std::size_t width>
   return sum;
 }
 
-// Bit i is set if values[i] <= limit; there are 16 values.
-[[gnu::always_inline]] inline std::uint32_t mask_up_to(__m128 limit, const float* values) {
+// Bit i is set if low < values[i] <= high; there are 16 values.
+std::uint32_t mask_between(__m128 low, __m128 high, const float* values) {
   const auto compared = [&](std::size_t i) {
-    return _mm_castps_si128(_mm_cmple_ps(_mm_loadu_ps(values + i), limit));
+    const __m128 four = _mm_loadu_ps(values + i);
+    return _mm_castps_si128(_mm_and_ps(_mm_cmpgt_ps(four, low), _mm_cmple_ps(four, high)));
   };
-  const __m128i low = _mm_packs_epi32(compared(0), compared(4));
-  const __m128i high = _mm_packs_epi32(compared(8), compared(12));
-  return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(low, high)));
+  const __m128i lower = _mm_packs_epi32(compared(0), compared(4));
+  const __m128i upper = _mm_packs_epi32(compared(8), compared(12));
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(lower, upper)));
 }
 
-std::size_t places_up_to(float limit, const float* values, std::size_t count, std::int32_t* places) {
-  const __m128 limits = _mm_set1_ps(limit);
+std::size_t places_between(float low, float high, const float* values, std::size_t count,
+                           std::int32_t* places) {
+  const __m128 lows = _mm_set1_ps(low), highs = _mm_set1_ps(high);
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += 16)
-    for (std::uint32_t mask = mask_up_to(limits, values + i); mask != 0; mask &= mask - 1)
+    for (std::uint32_t mask = mask_between(lows, highs, values + i); mask != 0; mask &= mask - 1)
       places[found++] = static_cast<std::int32_t>(i) + std::countr_zero(mask);
   return found;
+}
+
+// log(1 + d) = 2 artanh(t), t = d / (2 + d) <= 1/2: its series to the precision of floats.
+[[gnu::always_inline]] inline float logarithm_beyond_one(float d) {
+  const float t = d / (2 + d), z = t * t;
+  float series = 1.0F / 21;
+  for (const float term : {19.0F, 17.0F, 15.0F, 13.0F, 11.0F, 9.0F, 7.0F, 5.0F, 3.0F})
+    series = series * z + 1 / term;
+  return 2 * t * (series * z + 1);
+}
+
+template <Weight weight>
+[[gnu::always_inline]] inline float weigh(float distance) {
+  return weight == Weight::near ? 1 / (1 + distance) : logarithm_beyond_one(distance);
+}
+
+// Plain loops over the lanes, which the compiler turns into vectors. Each lane has a sum of its own.
+template <Weight weight>
+[[gnu::always_inline]] inline double sum_weighted(float limit, const float* chi2, const float* places,
+                                                  const float* from, const std::int32_t* groups,
+                                                  std::size_t count) {
+  std::array<double, kLanes> sums{};
+  for (std::size_t g = 0; g < count; ++g, chi2 += kLanes) {
+    const float* const x = places + static_cast<std::size_t>(groups[g]) * 3 * kLanes;
+    const float* const y = x + kLanes;
+    const float* const z = y + kLanes;
+    std::array<float, kLanes> terms;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const float dx = x[lane] - from[0], dy = y[lane] - from[1], dz = z[lane] - from[2];
+      const float term = chi2[lane] * weigh<weight>(std::sqrt(dx * dx + dy * dy + dz * dz));
+      terms[lane] = chi2[lane] <= limit ? term : 0;
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += static_cast<double>(terms[lane]);
+  }
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+[[gnu::always_inline]] inline double sum_weighted(Weight weight, float limit, const float* chi2,
+                                                  const float* places, const float* from,
+                                                  const std::int32_t* groups, std::size_t count) {
+  return weight == Weight::near ? sum_weighted<Weight::near>(limit, chi2, places, from, groups, count)
+                                : sum_weighted<Weight::far>(limit, chi2, places, from, groups, count);
 }
 
 #define SALBENCH_VARIANT(name, isa, width)                                                                   \
@@ -113,6 +159,11 @@ std::size_t places_up_to(float limit, const float* values, std::size_t count, st
   }                                                                                                          \
   [[gnu::target(isa)]] std::size_t count_##name(float limit, const float* values, std::size_t count) {       \
     return count_values<width>(limit, values, count);                                                        \
+  }                                                                                                          \
+  [[gnu::target(isa)]] double weighted_sum_##name(Weight weight, float limit, const float* chi2,             \
+                                                  const float* places, const float* from,                    \
+                                                  const std::int32_t* groups, std::size_t count) {           \
+    return sum_weighted(weight, limit, chi2, places, from, groups, count);                                   \
   }
 SALBENCH_VARIANT(baseline, "sse2", 4)
 SALBENCH_VARIANT(avx2, "avx2", 8)
@@ -138,11 +189,15 @@ Instructions widest_supported() {
   return supported(Instructions::avx2) ? Instructions::avx2 : Instructions::baseline;
 }
 
+float weight_of(Weight weight, float distance) {
+  return weight == Weight::near ? weigh<Weight::near>(distance) : weigh<Weight::far>(distance);
+}
+
 const Kernel& kernel(Instructions instructions) {
   static constexpr std::array kernels = {
-      Kernel{distances_baseline, bounds_baseline, count_baseline, places_up_to},
-      Kernel{distances_avx2, bounds_avx2, count_avx2, places_up_to},
-      Kernel{distances_avx512, bounds_avx512, count_avx512, places_up_to}};
+      Kernel{distances_baseline, bounds_baseline, count_baseline, places_between, weighted_sum_baseline},
+      Kernel{distances_avx2, bounds_avx2, count_avx2, places_between, weighted_sum_avx2},
+      Kernel{distances_avx512, bounds_avx512, count_avx512, places_between, weighted_sum_avx512}};
   return kernels[static_cast<std::size_t>(instructions)];
 }
 

@@ -15,6 +15,13 @@ enum class Instructions { baseline, avx2, avx512 };
 bool supported(Instructions instructions);  // by this machine
 Instructions widest_supported();
 
+// Of a distance d in space, 0 <= d <= 2.
+enum class Weight {
+  near,  // 1 / (1 + d)
+  far    // log(1 + d)
+};
+float weight_of(Weight weight, float distance);
+
 // All values below are finite and >= 0, but for the filling of a last group.
 struct Kernel {
   // distances[16 g + lane] = sum over the bins of (a - b)^2 / (a + b), a = bin of the query, b = bin of the
@@ -33,9 +40,17 @@ struct Kernel {
   // How many of the values are <= limit; `count` is a multiple of 16.
   std::size_t (*count_up_to)(float limit, const float* values, std::size_t count);
 
-  // Writes the places of the values <= limit, ascending, and returns how many there are; `count` is a
-  // multiple of 16 and `places` has room for it.
-  std::size_t (*places_up_to)(float limit, const float* values, std::size_t count, std::int32_t* places);
+  // Writes the places of the values above `low` and up to `high`, ascending, and returns how many there are;
+  // `count` is a multiple of 16 and `places` has room for it.
+  std::size_t (*places_between)(float low, float high, const float* values, std::size_t count,
+                                std::int32_t* places);
+
+  // Sum of chi2 * weight(d) over the histograms of the groups whose chi2 is <= limit, d = distance in space.
+  //   chi2    16 count
+  //   places  groups x 3 x 16: x, y and z
+  //   from    x, y, z
+  double (*weighted_sum)(Weight weight, float limit, const float* chi2, const float* places,
+                         const float* from, const std::int32_t* groups, std::size_t count);
 };
 const Kernel& kernel(Instructions instructions);
 

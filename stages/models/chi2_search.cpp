@@ -146,16 +146,35 @@ class Chi2Query {
 
   // The k nearest of the histogram at a place of the table.
   std::span<const Chi2Neighbour> nearest(std::size_t place) {
-    start(place);
-    Limit most{guess_, look(guess_)};
-    while (most.count < k_) {
-      most.value = raised(most);
-      most.count = look(most.value);
+    const auto [least, most] = search(place);
+    choose(least, most);
+    const Level& leaves = levels_[0];
+    const std::size_t found = search_.kernel_.places_between(-1, least.value, leaves.distances.data(),
+                                                             leaves.count * kLanes, places_.data());
+    for (std::size_t c = 0; c < found; ++c) nearest_[c] = neighbour(places_[c]);
+    std::copy_n(unsure_.begin(), k_ - found, nearest_.begin() + static_cast<std::ptrdiff_t>(found));
+    return nearest_;
+  }
+
+  // Sum over the k nearest. `from` is the place in space of the query, `points` groups x 3 x 16.
+  double weighted_sum(std::size_t place, const std::vector<float>& points, chi2_kernel::Weight weight) {
+    const auto at = [&](std::size_t p, std::size_t axis) {
+      return points[(p / kLanes * 3 + axis) * kLanes + p % kLanes];
+    };
+    const std::array from = {at(place, 0), at(place, 1), at(place, 2)};
+    const auto [least, most] = search(place);
+    if (most.value == 0) return 0;
+    choose(least, most);
+    const Level& leaves = levels_[0];
+    double sum = search_.kernel_.weighted_sum(weight, least.value, leaves.distances.data(), points.data(),
+                                              from.data(), leaves.groups.data(), leaves.count);
+    for (const Chi2Neighbour& near : unsure_) {
+      const auto p = static_cast<std::size_t>(search_.place_of_[static_cast<std::size_t>(near.index)]);
+      const float dx = at(p, 0) - from[0], dy = at(p, 1) - from[1], dz = at(p, 2) - from[2];
+      sum += static_cast<double>(near.chi2 *
+                                 chi2_kernel::weight_of(weight, std::sqrt(dx * dx + dy * dy + dz * dz)));
     }
-    const Limit least = narrow(most);
-    select(least.value, most);
-    guess_ = std::min(kGuess * most.value, search_.beyond_all_);
-    return {nearest_.data(), k_};
+    return sum;
   }
 
  private:
@@ -168,6 +187,25 @@ class Chi2Query {
     explicit Level(std::size_t all_groups) : groups(all_groups), distances(all_groups * kLanes) {}
   };
 
+  // A distance, and how many of the histograms that were looked at are as near.
+  struct Limit {
+    float value;
+    std::size_t count;
+  };
+
+  // The first holds k or fewer, all of them among the k nearest; the second holds k or more.
+  std::pair<Limit, Limit> search(std::size_t place) {
+    start(place);
+    Limit most{guess_, look(guess_)};
+    while (most.count < k_) {
+      most.value = raised(most);
+      most.count = look(most.value);
+    }
+    const Limit least = narrow(most);
+    guess_ = std::min(kGuess * most.value, search_.beyond_all_);
+    return {least, most};
+  }
+
   void start(std::size_t place) {
     for (std::size_t bin = 0; bin < search_.bins_; ++bin)
       query_[bin] = search_.table_[(place / kLanes * search_.bins_ + bin) * kLanes + place % kLanes];
@@ -179,12 +217,6 @@ class Chi2Query {
                            top.count, top.distances.data());
   }
 
-  // A distance, and how many of the histograms that were looked at are as near.
-  struct Limit {
-    float value;
-    std::size_t count;
-  };
-
   // As the number of points within a distance grows with its third power or so.
   float raised(const Limit& limit) const {
     if (limit.value == 0) return search_.beyond_all_;
@@ -194,8 +226,8 @@ class Chi2Query {
 
   // Opens the members within the limit that have not been opened: adds their groups to the level below.
   std::size_t open(Level& level, float limit, Level& below) {
-    const std::size_t within =
-        search_.kernel_.places_up_to(limit, level.distances.data(), level.count * kLanes, places_.data());
+    const std::size_t within = search_.kernel_.places_between(-1, limit, level.distances.data(),
+                                                              level.count * kLanes, places_.data());
     for (std::size_t i = 0; i < within; ++i) {
       const auto at = static_cast<std::size_t>(places_[i]);
       below.groups[below.count + i] = level.groups[at / kLanes] * static_cast<std::int32_t>(kLanes) +
@@ -235,45 +267,43 @@ class Chi2Query {
         std::fill(distances + g * kLanes + members, distances + (g + 1) * kLanes, kInfinity);
   }
 
-  // Lowers `most` while it holds k or more, until it holds k or a few more. Returns a limit that holds fewer.
+  // Lowers `most`, which holds k or more, until it holds k, or a few more than the limit returned, which
+  // holds k or fewer.
   Limit narrow(Limit& most) const {
     Limit least{-1, 0};
-    for (int probe = 0; most.count > k_ + kSpare && probe < 16; ++probe) {
-      const float share = (static_cast<float>(k_ - least.count) + static_cast<float>(kSpare) / 2) /
-                          static_cast<float>(most.count - least.count);
+    for (int probe = 0; probe < 24 && most.count > k_ && most.count - least.count > kSpare; ++probe) {
+      const float share =
+          (static_cast<float>(k_ - least.count) + 0.5F) / static_cast<float>(most.count - least.count);
       const float low = std::max(least.value, 0.0F);
       const float middle = low + (most.value - low) * (probe % 4 == 3 ? 0.5F : share);
       if (!(middle > least.value && middle < most.value)) break;
       const Limit at{middle, count_up_to(middle)};
       (at.count >= k_ ? most : least) = at;
     }
-    return least;
+    return most.count == k_ ? most : least;
   }
 
-  // nearest_: all that are as near as `most`, but for those that are too many: the farthest and, of equal
-  // ones, the lowest indices. What is within `least` is sure to stay.
-  void select(float least, const Limit& most) {
+  // unsure_: of those beyond `least` and within `most` as many as are missing to k, the nearest and, of equal
+  // ones, those of highest index.
+  void choose(const Limit& least, const Limit& most) {
     const Level& leaves = levels_[0];
-    const std::size_t found = search_.kernel_.places_up_to(most.value, leaves.distances.data(),
-                                                           leaves.count * kLanes, places_.data());
-    std::size_t sure = 0;
+    const std::size_t found = search_.kernel_.places_between(least.value, most.value, leaves.distances.data(),
+                                                             leaves.count * kLanes, places_.data());
     unsure_.clear();
-    for (std::size_t c = 0; c < found; ++c) {
-      const auto at = static_cast<std::size_t>(places_[c]);
-      const Chi2Neighbour near{
-          search_.order_[static_cast<std::size_t>(leaves.groups[at / kLanes]) * kLanes + at % kLanes],
-          leaves.distances[at]};
-      if (near.chi2 <= least)
-        nearest_[sure++] = near;
-      else
-        unsure_.push_back(near);
-    }
-    const auto chosen = unsure_.begin() + static_cast<std::ptrdiff_t>(k_ - sure);
+    for (std::size_t c = 0; c < found; ++c) unsure_.push_back(neighbour(places_[c]));
+    const auto chosen = unsure_.begin() + static_cast<std::ptrdiff_t>(k_ - least.count);
     std::nth_element(unsure_.begin(), chosen, unsure_.end(),
                      [](const Chi2Neighbour& a, const Chi2Neighbour& b) {
                        return a.chi2 != b.chi2 ? a.chi2 < b.chi2 : a.index > b.index;
                      });
-    std::copy(unsure_.begin(), chosen, nearest_.begin() + static_cast<std::ptrdiff_t>(sure));
+    unsure_.erase(chosen, unsure_.end());
+  }
+
+  // The histogram at a place among the distances of the leaves.
+  Chi2Neighbour neighbour(std::int32_t place) const {
+    const auto at = static_cast<std::size_t>(place);
+    const auto group = static_cast<std::size_t>(levels_[0].groups[at / kLanes]);
+    return {search_.order_[group * kLanes + at % kLanes], levels_[0].distances[at]};
   }
 
   const Chi2Search& search_;
@@ -292,6 +322,9 @@ Chi2Search::Chi2Search(const Descriptors& descriptors, chi2_kernel::Instructions
   beyond_all_ = beyond_all(descriptors);
   order_ = Grouping(descriptors, bins).order();
   const std::size_t n = order_.size();
+  place_of_.resize(n);
+  for (std::size_t place = 0; place < n; ++place)
+    place_of_[static_cast<std::size_t>(order_[place])] = static_cast<std::int32_t>(place);
   table_.resize(groups_of(n) * bins_ * kLanes);
   for (std::size_t place = 0; place < n; ++place)
     for (std::size_t b = 0; b < bins_; ++b)
@@ -316,6 +349,23 @@ Chi2Search::Chi2Search(const Descriptors& descriptors, chi2_kernel::Instructions
                        *std::max_element(greatest, greatest + members));
     }));
   }
+}
+
+std::vector<double> Chi2Search::weighted_sums(std::size_t k, std::span<const Vec3> points,
+                                              chi2_kernel::Weight weight) const {
+  CHECK_LE(1U, k);
+  CHECK_LE(k, size());
+  CHECK_EQ(points.size(), size());
+  std::vector<float> by_place(groups_of(size()) * 3 * kLanes);
+  for (std::size_t place = 0; place < size(); ++place)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      by_place[(place / kLanes * 3 + axis) * kLanes + place % kLanes] = static_cast<float>(
+          points[static_cast<std::size_t>(order_[place])][static_cast<Eigen::Index>(axis)]);
+  Chi2Query query(*this, k);
+  std::vector<double> sums(size());
+  for (std::size_t place = 0; place < size(); ++place)
+    sums[static_cast<std::size_t>(order_[place])] = query.weighted_sum(place, by_place, weight);
+  return sums;
 }
 
 void Chi2Search::for_each(std::size_t k, const Visit& visit) const {

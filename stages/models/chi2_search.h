@@ -28,18 +28,24 @@ class Chi2Search {
   std::size_t used_bins() const { return bins_; }
 
   // Calls visit(i, nearest) once for each i, in an order that depends on the histograms alone. `nearest`,
-  // valid during the call, holds the k histograms of smallest distance to i, i itself among them, by
-  // ascending index. Ties at the k-th distance go to the higher index. 1 <= k <= n.
+  // valid during the call, holds the k histograms of smallest distance to i, i itself among them, in no
+  // order. Ties at the k-th distance go to the higher index. 1 <= k <= n.
   using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbour> nearest)>;
   void for_each(std::size_t k, const Visit& visit) const;
+
+  // Of each histogram: the sum of chi2 * weight(d) over its k nearest, d = distance of their points. `points`
+  // are those of the histograms, in them no two farther apart than 2; they are taken as floats.
+  std::vector<double> weighted_sums(std::size_t k, std::span<const Vec3> points,
+                                    chi2_kernel::Weight weight) const;
 
  private:
   friend class Chi2Query;
 
   std::size_t bins_ = 0;
-  float beyond_all_ = 0;             // distance
-  std::vector<std::int32_t> order_;  // place in the table -> index of the histogram
-  std::vector<float> table_;         // groups x bins x 16, the last group filled up with empty histograms
+  float beyond_all_ = 0;                // distance
+  std::vector<std::int32_t> order_;     // place in the table -> index of the histogram
+  std::vector<std::int32_t> place_of_;  // and back
+  std::vector<float> table_;            // groups x bins x 16, the last group filled up with empty histograms
   // Boxes around the groups of 16 histograms, around 16 such boxes, and so on until one group is left.
   std::vector<std::vector<float>> boxes_;
   chi2_kernel::Kernel kernel_;

@@ -51,19 +51,13 @@ std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
   return result;
 }
 
-// 1 - exp(-mean dissimilarity to the selected points). `dissimilarity` is that of chi2 1, by the distance.
-template <class Dissimilarity>
+// 1 - exp(-mean dissimilarity to the selected points), which is chi2 weighted by the distance.
 ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descriptors, double selected_share,
-                         Dissimilarity&& dissimilarity) {
+                         chi2_kernel::Weight weight) {
   const std::size_t selected = std::max<std::size_t>(count_of(selected_share, points.size()), 1);
-  ScalarField result(points.size());
-  Chi2Search(descriptors).for_each(selected, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-    double sum = 0;
-    for (const auto& [j, chi2] : nearest)
-      sum +=
-          static_cast<double>(chi2) * dissimilarity((points[i] - points[static_cast<std::size_t>(j)]).norm());
-    result[i] = 1 - std::exp(-sum / (kHistogramTotal * static_cast<double>(selected)));
-  });
+  ScalarField result = Chi2Search(descriptors).weighted_sums(selected, points, weight);
+  for (double& value : result)
+    value = 1 - std::exp(-value / (kHistogramTotal * static_cast<double>(selected)));
   return result;
 }
 
@@ -103,10 +97,23 @@ Descriptors mixed_descriptors(Points points, const Normals& normals, const Descr
 
 }  // namespace
 
+LsOptions LsOptions::of_meshes() const {
+  LsOptions options = *this;
+  options.selected_share_of_scans = 0;
+  return options;
+}
+
+LsOptions LsOptions::of_scans() const {
+  LsOptions options = of_meshes();
+  if (selected_share_of_scans > 0) options.selected_share = selected_share_of_scans;
+  return options;
+}
+
 LsOptions LsOptions::text() {
   // S = (D_low + D_high) / 2 + A / 2: the halves are a common factor.
   LsOptions options;
   options.selected_share = 1;
+  options.selected_share_of_scans = 0;
   options.high_share = 1;
   options.high_weighting = FpfhWeighting::text;
   options.high_weight = 1;
@@ -121,12 +128,10 @@ ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors
   const std::vector<Vec3> places = in_units_of_radius(points);
 
   // Near points count more at the low level, far ones at the high level.
-  const ScalarField low =
-      distinctness(places, fpfh, options.selected_share, [](double distance) { return 1 / (1 + distance); });
+  const ScalarField low = distinctness(places, fpfh, options.selected_share, chi2_kernel::Weight::near);
   ScalarField saliency = association(places, low, options);
-  const ScalarField high =
-      distinctness(places, mixed_descriptors(points, normals, fpfh, low, options), options.selected_share,
-                   [](double distance) { return std::log(1 + distance); });
+  const ScalarField high = distinctness(places, mixed_descriptors(points, normals, fpfh, low, options),
+                                        options.selected_share, chi2_kernel::Weight::far);
   for (std::size_t i = 0; i < saliency.size(); ++i) saliency[i] += low[i] + options.high_weight * high[i];
   return saliency;
 }

@@ -13,6 +13,7 @@ namespace salbench {
 // focus.
 struct LsOptions {
   double selected_share = 0.05;
+  double selected_share_of_scans = 0.1;
   double foci_share = 0.2;
   double foci_sigma = 0.05;
   double high_share = 0.1;
@@ -20,12 +21,16 @@ struct LsOptions {
   FpfhWeighting high_weighting = FpfhWeighting::published;
   double high_weight = 0.5;
 
+  LsOptions of_meshes() const;
+  LsOptions of_scans() const;
   static LsOptions text();  // as the paper describes it; the shared descriptors are then of its grown radius
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("selected_share", self.selected_share,
           {"points compared with, the most similar ones; 1: all", "fraction of the points", between(0, 1)});
+    visit("selected_share_of_scans", self.selected_share_of_scans,
+          {"the same on scans; 0: as on meshes", "fraction of the points", between(0, 1), "0"});
     visit("foci_share", self.foci_share,
           {"points of largest low-level distinctness: the foci of attention", "fraction of the points",
            between(0, 1)});
@@ -42,7 +47,8 @@ struct LsOptions {
 };
 
 // D_low + A + high_weight D_high, >= 0. `fpfh` (n x 33) are the descriptors of the low level; those of the
-// high level are computed here from points and normals. Memory O(n). If the selected share is less than two
+// high level are computed here from points and normals. Memory O(n); terms of the
+// sums in single precision. If the selected share is less than two
 // points, each point is compared with itself alone, and all values are 0. Throws InputError for a shape
 // without points, without extent, or with a coordinate, normal or descriptor that is not finite. [shtrom2013]
 // [tasse2016]

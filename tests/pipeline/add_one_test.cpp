@@ -49,6 +49,36 @@ TEST(AddAModel, ItsSectionIsReadOverTheProtocolsDefaults) {
   EXPECT_THROW(far_model("powr: 3", Protocol::text), ConfigError);
 }
 
+struct TwofoldOptions {
+  double power = 1, power_of_scans = 2;
+
+  TwofoldOptions of_meshes() const { return {power, 0}; }
+  TwofoldOptions of_scans() const { return {power_of_scans, 0}; }
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("power", self.power, {"of the distance"});
+    visit("power_of_scans", self.power_of_scans, {"the same on scans", {}, {}, "0"});
+  }
+};
+
+ScalarField twofold_saliency(Points points, const TwofoldOptions& options) {
+  return far_saliency(points, {options.power});
+}
+
+TEST(AddAModel, ItsOptionsMayDifferOnScansAndEachKeyHasThoseThatCount) {
+  Config config = toy_config();
+  config.models = {
+      model_row("TWO", 1, twofold_saliency).bind(Section::from_text("", ""), Protocol::published)};
+  const Catalog catalog = make_catalog(config, {});
+  const auto in_key = [&](Shapes shapes) {
+    return catalog.rows[catalog.index(shapes, "map.TWO")].options.at(0).in_key;
+  };
+  EXPECT_EQ(in_key(Shapes::meshes), "power: 1\n");
+  EXPECT_EQ(in_key(Shapes::scans), "power: 2\n");
+  EXPECT_EQ(config.models[0].options, "power: 1\npower_of_scans: 2\n");
+}
+
 TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
   TemporaryFolder data;
   write_toy_item(data.path(), "1", shapes::bumpy_sphere(2));

@@ -9,6 +9,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "tests/support/shapes.h"
 
 namespace salbench {
 namespace {
@@ -167,6 +168,40 @@ TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
         testing::ThrowsMessage<InputError>(testing::HasSubstr("descriptor of point 2")));
 }
 
+double weight_by_definition(chi2_kernel::Weight weight, double d) {
+  return weight == chi2_kernel::Weight::near ? 1 / (1 + d) : std::log1p(d);
+}
+
+TEST(Chi2Search, WeightedSumsAreThoseOverTheNearestWithEveryVariant) {
+  const std::vector<Vec3> points = shapes::random_cloud(1100, 8);  // in the unit cube
+  for (const std::uint64_t levels : {2U, 5U, 1U << 20U}) {
+    const Descriptors histograms = random_histograms(1100, levels, levels + 1);
+    for (const chi2_kernel::Weight weight : {chi2_kernel::Weight::near, chi2_kernel::Weight::far}) {
+      const Chi2Search baseline(histograms, Instructions::baseline);
+      const std::vector<double> sums = baseline.weighted_sums(55, points, weight);
+      baseline.for_each(55, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+        double expected = 0;
+        for (const auto& [j, chi2] : nearest)
+          expected += static_cast<double>(chi2) *
+                      weight_by_definition(weight, (points[i] - points[static_cast<std::size_t>(j)]).norm());
+        EXPECT_NEAR(sums[i], expected, 1e-6 * expected) << i;
+      });
+      for (const Instructions wider : {Instructions::avx2, Instructions::avx512}) {
+        if (!chi2_kernel::supported(wider)) continue;
+        EXPECT_EQ(Chi2Search(histograms, wider).weighted_sums(55, points, weight), sums);  // to the last bit
+      }
+    }
+  }
+}
+
+TEST(Chi2Kernel, WeightsAreExactToSinglePrecision) {
+  for (double d = 0; d <= 2; d += 1.0 / 512)
+    for (const chi2_kernel::Weight weight : {chi2_kernel::Weight::near, chi2_kernel::Weight::far}) {
+      const double expected = weight_by_definition(weight, d);
+      EXPECT_NEAR(chi2_kernel::weight_of(weight, static_cast<float>(d)), expected, 3e-7 * expected) << d;
+    }
+}
+
 TEST(Chi2Kernel, EveryVariantGivesTheSameBytes) {
   constexpr std::size_t bins = 17;
   const std::vector<std::int32_t> groups = {4, 0, 3};
@@ -217,8 +252,9 @@ TEST(Chi2Kernel, PlacesAndCountTakeTheLimitAndPassOverInfinityAndNaN) {
     if (!chi2_kernel::supported(variant)) continue;
     const chi2_kernel::Kernel& kernel = chi2_kernel::kernel(variant);
     EXPECT_EQ(kernel.count_up_to(2, values.data(), values.size()), 4U);
-    ASSERT_EQ(kernel.places_up_to(2, values.data(), values.size(), places.data()), 4U);
+    ASSERT_EQ(kernel.places_between(1, 2, values.data(), values.size(), places.data()), 4U);
     EXPECT_THAT(std::vector(places.begin(), places.begin() + 4), ElementsAre(0, 15, 16, 47));
+    EXPECT_EQ(kernel.places_between(2, 2.5F, values.data(), values.size(), places.data()), 1U);
   }
 }
 
