@@ -229,6 +229,20 @@ TEST(SimulateScan, DoesNotDependOnOtherThreads) {
   for (std::size_t view = 0; view < kViews; ++view) EXPECT_EQ(alone[view].points, together[view].points);
 }
 
+TEST(SimulateScan, WhatAThreadKeepsOfAMeshIsNeverThatOfAnother) {
+  Mesh mesh = two_bodies();
+  const Scan first = simulate_scan(mesh, 6);
+  const Mesh other = transformed(mesh, 1.5, {1, 0, 0});
+  EXPECT_NE(simulate_scan(other, 6).points, first.points);
+  EXPECT_EQ(simulate_scan(mesh, 6).points, first.points);
+  mesh.vertices[3] += Vec3(0.4, 0, 0);  // in its place in memory
+  const Scan edited = simulate_scan(mesh, 6);
+  EXPECT_NE(edited.points, first.points);
+  Scan of_new_thread;
+  std::thread([&] { of_new_thread = simulate_scan(mesh, 6); }).join();
+  EXPECT_EQ(of_new_thread.points, edited.points);
+}
+
 TEST(SimulateScan, ADoubledFaceCountsOnce) {
   Mesh mesh = shapes::bumpy_sphere(2);
   const Scan once = simulate_scan(mesh, 3);
