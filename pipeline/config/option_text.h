@@ -96,7 +96,7 @@ std::string annotated_options_text(const Options& options) {
   return options_text(options, true);
 }
 
-// What enters a key: without the options at the values that older keys imply.
+// Text of the options for a key. Leaves out options at the values that older keys imply.
 template <class Options>
 std::string key_text(const Options& options) {
   std::string lines;

@@ -44,8 +44,7 @@ struct FpfhOptions {
   }
 };
 
-// Of scans: their authors' published scores and distributions are those of a radius, not of the nearest
-// points.
+// Descriptors of scans. The published scores and distributions of scans fit a radius, not the nearest points.
 struct ScanFpfhOptions : FpfhOptions {
   ScanFpfhOptions() : FpfhOptions{.neighbourhood = FpfhNeighbourhood::radius, .grown_neighbours = 12} {}
   explicit ScanFpfhOptions(const FpfhOptions& options) : FpfhOptions(options) {}

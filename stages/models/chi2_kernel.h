@@ -15,7 +15,7 @@ enum class Instructions { baseline, avx2, avx512 };
 bool supported(Instructions instructions);  // by this machine
 Instructions widest_supported();
 
-// Of a distance d in space, 0 <= d <= 2.
+// Weight of a pair by its distance d in space, 0 <= d <= 2.
 enum class Weight {
   near,  // 1 / (1 + d)
   far    // log(1 + d)

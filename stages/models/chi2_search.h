@@ -33,8 +33,8 @@ class Chi2Search {
   using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbour> nearest)>;
   void for_each(std::size_t k, const Visit& visit) const;
 
-  // Of each histogram: the sum of chi2 * weight(d) over its k nearest, d = distance of their points. `points`
-  // are those of the histograms, in them no two farther apart than 2; they are taken as floats.
+  // Sums chi2 * weight(d) over the k nearest histograms of each one; d is the distance between their points.
+  // `points` has one per histogram, no two farther apart than 2, and is read in single precision.
   std::vector<double> weighted_sums(std::size_t k, std::span<const Vec3> points,
                                     chi2_kernel::Weight weight) const;
 

@@ -160,8 +160,8 @@ Scene build_scene(const std::vector<Vec3>& local_vertices, const std::vector<Tri
   return scene;
 }
 
-// What is the same for all views of a mesh. A thread keeps that of its last mesh: building the hierarchy
-// takes longer than tracing one view.
+// Everything that the views of a mesh share. Each thread keeps it for its last mesh, because building the
+// hierarchy is a large part of one scan.
 struct Traced {
   Mesh mesh;
   LocalFrame frame;
@@ -179,7 +179,7 @@ struct Traced {
 const Traced& traced(const Mesh& mesh) {
   static thread_local std::unique_ptr<const Traced> last;
   if (last == nullptr || !last->is_of(mesh)) {
-    last = nullptr;  // before the next is built: one at a time in memory
+    last = nullptr;  // frees the former hierarchy before the next is built
     last = std::make_unique<const Traced>(mesh);
   }
   return *last;
