@@ -27,8 +27,8 @@ ModelRow human_row(std::string_view name, std::int32_t version) {
 
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
-      model_row("LS", 3, ls_saliency),
-      model_row("CS", 1, cs_saliency),
+      model_row("LS", 4, ls_saliency),
+      model_row("CS", 2, cs_saliency),
       model_row("PS", 1, ps_saliency),
       model_row("MS", 1, ms_saliency),
       human_row("HS", 1),

@@ -16,77 +16,99 @@
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/pair_features.h"
+#include "stages/core/parallel.h"
 
 namespace salbench {
 namespace {
 
 constexpr std::size_t kBlocks = 3;
 constexpr std::size_t kBins = kBlocks * kFilledBins;
-constexpr double kBlockTotal = 100;  // of each block in the published weighting
-constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distance is rounding
+constexpr double kBlockTotal = 100;   // of each block in the published weighting
+constexpr std::size_t kGrain = 1024;  // points of a range in a loop that threads share
+constexpr double kMaxWeight = 1e12;   // limit of R / distance: below, the distance is rounding
 
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
-// The neighbours of each point. Those within a radius may be many: they are searched anew each time. Nearest
-// ones are few, and kept.
+// The neighbours of each point. Nearest ones that are few are searched once and kept; all others are searched
+// anew each time.
 class Neighbourhoods {
  public:
+  using Found = std::vector<Neighbour>;  // working memory of a search
+
   Neighbourhoods(std::span<const Vec3> points, const KdTree& tree, const Support& support)
       : points_(points), tree_(tree), support_(support) {
     CHECK_LE(0, support.neighbours);
-    k_ = std::min(static_cast<std::size_t>(support.neighbours), points.size());
-    nearest_.reserve(points.size() * k_);
-    for (std::size_t i = 0; k_ > 0 && i < points.size(); ++i) {
-      tree.nearest(points[i], k_, found_);
-      nearest_.insert(nearest_.end(), found_.begin(), found_.end());
-    }
+    k_ = std::min(static_cast<std::size_t>(support.neighbours), tree.size());
+    if (k_ > kFew) return;
+    nearest_.resize(points.size() * k_);
+    parallel_ranges(k_ > 0 ? points.size() : 0, kGrain, [&](std::size_t first, std::size_t last) {
+      Found found;
+      for (std::size_t i = first; i < last; ++i) {
+        tree.nearest(points[i], k_, found);
+        std::copy(found.begin(), found.end(), nearest_.begin() + static_cast<std::ptrdiff_t>(i * k_));
+      }
+    });
   }
 
+  bool all_points() const { return tree_.size() == points_.size(); }
   // i is a neighbour of j where j is one of i.
-  bool mutual() const { return k_ == 0; }
+  bool mutual() const { return k_ == 0 && all_points(); }
 
-  // By (distance, index), the point itself included; valid until the next call.
-  std::span<const Neighbour> of(std::int32_t i) {
-    if (k_ > 0) return kept(i);
-    tree_.within(at(points_, i), support_.radius, found_);
-    return found_;
+  // By (distance, index), the point itself included; valid until `found` is used again.
+  std::span<const Neighbour> of(std::int32_t i, Found& found) const {
+    if (!nearest_.empty()) return std::span(nearest_).subspan(static_cast<std::size_t>(i) * k_, k_);
+    if (k_ > 0)
+      tree_.nearest(at(points_, i), k_, found);
+    else
+      tree_.within(at(points_, i), support_.radius, found);
+    return found;
   }
-  std::span<const Neighbour> unordered(std::int32_t i) {
-    if (k_ > 0) return kept(i);
-    tree_.within_unordered(at(points_, i), support_.radius, found_);
-    return found_;
+  std::span<const Neighbour> unordered(std::int32_t i, Found& found) const {
+    if (k_ > 0) return of(i, found);
+    tree_.within_unordered(at(points_, i), support_.radius, found);
+    return found;
+  }
+
+  // How many of the neighbours of i are other points; at least 1, because it divides.
+  double others(std::int32_t i, std::span<const Neighbour> found) const {
+    const bool itself =
+        tree_.size() == points_.size() ||
+        std::any_of(found.begin(), found.end(), [&](const Neighbour& n) { return n.index == i; });
+    return std::max(static_cast<double>(found.size()) - (itself ? 1 : 0), 1.0);
   }
 
  private:
-  std::span<const Neighbour> kept(std::int32_t i) const {
-    return std::span(nearest_).subspan(static_cast<std::size_t>(i) * k_, k_);
-  }
+  static constexpr std::size_t kFew = 32;
 
   std::span<const Vec3> points_;
   const KdTree& tree_;
   Support support_;
-  std::size_t k_ = 0;
-  std::vector<Neighbour> nearest_, found_;
+  std::size_t k_ = 0;  // 0: a radius
+  std::vector<Neighbour> nearest_;
 };
 
 // The SPFHs of some points.
 class SimplifiedHistograms {
  public:
   SimplifiedHistograms(std::span<const Vec3> points, std::span<const Vec3> normals,
-                       const std::vector<bool>& requested, Neighbourhoods& neighbourhoods, bool swap)
+                       const std::vector<std::int32_t>& requested, const Neighbourhoods& neighbourhoods,
+                       bool swap)
       : points_(points), normals_(normals), row_of_(points.size(), kNone), swap_(swap) {
-    std::size_t rows = 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (requested[i]) row_of_[i] = rows++;
-    rows_.resize(rows * kBins);
-    std::vector<float> others(rows);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (requested[i]) {
-        const auto found = neighbourhoods.unordered(static_cast<std::int32_t>(i));
-        others[row_of_[i]] = static_cast<float>(std::max<std::size_t>(found.size(), 2) - 1);
-        vote(static_cast<std::int32_t>(i), found, neighbourhoods.mutual());
+    for (std::size_t row = 0; row < requested.size(); ++row)
+      row_of_[static_cast<std::size_t>(requested[row])] = row;
+    rows_.resize(requested.size() * kBins);
+    std::vector<double> others(requested.size());
+    // Looking at each pair once needs one thread: it writes to both ends.
+    const bool once = neighbourhoods.mutual() && requested.size() <= kOneThread;
+    parallel_ranges(requested.size(), once ? kOneThread : kGrain, [&](std::size_t first, std::size_t last) {
+      Neighbourhoods::Found memory;
+      for (std::size_t row = first; row < last; ++row) {
+        const auto found = neighbourhoods.unordered(requested[row], memory);
+        others[row] = neighbourhoods.others(requested[row], found);
+        vote(requested[row], found, once);
       }
-    for (std::size_t row = 0; row < rows; ++row)
+    });
+    for (std::size_t row = 0; row < requested.size(); ++row)
       for (std::size_t b = 0; b < kBins; ++b)
         rows_[row * kBins + b] = quotient(rows_[row * kBins + b], others[row]);
   }
@@ -97,18 +119,19 @@ class SimplifiedHistograms {
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  static constexpr std::size_t kOneThread = 1 << 16;
 
   // Whole numbers, exact as floats: their order does not matter.
-  static float quotient(float votes, float others) {
-    return static_cast<float>(static_cast<double>(votes) / static_cast<double>(others));
+  static float quotient(float votes, double others) {
+    return static_cast<float>(static_cast<double>(votes) / others);
   }
 
-  // A pair of requested points that are mutual neighbours is looked at once, from the lower index.
-  void vote(std::int32_t i, std::span<const Neighbour> found, bool mutual) {
+  // With `once`, a pair of requested points is looked at from the lower index, for both.
+  void vote(std::int32_t i, std::span<const Neighbour> found, bool once) {
     for (const Neighbour& neighbour : found) {
       if (neighbour.distance_squared == 0) continue;
       const std::int32_t j = neighbour.index;
-      const bool for_both = mutual && row_of_[static_cast<std::size_t>(j)] != kNone;
+      const bool for_both = once && row_of_[static_cast<std::size_t>(j)] != kNone;
       if (for_both && j < i) continue;
       const PairBins bins = bins_of(i, j);
       add(i, bins);
@@ -153,9 +176,8 @@ void combine_published(std::span<const Neighbour> found, const SimplifiedHistogr
   }
 }
 
-void combine_text(std::int32_t point, double unit, std::span<const Neighbour> found,
+void combine_text(std::int32_t point, double unit, std::span<const Neighbour> found, double others,
                   const SimplifiedHistograms& spfh, Filled& sum) {
-  const double others = std::max(static_cast<double>(found.size()) - 1, 1.0);
   const float* own = spfh.of(point);
   for (std::size_t b = 0; b < kBins; ++b) sum[b] = static_cast<double>(own[b]);
   for (const Neighbour& n : found) {
@@ -166,17 +188,22 @@ void combine_text(std::int32_t point, double unit, std::span<const Neighbour> fo
   }
 }
 
-// The subset and all its neighbours.
-std::vector<bool> with_neighbours(std::size_t n, std::span<const std::int32_t> subset,
-                                  Neighbourhoods& neighbourhoods) {
-  if (subset.size() == n) return std::vector<bool>(n, true);
+// Those whose SPFH counts, ascending: the neighbours of the subset and, unless only neighbours count, itself.
+std::vector<std::int32_t> needed(std::size_t n, std::span<const std::int32_t> subset,
+                                 const Neighbourhoods& neighbourhoods, bool neighbours_only) {
+  if (subset.size() == n && (neighbourhoods.all_points() || !neighbours_only))
+    return {subset.begin(), subset.end()};
   std::vector<bool> taken(n, false);
+  Neighbourhoods::Found memory;
   for (const std::int32_t i : subset) {
-    taken[static_cast<std::size_t>(i)] = true;
-    for (const Neighbour& neighbour : neighbourhoods.unordered(i))
+    if (!neighbours_only) taken[static_cast<std::size_t>(i)] = true;
+    for (const Neighbour& neighbour : neighbourhoods.unordered(i, memory))
       taken[static_cast<std::size_t>(neighbour.index)] = true;
   }
-  return taken;
+  std::vector<std::int32_t> points;
+  for (std::size_t i = 0; i < n; ++i)
+    if (taken[i]) points.push_back(static_cast<std::int32_t>(i));
+  return points;
 }
 
 void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) {
@@ -192,25 +219,28 @@ void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) 
 
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset) {
-  CHECK_EQ(points.size(), tree.size());
   check_normals(points, normals);
-  Neighbourhoods neighbourhoods(points, tree, support);
+  const Neighbourhoods neighbourhoods(points, tree, support);
   const bool published = weighting == FpfhWeighting::published;
-  const SimplifiedHistograms spfh(points, normals, with_neighbours(points.size(), subset, neighbourhoods),
+  const SimplifiedHistograms spfh(points, normals, needed(points.size(), subset, neighbourhoods, published),
                                   neighbourhoods, published);
 
   const double unit = published ? 1 : bounding_radius(points);
   Descriptors result{std::vector<float>(subset.size() * kFpfhBins), support.radius, support.neighbours};
-  for (std::size_t i = 0; i < subset.size(); ++i) {
-    Filled sum{};
-    if (published)
-      combine_published(neighbourhoods.of(subset[i]), spfh, sum);
-    else
-      combine_text(subset[i], unit, neighbourhoods.of(subset[i]), spfh, sum);
-    for (std::size_t b = 0; b < kBins; ++b)
-      result.values[i * kFpfhBins + b / kFilledBins * kBlockBins + kFirstFilled + b % kFilledBins] =
-          static_cast<float>(sum[b]);
-  }
+  parallel_ranges(subset.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    Neighbourhoods::Found memory;
+    for (std::size_t i = first; i < last; ++i) {
+      Filled sum{};
+      const auto found = neighbourhoods.of(subset[i], memory);
+      if (published)
+        combine_published(found, spfh, sum);
+      else
+        combine_text(subset[i], unit, found, neighbourhoods.others(subset[i], found), spfh, sum);
+      for (std::size_t b = 0; b < kBins; ++b)
+        result.values[i * kFpfhBins + b / kFilledBins * kBlockBins + kFirstFilled + b % kFilledBins] =
+            static_cast<float>(sum[b]);
+    }
+  });
   return result;
 }
 

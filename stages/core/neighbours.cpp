@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <nanoflann.hpp>
 
@@ -14,9 +15,15 @@ namespace {
 
 struct Adaptor {
   std::span<const Vec3> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
+  std::vector<std::int32_t> members;
+  bool all_points;
+
+  std::size_t kdtree_get_point_count() const { return all_points ? points.size() : members.size(); }
+  std::int32_t index_of(std::size_t i) const {
+    return all_points ? static_cast<std::int32_t>(i) : members[i];
+  }
   double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[i][static_cast<Eigen::Index>(axis)];
+    return points[static_cast<std::size_t>(index_of(i))][static_cast<Eigen::Index>(axis)];
   }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
@@ -32,13 +39,20 @@ bool closer(const Neighbour& a, const Neighbour& b) {
                                                   : a.index < b.index;
 }
 
+constexpr std::size_t kMany = 64;
+
 // Raises the limit by more than rounding, even if it is 0.
 double widened(double limit) { return limit * (1 + 1e-12) + std::numeric_limits<double>::min(); }
 
-// Result set of nanoflann: keeps the k best by (distance, index) in a sorted array.
+// The result sets below are those of nanoflann.
+
+// Keeps the k best by (distance, index) in a sorted array.
 class NearestSet {
  public:
-  NearestSet(std::vector<Neighbour>& best, std::size_t k) : best_(best), k_(k) { best_.clear(); }
+  NearestSet(const Adaptor& adaptor, std::vector<Neighbour>& best, std::size_t k)
+      : adaptor_(adaptor), best_(best), k_(k) {
+    best_.clear();
+  }
   bool full() const { return best_.size() == k_; }
   std::size_t size() const { return best_.size(); }
   double worstDist() const {
@@ -47,7 +61,7 @@ class NearestSet {
     return full() ? widened(best_.back().distance_squared) : std::numeric_limits<double>::max();
   }
   bool addPoint(double distance_squared, std::uint32_t index) {
-    const Neighbour candidate{static_cast<std::int32_t>(index), distance_squared};
+    const Neighbour candidate{adaptor_.index_of(index), distance_squared};
     if (full()) {
       if (!closer(candidate, best_.back())) return true;
       best_.pop_back();
@@ -57,26 +71,64 @@ class NearestSet {
   }
 
  private:
+  const Adaptor& adaptor_;
   std::vector<Neighbour>& best_;
   std::size_t k_;
 };
 
+// The same where k is large, and inserting into a sorted array would be most of the time: keeps up to 2 k
+// candidates, and when there are so many throws away the worse half.
+class ManyNearestSet {
+ public:
+  ManyNearestSet(const Adaptor& adaptor, std::vector<Neighbour>& best, std::size_t k)
+      : adaptor_(adaptor), best_(best), k_(k) {
+    best_.clear();
+    best_.reserve(2 * k);
+  }
+  bool full() const { return best_.size() >= k_; }
+  std::size_t size() const { return best_.size(); }
+  double worstDist() const { return widened(limit_); }
+  bool addPoint(double distance_squared, std::uint32_t index) {
+    if (distance_squared > limit_) return true;
+    best_.push_back({adaptor_.index_of(index), distance_squared});
+    if (best_.size() == 2 * k_) keep_the_best();
+    return true;
+  }
+  void finish() {
+    if (best_.size() > k_) keep_the_best();
+    std::sort(best_.begin(), best_.end(), closer);
+  }
+
+ private:
+  void keep_the_best() {
+    const auto last = best_.begin() + static_cast<std::ptrdiff_t>(k_ - 1);
+    std::nth_element(best_.begin(), last, best_.end(), closer);
+    limit_ = last->distance_squared;
+    best_.resize(k_);
+  }
+
+  const Adaptor& adaptor_;
+  std::vector<Neighbour>& best_;
+  std::size_t k_;
+  double limit_ = std::numeric_limits<double>::max() / 2;  // of the k-th so far; can be widened
+};
+
 class WithinSet {
  public:
-  WithinSet(std::vector<Neighbour>& found, double radius_squared)
-      : found_(found), radius_squared_(radius_squared) {
+  WithinSet(const Adaptor& adaptor, std::vector<Neighbour>& found, double radius_squared)
+      : adaptor_(adaptor), found_(found), radius_squared_(radius_squared) {
     found_.clear();
   }
   bool full() const { return true; }
   std::size_t size() const { return found_.size(); }
   double worstDist() const { return widened(radius_squared_); }
   bool addPoint(double distance_squared, std::uint32_t index) {
-    if (distance_squared <= radius_squared_)
-      found_.push_back({static_cast<std::int32_t>(index), distance_squared});
+    if (distance_squared <= radius_squared_) found_.push_back({adaptor_.index_of(index), distance_squared});
     return true;
   }
 
  private:
+  const Adaptor& adaptor_;
   std::vector<Neighbour>& found_;
   double radius_squared_;
 };
@@ -102,21 +154,34 @@ class WithinCount {
 struct KdTree::Impl {
   Adaptor adaptor;
   Tree tree;
-  explicit Impl(std::span<const Vec3> points)
-      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
+  explicit Impl(Adaptor of)
+      : adaptor(std::move(of)), tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
+  std::size_t size() const { return adaptor.kdtree_get_point_count(); }
+  template <class Set>
+  void search(Set& set, const Vec3& query) const {
+    if (size() > 0) tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+  }
 };
 
-KdTree::KdTree(std::span<const Vec3> points) : impl_(std::make_unique<Impl>(points)) {}
+KdTree::KdTree(std::span<const Vec3> points) : impl_(std::make_unique<Impl>(Adaptor{points, {}, true})) {}
+KdTree::KdTree(std::span<const Vec3> points, std::vector<std::int32_t> members)
+    : impl_(std::make_unique<Impl>(Adaptor{points, std::move(members), false})) {}
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 KdTree::~KdTree() = default;
 
-std::size_t KdTree::size() const { return impl_->adaptor.points.size(); }
+std::size_t KdTree::size() const { return impl_->size(); }
 
 void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const {
-  NearestSet set(found, std::min(k, size()));
-  if (k == 0 || size() == 0) return;
-  impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+  k = std::min(k, size());
+  if (k > kMany) {
+    ManyNearestSet set(impl_->adaptor, found, k);
+    impl_->search(set, query);
+    set.finish();
+  } else {
+    NearestSet set(impl_->adaptor, found, k);
+    if (k > 0) impl_->search(set, query);
+  }
 }
 
 std::int32_t KdTree::nearest(const Vec3& query) const {
@@ -134,14 +199,24 @@ void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& fo
 
 std::size_t KdTree::count_within(const Vec3& query, double radius) const {
   WithinCount set(radius * radius);
-  if (size() > 0) impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+  impl_->search(set, query);
   return set.size();
 }
 
 void KdTree::within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
-  WithinSet set(found, radius * radius);
-  if (size() == 0) return;
-  impl_->tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+  WithinSet set(impl_->adaptor, found, radius * radius);
+  impl_->search(set, query);
+}
+
+// Points beside each other in the tree's order are near each other in space.
+std::vector<std::int32_t> KdTree::even_sample(std::size_t count) const {
+  count = std::min(count, size());
+  std::vector<std::int32_t> sample;
+  sample.reserve(count);
+  for (std::size_t i = 0; i < count; ++i)
+    sample.push_back(impl_->adaptor.index_of(impl_->tree.vAcc[(2 * i + 1) * size() / (2 * count)]));
+  std::sort(sample.begin(), sample.end());
+  return sample;
 }
 
 }  // namespace salbench

@@ -21,6 +21,8 @@ struct Neighbour {
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points);
+  // Finds only the members: indices of points, ascending. Results name points, not members.
+  KdTree(std::span<const Vec3> points, std::vector<std::int32_t> members);
   KdTree(KdTree&&) noexcept;
   KdTree& operator=(KdTree&&) noexcept;
   ~KdTree();
@@ -34,7 +36,10 @@ class KdTree {
   void within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
   std::size_t count_within(const Vec3& query, double radius) const;
 
-  std::size_t size() const;
+  std::size_t size() const;  // points that can be found
+
+  // min(count, size()) of the points, as dense or thin as the shape is there. Ascending.
+  std::vector<std::int32_t> even_sample(std::size_t count) const;
 
  private:
   struct Impl;

@@ -1,21 +1,27 @@
 #include "stages/core/support.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
+#include "stages/core/parallel.h"
 
 namespace salbench {
 
 double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, double radius) {
   CHECK_EQ(points.size(), tree.size());
   CHECK_GT(points.size(), 0U);
-  std::size_t others = 0;
-  for (const Vec3& p : points) others += tree.count_within(p, radius) - 1;
-  return static_cast<double>(others) / static_cast<double>(points.size());
+  std::atomic<std::size_t> others = 0;
+  parallel_ranges(points.size(), 4096, [&](std::size_t first, std::size_t last) {
+    std::size_t some = 0;
+    for (std::size_t i = first; i < last; ++i) some += tree.count_within(points[i], radius) - 1;
+    others += some;
+  });
+  return static_cast<double>(others.load()) / static_cast<double>(points.size());
 }
 
 namespace {

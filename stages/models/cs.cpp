@@ -26,6 +26,7 @@
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
+#include "stages/core/parallel.h"
 #include "stages/core/support.h"
 #include "stages/models/cs_clusters.h"
 
@@ -34,28 +35,40 @@ namespace {
 
 constexpr int kRings = 3;                 // a point depends on clusters up to so many steps of adjacency away
 constexpr std::size_t kFallbackNear = 9;  // nearest points, used if none is within the radius
+constexpr std::size_t kGrain = 1024;      // points of a range in a loop that threads share
 constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the affinity of a point to a cluster
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
 
+void sort_and_deduplicate(std::vector<std::int32_t>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
 // For each cluster the others that have a point within the radius of one of its points, ascending.
 Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, double radius,
                              const Clusters& clusters) {
-  Neighbours adjacent(clusters.count);
-  std::vector<Neighbour> found;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    tree.within_unordered(points[i], radius, found);
-    if (found.size() <= 1) tree.nearest(points[i], kFallbackNear, found);
-    auto& of_own = adjacent[static_cast<std::size_t>(clusters.of_point[i])];
-    for (const Neighbour& neighbour : found) {
-      const std::int32_t other = clusters.of_point[static_cast<std::size_t>(neighbour.index)];
-      if (other != clusters.of_point[i]) of_own.push_back(other);
+  std::vector<std::vector<std::int32_t>> of_point(points.size());
+  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    std::vector<Neighbour> found;
+    for (std::size_t i = first; i < last; ++i) {
+      tree.within_unordered(points[i], radius, found);
+      if (found.size() <= 1) tree.nearest(points[i], kFallbackNear, found);
+      std::int32_t previous = clusters.of_point[i];
+      for (const Neighbour& neighbour : found) {
+        const std::int32_t other = clusters.of_point[static_cast<std::size_t>(neighbour.index)];
+        if (other != clusters.of_point[i] && other != previous) of_point[i].push_back(other);
+        previous = other;
+      }
+      sort_and_deduplicate(of_point[i]);
     }
+  });
+  Neighbours adjacent(clusters.count);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    auto& of_own = adjacent[static_cast<std::size_t>(clusters.of_point[i])];
+    of_own.insert(of_own.end(), of_point[i].begin(), of_point[i].end());
   }
-  for (auto& list : adjacent) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
+  for (auto& list : adjacent) sort_and_deduplicate(list);
   return adjacent;
 }
 
@@ -110,25 +123,38 @@ struct Affinity {
 
 Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptors, const Clusters& of,
                      const GroupMeans& clusters, const Neighbours& in_reach, const Variances& variance) {
+  const auto reach_of = [&](std::size_t i) -> const std::vector<std::int32_t>& {
+    return in_reach[static_cast<std::size_t>(of.of_point[i])];
+  };
   Affinity result;
-  result.offsets.reserve(points.size());
+  result.offsets.resize(points.size());
+  std::size_t entries = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    result.offsets.push_back(result.weights.size());
-    for (const std::int32_t cluster : in_reach[static_cast<std::size_t>(of.of_point[i])]) {
-      const auto k = static_cast<std::size_t>(cluster);
-      const double distance_squared = (points[i] - clusters.centres[k]).squaredNorm();
-      const double chi2 = chi_square(descriptors.row(i), clusters.descriptors.row(k));
-      result.weights.push_back(-relative(distance_squared, 2 * variance.distance_squared) -
-                               kDescriptorRate * relative(chi2, variance.chi2));
-    }
+    result.offsets[i] = entries;
+    entries += reach_of(i).size();
   }
+  result.weights.resize(entries);
+  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      double* weight = &result.weights[result.offsets[i]];
+      for (const std::int32_t cluster : reach_of(i)) {
+        const auto k = static_cast<std::size_t>(cluster);
+        const double distance_squared = (points[i] - clusters.centres[k]).squaredNorm();
+        const double chi2 = chi_square(descriptors.row(i), clusters.descriptors.row(k));
+        *weight++ = -relative(distance_squared, 2 * variance.distance_squared) -
+                    kDescriptorRate * relative(chi2, variance.chi2);
+      }
+    }
+  });
   // A common factor cancels below. Relative to the largest weight, they cannot all vanish.
   const double largest = *std::max_element(result.weights.begin(), result.weights.end());
-  for (double& weight : result.weights) weight = std::exp(weight - largest);
+  parallel_ranges(entries, kGrain * 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t e = first; e < last; ++e) result.weights[e] = std::exp(result.weights[e] - largest);
+  });
 
   result.masses.assign(clusters.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto& reach = in_reach[static_cast<std::size_t>(of.of_point[i])];
+    const auto& reach = reach_of(i);
     for (std::size_t k = 0; k < reach.size(); ++k)
       result.masses[static_cast<std::size_t>(reach[k])] += result.weights[result.offsets[i] + k];
   }
@@ -211,6 +237,21 @@ ScalarField point_saliency(const Clusters& of, const Neighbours& in_reach, const
   return saliency;
 }
 
+// The number of neighbours grows with that of the points, and the time with its square: beyond a size,
+// neighbours are those of an even sample.
+KdTree sampled_tree(Points points, std::size_t count) {
+  return KdTree(points, KdTree(points).even_sample(count));
+}
+
+// Of the points that the tree finds; its factor is of the R of all.
+SupportRadius support_of(Points points, const KdTree& tree, double factor) {
+  if (tree.size() == points.size()) return grown_support_radius(points, tree, factor);
+  std::vector<Vec3> sample;
+  for (const std::int32_t i : tree.even_sample(tree.size()))
+    sample.push_back(points[static_cast<std::size_t>(i)]);
+  return grown_support_radius(sample, factor * bounding_radius(points) / bounding_radius(sample));
+}
+
 }  // namespace
 
 CsOptions CsOptions::text() {
@@ -221,8 +262,9 @@ CsOptions CsOptions::text() {
 
 ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& options) {
   check(options);
-  const KdTree tree(points);
-  const SupportRadius support = grown_support_radius(points, tree, options.radius);
+  const auto most = static_cast<std::size_t>(options.sample);
+  const KdTree tree = points.size() > most ? sampled_tree(points, most) : KdTree(points);
+  const SupportRadius support = support_of(points, tree, options.radius);
   const Support described{static_cast<std::int32_t>(std::int64_t{support.neighbours} * 6 / 5), 0};
   if (support.radius == 0) return ScalarField(points.size(), 0.0);  // all points coincide
   const Descriptors descriptors = fpfh(points, normals, tree, described, FpfhWeighting::published);

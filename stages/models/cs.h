@@ -17,6 +17,7 @@ struct CsOptions {
   double descriptor_weight = 2;
   bool repair = true;
   double distribution_weight = 0.5;
+  std::int32_t sample = 65536;
 
   static CsOptions text();  // the paper's table of parameters: 100 clusters
 
@@ -34,13 +35,16 @@ struct CsOptions {
     visit("distribution_weight", self.distribution_weight,
           {"of the clusters' distribution in space; the rest is that of their uniqueness", "fraction",
            between(0, 1)});
+    visit("sample", self.sample,
+          {"of a shape with more points, an even sample that neighbours are looked for in", "points",
+           at_least(1000)});
   }
 };
 
 // In [0, 1]. Computes descriptors of its own. If there are no more points than clusters aimed at, each point
 // is a cluster. The map is constant if all points coincide, and if neither descriptors nor distribution tell
-// the clusters apart. Throws InputError for a shape without points or with a coordinate or normal that is not
-// finite. [tasse2015] [tasse2016]
+// the clusters apart. Time and memory O(n) beyond the sample. Throws InputError for a shape without points or
+// with a coordinate or normal that is not finite. [tasse2015] [tasse2016]
 ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& options);
 
 }  // namespace salbench

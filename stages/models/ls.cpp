@@ -14,11 +14,13 @@
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
+#include "stages/core/parallel.h"
 #include "stages/models/chi2_search.h"
 
 namespace salbench {
 namespace {
 
+constexpr std::size_t kGrain = 1024;     // points of a range in a loop that threads share
 constexpr double kHistogramTotal = 300;  // sum of a descriptor in the published weighting: 3 blocks of 100
 
 std::size_t count_of(double share, std::size_t n) {
@@ -51,11 +53,19 @@ std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
   return result;
 }
 
+// Empty: all points.
+std::vector<std::int32_t> sample_of(std::span<const Vec3> points, const LsOptions& options) {
+  const auto most = static_cast<std::size_t>(options.sample);
+  return points.size() > most ? KdTree(points).even_sample(most) : std::vector<std::int32_t>();
+}
+
 // 1 - exp(-mean dissimilarity to the selected points), which is chi2 weighted by the distance.
-ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descriptors, double selected_share,
+ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descriptors,
+                         std::span<const std::int32_t> sample, double selected_share,
                          chi2_kernel::Weight weight) {
-  const std::size_t selected = std::max<std::size_t>(count_of(selected_share, points.size()), 1);
-  ScalarField result = Chi2Search(descriptors).weighted_sums(selected, points, weight);
+  const Chi2Search search(descriptors, sample);
+  const std::size_t selected = std::max<std::size_t>(count_of(selected_share, search.size()), 1);
+  ScalarField result = search.weighted_sums(selected, points, weight);
   for (double& value : result)
     value = 1 - std::exp(-value / (kHistogramTotal * static_cast<double>(selected)));
   return result;
@@ -72,20 +82,24 @@ ScalarField association(std::span<const Vec3> points, const ScalarField& low, co
 
   const double twice_variance = 2 * options.foci_sigma * options.foci_sigma;
   ScalarField result(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto nearest = static_cast<std::size_t>(tree.nearest(points[i]));
-    result[i] = low[static_cast<std::size_t>(foci[nearest])] *
-                std::exp(-(points[i] - places[nearest]).squaredNorm() / twice_variance);
-  }
+  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto nearest = static_cast<std::size_t>(tree.nearest(points[i]));
+      result[i] = low[static_cast<std::size_t>(foci[nearest])] *
+                  std::exp(-(points[i] - places[nearest]).squaredNorm() / twice_variance);
+    }
+  });
   return result;
 }
 
 // The low-level descriptors, except that the most distinct points have high-level ones.
 Descriptors mixed_descriptors(Points points, const Normals& normals, const Descriptors& low_level,
-                              const ScalarField& low, const LsOptions& options) {
+                              const ScalarField& low, const std::vector<std::int32_t>& sample,
+                              const LsOptions& options) {
   const std::vector<std::int32_t> distinct = largest(low, count_of(options.high_share, low.size()));
   const Support support{0, options.high_radius * bounding_radius(points)};
-  const Descriptors high = fpfh(points, normals, KdTree(points), support, options.high_weighting, distinct);
+  const KdTree around = sample.empty() ? KdTree(points) : KdTree(points, sample);
+  const Descriptors high = fpfh(points, normals, around, support, options.high_weighting, distinct);
   Descriptors mixed = low_level;
   for (std::size_t h = 0; h < distinct.size(); ++h) {
     const auto row = high.row(h);
@@ -128,10 +142,13 @@ ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors
   const std::vector<Vec3> places = in_units_of_radius(points);
 
   // Near points count more at the low level, far ones at the high level.
-  const ScalarField low = distinctness(places, fpfh, options.selected_share, chi2_kernel::Weight::near);
+  const std::vector<std::int32_t> sample = sample_of(places, options);
+  const ScalarField low =
+      distinctness(places, fpfh, sample, options.selected_share, chi2_kernel::Weight::near);
   ScalarField saliency = association(places, low, options);
-  const ScalarField high = distinctness(places, mixed_descriptors(points, normals, fpfh, low, options),
-                                        options.selected_share, chi2_kernel::Weight::far);
+  const ScalarField high =
+      distinctness(places, mixed_descriptors(points, normals, fpfh, low, sample, options), sample,
+                   options.selected_share, chi2_kernel::Weight::far);
   for (std::size_t i = 0; i < saliency.size(); ++i) saliency[i] += low[i] + options.high_weight * high[i];
   return saliency;
 }

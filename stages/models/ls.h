@@ -20,6 +20,7 @@ struct LsOptions {
   double high_radius = 0.1;
   FpfhWeighting high_weighting = FpfhWeighting::published;
   double high_weight = 0.5;
+  std::int32_t sample = 32768;
 
   LsOptions of_meshes() const;
   LsOptions of_scans() const;
@@ -43,15 +44,19 @@ struct LsOptions {
     visit("high_weighting", self.high_weighting, {"how the neighbours' histograms are combined there"});
     visit("high_weight", self.high_weight,
           {"of high-level distinctness, relative to the low level", {}, at_least(0)});
+    visit(
+        "sample", self.sample,
+        {"of a shape with more points, an even sample that points are compared with, and described by at the "
+         "high level",
+         "points", at_least(1000)});
   }
 };
 
 // D_low + A + high_weight D_high, >= 0. `fpfh` (n x 33) are the descriptors of the low level; those of the
-// high level are computed here from points and normals. Memory O(n); terms of the
-// sums in single precision. If the selected share is less than two
-// points, each point is compared with itself alone, and all values are 0. Throws InputError for a shape
-// without points, without extent, or with a coordinate, normal or descriptor that is not finite. [shtrom2013]
-// [tasse2016]
+// high level are computed here from points and normals. Time and memory O(n) beyond the sample; terms of the
+// sums in single precision. If the selected share is less than two points, each point is compared with itself
+// alone, and all values are 0. Throws InputError for a shape without points, without extent, or with a
+// coordinate, normal or descriptor that is not finite. [shtrom2013] [tasse2016]
 ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors& fpfh,
                         const LsOptions& options);
 

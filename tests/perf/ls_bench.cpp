@@ -44,7 +44,7 @@ BENCHMARK_CAPTURE(ls, text, LsOptions::text())->Arg(5000)->Arg(10000)->Unit(benc
 void chi2_search(benchmark::State& state, chi2_kernel::Instructions instructions) {
   if (!chi2_kernel::supported(instructions)) return state.SkipWithError("not on this machine");
   const Shape shape(static_cast<std::size_t>(state.range(0)));
-  const Chi2Search search(shape.descriptors, instructions);
+  const Chi2Search search(shape.descriptors, {}, instructions);
   for (auto _ : state)
     search.for_each(search.size() / 20, [](std::size_t, std::span<const Chi2Neighbour> nearest) {
       benchmark::DoNotOptimize(nearest.data());

@@ -42,6 +42,58 @@ TEST(KdTree, NearestEqualsBruteForceAlsoOnTies) {
   }
 }
 
+TEST(KdTree, ManyNearestEqualBruteForce) {
+  std::vector<std::vector<Vec3>> clouds = {shapes::random_cloud(900, 4), {}};
+  for (int i = 0; i < 729; ++i) clouds[1].emplace_back(i / 81, i / 9 % 9, i % 9);
+  for (const auto& cloud : clouds) {
+    const KdTree tree(cloud);
+    std::vector<Neighbour> found;
+    for (const std::size_t k : {65U, 130U, 700U})
+      for (std::size_t i = 0; i < cloud.size(); i += 97) {
+        auto expected = all_sorted(cloud, cloud[i]);
+        tree.nearest(cloud[i], k, found);
+        expected.resize(k);
+        EXPECT_EQ(indices(found), indices(expected)) << k << " nearest of " << i;
+      }
+  }
+}
+
+TEST(KdTree, OfSomePointsFindsOnlyThese) {
+  const std::vector<Vec3> cloud = shapes::random_cloud(500, 5);
+  std::vector<std::int32_t> members;
+  for (std::int32_t i = 3; i < 500; i += 4) members.push_back(i);
+  const KdTree tree(cloud, members);
+  ASSERT_EQ(tree.size(), members.size());
+  std::vector<Neighbour> found;
+  for (std::size_t i = 0; i < cloud.size(); i += 31) {
+    auto expected = all_sorted(cloud, cloud[i]);
+    std::erase_if(expected, [](const Neighbour& n) { return n.index % 4 != 3; });
+    tree.within(cloud[i], std::sqrt(expected[80].distance_squared) * (1 + 1e-12), found);
+    expected.resize(81);
+    EXPECT_EQ(indices(found), indices(expected));
+    tree.nearest(cloud[i], 70, found);
+    expected.resize(70);
+    EXPECT_EQ(indices(found), indices(expected));
+    EXPECT_EQ(tree.nearest(cloud[i]), expected[0].index);
+  }
+}
+
+// Half of the points lie in a corner of an eighth of the volume: so does half of the sample.
+TEST(KdTree, AnEvenSampleIsAsDenseAsTheShape) {
+  std::vector<Vec3> cloud = shapes::random_cloud(4000, 6);
+  for (std::size_t i = 0; i < 4000; i += 2) cloud[i] = Vec3::Constant(5) + 0.1 * cloud[i];
+  const KdTree tree(cloud);
+  const std::vector<std::int32_t> sample = tree.even_sample(400);
+  ASSERT_EQ(sample.size(), 400U);
+  EXPECT_TRUE(std::is_sorted(sample.begin(), sample.end()));
+  EXPECT_EQ(std::adjacent_find(sample.begin(), sample.end()), sample.end());
+  const auto in_corner =
+      std::count_if(sample.begin(), sample.end(), [](std::int32_t point) { return point % 2 == 0; });
+  EXPECT_LE(std::abs(in_corner - 200), 4);
+  EXPECT_EQ(tree.even_sample(9999).size(), 4000U);
+  EXPECT_TRUE(KdTree(std::vector<Vec3>()).even_sample(3).empty());
+}
+
 TEST(KdTree, WithinTakesTheBoundary) {
   const std::vector<Vec3> line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   const KdTree tree(line);

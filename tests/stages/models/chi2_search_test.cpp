@@ -61,7 +61,7 @@ float chi2(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins
 void expect_equals_brute_force(const Descriptors& descriptors, std::size_t k, Instructions instructions) {
   const std::size_t n = descriptors.size();
   std::size_t rows = 0;
-  Chi2Search(descriptors, instructions)
+  Chi2Search(descriptors, {}, instructions)
       .for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
         ++rows;
         const std::vector<Chi2Neighbour> nearest = by_index(unordered);
@@ -114,6 +114,54 @@ TEST(Chi2Search, EqualsBruteForceWhereMostIsPassedOver) {
       histograms.values.push_back(value + static_cast<float>(rng.below(4)));
   for (const std::size_t k : {1U, 75U, 300U})
     expect_equals_brute_force(histograms, k, chi2_kernel::widest_supported());
+}
+
+TEST(Chi2Search, ComparesWithTheReferencesAlone) {
+  const Descriptors histograms = random_histograms(700, 9, 8);
+  std::vector<std::int32_t> references;
+  Descriptors of_references;
+  for (std::int32_t i = 5; i < 700; i += 3) {
+    references.push_back(i);
+    const auto row = histograms.row(static_cast<std::size_t>(i));
+    of_references.values.insert(of_references.values.end(), row.begin(), row.end());
+  }
+  const Chi2Search search(histograms, references);
+  EXPECT_EQ(search.size(), references.size());
+  std::size_t rows = 0;
+  search.for_each(20, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
+    ++rows;
+    std::vector<std::pair<float, std::int32_t>> all;  // of equal distances the higher index first
+    for (const std::int32_t j : references)
+      all.emplace_back(chi2(histograms.row(i), histograms.row(static_cast<std::size_t>(j))), -j);
+    std::sort(all.begin(), all.end());
+    std::vector<std::int32_t> expected, found;
+    for (std::size_t c = 0; c < 20; ++c) expected.push_back(-all[c].second);
+    std::sort(expected.begin(), expected.end());
+    for (const Chi2Neighbour& neighbour : by_index(unordered)) found.push_back(neighbour.index);
+    ASSERT_EQ(found, expected) << "row " << i;
+  });
+  EXPECT_EQ(rows, 700U);
+}
+
+// More alike than are asked for: sums are 0 without a look at all of them, and right for the others.
+TEST(Chi2Search, SumsWhereMostHistogramsAreAlike) {
+  Descriptors histograms = random_histograms(900, 9, 9);
+  for (std::size_t i = 0; i < 600; ++i)
+    for (std::size_t bin = 0; bin < kFpfhBins; ++bin)
+      histograms.values[i * kFpfhBins + bin] = bin % 11 == 5 ? (i % 3 == 0 ? 100 : 99.99999F) : 0;
+  const std::vector<Vec3> points = shapes::random_cloud(900, 3);
+  const Chi2Search search(histograms);
+  const std::vector<double> sums = search.weighted_sums(100, points, chi2_kernel::Weight::near);
+  search.for_each(100, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+    double expected = 0;
+    for (const Chi2Neighbour& n : nearest)
+      expected +=
+          static_cast<double>(n.chi2) / (1 + (points[i] - points[static_cast<std::size_t>(n.index)]).norm());
+    if (i < 600) {
+      EXPECT_EQ(sums[i], 0);
+    }
+    EXPECT_NEAR(sums[i], expected, 1e-6 * std::max(expected, 1.0)) << i;
+  });
 }
 
 TEST(Chi2Search, RecoversFromAGuessThatMisleads) {
@@ -177,7 +225,7 @@ TEST(Chi2Search, WeightedSumsAreThoseOverTheNearestWithEveryVariant) {
   for (const std::uint64_t levels : {2U, 5U, 1U << 20U}) {
     const Descriptors histograms = random_histograms(1100, levels, levels + 1);
     for (const chi2_kernel::Weight weight : {chi2_kernel::Weight::near, chi2_kernel::Weight::far}) {
-      const Chi2Search baseline(histograms, Instructions::baseline);
+      const Chi2Search baseline(histograms, {}, Instructions::baseline);
       const std::vector<double> sums = baseline.weighted_sums(55, points, weight);
       baseline.for_each(55, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
         double expected = 0;
@@ -188,7 +236,8 @@ TEST(Chi2Search, WeightedSumsAreThoseOverTheNearestWithEveryVariant) {
       });
       for (const Instructions wider : {Instructions::avx2, Instructions::avx512}) {
         if (!chi2_kernel::supported(wider)) continue;
-        EXPECT_EQ(Chi2Search(histograms, wider).weighted_sums(55, points, weight), sums);  // to the last bit
+        EXPECT_EQ(Chi2Search(histograms, {}, wider).weighted_sums(55, points, weight),
+                  sums);  // to the last bit
       }
     }
   }

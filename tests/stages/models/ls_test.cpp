@@ -7,9 +7,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
+#include "stages/stats/correlation.h"
 #include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
@@ -311,6 +313,28 @@ TEST(LsOptions, NamesTheOptionThatIsWrong) {
   EXPECT_EQ(wrong_field(LsOptions{.high_radius = -1}), "high_radius");
   EXPECT_EQ(wrong_field(LsOptions{.high_weight = std::nan("")}), "high_weight");
   EXPECT_EQ(wrong_field(LsOptions::text()), "");
+}
+
+// Beyond the sample: an estimate, whose order of points hardly differs; the same with any number of threads.
+TEST(LsSaliency, OfALargeShapeIsEstimatedFromASample) {
+  const Mesh mesh = shapes::bumpy_sphere(5);
+  Normals normals;
+  for (const Vec3& v : mesh.vertices) normals.push_back(v.normalized());
+  const std::vector<Vec3> roughness = shapes::random_normals(normals.size(), 2);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    normals[i] = (normals[i] + 0.05 * roughness[i]).normalized();
+  const Shape shape(mesh.vertices, normals);
+  LsOptions sampled;
+  sampled.sample = 4000;
+  ASSERT_GT(shape.points.size(), 10'000U);
+  const ScalarField exact = shape.ls(), estimate = shape.ls(sampled);
+  EXPECT_NE(exact, estimate);
+  EXPECT_GT(spearman(exact, estimate), 0.99);
+  for (const std::size_t threads : {1U, 2U, 4U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    EXPECT_EQ(shape.ls(sampled), estimate);
+    EXPECT_EQ(shape.ls(), exact);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,201 @@
+// The stages on real meshes of four sizes, on one scan of each, and on a subdivided mesh of up to a million
+// vertices:
+//
+//   SALBENCH_DATA=DATA build/release/bench_shapes [--threads=N] [--benchmark_filter=LS]
+//
+// One thread unless told. Times are those of the process: with N threads, "Time" is what falls and "CPU" what
+// stays.
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/subdivision_method_3.h>
+#include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
+
+#include "io/mesh_file.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/models/cs.h"
+#include "stages/models/ls.h"
+#include "stages/models/ms.h"
+#include "stages/models/ps.h"
+#include "stages/normals/normals.h"
+#include "stages/scan/scan.h"
+#include "stages/surface/surface.h"
+#include "tests/support/data.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Loop's scheme, which leaves no flat patches and no sharp corners. [loop1987]
+Mesh subdivided(const Mesh& mesh, unsigned int times) {
+  using Point = CGAL::Simple_cartesian<double>::Point_3;
+  CGAL::Surface_mesh<Point> surface;
+  for (const Vec3& p : mesh.vertices) surface.add_vertex({p.x(), p.y(), p.z()});
+  const auto vertex = [](std::int32_t v) { return CGAL::SM_Vertex_index(static_cast<std::uint32_t>(v)); };
+  for (const auto& [a, b, c] : mesh.faces) surface.add_face(vertex(a), vertex(b), vertex(c));
+  CGAL::Subdivision_method_3::Loop_subdivision(surface, CGAL::parameters::number_of_iterations(times));
+  Mesh fine;
+  for (const auto v : surface.vertices()) {
+    const Point& p = surface.point(v);
+    fine.vertices.emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const auto f : surface.faces()) {
+    Triangle face;
+    std::size_t k = 0;
+    for (const auto v : surface.vertices_around_face(surface.halfedge(f)))
+      face[k++] = static_cast<std::int32_t>(v.idx());
+    fine.faces.push_back(face);
+  }
+  return fine;
+}
+
+// What the stages read, made when it is first asked for.
+struct Shape {
+  Mesh mesh;
+  std::optional<Scan> scan;
+  Normals normals, scan_normals;
+  Descriptors descriptors, scan_descriptors;
+  Faces surface;
+
+  explicit Shape(Mesh of) : mesh(std::move(of)), normals(mesh_normals(mesh)) {
+    descriptors = fpfh(mesh.vertices, normals, FpfhOptions{});
+  }
+  void add_scan() {
+    if (scan) return;
+    scan = simulate_scan(mesh, 0);
+    scan_normals = salbench::scan_normals(*scan);
+    scan_descriptors = fpfh(scan->points, scan_normals, ScanFpfhOptions{});
+    surface = partial_mesh(*scan, scan_normals);
+  }
+};
+
+struct Source {
+  fs::path file;
+  unsigned int subdivisions = 0;
+};
+
+// The last one that was asked for: a million points are not kept beside others.
+Shape& shape_of(const Source& source) {
+  static std::optional<std::pair<Source, Shape>> last;
+  if (!last || last->first.file != source.file || last->first.subdivisions != source.subdivisions) {
+    last.reset();
+    last.emplace(source, Shape(subdivided(read_mesh(source.file), source.subdivisions)));
+  }
+  return last->second;
+}
+
+std::map<std::size_t, fs::path> meshes_by_size(const fs::path& data) {
+  std::map<std::size_t, fs::path> meshes;
+  for (const auto& entry : fs::directory_iterator(data / "SchellingData" / "Meshes"))
+    meshes.emplace(read_mesh(entry.path()).vertices.size(), entry.path());
+  return meshes;
+}
+
+template <class Stage>
+void add(const std::string& stage, const std::string& shape, const Source& source, Stage&& run,
+         bool of_scan = false) {
+  benchmark::RegisterBenchmark((stage + "/" + shape).c_str(),
+                               [=](benchmark::State& state) {
+                                 Shape& on = shape_of(source);
+                                 if (of_scan) on.add_scan();
+                                 for (auto _ : state) benchmark::DoNotOptimize(run(on));
+                                 state.counters["points"] = static_cast<double>(
+                                     of_scan ? on.scan->points.size() : on.mesh.vertices.size());
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
+}
+
+void add_of_mesh(const std::string& name, const Source& source) {
+  add("normals", name, source, [](const Shape& s) { return mesh_normals(s.mesh); });
+  add("FPFH", name, source, [](const Shape& s) { return fpfh(s.mesh.vertices, s.normals, FpfhOptions{}); });
+  add("LS", name, source,
+      [](const Shape& s) { return ls_saliency(s.mesh.vertices, s.normals, s.descriptors, LsOptions{}); });
+  add("CS", name, source,
+      [](const Shape& s) { return cs_saliency(s.mesh.vertices, s.normals, CsOptions{}); });
+  add("PS", name, source,
+      [](const Shape& s) { return ps_saliency(s.mesh.vertices, s.descriptors, PsOptions{}); });
+  add("MS", name, source,
+      [](const Shape& s) { return ms_saliency(s.mesh.vertices, s.mesh.faces, MsOptions{}); });
+}
+
+void add_of_scan(const std::string& name, const Source& source) {
+  add(
+      "scan", name, source, [](const Shape& s) { return simulate_scan(s.mesh, 0); }, true);
+  add(
+      "normals", name, source, [](const Shape& s) { return scan_normals(*s.scan); }, true);
+  add(
+      "surface", name, source, [](const Shape& s) { return partial_mesh(*s.scan, s.scan_normals); }, true);
+  add(
+      "FPFH", name, source,
+      [](const Shape& s) { return fpfh(s.scan->points, s.scan_normals, ScanFpfhOptions{}); }, true);
+  add(
+      "LS", name, source,
+      [](const Shape& s) {
+        return ls_saliency(s.scan->points, s.scan_normals, s.scan_descriptors, LsOptions{}.of_scans());
+      },
+      true);
+  add(
+      "CS", name, source,
+      [](const Shape& s) { return cs_saliency(s.scan->points, s.scan_normals, CsOptions{}); }, true);
+  add(
+      "MS", name, source, [](const Shape& s) { return ms_saliency(s.scan->points, s.surface, MsOptions{}); },
+      true);
+}
+
+void register_all(const fs::path& data) {
+  const auto meshes = meshes_by_size(data);
+  const auto of_size = [&](std::size_t n) {
+    const auto at = meshes.lower_bound(n);
+    return at == meshes.end() ? *std::prev(at) : *at;
+  };
+  for (const std::size_t n : {2'000, 5'000, 10'000, 27'000}) {
+    const auto [size, file] = of_size(n);
+    const std::string name = file.stem().string() + ":" + std::to_string(size);
+    add_of_mesh(name, {file});
+    add_of_scan(name + "_0", {file});
+  }
+  const auto file = of_size(15'625).second;  // 4^3 of these are a million
+  for (const unsigned int times : {1U, 2U, 3U})
+    add_of_mesh(file.stem().string() + ":subdivided" + std::to_string(times), {file, times});
+}
+
+}  // namespace
+}  // namespace salbench
+
+int main(int argc, char** argv) {
+  std::size_t threads = 1;
+  const char* const option = "--threads=";
+  const auto given = std::find_if(argv + 1, argv + argc, [&](const char* a) {
+    return std::strncmp(a, option, std::strlen(option)) == 0;
+  });
+  if (given != argv + argc) {
+    std::from_chars(*given + std::strlen(option), *given + std::strlen(*given), threads);
+    std::rotate(given, given + 1, argv + argc);
+    --argc;
+  }
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  std::max<std::size_t>(threads, 1));
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  const auto data = salbench::real_data();
+  if (!data) {
+    std::fprintf(stderr, "bench_shapes: %s\n", salbench::kNoRealData);
+    return 2;
+  }
+  salbench::register_all(*data);
+  benchmark::RunSpecifiedBenchmarks();
+}

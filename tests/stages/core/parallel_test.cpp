@@ -1,0 +1,57 @@
+#include "stages/core/parallel.h"
+
+#include <atomic>
+#include <mutex>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_group.h>
+
+namespace salbench {
+namespace {
+
+using Range = std::pair<std::size_t, std::size_t>;
+
+std::set<Range> ranges_of(std::size_t n, std::size_t grain) {
+  std::set<Range> ranges;
+  std::mutex mutex;
+  parallel_ranges(n, grain, [&](std::size_t first, std::size_t last) {
+    const std::lock_guard lock(mutex);
+    EXPECT_TRUE(ranges.emplace(first, last).second);
+  });
+  return ranges;
+}
+
+TEST(ParallelRanges, AreTheSameForAnyNumberOfThreads) {
+  for (const std::size_t threads : {1U, 2U, 4U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    EXPECT_EQ(ranges_of(10, 4), (std::set<Range>{{0, 4}, {4, 8}, {8, 10}}));
+    EXPECT_EQ(ranges_of(8, 4), (std::set<Range>{{0, 4}, {4, 8}}));
+    EXPECT_EQ(ranges_of(3, 4), (std::set<Range>{{0, 3}}));
+    EXPECT_TRUE(ranges_of(0, 4).empty());
+  }
+}
+
+TEST(ParallelRanges, AreDoneThoughTheRunAroundThemIsCancelled) {
+  std::atomic<int> done = 0;
+  tbb::task_group run;
+  run.run([&] {
+    run.cancel();
+    parallel_ranges(100, 1, [&](std::size_t, std::size_t) { ++done; });
+  });
+  run.wait();
+  EXPECT_EQ(done, 100);
+}
+
+TEST(ParallelRanges, PassAnExceptionOn) {
+  EXPECT_THROW(parallel_ranges(100, 1, [](std::size_t, std::size_t) { throw std::runtime_error("one"); }),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace salbench
