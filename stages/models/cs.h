@@ -36,8 +36,7 @@ struct CsOptions {
           {"of the clusters' distribution in space; the rest is that of their uniqueness", "fraction",
            between(0, 1)});
     visit("sample", self.sample,
-          {"of a shape with more points, an even sample that neighbours are looked for in", "points",
-           at_least(1000)});
+          {"a larger shape's neighbours are looked for in an even sample", "points", at_least(1000)});
   }
 };
 

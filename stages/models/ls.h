@@ -44,11 +44,8 @@ struct LsOptions {
     visit("high_weighting", self.high_weighting, {"how the neighbours' histograms are combined there"});
     visit("high_weight", self.high_weight,
           {"of high-level distinctness, relative to the low level", {}, at_least(0)});
-    visit(
-        "sample", self.sample,
-        {"of a shape with more points, an even sample that points are compared with, and described by at the "
-         "high level",
-         "points", at_least(1000)});
+    visit("sample", self.sample,
+          {"a larger shape is compared with, and described by, an even sample", "points", at_least(1000)});
   }
 };
 
