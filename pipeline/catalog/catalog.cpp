@@ -62,11 +62,15 @@ Histogram mean_over(const Members<T>& members) {
 
 // A group's map is matched like a model's, and so is the map of the others, which stands for the ground
 // truth.
-GroupScorer group_scorer(const Histogram& reference, const MetricsOptions& options, const Rng& rng) {
+GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const MetricsOptions& options,
+                         const Rng& rng) {
+  const std::vector<Metric> metrics = chosen_metrics(options);
+  const ScalarField areas =
+      any_by_area(metrics) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{};
   return {
-      metric_table().size(), [=](const ScalarField& map, const GroundTruth& others) {
+      metrics.size(), [=](const ScalarField& map, const GroundTruth& others) {
         const GroundTruth matched_others{matched(others.saliency, reference), others.picks, others.simulated};
-        return score(matched(map, reference), matched_others, options, rng);
+        return score(metrics, matched(map, reference), matched_others, options, rng, areas);
       }};
 }
 
@@ -92,11 +96,25 @@ RowOf<ScalarField> add_given_map(Catalog& catalog, const ShapeRows& shape, const
 void add_scores(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model,
                 RowOf<ScalarField> matched_map) {
   const std::string name = "scores." + model.name;
+  const std::vector<Metric> metrics = chosen_metrics(config.metrics);
+  const RowHead head{name, scores_version(metrics)};
+  const auto options = section("metrics", config.metrics);
+  if (!any_by_area(metrics)) {
+    catalog.add(
+        shape.shapes, head,
+        [name](const ScalarField& map, const GroundTruth& truth, const MetricsOptions& chosen,
+               const RandomSource& random) { return score(map, truth, chosen, random.rng(name)); },
+        matched_map, shape.ground_truth, options, kRandom);
+    return;
+  }
+  // Only what needs areas reads the surface: other scores are found whatever it is.
   catalog.add(
-      shape.shapes, {name, scores_version()},
-      [name](const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options,
-             const RandomSource& random) { return score(map, truth, options, random.rng(name)); },
-      matched_map, shape.ground_truth, section("metrics", config.metrics), kRandom);
+      shape.shapes, head,
+      [name](const ScalarField& map, const GroundTruth& truth, Points points, Surface surface,
+             const MetricsOptions& chosen, const RandomSource& random) {
+        return score(map, truth, chosen, random.rng(name), barycentric_areas(points, surface));
+      },
+      matched_map, shape.ground_truth, shape.points, shape.surface, options, kRandom);
 }
 
 void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model) {
@@ -120,20 +138,21 @@ void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, c
 void add_human_performance(Catalog& catalog, const ShapeRows& shape, const RowOf<Mesh>& mesh,
                            const Config& config, const Model& model) {
   const std::string scores = "scores." + model.name, curve = "curve." + model.name;
-  const std::int32_t version = model.version + scores_version() - 1;  // grows with either
+  const std::int32_t version =
+      model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // grows with either
   catalog.add(
       Shapes::meshes, {scores, version, has_participants(config)},
       [scores](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
                const MetricsOptions& options, const RandomSource& random) {
-        return leave_one_out(shape_of, truth, group_scorer(reference, options, random.rng(scores)));
+        return leave_one_out(shape_of, truth, group_scorer(shape_of, reference, options, random.rng(scores)));
       },
       mesh, shape.ground_truth, shape.reference, section("metrics", config.metrics), kRandom);
   catalog.add(
       Shapes::meshes, {curve, version, has_participants(config)},
       [scores, curve](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
                       const HsOptions& options, const MetricsOptions& metrics, const RandomSource& random) {
-        return human_curve(shape_of, truth, options, group_scorer(reference, metrics, random.rng(scores)),
-                           random.rng(curve));
+        return human_curve(shape_of, truth, options,
+                           group_scorer(shape_of, reference, metrics, random.rng(scores)), random.rng(curve));
       },
       mesh, shape.ground_truth, shape.reference, section("models." + model.name, *model.human),
       section("metrics", config.metrics), kRandom);

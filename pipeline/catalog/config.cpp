@@ -1,5 +1,6 @@
 #include "pipeline/catalog/config.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -32,6 +33,36 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
       models.push_back(row.bind(section.child(row.name), protocol));
   if (models.empty()) root.fail("models", "names no model; leave the key out to run all of them");
   return models;
+}
+
+// The metrics named, in the order of the table: the order in a file is no other choice, and must make no
+// other key.
+Words metrics_named(const Words& written, const Section& section, std::string_view key) {
+  std::vector<std::string_view> known;
+  for (const Metric& metric : metric_table()) known.push_back(metric.name);
+  if (written == Words{"all"}) return {known.begin(), known.end()};
+  for (const std::string& name : written) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    const std::string nearest = nearest_word(name, known);
+    section.fail(key, nearest.empty()
+                          ? fmt::format("has no metric '{}'; known are all, {}", name, fmt::join(known, ", "))
+                          : fmt::format("has no metric '{}'; did you mean '{}'?", name, nearest));
+  }
+  if (written.empty()) section.fail(key, "names no metric; leave the key out for the paper's");
+  Words named;
+  for (const std::string_view name : known)
+    if (std::ranges::find(written, name) != written.end()) named.emplace_back(name);
+  return named;
+}
+
+// `metrics: [auc, nss]` stands for `metrics: {names: [auc, nss]}`.
+void read_metrics(const Section& root, MetricsOptions& metrics) {
+  if (!root.has("metrics")) return;
+  const bool brief = !root.has_mapping("metrics");
+  const Section section = brief ? root : root.child("metrics");
+  const std::string_view key = brief ? "metrics" : "names";
+  if (!brief) section.read(metrics);
+  if (section.has(key)) metrics.names = metrics_named(section.words(key), section, key);
 }
 
 std::string indented(std::string_view lines, std::string_view by) {
@@ -88,7 +119,10 @@ Config read_config(const Section& root, const std::string& name) {
   root.read_value("output", config.output);
   for_each_section(config, [&]<class Options>(std::string_view key, Options& options) {
     options = preset<Options>(config.protocol);
-    root.child(key).read(options);
+    if constexpr (std::is_same_v<Options, MetricsOptions>)
+      read_metrics(root, options);
+    else
+      root.child(key).read(options);
   });
   config.models = read_models(root, config.protocol);
   return config;

@@ -29,7 +29,7 @@ void finish_shard(const Session& session, const RunRecord& record, const Argumen
 void print_summary(const Session& session, const std::vector<ResultRow>& rows) {
   const Setup& setup = session.setup;
   if (setup.config.simulated()) fmt::print("{}\n", kSimulatedNote);
-  fmt::print("{}", aligned(summary_table(rows)));
+  fmt::print("{}", aligned(summary_table(rows, chosen_metrics(setup.config.metrics))));
   fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup.config.protocol),
              session.runner.computed(), setup.output.string());
 }

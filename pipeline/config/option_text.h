@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,6 +36,8 @@ inline bool parse_option(std::string_view text, std::string& value) {
   value = text;
   return true;
 }
+
+using Words = std::vector<std::string>;  // a list of names without spaces and commas
 
 template <class Enum>
 requires std::is_enum_v<Enum>
@@ -64,6 +67,8 @@ template <class Value>
 std::string option_text(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return std::string(name_of(value));
+  } else if constexpr (std::is_same_v<Value, Words>) {
+    return fmt::format("[{}]", fmt::join(value, ", "));
   } else {
     return fmt::format("{}", value);  // doubles: the shortest text that reads back as the same bits
   }

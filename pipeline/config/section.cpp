@@ -139,6 +139,27 @@ std::optional<std::string> Section::text(std::string_view key) const {
   return it->second.Scalar();
 }
 
+bool Section::has_mapping(std::string_view key) const {
+  const auto it = impl_->entry(key);
+  if (it == impl_->node.end()) return false;
+  const YAML::Node node = it->second;
+  return node.IsMap() || node.IsNull();
+}
+
+Words Section::words(std::string_view key) const {
+  const auto it = impl_->entry(key);
+  if (it == impl_->node.end()) return {};
+  const YAML::Node node = it->second;
+  if (node.IsScalar()) return {node.Scalar()};
+  if (!node.IsSequence()) fail(key, "must be a list of names, such as [a, b]");
+  Words words;
+  for (const YAML::Node& word : node) {
+    if (!word.IsScalar()) fail(key, "must be a list of names, such as [a, b]");
+    words.push_back(word.Scalar());
+  }
+  return words;
+}
+
 void Section::fail(std::string_view key, std::string_view what) const {
   fail_at(impl_->file, impl_->line_of(key), fmt::format("{} {}", impl_->full_key(key), what));
 }

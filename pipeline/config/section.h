@@ -24,6 +24,8 @@ class Section {
   bool has(std::string_view key) const;
   Section child(std::string_view key) const;                    // a mapping; `key:` alone is an empty one
   std::optional<std::string> text(std::string_view key) const;  // a scalar as written; nothing if absent
+  bool has_mapping(std::string_view key) const;                 // `key:` alone is an empty one
+  Words words(std::string_view key) const;                      // a list of scalars, or a single one
 
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;  // "file:line: path.key what"
   void reject_unknown(const std::vector<std::string_view>& known) const;      // names the nearest known key
@@ -33,6 +35,9 @@ class Section {
     const auto written = text(key);
     if (!written) return;
     if (!parse_option(*written, value)) fail(key, "is '" + *written + "', not " + expected_of<Value>());
+  }
+  void read_value(std::string_view key, Words& value) const {
+    if (has(key)) value = words(key);
   }
 
   // Overwrites the fields that the section names; the others keep their defaults.

@@ -151,7 +151,7 @@ class Exporter {
 
   void add_scores() {
     if (rows_.empty()) return;
-    Table table = results_table(rows_);
+    Table table = results_table(rows_, chosen_metrics(source_.run.config.metrics));
     table.columns.insert(table.columns.end(), {"key", "content"});
     for (std::size_t r = 0; r < table.rows.size(); ++r)
       table.rows[r].insert(table.rows[r].end(), {origins_[r].first.hex(), origins_[r].second.hex()});

@@ -6,6 +6,7 @@
 
 #include "io/file.h"
 #include "pipeline/results/statistics.h"
+#include "stages/core/check.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
@@ -60,11 +61,12 @@ std::vector<ResultRow> collect_results(const RunState& run) {
   return rows;
 }
 
-Table results_table(const std::vector<ResultRow>& rows) {
+Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
   Table table{.columns = {"dataset", "item", "class", "view", "model"}, .rows = {}};
-  for (const Metric& metric : metric_table()) table.columns.emplace_back(metric.name);
+  for (const Metric& metric : metrics) table.columns.push_back(metric.name);
   table.columns.insert(table.columns.end(), {"n_points", "n_picks"});
   for (const ResultRow& row : rows) {
+    CHECK_EQ(row.scores.values.size(), metrics.size());
     auto& cells =
         table.rows.emplace_back(std::vector<Cell>{row.dataset, row.item, row.category, row.view, row.model});
     cells.insert(cells.end(), row.scores.values.begin(), row.scores.values.end());
@@ -73,16 +75,16 @@ Table results_table(const std::vector<ResultRow>& rows) {
   return table;
 }
 
-Table summary_table(const std::vector<ResultRow>& rows) {
+Table summary_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
   Table table{.columns = {"dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"},
               .rows = {}};
   for (const auto& [dataset, model] : datasets_and_models(rows)) {
-    for (const Metric& metric : metric_table()) {
+    for (std::size_t m = 0; m < metrics.size(); ++m) {
       std::vector<double> values;
       for (const ResultRow& row : rows)
-        if (row.dataset == dataset && row.model == model) values.push_back(value_of(row.scores, metric.name));
+        if (row.dataset == dataset && row.model == model) values.push_back(row.value(m));
       const Summary summary = summarise(values);
-      table.rows.push_back({dataset, model, std::string(metric.name), summary.n, summary.mean, summary.sd,
+      table.rows.push_back({dataset, model, metrics[m].name, summary.n, summary.mean, summary.sd,
                             summary.ci_low, summary.ci_high});
     }
   }
@@ -102,16 +104,17 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
   const auto write = [&](const std::string& name, const Table& table) {
     write_file(folder / name, head + to_csv(table));
   };
-  write("results.csv", results_table(rows));
-  write("summary.csv", summary_table(rows));
-  write("per_class.csv", per_class_table(rows));
-  write("significance.csv", significance_table(rows));
+  const Metrics metrics = chosen_metrics(run.config.metrics);
+  write("results.csv", results_table(rows, metrics));
+  write("summary.csv", summary_table(rows, metrics));
+  write("per_class.csv", per_class_table(rows, metrics));
+  write("significance.csv", significance_table(rows, metrics));
   for (const Shapes shapes : {Shapes::meshes, Shapes::scans})
     write(fmt::format("mean_histograms_{}.csv", name_of(shapes)), mean_histogram_table(run, shapes));
   const auto curves = collect_human_curves(run);
   std::error_code not_there;
   fs::remove(folder / "human_curve.csv", not_there);  // an earlier run's would pass for one of this
-  if (!curves.empty()) write("human_curve.csv", human_curve_table(curves));
+  if (!curves.empty()) write("human_curve.csv", human_curve_table(curves, metrics));
 }
 
 }  // namespace salbench

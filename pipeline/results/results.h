@@ -22,6 +22,9 @@ struct ResultRow {
   std::string view;  // of a scan; empty for a mesh
   std::string model;
   Scores scores;
+
+  // Of one of the metrics that the scores hold.
+  double value(std::size_t metric) const { return scores.values.at(metric); }
 };
 
 struct DatasetAndModel {
@@ -46,11 +49,14 @@ ResultRow result_row(const Context& context, const Item& item, const std::string
 // One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
 std::vector<ResultRow> collect_results(const RunState& run);
 
-Table results_table(const std::vector<ResultRow>& rows);
+// The tables below have the metrics that the scores hold, in their order.
+using Metrics = std::vector<Metric>;
+
+Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
 
 // dataset, model, metric, n, mean, sd, 95 % confidence interval of the mean; undefined scores are left out of
 // n.
-Table summary_table(const std::vector<ResultRow>& rows);
+Table summary_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
 
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);

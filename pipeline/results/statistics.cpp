@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "stages/metrics/metrics.h"
 #include "stages/stats/multiple.h"
@@ -12,67 +13,93 @@
 namespace salbench {
 namespace {
 
-// Scores of one model under one metric by shape: paired tests need to know which belong together.
-using ByShape = std::map<std::string, double>;
+// Rows of one model by shape: paired tests need to know which belong together.
+using ByShape = std::map<std::string, const ResultRow*>;
 
-ByShape scores_by_shape(const std::vector<ResultRow>& rows, const DatasetAndModel& of, const Metric& metric) {
-  ByShape scores;
+ByShape rows_by_shape(const std::vector<ResultRow>& rows, const DatasetAndModel& of) {
+  ByShape by_shape;
   for (const ResultRow& row : rows)
-    if (row.dataset == of.dataset && row.model == of.model)
-      scores[row.item + "/" + row.view] = value_of(row.scores, metric.name);
-  return scores;
+    if (row.dataset == of.dataset && row.model == of.model) by_shape[row.item + "/" + row.view] = &row;
+  return by_shape;
 }
 
-std::vector<double> values_of(const ByShape& scores) {
+std::vector<double> values_of(const ByShape& rows, std::size_t metric) {
   std::vector<double> values;
-  for (const auto& [shape, value] : scores) values.push_back(value);
+  for (const auto& [shape, row] : rows) values.push_back(row->value(metric));
   return values;
 }
 
-// Shapes that both models have a score for.
-std::pair<std::vector<double>, std::vector<double>> paired(const ByShape& a, const ByShape& b) {
+// Scores of shapes that both models have one for.
+std::pair<std::vector<double>, std::vector<double>> paired(const ByShape& a, const ByShape& b,
+                                                           std::size_t metric) {
   std::pair<std::vector<double>, std::vector<double>> pairs;
-  for (const auto& [shape, value] : a) {
+  for (const auto& [shape, row] : a) {
     const auto other = b.find(shape);
-    if (other == b.end() || std::isnan(value) || std::isnan(other->second)) continue;
-    pairs.first.push_back(value);
-    pairs.second.push_back(other->second);
+    if (other == b.end() || std::isnan(row->value(metric)) || std::isnan(other->second->value(metric)))
+      continue;
+    pairs.first.push_back(row->value(metric));
+    pairs.second.push_back(other->second->value(metric));
   }
   return pairs;
 }
 
-void add_class_rows(Table& table, const std::string& dataset, const std::string& category,
-                    const std::vector<ResultRow>& rows) {
-  std::map<std::string, std::vector<double>> by_model;
-  for (const ResultRow& row : rows)
-    if (row.dataset == dataset && row.category == category)
-      by_model[row.model].push_back(value_of(row.scores, "auc"));
-  std::vector<double> means;
-  const auto add = [&](const std::string& model, const std::vector<double>& values) {
-    const Summary summary = summarise(values);
-    table.rows.push_back(
-        {dataset, category, model, summary.n, summary.mean, (summary.ci_high - summary.ci_low) / 2});
-    means.push_back(summary.mean);
-  };
-  for (const DatasetAndModel& of : datasets_and_models(rows))
-    if (of.dataset == dataset && by_model.contains(of.model)) add(of.model, by_model[of.model]);
-  add("Avg-AUC", std::vector<double>(means));
+// Columns of a table by class: AUC alone for the paper's metrics, as in the paper.
+std::vector<std::size_t> metrics_by_class(const Metrics& metrics) {
+  std::vector<std::size_t> all(metrics.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (std::ranges::equal(metrics, chosen_metrics({}), {}, &Metric::name, &Metric::name)) all.resize(1);
+  return all;
 }
 
-void add_significance_rows(Table& table, const std::vector<DatasetAndModel>& models, const Metric& metric,
-                           const std::vector<ResultRow>& rows) {
+void add_class_rows(Table& table, const std::string& dataset, const std::string& category,
+                    const std::vector<ResultRow>& rows, const Metrics& metrics) {
+  const std::vector<std::size_t> columns = metrics_by_class(metrics);
+  std::map<std::string, std::vector<const ResultRow*>> by_model;
+  for (const ResultRow& row : rows)
+    if (row.dataset == dataset && row.category == category) by_model[row.model].push_back(&row);
+  std::vector<std::vector<double>> means(columns.size());
+  const auto add = [&](const std::string& model, const std::vector<Summary>& summaries) {
+    auto& cells = table.rows.emplace_back(std::vector<Cell>{dataset, category, model, summaries.front().n});
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      cells.insert(cells.end(), {summaries[c].mean, (summaries[c].ci_high - summaries[c].ci_low) / 2});
+      means[c].push_back(summaries[c].mean);
+    }
+  };
+  const auto summaries_of = [&](const auto& values_of_column) {
+    std::vector<Summary> summaries;
+    for (std::size_t c = 0; c < columns.size(); ++c) summaries.push_back(summarise(values_of_column(c)));
+    return summaries;
+  };
+  for (const DatasetAndModel& of : datasets_and_models(rows)) {
+    if (of.dataset != dataset || !by_model.contains(of.model)) continue;
+    add(of.model, summaries_of([&](std::size_t c) {
+          std::vector<double> values;
+          for (const ResultRow* row : by_model[of.model]) values.push_back(row->value(columns[c]));
+          return values;
+        }));
+  }
+  add(columns.size() == 1 && metrics.front().name == "auc" ? "Avg-AUC" : "Avg",
+      summaries_of([&](std::size_t c) { return means[c]; }));
+}
+
+struct RowsOfModel {
+  DatasetAndModel of;
+  ByShape rows;
+};
+
+void add_significance_rows(Table& table, const std::vector<RowsOfModel>& models, const Metrics& metrics,
+                           std::size_t metric) {
   std::vector<std::vector<Cell>> added;
   std::vector<double> p_values;
   for (std::size_t i = 0; i < models.size(); ++i) {
     for (std::size_t j = i + 1; j < models.size(); ++j) {
-      const ByShape a = scores_by_shape(rows, models[i], metric),
-                    b = scores_by_shape(rows, models[j], metric);
-      const RankSum rank_sum = rank_sum_test(values_of(a), values_of(b));
-      const auto [x, y] = paired(a, b);
+      const RankSum rank_sum =
+          rank_sum_test(values_of(models[i].rows, metric), values_of(models[j].rows, metric));
+      const auto [x, y] = paired(models[i].rows, models[j].rows, metric);
       const SignedRank signed_rank = signed_rank_test(x, y);
       std::vector<double> differences;
       for (std::size_t k = 0; k < x.size(); ++k) differences.push_back(x[k] - y[k]);
-      added.push_back({models[i].dataset, std::string(metric.name), models[i].model, models[j].model,
+      added.push_back({models[i].of.dataset, metrics[metric].name, models[i].of.model, models[j].of.model,
                        static_cast<std::int64_t>(x.size()), summarise(differences).mean, rank_sum.z,
                        rank_sum.p_value, signed_rank.statistic, signed_rank.p_value});
       p_values.push_back(signed_rank.p_value);
@@ -87,8 +114,10 @@ void add_significance_rows(Table& table, const std::vector<DatasetAndModel>& mod
 
 }  // namespace
 
-Table per_class_table(const std::vector<ResultRow>& rows) {
-  Table table{.columns = {"dataset", "class", "model", "n", "auc_mean", "auc_ci95"}, .rows = {}};
+Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
+  Table table{.columns = {"dataset", "class", "model", "n"}, .rows = {}};
+  for (const std::size_t m : metrics_by_class(metrics))
+    for (const char* part : {"_mean", "_ci95"}) table.columns.push_back(metrics[m].name + part);
   std::vector<std::pair<std::string, std::string>> classes;  // in the order of their first item
   for (const std::string_view dataset : EnumNames<Shapes>::names)
     for (const ResultRow& row : rows)
@@ -96,35 +125,35 @@ Table per_class_table(const std::vector<ResultRow>& rows) {
           row.dataset == dataset && !row.category.empty() &&
           std::find(classes.begin(), classes.end(), key) == classes.end())
         classes.push_back(key);
-  for (const auto& [dataset, category] : classes) add_class_rows(table, dataset, category, rows);
+  for (const auto& [dataset, category] : classes) add_class_rows(table, dataset, category, rows, metrics);
   return table;
 }
 
-Table significance_table(const std::vector<ResultRow>& rows) {
+Table significance_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
   Table table{.columns = {"dataset", "metric", "model_a", "model_b", "n", "mean_difference", "rank_sum_z",
                           "rank_sum_p", "signed_rank", "signed_rank_p", "signed_rank_p_holm"},
               .rows = {}};
   for (const std::string_view dataset : EnumNames<Shapes>::names) {
-    std::vector<DatasetAndModel> models;
+    std::vector<RowsOfModel> models;
     for (const DatasetAndModel& of : datasets_and_models(rows))
-      if (of.dataset == dataset) models.push_back(of);
-    for (const Metric& metric : metric_table()) add_significance_rows(table, models, metric, rows);
+      if (of.dataset == dataset) models.push_back({of, rows_by_shape(rows, of)});
+    for (std::size_t m = 0; m < metrics.size(); ++m) add_significance_rows(table, models, metrics, m);
   }
   return table;
 }
 
-Table human_curve_table(const std::vector<HumanCurve>& curves) {
+Table human_curve_table(const std::vector<HumanCurve>& curves, const Metrics& metrics) {
   Table table{.columns = {"n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"}, .rows = {}};
   std::size_t longest = 0;
   for (const HumanCurve& curve : curves) longest = std::max(longest, curve.size());
   for (std::size_t i = 0; i < longest; ++i) {
-    for (const Metric& metric : metric_table()) {
+    for (std::size_t m = 0; m < metrics.size(); ++m) {
       std::vector<double> values;
       for (const HumanCurve& curve : curves)
-        if (i < curve.size()) values.push_back(value_of(curve[i], metric.name));
+        if (i < curve.size()) values.push_back(curve[i].values.at(m));
       const Summary summary = summarise(values);
-      table.rows.push_back({static_cast<std::int64_t>(i + 1), std::string(metric.name), summary.n,
-                            summary.mean, summary.sd, summary.ci_low, summary.ci_high});
+      table.rows.push_back({static_cast<std::int64_t>(i + 1), metrics[m].name, summary.n, summary.mean,
+                            summary.sd, summary.ci_low, summary.ci_high});
     }
   }
   return table;

@@ -9,19 +9,22 @@
 namespace salbench {
 
 // dataset, class, model, n, auc_mean, auc_ci95 (half width): the paper's table of AUC by class. The model
-// "Avg-AUC" is the mean over the models of a class. Empty where items have no class.
-Table per_class_table(const std::vector<ResultRow>& rows);
+// "Avg-AUC" is the mean over the models of a class. Empty where items have no class. With other metrics than
+// the paper's there is a mean and a half width per metric, n counts what the first one is defined for, and
+// the mean over the models is called "Avg".
+Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
 
 // Every pair of models under every metric: the paper's rank-sum test, and the paired signed-rank test with
-// Holm's correction over the pairs of one data set and metric. [wilcoxon1945] [holm1979]
-Table significance_table(const std::vector<ResultRow>& rows);
+// Holm's correction over the pairs of one data set and metric. Differences are model_a - model_b whether
+// higher or lower values are better. [wilcoxon1945] [holm1979]
+Table significance_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
 
 // Human curves of the meshes that HS was computed for, in their order.
 std::vector<HumanCurve> collect_human_curves(const RunState& run);
 
 // n, metric, n_meshes, mean, sd, 95 % confidence interval of the mean: how well n people predict n others,
 // over the meshes that have 2n participants; n_meshes counts those where the metric is defined. [tasse2016]
-Table human_curve_table(const std::vector<HumanCurve>& curves);
+Table human_curve_table(const std::vector<HumanCurve>& curves, const Metrics& metrics = chosen_metrics({}));
 
 // bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
 // unmatched, min-max-normalised maps. [tasse2016]

@@ -1,14 +1,17 @@
 // Agreement of a saliency map with what people marked. `map` is a histogram-matched map with one finite value
-// per point; `picked` are distinct point indices, picked by at least one participant. [tasse2016]
+// per point; `picked` are point indices, ascending. [tasse2016]
 #pragma once
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "stages/core/options.h"
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
+#include "stages/metrics/comparison.h"
 
 namespace salbench {
 
@@ -16,6 +19,7 @@ struct MetricsOptions {
   std::int32_t splits = 100;
   std::int32_t thresholds = 20;
   double constant_nss = 0;
+  std::vector<std::string> names = {"auc", "auc_exact", "nss", "cc", "lcc"};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -24,6 +28,8 @@ struct MetricsOptions {
     visit("thresholds", self.thresholds,
           {"points of the ROC curve, evenly spaced over the values", "points", at_least(2)});
     visit("constant_nss", self.constant_nss, {"NSS of a constant map", "standard deviations", {}, "0"});
+    visit("names", self.names,
+          {"metrics, or all: the README has a table of them", "", {}, "[auc, auc_exact, nss, cc, lcc]"});
   }
 };
 
@@ -38,44 +44,65 @@ double auc(std::span<const double> map, std::span<const std::int32_t> picked, co
 double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked);
 
 // Mean over the picks of how many (population) standard deviations the map lies above its mean; `constant`
-// for a constant map, NaN without picks. [tasse2016]
+// for a constant map, NaN without picks. [peters2005]
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant = 0);
+double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
+           double constant);
 
 // Pearson correlation; 0 where one of the two is constant, NaN for empty fields. [tasse2016]
 double cc(std::span<const double> map, std::span<const double> saliency);
 
+// How often a point counts that several participants picked, or one participant several times.
+enum class PickCount : std::uint8_t { once, multiplicity };
+
 // What a metric may read.
 struct MetricInput {
   std::span<const double> map;           // n
-  std::span<const std::int32_t> picked;  // ascending
+  std::span<const std::int32_t> picked;  // ascending; each once, or as often as it was picked
   std::span<const double> saliency;      // n, min-max-normalised; empty where not known
   const MetricsOptions& options;
   Rng rng;  // a metric draws from its own copy, so all metrics see the same stream
+  std::span<const double> raw_saliency;  // n, as people marked it; empty where not known
+  Weighting weighting;
+  const Comparison& comparison;  // of map and saliency
+
+  const Measure& measure() const { return comparison.measure(weighting); }
 };
 
 struct Metric {
-  std::string_view name;  // column of results.csv
-  std::string_view unit;
-  std::string_view help;
+  std::string name;  // column of results.csv
+  std::string unit;
+  std::string help;
   double (*value)(const MetricInput&);  // NaN where undefined
   std::int32_t since = 1;               // version of the stage `scores` with which these values came
+  bool higher_is_better = true;
+  Weighting weighting = Weighting::vertex;
+  PickCount picks = PickCount::once;
 };
 
-// The table of metrics: a new one is a function and a row at the end. Stored scores hold one value per row,
-// in this order. A new row, or one whose values change, takes the next number as its `since`.
+// The table of metrics: a new one is a function and a row at the end of its part. A metric whose values
+// change takes the next number in the table as its `since`; a new one starts at 1, since keys name the
+// metrics chosen.
 std::span<const Metric> metric_table();
 
-// Version of the stage `scores`: the largest `since` of the table.
-std::int32_t scores_version();
+// Those that the options name, in the order of the table. Throws OptionError for a name that is not in it.
+std::vector<Metric> chosen_metrics(const MetricsOptions& options);
 
-// All metrics of one map, those of `metrics` or of the table. What the ground truth has nothing for is NaN:
-// auc, auc_exact and nss without picks, cc and lcc without saliency values. Throws InputError where the
-// ground truth is not of this shape: picks out of range, or another number of points.
+// Version of the stage `scores` for these metrics: the largest `since`.
+std::int32_t scores_version(std::span<const Metric> metrics);
+
+bool any_by_area(std::span<const Metric> metrics);  // they read the areas of the points
+
+// The metrics of one map, in their order. What the ground truth has nothing for is NaN: metrics of picks
+// without picks, metrics of saliency without saliency values, and metrics by area without areas. Throws
+// InputError where the ground truth is not of this shape: picks out of range, or another number of points.
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
-             const MetricsOptions& options, Rng rng);
-Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng);
+             const MetricsOptions& options, Rng rng, std::span<const double> areas = {});
+// Those that the options name.
+Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
+             std::span<const double> areas = {});
 
-// Value of one metric of the table. Throws std::out_of_range for a name that is not in it.
-double value_of(const Scores& scores, std::string_view metric);
+// Value of one metric of those that the options name. Throws std::out_of_range for another one.
+double value_of(const Scores& scores, std::string_view metric, const MetricsOptions& options = {});
 
 }  // namespace salbench

@@ -1,0 +1,51 @@
+// A map and a ground truth, with what several metrics need of them computed once, when the first one asks.
+// What a metric gets does not depend on which others were computed before it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "stages/metrics/distribution.h"
+#include "stages/metrics/measure.h"
+#include "stages/metrics/top.h"
+
+namespace salbench {
+
+// Pearson correlation of two fields; 0 where one is constant, NaN over nothing.
+double correlation(std::span<const double> a, const Moments& of_a, std::span<const double> b,
+                   const Moments& of_b, const Measure& measure);
+
+// Not for several threads. The fields outlive it.
+class Comparison {
+ public:
+  // `saliency` is the ground truth, min-max-normalised, and `areas` those of the points; both may be empty.
+  Comparison(std::span<const double> map, std::span<const double> saliency, std::span<const double> areas);
+
+  const Measure& measure(Weighting weighting) const;
+  const Distribution& map_distribution(Weighting weighting) const;
+  const Moments& map_moments(Weighting weighting) const;
+  const ScalarField& normalised_map() const;               // min-max
+  const TopScores& top_scores(Weighting weighting) const;  // these need saliency values
+  double cc(Weighting weighting) const;
+  double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
+
+ private:
+  const Order& saliency_order() const;
+
+  struct Lazy {
+    std::optional<Measure> measure;
+    std::optional<Distribution> map;
+    std::optional<Moments> map_moments;
+    std::optional<TopScores> top;
+    std::optional<double> cc;
+  };
+  Lazy& of(Weighting weighting) const { return lazy_[static_cast<std::size_t>(weighting)]; }
+
+  std::span<const double> map_, saliency_, areas_;
+  mutable std::optional<Order> map_order_, saliency_order_;
+  mutable std::optional<ScalarField> normalised_map_;
+  mutable std::array<Lazy, 2> lazy_;
+};
+
+}  // namespace salbench

@@ -1,0 +1,33 @@
+// The distribution of a field's values over a shape: what rank statistics and ROC curves read.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stages/metrics/measure.h"
+
+namespace salbench {
+
+// The points by ascending value, equal values by index. No value is NaN.
+using Order = std::vector<std::uint32_t>;
+Order ascending_order(std::span<const double> field);
+
+struct Distribution {
+  // By point, n each.
+  std::vector<double> below;  // weight of the points with a smaller value
+  std::vector<double> mid;    // the same, and half the weight of those with an equal value
+  // By value, ascending, n each.
+  std::vector<double> values;
+  std::vector<double> reached;  // weight up to this value; of equal values, the first ones count first
+
+  double total() const { return reached.empty() ? 0 : reached.back(); }
+  // Weight of the points with a value below this one. O(log n).
+  double weight_below(double value) const;
+  // The value that a part u in [0, 1) of the weight lies at or below. O(log n).
+  double quantile(double u) const;
+};
+
+Distribution distribution(std::span<const double> field, const Order& order, const Measure& measure);
+
+}  // namespace salbench

@@ -1,0 +1,38 @@
+// How much each point of a shape counts. Published work counts vertices; on a mesh whose vertices are spread
+// unevenly that weighs finely meshed parts more, and the same surface meshed otherwise gets other values.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+enum class Weighting : std::uint8_t { vertex, area };
+
+struct Measure {
+  std::vector<double> weight;  // n, >= 0: 1 per vertex, or an area in the shape's unit squared
+  double total = 0;            // sum of the weights
+  // What densities are per. One vertex, as published, or the whole surface: a density per area of the whole
+  // does not change when a vertex is replaced by two of half its area.
+  double unit = 1;
+
+  std::size_t size() const { return weight.size(); }
+  bool empty() const { return !(total > 0); }  // nothing to average over
+};
+
+Measure vertex_measure(std::size_t n);
+Measure area_measure(std::span<const double> areas);  // n, or none: an empty measure
+
+// Barycentric areas: a third of the area of the faces at each point, 0 where there are none. n; they sum to
+// the area of the surface, and sum(area * field) is the integral of the field interpolated linearly over the
+// faces.
+ScalarField barycentric_areas(Points points, Surface surface);
+
+// Whether the field has one value wherever the weight is positive; also true where no weight is.
+bool is_constant(std::span<const double> field, const Measure& measure);
+
+}  // namespace salbench

@@ -1,0 +1,160 @@
+// The rows are metrics per vertex with each pick counted once; the twins, with multiplicity and by area,
+// follow from them. The paper's come first: stored scores and tables have them in this order.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "stages/metrics/density.h"
+#include "stages/metrics/metrics.h"
+#include "stages/metrics/roc.h"
+#include "stages/metrics/sampled_roc.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> positives(const MetricInput& in) {
+  std::vector<double> values;
+  values.reserve(in.picked.size());
+  for (const std::int32_t i : in.picked) values.push_back(in.map[static_cast<std::size_t>(i)]);
+  return values;
+}
+
+// The paper's protocol numbers the points, and leaves out the first; by area a number means nothing.
+double sampled(const MetricInput& in) {
+  if (in.weighting == Weighting::vertex) return auc(in.map, in.picked, in.options, in.rng);
+  return sampled_auc(in.comparison.map_distribution(in.weighting), positives(in),
+                     {in.options.splits, in.options.thresholds}, in.rng);
+}
+
+double exact(const MetricInput& in) { return auc_exact(in.map, in.picked, in.weighting, in.comparison); }
+
+double judd(const MetricInput& in) { return auc_judd(in.map, in.picked, in.weighting, in.comparison); }
+
+double borji(const MetricInput& in) {
+  return sampled_auc_borji(in.comparison.map_distribution(in.weighting), positives(in), in.options.splits,
+                           in.rng);
+}
+
+double height_of_picks(const MetricInput& in) {
+  return nss(in.map, in.picked, in.comparison.map_moments(in.weighting), in.options.constant_nss);
+}
+
+double gain(const MetricInput& in) { return information_gain(in.map, in.picked, in.measure()); }
+
+// Metrics of the saliency values are undefined without any.
+template <double (*value)(const MetricInput&)>
+double of_saliency(const MetricInput& in) {
+  return in.saliency.empty() ? kUndefined : value(in);
+}
+
+using Distance = double (*)(std::span<const double>, std::span<const double>, const Measure&);
+
+template <Distance distance>
+double of_raw(const MetricInput& in) {
+  return distance(in.map, in.raw_saliency, in.measure());
+}
+
+template <Distance distance>
+double of_normalised(const MetricInput& in) {
+  return distance(in.comparison.normalised_map(), in.saliency, in.measure());
+}
+
+double pearson(const MetricInput& in) { return in.comparison.cc(in.weighting); }
+double pearson_magnitude(const MetricInput& in) { return std::abs(in.comparison.cc(in.weighting)); }
+double of_ranks(const MetricInput& in) { return in.comparison.spearman(in.weighting); }
+
+template <std::size_t k>
+double top_auc(const MetricInput& in) {
+  return in.comparison.top_scores(in.weighting).auc[k];
+}
+
+template <std::size_t k>
+double top_nss(const MetricInput& in) {
+  const double value = in.comparison.top_scores(in.weighting).auc[k];
+  if (std::isnan(value) || !in.comparison.map_moments(in.weighting).constant)
+    return in.comparison.top_scores(in.weighting).nss[k];
+  return in.options.constant_nss;
+}
+
+struct BaseMetric {
+  Metric metric;
+  bool of_picks = false;  // picks have a multiplicity
+};
+
+constexpr const char* kDeviations = "standard deviations";
+
+std::vector<BaseMetric> base_metrics() {
+  std::vector<BaseMetric> rows = {
+      {{"auc", "1", "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds",
+        sampled},
+       true},
+      {{"auc_exact", "1", "probability that a picked point lies above an unpicked one, ties one half", exact},
+       true},
+      {{"nss", kDeviations, "mean height of the picks above the mean of the map", height_of_picks}, true},
+      {{"cc", "1", "Pearson correlation with the saliency of the ground truth", of_saliency<pearson>}},
+      {{"lcc", "1", "magnitude of cc", of_saliency<pearson_magnitude>}},
+      {{"auc_judd", "1", "area under the ROC curve with thresholds at the picks", judd}, true},
+      {{"auc_borji", "1", "area under the ROC curve with sampled negatives and thresholds at every tenth",
+        borji},
+       true},
+      {{"ig", "bits per pick", "information gain over the uniform map", gain}, true},
+      {{"spearman", "1", "rank correlation with the saliency of the ground truth", of_saliency<of_ranks>}},
+      {{"kl", "nats", "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
+        of_saliency<of_raw<kl>>, 1, false}},
+      {{"kl_smoothed", "nats", "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
+        of_saliency<of_raw<kl_smoothed>>, 1, false}},
+      {{"sim", "1", "intersection of map and ground truth as distributions", of_saliency<of_raw<sim>>}},
+      {{"sim_minmax", "1", "the same after min-max normalisation", of_saliency<of_normalised<sim>>}},
+      {{"mse", "1", "mean squared difference after min-max normalisation", of_saliency<of_normalised<mse>>, 1,
+        false}},
+      {{"mae", "1", "mean absolute difference after min-max normalisation", of_saliency<of_normalised<mae>>,
+        1, false}},
+  };
+  const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
+    const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };
+    const auto help = [](std::size_t i, const char* what) {
+      return what + std::to_string(kTopPercents[i]) + " % of the ground truth";
+    };
+    (rows.push_back(
+         {{name(k, "auc_top"), "1", help(k, "auc_exact, positives the upper "), of_saliency<top_auc<k>>}}),
+     ...);
+    (rows.push_back(
+         {{name(k, "nss_top"), kDeviations, help(k, "mean height of the upper "), of_saliency<top_nss<k>>}}),
+     ...);
+  };
+  add_top(std::make_index_sequence<kTopPercents.size()>());
+  return rows;
+}
+
+std::vector<Metric> all_metrics() {
+  std::vector<Metric> table;
+  const std::vector<BaseMetric> base = base_metrics();
+  for (const BaseMetric& row : base) table.push_back(row.metric);
+  for (const BaseMetric& row : base) {
+    if (!row.of_picks) continue;
+    Metric& twin = table.emplace_back(row.metric);
+    twin.help = twin.name + ", a point as often as it was picked";
+    twin.name += "_multiplicity";
+    twin.picks = PickCount::multiplicity;
+  }
+  for (std::size_t row = 0, per_vertex = table.size(); row < per_vertex; ++row) {
+    Metric twin = table[row];
+    twin.help = twin.name + ", points weighed by their area";
+    twin.name += "_area";
+    twin.weighting = Weighting::area;
+    table.push_back(std::move(twin));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::span<const Metric> metric_table() {
+  static const std::vector<Metric> table = all_metrics();
+  return table;
+}
+
+}  // namespace salbench

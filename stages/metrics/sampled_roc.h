@@ -1,0 +1,30 @@
+// Areas under the ROC curve whose negatives are random draws, as many as there are picks, averaged over
+// splits. The curve runs from (1, 1) over the rates of values >= each threshold to (0, 0). `picks` are
+// the values at the picked points; without any the area is NaN.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "stages/core/rng.h"
+#include "stages/metrics/distribution.h"
+
+namespace salbench {
+
+struct Splits {
+  std::int32_t count;       // draws that the area is averaged over
+  std::int32_t thresholds;  // evenly spaced from 0 to the largest value among picks and negatives
+};
+
+// Negatives are the values of points drawn uniformly from all but the first. [tasse2016]
+double sampled_auc(std::span<const double> map, std::span<const double> picks, const Splits& splits, Rng rng);
+
+// Each negative is the quantile of a uniform number in the distribution of the map: so the draws depend
+// neither on the numbering of the points nor, by area, on how the surface is divided into faces.
+double sampled_auc(const Distribution& map, std::span<const double> picks, const Splits& splits, Rng rng);
+
+// The same with thresholds at every tenth of the map's range. [borji2013]
+double sampled_auc_borji(const Distribution& map, std::span<const double> picks, std::int32_t splits,
+                         Rng rng);
+
+}  // namespace salbench

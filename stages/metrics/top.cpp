@@ -1,0 +1,71 @@
+#include "stages/metrics/top.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace salbench {
+namespace {
+
+// Sums over the points of highest saliency, from the top down.
+class TopSums {
+ public:
+  TopSums(const TopInput& in, const Measure& measure)
+      : in_(in), measure_(measure), next_(in.saliency_order.size()) {}
+
+  bool at_minimum() const { return next_ == 0 || value(next_ - 1) == value(0); }
+  double weight() const { return weight_; }
+
+  // Equal values come together.
+  void add_next_value() {
+    const double shared = value(next_ - 1);
+    for (; next_ > 0 && value(next_ - 1) == shared; --next_) {
+      const std::size_t i = in_.saliency_order[next_ - 1];
+      weight_ += measure_.weight[i];
+      mid_ += measure_.weight[i] * in_.map_distribution.mid[i];
+      height_ += measure_.weight[i] * (in_.map[i] - in_.map_moments.mean);
+    }
+  }
+
+  // Over all points, of which weight^2 / 2 falls to pairs on top: each has one win, and each point a tie with
+  // itself.
+  double auc() const { return (mid_ - weight_ * weight_ / 2) / (weight_ * (measure_.total - weight_)); }
+  double nss() const { return height_ / (weight_ * in_.map_moments.deviation); }
+
+ private:
+  double value(std::size_t k) const { return in_.saliency[in_.saliency_order[k]]; }
+
+  const TopInput& in_;
+  const Measure& measure_;
+  std::size_t next_;  // points of the order from here on are summed
+  double weight_ = 0, mid_ = 0, height_ = 0;
+};
+
+}  // namespace
+
+Moments moments(std::span<const double> field, const Measure& measure) {
+  Moments result;
+  result.constant = is_constant(field, measure);
+  for (std::size_t i = 0; i < field.size(); ++i) result.mean += measure.weight[i] * field[i];
+  result.mean /= measure.total;
+  for (std::size_t i = 0; i < field.size(); ++i)
+    result.squares += measure.weight[i] * (field[i] - result.mean) * (field[i] - result.mean);
+  result.deviation = std::sqrt(result.squares / measure.total);
+  return result;
+}
+
+TopScores top_scores(const TopInput& in, const Measure& measure) {
+  TopScores scores;
+  scores.auc.fill(std::numeric_limits<double>::quiet_NaN());
+  scores.nss = scores.auc;
+  if (measure.empty() || is_constant(in.saliency, measure)) return scores;
+  TopSums sums(in, measure);
+  for (std::size_t k = kTopPercents.size(); k-- > 0;) {
+    while (!sums.at_minimum() && 100 * sums.weight() < kTopPercents[k] * measure.total) sums.add_next_value();
+    scores.auc[k] = sums.auc();
+    scores.nss[k] = sums.nss();
+  }
+  return scores;
+}
+
+}  // namespace salbench
