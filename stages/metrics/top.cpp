@@ -11,9 +11,13 @@ namespace {
 class TopSums {
  public:
   TopSums(const TopInput& in, const Measure& measure)
-      : in_(in), measure_(measure), next_(in.saliency_order.size()) {}
+      : in_(in), measure_(measure), next_(in.saliency_order.size()) {
+    std::size_t first = 0;
+    while (!(measure.weight[in.saliency_order[first]] > 0)) ++first;
+    minimum_ = value(first);
+  }
 
-  bool at_minimum() const { return next_ == 0 || value(next_ - 1) == value(0); }
+  bool at_minimum() const { return value(next_ - 1) <= minimum_; }
   double weight() const { return weight_; }
 
   // Equal values come together.
@@ -38,6 +42,7 @@ class TopSums {
   const TopInput& in_;
   const Measure& measure_;
   std::size_t next_;  // points of the order from here on are summed
+  double minimum_;    // of what has a weight
   double weight_ = 0, mid_ = 0, height_ = 0;
 };
 
@@ -61,7 +66,9 @@ TopScores top_scores(const TopInput& in, const Measure& measure) {
   if (measure.empty() || is_constant(in.saliency, measure)) return scores;
   TopSums sums(in, measure);
   for (std::size_t k = kTopPercents.size(); k-- > 0;) {
-    while (!sums.at_minimum() && 100 * sums.weight() < kTopPercents[k] * measure.total) sums.add_next_value();
+    // Sums of areas are rounded: equal parts must not differ by that.
+    const double part = kTopPercents[k] / 100.0 * measure.total * (1 - 1e-9);
+    while (!sums.at_minimum() && sums.weight() < part) sums.add_next_value();
     scores.auc[k] = sums.auc();
     scores.nss[k] = sums.nss();
   }

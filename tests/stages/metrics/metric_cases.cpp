@@ -1,0 +1,87 @@
+// Random cases and every metric of each, for metrics_reference.py: one JSON object per line.
+//   metric_cases SEED COUNT
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "stages/metrics/metrics.h"
+
+namespace salbench {
+namespace {
+
+template <class Numbers>
+std::string list(const Numbers& numbers) {
+  std::string text;
+  for (const auto number : numbers) text += fmt::format("{}{}", text.empty() ? "" : ", ", number);
+  return "[" + text + "]";
+}
+
+struct Case {
+  ScalarField map, areas;
+  GroundTruth truth;
+};
+
+// Maps and ground truths of few levels, so that values tie, of zeros, and constant ones; areas of zero; no
+// pick, one, and up to a pick of everything.
+Case random_case(Rng& rng) {
+  const std::size_t n = 2 + rng.below(60);
+  const auto field = [&] {
+    const double levels = rng.below(4) == 0 ? static_cast<double>(1 + rng.below(4)) : 1e6;
+    const double zeros = rng.below(2) == 0 ? 0 : rng.uniform();
+    const bool constant = rng.below(20) == 0;
+    const double value = rng.below(2) == 0 ? 0 : rng.uniform();
+    ScalarField values(n);
+    for (double& v : values) v = rng.uniform() < zeros ? 0 : std::round(rng.uniform() * levels) / levels;
+    return constant ? ScalarField(n, value) : values;
+  };
+  Case random{field(), {}, {field(), {}, false}};
+  for (std::size_t i = 0; i < n; ++i) random.areas.push_back(rng.below(10) == 0 ? 0 : 0.01 + rng.uniform());
+  const std::size_t participants = rng.below(4);
+  for (std::size_t k = 0; k < participants; ++k) {
+    auto& picks = random.truth.picks.emplace_back();
+    const std::size_t count = rng.below(4) == 0 ? 1 : rng.below(n);
+    for (std::size_t pick = 0; pick < count; ++pick) picks.push_back(static_cast<std::int32_t>(rng.below(n)));
+  }
+  if (rng.below(30) == 0) {
+    random.truth.picks.resize(1);
+    for (std::size_t i = 0; i < n; ++i) random.truth.picks[0].push_back(static_cast<std::int32_t>(i));
+  }
+  return random;
+}
+
+void print_case(const Case& random, const std::string& item, const MetricsOptions& options) {
+  const Scores scores =
+      score(metric_table(), random.map, random.truth, options, Rng(1, "scores", item), random.areas);
+  std::vector<std::int32_t> picks;
+  for (const auto& participant : random.truth.picks)
+    picks.insert(picks.end(), participant.begin(), participant.end());
+  std::string values;
+  for (std::size_t m = 0; m < scores.values.size(); ++m)
+    values += fmt::format("{}\"{}\": {}", m == 0 ? "" : ", ", metric_table()[m].name,
+                          std::isnan(scores.values[m]) ? "NaN" : fmt::format("{}", scores.values[m]));
+  fmt::print(
+      "{{\"item\": \"{}\", \"splits\": {}, \"thresholds\": {}, \"constant_nss\": {}, \"map\": {}, "
+      "\"saliency\": {}, \"areas\": {}, \"picks\": {}, \"values\": {{{}}}}}\n",
+      item, options.splits, options.thresholds, options.constant_nss, list(random.map),
+      list(random.truth.saliency), list(random.areas), list(picks), values);
+}
+
+}  // namespace
+}  // namespace salbench
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::cerr << "usage: metric_cases SEED COUNT\n";
+    return 2;
+  }
+  salbench::MetricsOptions options;
+  options.splits = 3;
+  options.constant_nss = -0.25;
+  for (int k = 0; k < std::atoi(argv[2]); ++k) {
+    salbench::Rng rng(std::strtoull(argv[1], nullptr, 10), "metric cases", std::to_string(k));
+    salbench::print_case(salbench::random_case(rng), std::to_string(k), options);
+  }
+}

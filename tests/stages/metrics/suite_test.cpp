@@ -1,0 +1,222 @@
+// The metrics beside the paper's: known answers, degenerate input, and that none depends on its company.
+// Random cases against other implementations are in metrics_reference.py.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/metrics/density.h"
+#include "stages/metrics/distribution.h"
+#include "stages/metrics/metrics.h"
+#include "stages/metrics/sampled_roc.h"
+
+namespace salbench {
+namespace {
+
+using Values = std::map<std::string, double>;
+
+Values values_of(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
+                 const ScalarField& areas) {
+  MetricsOptions options;
+  options.constant_nss = -0.5;
+  const Scores scores = score(metrics, map, truth, options, Rng(1, "scores", "x"), areas);
+  Values values;
+  for (std::size_t m = 0; m < metrics.size(); ++m) values[metrics[m].name] = scores.values[m];
+  return values;
+}
+
+Values all_values(const ScalarField& map, const GroundTruth& truth) {
+  return values_of(metric_table(), map, truth, ScalarField(map.size(), 0.5));
+}
+
+TEST(Order, AscendsAndKeepsTheIndicesOfEqualValues) {
+  Rng rng(1, "order", "");
+  for (const double scale : {1e-300, 1e-9, 1.0, 1e300}) {
+    ScalarField field(3000);
+    for (double& v : field)
+      v = (rng.below(3) == 0 ? std::floor(rng.uniform() * 4) : rng.uniform() - 0.5) * scale;
+    for (std::size_t i = 0; i < 500; ++i)
+      field[i] = 1 + static_cast<double>(rng.below(100)) * 1e-15;  // one key
+    field[7] = -0.0;
+    field[9] = 0.0;
+    Order expected(field.size());
+    for (std::uint32_t i = 0; i < expected.size(); ++i) expected[i] = i;
+    std::ranges::stable_sort(expected, {}, [&](std::uint32_t i) { return field[i]; });
+    EXPECT_EQ(ascending_order(field), expected) << scale;
+  }
+  EXPECT_TRUE(ascending_order({}).empty());
+}
+
+TEST(Distribution, CountsWeightBelowAndAtEachValue) {
+  const ScalarField field = {2, 1, 2, 5};
+  const Distribution d = distribution(field, ascending_order(field), area_measure(ScalarField{1, 4, 2, 3}));
+  EXPECT_EQ(d.below, (ScalarField{4, 0, 4, 7}));
+  EXPECT_EQ(d.mid, (ScalarField{5.5, 2, 5.5, 8.5}));
+  EXPECT_EQ(d.weight_below(2), 4);
+  EXPECT_EQ(d.weight_below(2.5), 7);
+  EXPECT_EQ(d.weight_below(9), 10);
+  EXPECT_EQ(d.quantile(0), 1);
+  EXPECT_EQ(d.quantile(0.39), 1);
+  EXPECT_EQ(d.quantile(0.41), 2);
+  EXPECT_EQ(d.quantile(0.99), 5);
+}
+
+TEST(Suite, APerfectMapHasTheBestValues) {
+  Rng rng(4, "suite", "");
+  GroundTruth truth{ScalarField(200), {{}}};
+  for (std::size_t i = 0; i < 200; ++i) truth.saliency[i] = rng.uniform();
+  const auto [lowest, highest] = std::ranges::minmax_element(truth.saliency);
+  *lowest = 0;
+  *highest = 1;
+  for (std::size_t i = 0; i < 200; ++i)
+    if (truth.saliency[i] > 0.9) truth.picks[0].push_back(static_cast<std::int32_t>(i));
+  const Values values = all_values(truth.saliency, truth);
+  for (const char* name : {"cc", "lcc", "spearman", "sim", "sim_minmax", "auc_exact", "auc_judd", "auc_top10",
+                           "cc_area", "spearman_area", "sim_area", "auc_top10_area"})
+    EXPECT_NEAR(values.at(name), 1, 0.01) << name;
+  for (const char* name : {"kl", "kl_smoothed", "mse", "mae"}) EXPECT_NEAR(values.at(name), 0, 1e-12) << name;
+  for (const Metric& metric : metric_table()) {
+    if (metric.picks == PickCount::multiplicity) continue;
+    ScalarField worse = truth.saliency;
+    for (std::size_t i = 0; i < worse.size(); i += 2) worse[i] = 1 - worse[i];
+    const double other = all_values(worse, truth).at(metric.name);
+    const double sign = metric.higher_is_better ? 1 : -1;
+    EXPECT_GT(sign * values.at(metric.name), sign * other) << metric.name;
+  }
+}
+
+TEST(Suite, ValuesOfASmallExampleByHand) {
+  const ScalarField map = {0, 1, 1, 2};
+  const GroundTruth truth{{0, 0, 1, 1}, {{3}, {3, 1}}};
+  const Values v = all_values(map, truth);
+  EXPECT_NEAR(v.at("sim"), 0.25 + 0.5, 1e-12);
+  EXPECT_NEAR(v.at("kl"), 0.5 * std::log(2) + 0, 1e-12);
+  EXPECT_NEAR(v.at("mse"), (0 + 0.25 + 0.25 + 0) / 4, 1e-12);
+  EXPECT_NEAR(v.at("mae"), (0 + 0.5 + 0.5 + 0) / 4, 1e-12);
+  EXPECT_NEAR(v.at("ig"), (std::log2(0.25 / 0.25) + std::log2(0.5 / 0.25)) / 2, 1e-12);
+  EXPECT_NEAR(v.at("ig_multiplicity"), (0 + 1 + 1) / 3.0, 1e-12);
+  EXPECT_NEAR(v.at("auc_exact"), (1 + 1 + 1 + 0.5) / 4, 1e-12);
+  EXPECT_NEAR(v.at("auc_exact_multiplicity"), (2 + 2 + 1 + 0.5) / 6, 1e-12);
+  // (0, 0), (0, 1/2), (1/2, 1), (1, 1)
+  EXPECT_NEAR(v.at("auc_judd"), 0.375 + 0.5, 1e-12);
+  EXPECT_NEAR(v.at("nss_multiplicity"), 2 / std::sqrt(0.5) / 3, 1e-12);
+  EXPECT_NEAR(v.at("nss_top20"), 0.5 / std::sqrt(0.5), 1e-12);  // both points of the largest value
+  EXPECT_NEAR(v.at("auc_top20"), (1 + 0.5 + 1 + 1) / 4, 1e-12);
+}
+
+TEST(Suite, AConstantMapIsThatOfChanceWhateverItsValue) {
+  const GroundTruth truth{{0, 0.5, 1, 0, 0.2}, {{1, 2}, {2}}};
+  for (const double value : {0.0, 1.0, 7.0, -2.0}) {
+    const Values v = all_values(ScalarField(5, value), truth);
+    for (const Metric& metric : metric_table()) {
+      const std::string name = metric.name.substr(0, metric.name.find('_'));
+      if (name == "auc") {
+        EXPECT_NEAR(v.at(metric.name), 0.5, 1e-12) << metric.name << " of " << value;
+      } else if (name == "nss") {
+        EXPECT_EQ(v.at(metric.name), -0.5) << metric.name;
+      } else if (name == "cc" || name == "lcc" || name == "spearman" || name == "ig") {
+        EXPECT_EQ(v.at(metric.name), 0) << metric.name;
+      }
+      EXPECT_FALSE(std::isnan(v.at(metric.name))) << metric.name;
+    }
+    EXPECT_NEAR(v.at("sim"), 0.2 + 0.2 + 0.2 / 1.7, 1e-12);  // with the uniform distribution
+  }
+}
+
+TEST(Suite, WithoutPicksMetricsOfPicksAreUndefined) {
+  const Values v = all_values({1, 2, 3, 0}, {{0, 1, 2, 3}, {{}, {}}});
+  for (const Metric& metric : metric_table()) {
+    const bool of_saliency = metric.name.find("top") != std::string::npos || metric.name.starts_with("cc") ||
+                             metric.name.starts_with("lcc") || metric.name.starts_with("s") ||
+                             metric.name.starts_with("kl") || metric.name.starts_with("m");
+    EXPECT_EQ(std::isnan(v.at(metric.name)), !of_saliency) << metric.name;
+  }
+}
+
+TEST(Suite, WithoutSaliencyMetricsOfItAreUndefined) {
+  const Values v = all_values({1, 2, 3, 0}, {{}, {{1}}});
+  for (const Metric& metric : metric_table()) {
+    const std::string name = metric.name.substr(0, metric.name.find("_top"));
+    const bool of_picks =
+        name == metric.name && (name.starts_with("auc") || name.starts_with("nss") || name.starts_with("ig"));
+    EXPECT_EQ(std::isnan(v.at(metric.name)), !of_picks) << metric.name;
+  }
+}
+
+TEST(Suite, WithEveryPointPickedOnlyUnpickedNegativesAreMissing) {
+  const Values v = all_values({1, 2, 3}, {{0, 1, 2}, {{0, 1, 2}}});
+  for (const char* name : {"auc_exact", "auc_judd", "auc_exact_multiplicity", "auc_judd_multiplicity"})
+    EXPECT_TRUE(std::isnan(v.at(name))) << name;
+  for (const char* name : {"auc", "auc_borji", "auc_exact_area", "auc_judd_area", "nss", "ig"})
+    EXPECT_FALSE(std::isnan(v.at(name))) << name;
+}
+
+TEST(Suite, AGroundTruthOfZerosOrWithNegativeValuesIsNoDistribution) {
+  for (const ScalarField& saliency : {ScalarField{0, 0, 0}, ScalarField{-1, 1, 2}}) {
+    const Values v = all_values({1, 2, 0}, {saliency, {}});
+    for (const char* name : {"kl", "kl_smoothed", "sim", "kl_area", "sim_area"})
+      EXPECT_TRUE(std::isnan(v.at(name))) << name;
+    EXPECT_FALSE(std::isnan(v.at("mse")));
+  }
+  EXPECT_TRUE(std::isnan(kl(ScalarField{-1, 2}, ScalarField{0, 1}, vertex_measure(2))));
+}
+
+TEST(Suite, NoMetricDependsOnWhichOthersAreComputed) {
+  Rng rng(5, "suite", "");
+  ScalarField map(300), areas(300);
+  GroundTruth truth{ScalarField(300), {{}, {}}};
+  for (std::size_t i = 0; i < 300; ++i) {
+    map[i] = std::round(rng.uniform() * 50) / 50;
+    areas[i] = rng.uniform();
+    truth.saliency[i] = std::max(0.0, rng.uniform() - 0.5);
+    if (rng.below(8) == 0) truth.picks[i % 2].push_back(static_cast<std::int32_t>(i));
+  }
+  const Values together = values_of(metric_table(), map, truth, areas);
+  std::vector<Metric> reversed(metric_table().rbegin(), metric_table().rend());
+  EXPECT_EQ(values_of(reversed, map, truth, areas), together);
+  for (const Metric& metric : metric_table())
+    EXPECT_EQ(values_of({&metric, 1}, map, truth, areas).at(metric.name), together.at(metric.name))
+        << metric.name;
+}
+
+TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
+  Rng rng(6, "suite", "");
+  ScalarField map(500);
+  for (double& value : map) value = rng.uniform();
+  const std::vector<std::int32_t> picked = {3, 40, 44, 100, 171, 300, 420};
+  ScalarField positives;
+  for (const std::int32_t i : picked) positives.push_back(map[static_cast<std::size_t>(i)]);
+  const Comparison comparison(map, {}, {});
+  const Distribution& all = comparison.map_distribution(Weighting::vertex);
+  double probability = 0;
+  for (const std::int32_t i : picked) probability += all.mid[static_cast<std::size_t>(i)] / 500 / 7;
+  EXPECT_NEAR(sampled_auc(all, positives, {3000, 400}, Rng(1, "scores", "x")), probability, 0.005);
+  EXPECT_NEAR(sampled_auc_borji(all, positives, 3000, Rng(1, "scores", "x")), probability,
+              0.03);  // ten steps
+}
+
+TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
+  MetricsOptions options;
+  options.names = {"kl", "nss", "auc_judd_area"};
+  std::vector<std::string> names;
+  for (const Metric& metric : chosen_metrics(options)) names.push_back(metric.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"nss", "kl", "auc_judd_area"}));
+  EXPECT_TRUE(any_by_area(chosen_metrics(options)));
+  EXPECT_FALSE(any_by_area(chosen_metrics({})));
+  options.names = {"nss", "no_such"};
+  EXPECT_THROW(chosen_metrics(options), OptionError);
+}
+
+TEST(MetricTable, LowerIsBetterForDistancesAlone) {
+  std::vector<std::string> lower;
+  for (const Metric& metric : metric_table())
+    if (!metric.higher_is_better) lower.push_back(metric.name);
+  EXPECT_EQ(lower, (std::vector<std::string>{"kl", "kl_smoothed", "mse", "mae", "kl_area", "kl_smoothed_area",
+                                             "mse_area", "mae_area"}));
+}
+
+}  // namespace
+}  // namespace salbench
