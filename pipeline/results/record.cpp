@@ -67,6 +67,14 @@ std::string node_line(const Row& row, const NodeRecord& node, std::size_t items,
       core_seconds > 0 ? seconds / core_seconds : 0);
 }
 
+std::string metric_lines(const Metrics& metrics) {
+  std::string yaml = "metrics:  # columns of the tables\n";
+  for (const Metric& metric : metrics)
+    yaml += fmt::format("  {}: {{unit: {}, better: {}}}\n", metric.name, yaml_quoted(metric.unit),
+                        metric.higher_is_better ? "higher" : "lower");
+  return yaml;
+}
+
 std::string stage_lines(const RunRecord& record) {
   std::string yaml = "stages:  # version, and why this run computed what it did\n";
   for (const RowCount& count : count_by_name(record.run.context, record.run.plan, record.why)) {
@@ -103,6 +111,7 @@ std::string run_yaml(const RunRecord& record) {
   yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, files: {}, digest: {}}}\n",
                       yaml_quoted(config.data), context.workload.layout, context.workload.families.size(),
                       data.files, data.digest.hex());
+  yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
   const std::vector<Failure> failures = runner.failures();
   yaml += failures.empty() ? "failed: []\n" : "failed:\n";

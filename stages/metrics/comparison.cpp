@@ -29,8 +29,8 @@ double correlation(std::span<const double> a, const Moments& of_a, std::span<con
 }
 
 Comparison::Comparison(std::span<const double> map, std::span<const double> saliency,
-                       std::span<const double> areas)
-    : map_(map), saliency_(saliency), areas_(areas) {}
+                       std::span<const double> areas, const Rng& rng)
+    : map_(map), saliency_(saliency), areas_(areas), uniform_draws_(rng), value_draws_(map, rng) {}
 
 const Measure& Comparison::measure(Weighting weighting) const {
   return once(of(weighting).measure, [&] {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "stages/metrics/distribution.h"
+#include "stages/metrics/draws.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/top.h"
 
@@ -20,7 +21,8 @@ double correlation(std::span<const double> a, const Moments& of_a, std::span<con
 class Comparison {
  public:
   // `saliency` is the ground truth, min-max-normalised, and `areas` those of the points; both may be empty.
-  Comparison(std::span<const double> map, std::span<const double> saliency, std::span<const double> areas);
+  Comparison(std::span<const double> map, std::span<const double> saliency, std::span<const double> areas,
+             const Rng& rng);
 
   const Measure& measure(Weighting weighting) const;
   const Distribution& map_distribution(Weighting weighting) const;
@@ -28,6 +30,8 @@ class Comparison {
   const ScalarField& normalised_map() const;               // min-max
   const TopScores& top_scores(Weighting weighting) const;  // these need saliency values
   double cc(Weighting weighting) const;
+  UniformDraws& uniform_draws() const { return uniform_draws_; }
+  ValueDraws& value_draws() const { return value_draws_; }
   double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
 
  private:
@@ -46,6 +50,8 @@ class Comparison {
   mutable std::optional<Order> map_order_, saliency_order_;
   mutable std::optional<ScalarField> normalised_map_;
   mutable std::array<Lazy, 2> lazy_;
+  mutable UniformDraws uniform_draws_;
+  mutable ValueDraws value_draws_;
 };
 
 }  // namespace salbench

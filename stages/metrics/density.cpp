@@ -29,9 +29,13 @@ Density uniform(std::span<const double> field, const Measure& measure) {
 
 Density normalised(std::span<const double> field, const Measure& measure, double smoothing = 0) {
   CHECK_EQ(field.size(), measure.size());
-  if (measure.empty() || std::ranges::min(field) < 0) return {field};
   double sum = 0;
-  for (std::size_t i = 0; i < field.size(); ++i) sum += measure.weight[i] * (field[i] + smoothing);
+  bool negative = false;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    sum += measure.weight[i] * (field[i] + smoothing);
+    negative |= field[i] < 0;
+  }
+  if (negative || measure.empty()) return {field};
   const double scale = measure.unit / sum;
   return {field, scale, smoothing * scale};
 }

@@ -68,8 +68,7 @@ Distribution distribution(std::span<const double> field, const Order& order, con
   const std::size_t n = field.size();
   CHECK_EQ(order.size(), n);
   CHECK_EQ(measure.size(), n);
-  Distribution result{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n),
-                      std::vector<double>(n)};
+  Distribution result{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
   double weight = 0;
   for (std::size_t first = 0, end = 0; first < n; first = end) {
     const double value = field[order[first]], below = weight;
@@ -79,10 +78,7 @@ Distribution distribution(std::span<const double> field, const Order& order, con
       result.reached[end] = weight;
     }
     const double mid = below + (weight - below) / 2;
-    for (std::size_t k = first; k < end; ++k) {
-      result.below[order[k]] = below;
-      result.mid[order[k]] = mid;
-    }
+    for (std::size_t k = first; k < end; ++k) result.mid[order[k]] = mid;
   }
   return result;
 }

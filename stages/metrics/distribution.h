@@ -14,9 +14,8 @@ using Order = std::vector<std::uint32_t>;
 Order ascending_order(std::span<const double> field);
 
 struct Distribution {
-  // By point, n each.
-  std::vector<double> below;  // weight of the points with a smaller value
-  std::vector<double> mid;    // the same, and half the weight of those with an equal value
+  // By point, n: weight of the points with a smaller value, and half the weight of those with an equal one.
+  std::vector<double> mid;
   // By value, ascending, n each.
   std::vector<double> values;
   std::vector<double> reached;  // weight up to this value; of equal values, the first ones count first

@@ -24,9 +24,11 @@ std::vector<double> positives(const MetricInput& in) {
 
 // The paper's protocol numbers the points, and leaves out the first; by area a number means nothing.
 double sampled(const MetricInput& in) {
-  if (in.weighting == Weighting::vertex) return auc(in.map, in.picked, in.options, in.rng);
-  return sampled_auc(in.comparison.map_distribution(in.weighting), positives(in),
-                     {in.options.splits, in.options.thresholds}, in.rng);
+  const Splits splits{in.options.splits, in.options.thresholds};
+  if (in.weighting == Weighting::area)
+    return sampled_auc(in.comparison.map_distribution(in.weighting), positives(in),
+                       in.comparison.uniform_draws(), splits);
+  return in.map.size() < 2 ? kUndefined : sampled_auc(positives(in), in.comparison.value_draws(), splits);
 }
 
 double exact(const MetricInput& in) { return auc_exact(in.map, in.picked, in.weighting, in.comparison); }
@@ -34,8 +36,8 @@ double exact(const MetricInput& in) { return auc_exact(in.map, in.picked, in.wei
 double judd(const MetricInput& in) { return auc_judd(in.map, in.picked, in.weighting, in.comparison); }
 
 double borji(const MetricInput& in) {
-  return sampled_auc_borji(in.comparison.map_distribution(in.weighting), positives(in), in.options.splits,
-                           in.rng);
+  return sampled_auc_borji(in.comparison.map_distribution(in.weighting), positives(in),
+                           in.comparison.uniform_draws(), in.options.splits);
 }
 
 double height_of_picks(const MetricInput& in) {

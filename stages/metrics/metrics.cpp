@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
+const Rng kNoDraws(0, "", "");  // for what draws nothing
+
 std::vector<double> values_at(std::span<const double> map, std::span<const std::int32_t> picked) {
   std::vector<double> values;
   values.reserve(picked.size());
@@ -48,11 +50,13 @@ std::vector<std::int32_t> picks_with_multiplicity(const GroundTruth& truth) {
 
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {
-  return sampled_auc(map, values_at(map, picked), {options.splits, options.thresholds}, rng);
+  if (map.size() < 2) return kUndefined;
+  ValueDraws draws(map, rng);
+  return sampled_auc(values_at(map, picked), draws, {options.splits, options.thresholds});
 }
 
 double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
-  return auc_exact(map, picked, Weighting::vertex, Comparison(map, {}, {}));
+  return auc_exact(map, picked, Weighting::vertex, Comparison(map, {}, {}, kNoDraws));
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
@@ -70,7 +74,7 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked, do
 
 double cc(std::span<const double> map, std::span<const double> saliency) {
   CHECK_EQ(map.size(), saliency.size());
-  return Comparison(map, saliency, {}).cc(Weighting::vertex);
+  return Comparison(map, saliency, {}, kNoDraws).cc(Weighting::vertex);
 }
 
 std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
@@ -100,7 +104,7 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
   check_fits(matched.size(), truth, picked);
   if (!areas.empty()) CHECK_EQ(areas.size(), matched.size());
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
-  const Comparison comparison(matched, saliency, areas);
+  const Comparison comparison(matched, saliency, areas, rng);
   Scores scores;
   for (const Metric& metric : metrics) {
     const bool without_areas =

@@ -56,29 +56,35 @@ double area_under_curve(const std::vector<double>& true_rates, const std::vector
   return area;
 }
 
-// How many of some ascending positions in [0, 1] a number has reached, looked up in equal cells: most have
-// none.
+// How many of some ascending positions in [0, 1] a number in [0, 1) has reached, looked up in equal cells:
+// most of them have no position within.
 class Reached {
  public:
   explicit Reached(std::vector<double> from) : from_(std::move(from)) {
-    std::uint32_t reached = 0;
-    for (std::size_t cell = 0; cell < kCells; ++cell)
-      first_[cell] = reached = advanced(reached, static_cast<double>(cell) / kCells);
+    std::int32_t reached = 0;
+    for (std::size_t cell = 0; cell < kCells; ++cell) {
+      const std::int32_t before = reached = advanced(reached, static_cast<double>(cell) / kCells);
+      const std::int32_t behind = advanced(before, static_cast<double>(cell + 1) / kCells);
+      in_cell_[cell] = behind == before ? before : -1 - before;
+    }
   }
+
   std::size_t operator()(double u) const {
-    return advanced(first_[std::min(static_cast<std::size_t>(u * kCells), kCells - 1)], u);
+    const std::int32_t known = in_cell_[static_cast<std::size_t>(u * kCells)];
+    return static_cast<std::size_t>(known >= 0 ? known : advanced(-1 - known, u));
   }
 
  private:
-  static constexpr std::size_t kCells = 256;
+  static constexpr std::size_t kCells = 128;  // a power of two: u * kCells stays below it
 
-  std::uint32_t advanced(std::uint32_t reached, double u) const {
-    while (reached < from_.size() && from_[reached] <= u) ++reached;
+  std::int32_t advanced(std::int32_t reached, double u) const {
+    while (static_cast<std::size_t>(reached) < from_.size() && from_[static_cast<std::size_t>(reached)] <= u)
+      ++reached;
     return reached;
   }
 
   std::vector<double> from_;
-  std::array<std::uint32_t, kCells> first_{};
+  std::array<std::int32_t, kCells> in_cell_{};  // -1 - the number at its beginning where it has one within
 };
 
 // Part of the weight that lies below each threshold.
@@ -88,25 +94,6 @@ std::vector<double> parts_below(const Distribution& map, const std::vector<doubl
   return parts;
 }
 
-// Rng::below for one bound, the same numbers without its two divisions per draw.
-class Below {
- public:
-  explicit Below(std::uint64_t bound)
-      : bound_(bound), reject_below_((0 - bound) % bound), inverse_(~std::uint64_t{0} / bound) {}
-  std::uint64_t operator()(Rng& rng) const {
-    std::uint64_t draw = rng.next();
-    while (draw < reject_below_) draw = rng.next();
-    // The quotient is one or two too small at most.
-    __extension__ using Wide = unsigned __int128;
-    std::uint64_t rest = draw - static_cast<std::uint64_t>((Wide{draw} * inverse_) >> 64U) * bound_;
-    while (rest >= bound_) rest -= bound_;
-    return rest;
-  }
-
- private:
-  std::uint64_t bound_, reject_below_, inverse_;
-};
-
 // The curve of one set of picks, split by split.
 class Curve {
  public:
@@ -115,7 +102,6 @@ class Curve {
     std::ranges::sort(positives_);
   }
 
-  std::size_t size() const { return positives_.size(); }
   double largest() const { return positives_.back(); }
 
   void set_thresholds(const std::vector<double>& thresholds) {
@@ -144,73 +130,85 @@ class Curve {
 };
 
 // How many even thresholds up to `largest` > 0 a value from 0 to `largest` reaches.
-std::size_t even_reached(double value, const std::vector<double>& thresholds, double per_unit) {
-  // Where the quotient is rounded to the wrong side, the threshold decides.
-  auto reached = static_cast<std::size_t>(value * per_unit) + 1;
-  while (reached < thresholds.size() && thresholds[reached] <= value) ++reached;
-  while (reached > thresholds.size() || (reached > 0 && thresholds[reached - 1] > value)) --reached;
-  return reached;
-}
+class EvenReached {
+ public:
+  EvenReached(std::vector<double> thresholds, double largest)
+      : per_unit_(static_cast<double>(thresholds.size() - 1) / largest), thresholds_(std::move(thresholds)) {
+    thresholds_.push_back(std::numeric_limits<double>::infinity());
+  }
+
+  std::size_t operator()(double value) const {
+    auto reached = static_cast<std::size_t>(value * per_unit_) + 1;
+    reached = std::min(reached, thresholds_.size() - 1);
+    // Where the product is rounded to the wrong side, the threshold decides. The first one is 0, the last
+    // infinite.
+    while (thresholds_[reached] <= value) ++reached;
+    while (thresholds_[reached - 1] > value) --reached;
+    return reached;
+  }
+
+ private:
+  double per_unit_;
+  std::vector<double> thresholds_;
+};
 
 }  // namespace
 
-double sampled_auc(std::span<const double> map, std::span<const double> picks, const Splits& splits,
-                   Rng rng) {
-  if (picks.empty() || map.size() < 2) return kUndefined;
+double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Splits& splits) {
+  if (picks.empty()) return kUndefined;
   Curve curve(picks, splits.count);
-  const Below below(map.size() - 1);
-  std::vector<double> thresholds, negatives(curve.size());
+  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
+  std::vector<double> thresholds;
   double up_to = kUndefined;  // of the thresholds
-  for (std::int32_t split = 0; split < splits.count; ++split) {
-    double largest = curve.largest(), lowest = 0;
-    for (double& value : negatives) {
-      value = map[1 + below(rng)];
-      largest = std::max(largest, value);
-      lowest = std::min(lowest, value);
-    }
+  for (; !rest.empty(); rest = rest.subspan(picks.size())) {
+    const auto negatives = rest.first(picks.size());
+    const auto [smallest, largest_negative] = std::ranges::minmax(negatives);
+    const double largest = std::max(curve.largest(), largest_negative);
     if (largest != up_to) {
       thresholds = even_thresholds(splits.thresholds, up_to = largest);
       curve.set_thresholds(thresholds);
     }
-    if (!(largest > 0) || lowest < 0) {  // no map that was matched, but a constant one may be
-      curve.end_split(negatives, thresholds);
+    if (!(largest > 0) || smallest < 0) {  // no map that was matched, but a constant one may be
+      curve.end_split({negatives.begin(), negatives.end()}, thresholds);
       continue;
     }
-    const double per_unit = (splits.thresholds - 1) / largest;
-    for (const double value : negatives) curve.add_negative(even_reached(value, thresholds, per_unit));
+    const EvenReached reached(thresholds, largest);
+    for (const double value : negatives) curve.add_negative(reached(value));
     curve.end_split();
   }
   return curve.mean();
 }
 
-double sampled_auc(const Distribution& map, std::span<const double> picks, const Splits& splits, Rng rng) {
+double sampled_auc(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
+                   const Splits& splits) {
   if (picks.empty() || !(map.total() > 0)) return kUndefined;
   Curve curve(picks, splits.count);
-  std::vector<double> thresholds, draws(curve.size());
+  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
+  std::vector<double> thresholds;
   std::optional<Reached> reached;
   double up_to = kUndefined;  // of the thresholds
-  for (std::int32_t split = 0; split < splits.count; ++split) {
-    double last = 0;
-    for (double& u : draws) last = std::max(last, u = rng.uniform());
-    const double largest = std::max(curve.largest(), map.quantile(last));
+  for (; !rest.empty(); rest = rest.subspan(picks.size())) {
+    const auto negatives = rest.first(picks.size());
+    const double largest = std::max(curve.largest(), map.quantile(std::ranges::max(negatives)));
     if (largest != up_to) {
       thresholds = even_thresholds(splits.thresholds, up_to = largest);
       curve.set_thresholds(thresholds);
       reached.emplace(parts_below(map, thresholds));
     }
     if (!(largest > 0)) {
-      for (double& u : draws) u = map.quantile(u);
-      curve.end_split(draws, thresholds);
+      std::vector<double> values;
+      for (const double u : negatives) values.push_back(map.quantile(u));
+      curve.end_split(values, thresholds);
       continue;
     }
-    for (const double u : draws) curve.add_negative((*reached)(u));
+    for (const double u : negatives) curve.add_negative((*reached)(u));
     curve.end_split();
   }
   return curve.mean();
 }
 
-double sampled_auc_borji(const Distribution& map, std::span<const double> picks, std::int32_t splits,
-                         Rng rng) {
+double sampled_auc_borji(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
+                         std::int32_t splits) {
   if (picks.empty() || !(map.total() > 0)) return kUndefined;
   constexpr int kSteps = 10;
   const double lowest = map.values.front(), range = map.values.back() - lowest;
@@ -219,8 +217,9 @@ double sampled_auc_borji(const Distribution& map, std::span<const double> picks,
   Curve curve(picks, splits);
   curve.set_thresholds(thresholds);
   const Reached reached(parts_below(map, thresholds));
-  for (std::int32_t split = 0; split < splits; ++split) {
-    for (std::size_t k = 0; k < curve.size(); ++k) curve.add_negative(reached(rng.uniform()));
+  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits) * picks.size());
+  for (; !rest.empty(); rest = rest.subspan(picks.size())) {
+    for (const double u : rest.first(picks.size())) curve.add_negative(reached(u));
     curve.end_split();
   }
   return curve.mean();

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "stages/core/rng.h"
 #include "stages/metrics/distribution.h"
+#include "stages/metrics/draws.h"
 
 namespace salbench {
 
@@ -16,15 +16,16 @@ struct Splits {
   std::int32_t thresholds;  // evenly spaced from 0 to the largest value among picks and negatives
 };
 
-// Negatives are the values of points drawn uniformly from all but the first. [tasse2016]
-double sampled_auc(std::span<const double> map, std::span<const double> picks, const Splits& splits, Rng rng);
+// Negatives are the values that are drawn. [tasse2016]
+double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Splits& splits);
 
 // Each negative is the quantile of a uniform number in the distribution of the map: so the draws depend
 // neither on the numbering of the points nor, by area, on how the surface is divided into faces.
-double sampled_auc(const Distribution& map, std::span<const double> picks, const Splits& splits, Rng rng);
+double sampled_auc(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
+                   const Splits& splits);
 
 // The same with thresholds at every tenth of the map's range. [borji2013]
-double sampled_auc_borji(const Distribution& map, std::span<const double> picks, std::int32_t splits,
-                         Rng rng);
+double sampled_auc_borji(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
+                         std::int32_t splits);
 
 }  // namespace salbench

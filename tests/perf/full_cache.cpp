@@ -13,14 +13,14 @@
 namespace salbench {
 namespace {
 
-Scores made_up_scores(Rng& rng) {
+Scores made_up_scores(std::size_t n_metrics, Rng& rng) {
   Scores scores{.values = {}, .n_points = 5000, .n_picks = 60};
-  for (std::size_t m = 0; m < metric_table().size(); ++m) scores.values.push_back(rng.uniform());
+  for (std::size_t m = 0; m < n_metrics; ++m) scores.values.push_back(rng.uniform());
   return scores;
 }
 
 // A valid value of the kind; fields are told from each other by stage and item.
-Value made_up(std::string_view kind, Rng rng) {
+Value made_up(std::string_view kind, std::size_t n_metrics, Rng rng) {
   const Vec3 point(rng.uniform(), rng.uniform(), rng.uniform());
   const ScalarField field = {rng.uniform(), rng.uniform(), 1};
   if (kind == "mesh") return Mesh{{point, Vec3::Zero(), Vec3::UnitX()}, {{0, 1, 2}}};
@@ -31,28 +31,28 @@ Value made_up(std::string_view kind, Rng rng) {
     return Descriptors{std::vector<float>(kFpfhBins, static_cast<float>(point.x())), 1, 0};
   if (kind == "field") return field;
   if (kind == "ground_truth") return GroundTruth{field, {{0, 1}, {2}}};
-  if (kind == "scores") return made_up_scores(rng);
+  if (kind == "scores") return made_up_scores(n_metrics, rng);
   if (kind == "human_curve") {
     HumanCurve curve;
-    for (int n = 0; n < 11; ++n) curve.push_back(made_up_scores(rng));
+    for (int n = 0; n < 11; ++n) curve.push_back(made_up_scores(n_metrics, rng));
     return curve;
   }
   throw std::invalid_argument("no made-up value for a result of kind " + std::string(kind));
 }
 
 // Means are real, of the made-up maps.
-void replace_bodies(Catalog& catalog) {
+void replace_bodies(Catalog& catalog, std::size_t n_metrics) {
   for (Row& row : catalog.rows)
     if (!row.gathers)
-      row.run = [name = row.name, kind = row.kind](const JobInputs& inputs) {
-        return made_up(kind, inputs.random.rng(name));
+      row.run = [name = row.name, kind = row.kind, n_metrics](const JobInputs& inputs) {
+        return made_up(kind, n_metrics, inputs.random.rng(name));
       };
 }
 
 void fill(const Arguments& arguments) {
   const std::atomic<bool> stop = false;
   Setup setup(arguments);
-  replace_bodies(setup.catalog);
+  replace_bodies(setup.catalog, chosen_metrics(setup.config.metrics).size());
   FolderStore store(setup.cache, Access::read_write);
   Plan plan = make_plan(setup.context, store);
   const auto progress = std::make_unique<NoProgress>();

@@ -43,7 +43,8 @@ TEST(Config, TheTextProtocolHasThePapersWords) {
 TEST(Config, WritesItselfSoThatItReadsBackTheSame) {
   for (const char* yaml :
        {"", "data: 'a \"b\" \\c\u00e9'\ncache: \"two\\nlines\"\noutput: o",
-        "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}"}) {
+        "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}",
+        "metrics: all", "metrics: {splits: 9, names: [kl, nss]}"}) {
     const std::string written = config_yaml(config_of(yaml));
     EXPECT_EQ(config_yaml(config_of(written)), written);
   }
@@ -71,6 +72,31 @@ TEST(Config, AnnotatedExplainsEveryOption) {
   }
   EXPECT_THAT(annotated_config_yaml(config_of("")),
               HasSubstr("  # support radius (R; > 0)\n  radius: 0.01\n"));
+}
+
+TEST(Config, MetricsAreNamedInAnyOrderAndAlone) {
+  const auto names = [](const std::string& yaml) { return config_of(yaml).metrics.names; };
+  const std::vector<std::string> papers = {"auc", "auc_exact", "nss", "cc", "lcc"};
+  EXPECT_EQ(names(""), papers);
+  EXPECT_EQ(names("metrics: {splits: 7}"), papers);
+  EXPECT_EQ(names("metrics:"), papers);
+  EXPECT_EQ(names("metrics: [kl, nss, kl]"), (std::vector<std::string>{"nss", "kl"}));
+  EXPECT_EQ(names("metrics: {names: [kl, nss], splits: 7}"), (std::vector<std::string>{"nss", "kl"}));
+  EXPECT_EQ(names("metrics: sim"), std::vector<std::string>{"sim"});
+  EXPECT_EQ(names("metrics: all").size(), metric_table().size());
+  EXPECT_EQ(config_of("metrics: {names: [kl], splits: 7}").metrics.splits, 7);
+}
+
+TEST(Config, UnknownMetricsAreErrorsWithTheNearestName) {
+  EXPECT_EQ(error_of("seed: 1\nmetrics: [nss, auc_jud]"),
+            "x.yaml:2: metrics has no metric 'auc_jud'; did you mean 'auc_judd'?");
+  EXPECT_EQ(error_of("metrics:\n  names: [klx]"),
+            "x.yaml:2: metrics.names has no metric 'klx'; did you mean 'kl'?");
+  EXPECT_THAT(error_of("metrics: [a_very_long_name_of_nothing]"), HasSubstr("known are all, auc, auc_exact"));
+  EXPECT_THAT(error_of("metrics: []"), HasSubstr("names no metric"));
+  EXPECT_THAT(error_of("metrics: [[nss]]"), HasSubstr("must be a list of names"));
+  EXPECT_THAT(error_of("metrics: {names: {nss: 1}}"), HasSubstr("must be a list of names"));
+  EXPECT_THAT(error_of("metrics: {name: nss}"), HasSubstr("did you mean 'names'?"));
 }
 
 TEST(Config, UnknownKeysAndModelsAreErrorsWithTheNearestName) {

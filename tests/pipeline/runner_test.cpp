@@ -39,7 +39,7 @@ class RunnerTest : public testing::Test {
     for (const Failure& failure : toy.runner.failures())
       failures_.push_back(toy.context.name(failure.job) + ": " + toy.context.row(failure.job).name + ": " +
                           failure.cause);
-    results_ = to_csv(results_table(toy.results()));
+    results_ = to_csv(results_table(toy.results(), chosen_metrics(toy.config.metrics)));
     return store_.take_saved();
   }
 
@@ -210,6 +210,59 @@ TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
   for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
 }
 
+TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
+  run();
+  const std::string paper_results = results_;
+  const auto computed = run(std::string(kToyConfig) + "metrics: [kl, auc, auc_judd_area]\n");
+  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores")));
+  for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
+  EXPECT_THAT(results_, HasSubstr("model,auc,kl,auc_judd_area,n_points"));
+  EXPECT_THAT(run(std::string(kToyConfig) + "metrics: {names: [auc_judd_area, kl, auc]}\n"), IsEmpty())
+      << "the order in a file makes no other key";
+  EXPECT_THAT(run(std::string(kToyConfig) + "metrics: [lcc, cc, nss, auc_exact, auc]\n"), IsEmpty())
+      << "the paper's by name are the default";
+  EXPECT_EQ(results_, paper_results);
+}
+
+TEST_F(RunnerTest, EveryMetricIsFiniteOnMeshesAndScansAndForPeople) {
+  ToyRun toy(data_.path(), store_, "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\nmetrics: all\n");
+  toy.run();
+  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  for (const ResultRow& row : toy.results()) {
+    ASSERT_THAT(row.scores.values, SizeIs(metric_table().size()));
+    for (std::size_t m = 0; m < metric_table().size() && row.scores.n_picks > 0; ++m)
+      EXPECT_TRUE(std::isfinite(row.value(m)))
+          << metric_table()[m].name << " of " << row.item << " " << row.view;
+  }
+}
+
+TEST_F(RunnerTest, OnlyScoresByAreaReadTheSurface) {
+  const auto inputs_of = [&](const std::string& metrics) {
+    const ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
+    std::vector<std::string> names;
+    for (const std::size_t input : toy.catalog.rows[toy.row("scores.PS", Shapes::scans)].inputs)
+      names.push_back(toy.catalog.rows[input].name);
+    return names;
+  };
+  EXPECT_THAT(inputs_of("metrics: [nss, kl]\n"), ElementsAre("matched.PS", "scan_ground_truth"));
+  EXPECT_THAT(inputs_of("metrics: [nss, kl_area]\n"),
+              ElementsAre("matched.PS", "scan_ground_truth", "scan", "surface"));
+}
+
+TEST_F(RunnerTest, TheTableByClassHasEachMetricButForThePapers) {
+  run();
+  const auto columns = [&](const std::string& metrics) {
+    ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
+    toy.run();
+    std::vector<ResultRow> rows = toy.results();
+    for (ResultRow& row : rows) row.category = "human";
+    return per_class_table(rows, chosen_metrics(toy.config.metrics)).columns;
+  };
+  EXPECT_THAT(columns(""), ElementsAre("dataset", "class", "model", "n", "auc_mean", "auc_ci95"));
+  EXPECT_THAT(columns("metrics: [kl, nss]\n"),
+              ElementsAre("dataset", "class", "model", "n", "nss_mean", "nss_ci95", "kl_mean", "kl_ci95"));
+}
+
 TEST_F(RunnerTest, AnEditedMeshConcernsItsFamilyAndTheReference) {
   run();
   Mesh edited = shapes::bumpy_sphere(2);
@@ -328,8 +381,9 @@ TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   ASSERT_THAT(curves, SizeIs(2));
   const Table table = human_curve_table(curves);
   EXPECT_THAT(table.columns, ElementsAre("n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"));
-  ASSERT_THAT(table.rows, SizeIs(2 * metric_table().size()));  // four participants: 1 and 2 against as many
-  const auto& cc_of_two = table.rows[metric_table().size() + 3];
+  const std::size_t n_metrics = chosen_metrics({}).size();
+  ASSERT_THAT(table.rows, SizeIs(2 * n_metrics));  // four participants: 1 and 2 against as many
+  const auto& cc_of_two = table.rows[n_metrics + 3];
   EXPECT_EQ(cc_of_two[0], Cell(std::int64_t{2}));
   EXPECT_EQ(cc_of_two[1], Cell("cc"));
   EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));

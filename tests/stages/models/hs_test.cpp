@@ -40,7 +40,7 @@ GroundTruth truth_of(PicksOfAll picks) { return {{}, std::move(picks), false}; }
 
 // As in a run: both maps matched to one reference, then scored.
 GroupScorer matching_scorer(const Histogram& reference) {
-  return {metric_table().size(), [=](const ScalarField& map, const GroundTruth& others) {
+  return {chosen_metrics({}).size(), [=](const ScalarField& map, const GroundTruth& others) {
             return score(matched(map, reference), {matched(others.saliency, reference), others.picks, false},
                          {}, Rng(1, "scores", "x"));
           }};
