@@ -40,13 +40,13 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
 Words metrics_named(const Words& written, const Section& section, std::string_view key) {
   std::vector<std::string_view> known;
   for (const Metric& metric : metric_table()) known.push_back(metric.name);
-  if (written == Words{"all"}) return {known.begin(), known.end()};
+  if (std::ranges::find(written, "all") != written.end()) return {known.begin(), known.end()};
   for (const std::string& name : written) {
     if (std::ranges::find(known, name) != known.end()) continue;
     const std::string nearest = nearest_word(name, known);
-    section.fail(key, nearest.empty()
-                          ? fmt::format("has no metric '{}'; known are all, {}", name, fmt::join(known, ", "))
-                          : fmt::format("has no metric '{}'; did you mean '{}'?", name, nearest));
+    const std::string hint =
+        nearest.empty() ? "the README has a table of them" : fmt::format("did you mean '{}'?", nearest);
+    section.fail(key, fmt::format("has no metric '{}'; {}", name, hint));
   }
   if (written.empty()) section.fail(key, "names no metric; leave the key out for the paper's");
   Words named;
