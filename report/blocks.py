@@ -1,0 +1,83 @@
+"""What elements of the report are made of. Templates know these types and nothing of the data behind them."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Note:
+    """A sentence that stands where something is missing, or that explains."""
+    text: str
+    missing: bool = False
+    kind: str = "note"
+
+
+@dataclass
+class Plot:
+    """figures/NAME.svg with its PDF, the plotted numbers as data/NAME.csv, and what a reader who cannot see it is told."""
+    name: str
+    alt: str
+    width: int  # pixels at 100 %
+    caption: str = ""
+    kind: str = "plot"
+
+
+@dataclass
+class Cell:
+    """One cell: what is shown, what it is sorted by, and what it links to."""
+    text: str
+    key: object = None   # number or text; None: the text itself
+    href: str = ""
+    below: str = ""      # second line, smaller
+    bold: bool = False
+    style: str = ""      # name of a CSS class
+
+
+@dataclass
+class Table:
+    """A table that sorts and filters. numeric: per column, True aligns right and sorts as numbers."""
+    id: str
+    caption: str
+    columns: list
+    rows: list
+    numeric: list
+    filters: list = field(default_factory=list)  # indices of columns that get a menu
+    files: list = field(default_factory=list)    # (label, path) of the same table in other forms
+    kind: str = "table"
+
+
+@dataclass
+class Tile:
+    """A painted picture and the lines below it, as (text, bold) pieces."""
+    picture: str         # path within the report; empty: there is none, and `title` says why
+    title: str
+    alt: str = ""
+    pieces: list = field(default_factory=list)
+    href: str = ""
+
+
+@dataclass
+class Gallery:
+    """Rows of tiles under column heads, with one colour bar."""
+    caption: str
+    heads: list
+    rows: list           # (label, [Tile])
+    files: list = field(default_factory=list)
+    kind: str = "gallery"
+
+
+def cell(value, digits=3, **more):
+    """A number, or a dash where it is undefined."""
+    if value is None or value != value:
+        return Cell("–", "", **more)
+    return Cell(f"{value:.{digits}f}".replace("-", "−"), float(value), **more)
+
+
+def count(value, **more):
+    return Cell("–", "", **more) if value != value else Cell(f"{int(value)}", int(value), **more)
+
+
+def p_value(value, **more):
+    """Three digits, or a bound where they would be zeros."""
+    if value is None or value != value:
+        return Cell("–", "", **more)
+    return Cell("< 0.001" if value < 0.001 else f"{value:.3f}", float(value), **more)

@@ -1,0 +1,67 @@
+"""Pages from templates, and the folder that they stand in."""
+
+import shutil
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from report.names import METRICS
+from report.results import Unusable
+
+HERE = Path(__file__).resolve().parent
+MARK = "salbench report"  # <meta name="generator"> of index.html: a folder that has it may be written again
+FOLDERS = ("figures", "data", "shapes", "pictures", "static")
+
+
+def environment():
+    made = Environment(loader=FileSystemLoader(HERE / "templates"), autoescape=True, undefined=StrictUndefined,
+                       trim_blocks=True, lstrip_blocks=True)
+    made.globals.update(METRICS=METRICS, MARK=MARK)
+    return made
+
+
+def prepare_folder(out):
+    """An empty folder for the report. One with other things in it is left alone: Unusable."""
+    index = out / "index.html"
+    try:
+        if out.exists() and not out.is_dir():
+            raise Unusable(f"{out}: not a folder; choose another with --to")
+        if out.is_dir() and any(out.iterdir()):
+            if not (index.is_file() and MARK in index.read_text(encoding="utf-8", errors="replace")[:600]):
+                raise Unusable(f"{out}: holds something else than a report; choose another folder with --to")
+            index.unlink()
+        for folder in FOLDERS:
+            shutil.rmtree(out / folder, ignore_errors=True)
+            (out / folder).mkdir(parents=True)
+    except OSError as error:
+        raise Unusable(f"{out}: cannot be written: {error.strerror}; choose another folder with --to") from None
+
+
+def copy_static(out):
+    for file in sorted((HERE / "static").iterdir()):
+        shutil.copyfile(file, out / "static" / file.name)
+
+
+class Pages:
+    """Renders templates into the report's folder with what every page shows: banners and navigation."""
+
+    def __init__(self, shop, navigation):
+        self.shop = shop
+        self.templates = environment()
+        self.common = {"results": shop.results, "navigation": navigation, "banners": banners(shop.results)}
+
+    def write(self, path, template, **values):
+        """path: within the report; links in templates start with `root`."""
+        root = "../" * path.count("/")
+        text = self.templates.get_template(template).render(path=path, root=root, **self.common, **values)
+        (self.shop.out / path).write_text(text, encoding="utf-8")
+
+
+def banners(results):
+    """What every page says at its top: simulated participants, a run that did not end."""
+    said = []
+    if results.simulated:
+        said.append("Simulated participants: the program made the ground truth. These scores say nothing about people.")
+    if results.state != "finished":
+        said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
+    return said

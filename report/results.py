@@ -1,0 +1,168 @@
+"""A results folder as the program writes it: its tables, run.yaml, and what of them is missing."""
+
+import csv
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy
+import pandas
+import yaml
+
+TEXT_COLUMNS = ("dataset", "item", "class", "view", "model", "metric", "model_a", "model_b", "node")
+DATASETS = ("meshes", "scans")
+
+
+class Missing(Exception):
+    """What an element of the report needs is not there. Its text stands where the element would."""
+
+
+class Unusable(Exception):
+    """The report cannot be written at all: the message is one line for the user (exit status 2)."""
+
+
+@dataclass
+class Results:
+    """A results folder. Tables are read when first asked for; what cannot be read is Missing."""
+
+    folder: Path
+    record: dict = field(default_factory=dict)    # run.yaml with every scalar as text
+    remarks: list = field(default_factory=list)   # lines of '#' at the head of run.yaml and of the tables
+    _tables: dict = field(default_factory=dict)
+
+    def table(self, name, *columns):
+        """The table of a CSV file with at least the columns named, or Missing."""
+        if name not in self._tables:
+            self._tables[name] = self._read(name)
+        table = self._tables[name]
+        if isinstance(table, Missing):
+            raise table
+        absent = [column for column in columns if column not in table]
+        if absent:
+            raise Missing(f"{name} has no column {', '.join(absent)}: an older version of the program wrote it.")
+        return table
+
+    def has(self, name):
+        try:
+            return not self.table(name).empty
+        except Missing:
+            return False
+
+    def _read(self, name):
+        path = self.folder / name
+        if not path.is_file():
+            return Missing(f"{name} is not in the results folder.")
+        try:
+            table, remarks = read_table(path)
+        except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
+            return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
+        self.remarks += [remark for remark in remarks if remark not in self.remarks]
+        return table
+
+    @cached_property
+    def simulated(self):
+        """True if the program made the participants up: then scores say nothing about people."""
+        said = any("simulated" in remark.lower() for remark in self.remarks)
+        return said or self.option("dataset.participants") == "simulated"
+
+    @property
+    def state(self):
+        """"finished", "partial, 3 of 12 shapes ..." or why it is not known."""
+        return text_of(self.record.get("results")) or "unknown: run.yaml is missing or was not completed"
+
+    def option(self, path):
+        """An option of the configuration as text, such as option("fpfh.radius"); None if it is not recorded."""
+        value = self.record.get("configuration")
+        for part in path.split("."):
+            if not isinstance(value, dict) or part not in value:
+                return None
+            value = value[part]
+        return value if isinstance(value, str) else None
+
+    @cached_property
+    def evaluated(self):
+        """Names of the models whose maps another program made (salbench evaluate)."""
+        value = self.record.get("evaluated") or []
+        entries = value if isinstance(value, list) else [value]
+        return [entry["model"] for entry in entries if isinstance(entry, dict) and "model" in entry]
+
+
+def text_of(value):
+    return value if isinstance(value, str) else ""
+
+
+def number_of(value, otherwise=float("nan")):
+    """A number that run.yaml holds as text."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return otherwise
+
+
+def head_remarks(path):
+    """The lines of '#' that a file begins with, without the '#'."""
+    remarks = []
+    with open(path, encoding="utf-8", errors="replace") as file:
+        for line in file:
+            if not line.startswith("#"):
+                break
+            remarks.append(line[1:].strip())
+    return remarks
+
+
+def read_table(path):
+    """A table and the remarks at its head. Text columns keep names such as "NA"; all others are float64, NaN where
+    empty. A last line that was cut short is filled with NaN."""
+    remarks = head_remarks(path)
+    try:
+        table = pandas.read_csv(path, skiprows=len(remarks), dtype=str, keep_default_na=False, encoding_errors="replace")
+    except pandas.errors.EmptyDataError:
+        return pandas.DataFrame(), remarks
+    for column in table:
+        values = table[column].fillna("")
+        table[column] = values if column in TEXT_COLUMNS else numbers(values)
+    return table, remarks
+
+
+def numbers(values):
+    """float64 of a column of text, exact to the bit as the program printed them; NaN where it is no number."""
+    try:
+        return values.replace("", "nan").map(float)
+    except ValueError:
+        return pandas.to_numeric(values, errors="coerce")
+
+
+def read_record(path):
+    """run.yaml with every scalar as text: a model named NO stays one. Empty if there is no such file or it is broken."""
+    try:
+        record = yaml.load(path.read_text(encoding="utf-8", errors="replace"), Loader=yaml.BaseLoader)
+    except (OSError, yaml.YAMLError):
+        return {}
+    return record if isinstance(record, dict) else {}
+
+
+def read_results(folder):
+    """The results in a folder, or Unusable if the folder holds none."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise Unusable(f"{folder}: no such folder; name the results folder of a run (salbench run ... --out OUT)")
+    if not any((folder / name).is_file() for name in ("run.yaml", "results.csv", "summary.csv")):
+        raise Unusable(f"{folder}: not a results folder (no run.yaml, no results.csv); name the one of salbench run")
+    results = Results(folder, read_record(folder / "run.yaml"))
+    if (folder / "run.yaml").is_file():
+        results.remarks += head_remarks(folder / "run.yaml")
+    for name in ("results.csv", "summary.csv"):
+        results.has(name)  # gathers their remarks
+    return results
+
+
+def write_csv(table, path):
+    """Floats as the shortest text that reads back to the same bits."""
+    def text(value):
+        if isinstance(value, (float, numpy.floating)):
+            return "" if value != value else repr(float(value))
+        return value
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(table.columns)
+        writer.writerows([text(value) for value in row] for row in table.itertuples(index=False))

@@ -1,0 +1,59 @@
+"use strict";
+// Tables that sort and filter. Without this script they stand as they are written, in a sensible order.
+
+const salbench = {};
+
+// Compares cells: numbers as numbers, names with numbers in them naturally; what is undefined ("") goes last either way.
+salbench.compare = function (a, b, direction) {
+  if (a === "" || b === "" || a === null || b === null) return (a === "" || a === null) - (b === "" || b === null);
+  const x = Number(a), y = Number(b);
+  const order = Number.isNaN(x) || Number.isNaN(y) ? String(a).localeCompare(String(b), "en", {numeric: true}) : x - y;
+  return direction * order;
+};
+
+// Marks the column that a table is sorted by, and returns the direction: numbers start with the largest.
+salbench.turn = function (header, row) {
+  const numeric = header.classList.contains("number");
+  const before = header.getAttribute("aria-sort");
+  const ascending = before ? before === "descending" : !numeric;
+  for (const other of row.cells) other.removeAttribute("aria-sort");
+  header.setAttribute("aria-sort", ascending ? "ascending" : "descending");
+  return ascending ? 1 : -1;
+};
+
+salbench.sortable = function (table) {
+  const head = table.tHead.rows[0], body = table.tBodies[0];
+  const key = (row, column) => {
+    const cell = row.cells[column];
+    return cell.dataset.key !== undefined ? cell.dataset.key : cell.textContent.trim();
+  };
+  for (const header of head.cells) {
+    header.querySelector("button").addEventListener("click", () => {
+      const direction = salbench.turn(header, head);
+      const rows = Array.from(body.rows);
+      rows.sort((a, b) => salbench.compare(key(a, header.cellIndex), key(b, header.cellIndex), direction));
+      body.append(...rows);
+    });
+  }
+};
+
+salbench.filterable = function (form) {
+  const table = document.getElementById(form.dataset.for);
+  const apply = () => {
+    let shown = 0;
+    for (const row of table.tBodies[0].rows) {
+      row.hidden = !Array.from(form.querySelectorAll("select[data-column]")).every(
+        (menu) => menu.value === "" || row.cells[menu.dataset.column].firstChild.textContent.trim() === menu.value);
+      shown += row.hidden ? 0 : 1;
+    }
+    form.querySelector("output").textContent = shown + " of " + table.tBodies[0].rows.length + " rows";
+  };
+  form.addEventListener("change", apply);
+  form.addEventListener("submit", (event) => event.preventDefault());
+  apply();
+};
+
+addEventListener("DOMContentLoaded", () => {
+  document.querySelectorAll("table.sortable").forEach(salbench.sortable);
+  document.querySelectorAll("form.filters[data-for]").forEach(salbench.filterable);
+});

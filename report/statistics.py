@@ -1,0 +1,118 @@
+"""What the report needs beyond the program's own statistics, computed from results.csv alone."""
+
+import numpy
+import pandas
+from scipy import stats
+
+from report.names import natural
+from report.results import DATASETS, Missing
+
+
+def datasets(results):
+    """The data sets that have scores, in the program's order."""
+    try:
+        present = set(results.table("results.csv", "dataset")["dataset"])
+    except Missing:
+        present = set(results.table("summary.csv", "dataset")["dataset"])
+    return [dataset for dataset in DATASETS if dataset in present]
+
+
+def models(results):
+    """Every model that any table names, in the order of the configuration."""
+    found = list(results.record.get("configuration", {}).get("models") or []) if results.record else []
+    for name in ("summary.csv", "results.csv"):
+        if results.has(name) and "model" in results.table(name):
+            found += list(results.table(name)["model"].unique())
+    return list(dict.fromkeys(model for model in found if model))
+
+
+def scores(results, dataset, metric):
+    """One row per shape (index item, view), one column per model; NaN where a score is undefined or missing."""
+    table = results.table("results.csv", "dataset", "item", "view", "model", metric)
+    rows = table[table["dataset"] == dataset].drop_duplicates(["item", "view", "model"], keep="last")
+    if rows.empty:
+        raise Missing(f"results.csv has no scores of {dataset}: none of them has ground truth, or the run left them out.")
+    wide = rows.pivot(index=["item", "view"], columns="model", values=metric)
+    order = sorted(wide.index, key=lambda key: (natural(key[0]), natural(key[1])))
+    return wide.loc[order, [model for model in models(results) if model in wide]]
+
+
+def classes(results):
+    """item -> class."""
+    table = results.table("results.csv", "item", "class")
+    return dict(zip(table["item"], table["class"]))
+
+
+def mean_per_shape(results, dataset, metric):
+    """Mean over the models per shape, lowest first; shapes without any score are left out."""
+    return scores(results, dataset, metric).mean(axis=1).dropna().sort_values(kind="stable")
+
+
+def ranks(wide):
+    """Rank of each shape within its data set per model, 1 for the highest score; NaN where there is no score."""
+    return wide.rank(ascending=False, method="min")
+
+
+def summary(results, dataset, metric):
+    """Rows of summary.csv of one metric, highest mean first."""
+    table = results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
+    rows = table[(table["dataset"] == dataset) & (table["metric"] == metric)]
+    if rows.empty:
+        raise Missing(f"summary.csv has no {metric} of {dataset}.")
+    return rows.sort_values("mean", ascending=False, kind="stable", na_position="last").reset_index(drop=True)
+
+
+def student_half_width(values):
+    """Half of the 95 % confidence interval of a mean; NaN for fewer than two values."""
+    n = len(values)
+    return float(stats.t.ppf(0.975, n - 1) * numpy.std(values, ddof=1) / numpy.sqrt(n)) if n > 1 else float("nan")
+
+
+def per_class(results, dataset, metric):
+    """Columns class, model, n, mean, ci95. Of AUC these are the rows of per_class.csv; of other metrics they are made
+    from results.csv in the same way. The model "Avg" is the mean over the models' means."""
+    if metric == "auc":
+        table = results.table("per_class.csv", "dataset", "class", "model", "n", "auc_mean", "auc_ci95")
+        rows = table[table["dataset"] == dataset].rename(columns={"auc_mean": "mean", "auc_ci95": "ci95"})
+        if rows.empty:
+            raise Missing(f"per_class.csv has no rows of {dataset}.")
+        return rows.replace({"model": {"Avg-AUC": "Avg"}}).drop(columns="dataset").reset_index(drop=True)
+    wide = scores(results, dataset, metric)
+    class_of = classes(results)
+    rows = []
+    for name, group in wide.groupby(wide.index.get_level_values("item").map(class_of), sort=False):
+        means = []
+        for model in wide:
+            values = group[model].dropna().to_numpy()
+            if len(values) == 0:
+                continue
+            means.append(values.mean())
+            rows.append((name, model, len(values), means[-1], student_half_width(values)))
+        if means:
+            rows.append((name, "Avg", len(means), float(numpy.mean(means)), student_half_width(means)))
+    return pandas.DataFrame(rows, columns=["class", "model", "n", "mean", "ci95"])
+
+
+def paired_difference(wide, a, b):
+    """Mean over the shapes of score of a less score of b: n, mean, low and high end of its 95 % interval (Student)."""
+    for model in (a, b):
+        if model not in wide:
+            raise Missing(f"no scores of {model}")
+    difference = (wide[a] - wide[b]).dropna().to_numpy()
+    if len(difference) == 0:
+        raise Missing(f"no shape has scores of both {a} and {b}")
+    half = student_half_width(difference)
+    return len(difference), float(difference.mean()), float(difference.mean() - half), float(difference.mean() + half)
+
+
+def pair(results, dataset, metric, a, b):
+    """The row of significance.csv of a pair, its differences turned so that they are a less b."""
+    table = results.table("significance.csv", "dataset", "metric", "model_a", "model_b", "mean_difference", "rank_sum_p")
+    rows = table[(table["dataset"] == dataset) & (table["metric"] == metric)]
+    for first, second, sign in ((a, b, 1), (b, a, -1)):
+        match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
+        if not match.empty:
+            row = match.iloc[0].to_dict()
+            row["mean_difference"] *= sign
+            return row
+    raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")

@@ -1,0 +1,48 @@
+"""How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes every time."""
+
+import matplotlib
+from matplotlib.figure import Figure
+
+INK = "#1a1a1a"
+GRID = "#dddddd"
+MAP = "viridis"  # every saliency and score map: even in lightness, safe for colour-blind readers
+
+_SETTINGS = {
+    "svg.hashsalt": "salbench",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",  # comes with Matplotlib, so that labels do not depend on the machine
+    "font.size": 11,
+    "axes.titlesize": 12,
+    "axes.labelsize": 11,
+    "axes.edgecolor": "#555555",
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": GRID,
+    "grid.linewidth": 0.7,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "legend.frameon": False,
+    "image.cmap": MAP,
+    "savefig.facecolor": "white",
+}
+
+
+def apply():
+    """No window system, and the settings above."""
+    matplotlib.use("Agg")
+    matplotlib.rcParams.update(_SETTINGS)
+
+
+def new_figure(width, height):
+    """An empty figure; inches."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def save(figure, folder, name):
+    """folder/name.svg and folder/name.pdf without dates."""
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None, "Creator": "salbench"})
+    figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})

@@ -1,0 +1,31 @@
+"""What every element is built from and writes to: results, exports, the paper's figures, and the folder of the report."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from report import names, statistics, style
+from report.blocks import Plot
+from report.results import Results, write_csv
+
+
+@dataclass
+class Workshop:
+    results: Results
+    out: Path
+    shapes: object                                # exports.Shapes
+    protocols: dict = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
+    pages: dict = field(default_factory=dict)      # item -> path of its page within the report
+
+    def __post_init__(self):
+        self.models = statistics.models(self.results)
+        self.colours = names.colours(self.models)
+        self.dashes = names.dashes(self.models)
+
+    def plot(self, name, figure, data, alt, caption):
+        """Writes a figure as SVG and PDF with the plotted numbers beside it."""
+        style.save(figure, self.out / "figures", name)
+        write_csv(data, self.out / "data" / f"{name}.csv")
+        return Plot(name, alt, round(figure.get_figwidth() * 96), caption)
+
+    def page_of(self, item):
+        return self.pages.get(item, "")

@@ -1,0 +1,38 @@
+"""Writes the whole report: pages in their order, each from the workshop."""
+
+from pathlib import Path
+
+from report import run_page, style
+from report.elements import ELEMENTS, attempt
+from report.pages import Pages, copy_static, prepare_folder
+from report.results import DATASETS, Missing, read_results
+from report.workshop import Workshop
+
+
+def write_report(options, protocols):
+    """The path of index.html. Unusable if there is nothing to report of, or nowhere to write."""
+    results = read_results(options.results)
+    out = Path(options.to) if options.to else results.folder / "report"
+    prepare_folder(out)
+    style.apply()
+    copy_static(out)
+    shop = Workshop(results, out, None, protocols)
+    navigation = [("index.html", "Results"), ("run.html", "Run")]
+    pages = Pages(shop, navigation)
+    sections = [(element, attempt(element.build, shop)) for element in ELEMENTS]
+    pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
+    pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))
+    return out / "index.html"
+
+
+def lead(shop):
+    """One sentence: how many shapes and models, by which protocol."""
+    try:
+        rows = shop.results.table("results.csv", "dataset", "item", "view")
+    except Missing as reason:
+        return str(reason)
+    shapes = rows.drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
+    counted = " and ".join(f"{shapes[dataset]} {dataset}" for dataset in DATASETS if dataset in shapes) or "no shape"
+    protocol = shop.results.option("protocol")
+    return (f"Scores of {counted} with ground truth, under {len(shop.models)} models: {', '.join(shop.models) or 'none'}."
+            + (f" Protocol: {protocol}." if protocol else ""))
