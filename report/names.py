@@ -38,9 +38,9 @@ def natural(name):
 
 
 def file_name(name):
-    """A file name for any item, one-to-one: every character but letters, digits and ".-" becomes _ and its code."""
-    escaped = re.sub(r"[^A-Za-z0-9.-]", lambda match: f"_{ord(match[0]):x}_", str(name))
-    return f"_2e_{escaped[1:]}" if escaped.startswith(".") else escaped
+    """A file name for any item, one-to-one: every character but letters, digits and ".-_" becomes its code between +."""
+    escaped = re.sub(r"[^A-Za-z0-9._-]", lambda match: f"+{ord(match[0]):x}+", str(name))
+    return f"+2e+{escaped[1:]}" if escaped.startswith(".") else escaped
 
 
 def shape_name(item, view=""):

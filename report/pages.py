@@ -6,10 +6,13 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from report.names import METRICS
+from report.painting import colour_bar
 from report.results import Unusable
+from report.viewer import palette_script
 
 HERE = Path(__file__).resolve().parent
 MARK = "salbench report"  # <meta name="generator"> of index.html: a folder that has it may be written again
+THREE = tuple(Path("/usr/share/javascript/three") / name for name in ("three.min.js", "examples/js/controls/OrbitControls.js"))
 FOLDERS = ("figures", "data", "shapes", "pictures", "static")
 
 
@@ -38,8 +41,14 @@ def prepare_folder(out):
 
 
 def copy_static(out):
+    """Style, scripts, colour bar; three.js where Debian's libjs-three is installed."""
     for file in sorted((HERE / "static").iterdir()):
         shutil.copyfile(file, out / "static" / file.name)
+    (out / "static" / "palette.js").write_text(palette_script(), encoding="utf-8")
+    colour_bar().save(out / "static" / "colourbar.png")
+    for file in THREE:
+        if file.is_file():
+            shutil.copyfile(file, out / "static" / file.name)
 
 
 class Pages:

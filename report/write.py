@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from report import run_page, style
+from report import run_page, score_pages, shape_pages, style
 from report.elements import ELEMENTS, attempt
+from report.exports import Shapes
 from report.pages import Pages, copy_static, prepare_folder
 from report.results import DATASETS, Missing, read_results
 from report.workshop import Workshop
@@ -13,16 +14,27 @@ def write_report(options, protocols):
     """The path of index.html. Unusable if there is nothing to report of, or nowhere to write."""
     results = read_results(options.results)
     out = Path(options.to) if options.to else results.folder / "report"
+    shapes = Shapes(exports(options, results))
     prepare_folder(out)
     style.apply()
     copy_static(out)
-    shop = Workshop(results, out, None, protocols)
-    navigation = [("index.html", "Results"), ("run.html", "Run")]
-    pages = Pages(shop, navigation)
+    meshes = shape_pages.items(results, shapes)
+    shop = Workshop(results, out, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes})
+    pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), ("run.html", "Run")])
+    scores = shape_pages.Scores(results)
+    for item, category in meshes.items():
+        shape_pages.write_page(shop, pages, scores, item, category)
+    score_pages.write_page(shop, pages)
     sections = [(element, attempt(element.build, shop)) for element in ELEMENTS]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
     pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))
     return out / "index.html"
+
+
+def exports(options, results):
+    """The exports named, or OUT/shapes.h5 where there is one."""
+    default = results.folder / "shapes.h5"
+    return options.export or ([default] if default.is_file() else [])
 
 
 def lead(shop):

@@ -1,0 +1,146 @@
+"""Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read when they are needed."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy
+
+from report.names import natural, shape_name
+from report.results import Unusable
+
+BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)  # what h5py raises for a damaged or foreign file
+
+
+def text(value):
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+@dataclass
+class Picture:
+    """What a pinhole camera sees of a shape; row 0 is the top row."""
+
+    primitive: numpy.ndarray        # H x W int32: face of a mesh, point of a scan; -1 nothing
+    weights: numpy.ndarray          # H x W x 3 float32: of the face's corners; of a scan 1, 0, 0
+    shade: numpy.ndarray            # H x W uint8: brightness
+    view_projection: numpy.ndarray  # 4 x 4 float64: world to clip space, column vectors; None if not recorded
+    depth: numpy.ndarray            # H x W float32: distance from the camera; None if not recorded
+
+
+class Shape:
+    """A mesh or scan of an export: /ITEM or /ITEM_VIEW."""
+
+    def __init__(self, name, group):
+        self.name = name
+        self.group = group
+        self.dataset = text(group.attrs["dataset"])
+        self.item = text(group.attrs["item"])
+        self.category = text(group.attrs.get("class", ""))
+        self.view = str(int(group.attrs["view"])) if self.dataset == "scans" else ""
+
+    def _array(self, path):
+        try:
+            return self.group[path][:]
+        except BROKEN:
+            return None
+
+    @property
+    def points(self):
+        """n x 3 float64, or None."""
+        return self._array("scan/points" if self.view else "mesh/vertices")
+
+    @property
+    def faces(self):
+        """f x 3 int32; None for a scan."""
+        return None if self.view else self._array("mesh/faces")
+
+    @property
+    def ground_truth(self):
+        """n float64 in [0, 1], or None where it is not known."""
+        values = self._array("scan_ground_truth/saliency" if self.view else "ground_truth/saliency")
+        return None if values is None or len(values) == 0 else unit_range(values)
+
+    @property
+    def picks(self):
+        """Indices of the distinct points that participants picked; empty where nobody did."""
+        found = self._array("scan_ground_truth/picks" if self.view else "ground_truth/picks")
+        return numpy.unique(found) if found is not None else numpy.zeros(0, dtype=numpy.int32)
+
+    def maps(self):
+        """(model, "before" or "after" matching) -> n float64 in [0, 1], models in the order of the file."""
+        found = {}
+        for stage in sorted(self.group):
+            kind, _, model = stage.partition(".")
+            if kind in ("map", "matched") and model:
+                values = self._array(f"{stage}/saliency")
+                if values is not None and len(values):
+                    found[model, "before" if kind == "map" else "after"] = unit_range(values)
+        return found
+
+    def shade(self):
+        """Brightness of a scan's points seen from its camera, n in [0, 1]; None if normals are not in the export."""
+        points, normals, camera = self.points, self._array("scan_normals/normals"), self._array("scan/camera")
+        if points is None or normals is None or camera is None or len(normals) != len(points):
+            return None
+        towards = camera - points
+        towards /= numpy.linalg.norm(towards, axis=1, keepdims=True)
+        return numpy.clip(numpy.abs((normals * towards).sum(axis=1)), 0, 1)
+
+    def picture(self):
+        """The picture, or None where the export has none that can be used."""
+        primitive, shade = self._array("picture/primitive"), self._array("picture/shade")
+        weights = self._array("picture/weights")
+        if primitive is None or shade is None or weights is None or weights.shape[:2] != primitive.shape:
+            return None
+        if weights.dtype.kind == "u":  # share of the type's range
+            weights = weights.astype(numpy.float32) / numpy.iinfo(weights.dtype).max
+        return Picture(primitive, weights, shade, self._array("picture/view_projection"), self._array("picture/depth"))
+
+
+def unit_range(values):
+    """Minimum to 0 and maximum to 1; NaN to 0; a constant map becomes 0."""
+    values = numpy.nan_to_num(numpy.asarray(values, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
+    low, high = values.min(), values.max()
+    return (values - low) / (high - low) if high > low else numpy.zeros_like(values)
+
+
+class Shapes:
+    """All shapes of some exports, by name; of a name that several exports hold, the first counts."""
+
+    def __init__(self, paths):
+        self.files = []
+        self.shapes = {}
+        for path in paths:
+            self._open(Path(path))
+
+    def _open(self, path):
+        try:
+            file = h5py.File(path, "r")
+            layout = text(file.attrs.get("layout", ""))
+        except OSError as error:
+            raise Unusable(f"{path}: cannot be read as HDF5 ({' '.join(str(error).split())}); name a file of salbench "
+                           "export with --export") from None
+        if not layout.startswith("salbench export"):
+            raise Unusable(f"{path}: not a file of salbench export; name one with --export")
+        self.files.append(file)
+        for name in file:
+            try:
+                group = file[name]
+                if isinstance(group, h5py.Group) and "dataset" in group.attrs:
+                    shape = Shape(name, group)
+                    self.shapes.setdefault(shape_name(shape.item, shape.view), shape)
+            except BROKEN:
+                continue  # a link to an artefact that is gone: the page of the shape says that it is missing
+
+    def mesh(self, item):
+        return self.shapes.get(shape_name(item))
+
+    def scans(self, item):
+        """The scans of a mesh that are there, in the order of their views."""
+        found = [shape for shape in self.shapes.values() if shape.view and shape.item == item]
+        return sorted(found, key=lambda shape: natural(shape.view))
+
+    @property
+    def items(self):
+        """Every mesh of which the mesh or a scan is there."""
+        return sorted({shape.item for shape in self.shapes.values()}, key=natural)

@@ -1,0 +1,53 @@
+"""Pictures of the report as files, each painted once and named by what it shows."""
+
+from report.exports import BROKEN
+from report.names import file_name
+from report.painting import paint, visible, with_dots
+
+QUALITY = 88  # of WebP: no visible blocks at 400 x 400, about 8 kB
+
+
+class Painter:
+    """Paints maps of one shape into pictures/ITEM/."""
+
+    def __init__(self, shop, shape):
+        self.shop = shop
+        self.shape = shape
+        self.folder = f"pictures/{file_name(shape.item)}"
+        self.picture = shape.picture()
+        self.faces = shape.faces
+        self.maps = {("ground truth", "before"): shape.ground_truth, **shape.maps()}
+
+    def has(self, what, when="before"):
+        return self.picture is not None and self.maps.get((what, when)) is not None
+
+    def paint(self, what, when="before", small=False):
+        """Path within the report of a painted map, ("LS", "after") or ("ground truth", "before"); "" if it cannot be.
+        Ground truth has the picks as dots. small: half the size."""
+        if not self.has(what, when):
+            return ""
+        name = f"{self.folder}/{self.shape.view or 'mesh'}-{file_name(what)}-{when}{'-small' if small else ''}.webp"
+        path = self.shop.out / name
+        if path.is_file():
+            return name
+        try:
+            image = self.image(what, when)
+        except (IndexError, *BROKEN):  # indices that do not belong to the shape: a damaged export
+            return ""
+        path.parent.mkdir(exist_ok=True)
+        (image.reduce(2) if small else image).save(path, quality=QUALITY, method=2)
+        return name
+
+    def image(self, what, when="before"):
+        """The painted map as an image."""
+        image = paint(self.picture, self.maps[what, when], self.faces)
+        if what == "ground truth":
+            picks, points = self.shape.picks, self.shape.points
+            if points is not None:
+                return with_dots(image, visible(self.picture, picks, points, self.faces))
+        return image
+
+
+def describe(shape):
+    return f"scan {shape.view} of mesh {shape.item}" if shape.view else f"mesh {shape.item}"
+

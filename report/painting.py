@@ -1,0 +1,81 @@
+"""Paints saliency maps on pictures: a look-up per pixel, with no rendering."""
+
+import numpy
+from matplotlib import colormaps
+from PIL import Image, ImageDraw
+
+from report.style import MAP
+
+PICK = (213, 94, 0)  # vermillion, with a white rim: seen on all of viridis
+SUPERSAMPLING = 3    # of the dots
+
+
+def palette(name=MAP):
+    """256 x 3 uint8: the colours of the values 0 to 1."""
+    return (colormaps[name](numpy.arange(256))[:, :3] * 255).round().astype(numpy.uint8)
+
+
+def pixel_values(picture, values, faces):
+    """H x W: the map where something is seen, NaN elsewhere. values: n in [0, 1]; faces: f x 3, None for a scan."""
+    seen = picture.primitive >= 0
+    primitive = picture.primitive[seen]
+    shown = numpy.full(picture.primitive.shape, numpy.nan)
+    if faces is None:
+        shown[seen] = values[primitive]
+    else:
+        shown[seen] = (values[faces[primitive]] * picture.weights[seen]).sum(axis=1)
+    return shown
+
+
+def paint(picture, values, faces):
+    """An RGB image of the map on the shape: its colours times the shade, on white."""
+    shown = pixel_values(picture, values, faces)
+    seen = ~numpy.isnan(shown)
+    image = numpy.full((*shown.shape, 3), 255, dtype=numpy.uint8)
+    colours = palette()[numpy.clip(shown[seen] * 255, 0, 255).round().astype(int)]
+    image[seen] = (colours * (picture.shade[seen, None] / 255.0)).round()
+    return Image.fromarray(image)
+
+
+def project(points, view_projection, size):
+    """m x 2 pixel coordinates (x to the right, y down) of m x 3 points; size: (width, height)."""
+    clip = numpy.column_stack([points, numpy.ones(len(points))]) @ numpy.asarray(view_projection).T
+    x, y = (clip[:, :2] / clip[:, 3:]).T
+    return numpy.column_stack([(x + 1) / 2 * size[0], (1 - y) / 2 * size[1]])
+
+
+def visible(picture, picks, points, faces):
+    """Pixel coordinates of the picks that the camera sees: near the projected point there is the point itself, or one of
+    its faces."""
+    if picture.view_projection is None or len(picks) == 0:
+        return numpy.zeros((0, 2))
+    height, width = picture.primitive.shape
+    at = project(points[picks], picture.view_projection, (width, height))
+    found = []
+    for pick, (x, y) in zip(picks, at):
+        column, row = int(numpy.floor(x)), int(numpy.floor(y))
+        near = picture.primitive[max(row - 2, 0):max(row + 3, 0), max(column - 2, 0):max(column + 3, 0)]
+        near = near[near >= 0]
+        corners = near if faces is None else faces[near]
+        if (corners == pick).any():
+            found.append((x, y))
+    return numpy.array(found).reshape(-1, 2)
+
+
+def with_dots(image, dots):
+    """The image with a dot per row of m x 2 pixel coordinates, smooth at the rim."""
+    if len(dots) == 0:
+        return image
+    k = SUPERSAMPLING
+    radius = max(2.5, image.width / 110)
+    large = image.resize((image.width * k, image.height * k), Image.Resampling.NEAREST)
+    draw = ImageDraw.Draw(large)
+    for x, y in dots * k:
+        for r, colour in ((radius * k, (255, 255, 255)), (radius * k * 0.72, PICK)):
+            draw.ellipse((x - r, y - r, x + r, y + r), fill=colour)
+    return large.reduce(k)
+
+
+def colour_bar(width=256, height=16):
+    """An RGB image of the palette from 0 on the left to 1 on the right."""
+    return Image.fromarray(numpy.broadcast_to(palette(), (height, 256, 3)).copy()).resize((width, height))

@@ -1,0 +1,155 @@
+"""A page per mesh: its scores and ranks, its pictures, its scans, and the viewer."""
+
+from report import statistics
+from report.blocks import Cell, Gallery, Note, Table, Tile, cell
+from report.gallery import Painter, describe
+from report.names import METRICS, file_name, natural
+from report.results import DATASETS, Missing
+from report.viewer import label_of, write_scripts
+
+
+class Scores:
+    """Scores and ranks of all shapes, looked up by shape: read once for all pages."""
+
+    def __init__(self, results):
+        self.wide, self.ranks = {}, {}
+        for dataset in DATASETS:
+            for metric in METRICS:
+                try:
+                    wide = statistics.scores(results, dataset, metric)
+                except Missing:
+                    continue
+                ranks = statistics.ranks(wide)
+                self.wide[dataset, metric] = wide.to_dict("index")
+                self.ranks[dataset, metric] = (ranks.to_dict("index"), wide.notna().sum().to_dict())
+
+    def of(self, dataset, metric, item, view=""):
+        """model -> (score, rank, number of ranked shapes) of the models that the shape has rows of."""
+        row = self.wide.get((dataset, metric), {}).get((item, view), {})
+        ranks, counts = self.ranks.get((dataset, metric), ({}, {}))
+        return {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
+
+    def views(self, item):
+        found = {key[1] for (dataset, _), rows in self.wide.items() if dataset == "scans" for key in rows if key[0] == item}
+        return sorted(found, key=natural)
+
+
+def items(results, shapes):
+    """item -> class of every mesh that has scores or is in an export."""
+    found = {item: shapes.mesh(item).category if shapes.mesh(item) else shapes.scans(item)[0].category
+             for item in shapes.items}
+    try:
+        found |= statistics.classes(results)
+    except Missing:
+        pass
+    return {item: found[item] for item in sorted(found, key=natural)}
+
+
+def path_of(item):
+    return f"shapes/{file_name(item)}.html"
+
+
+def score_cells(scores, dataset, item, view, model):
+    """Per metric the score and its rank; best of the shape in bold."""
+    cells = []
+    for metric in METRICS:
+        found = scores.of(dataset, metric, item, view)
+        value, rank, of = found.get(model, (None, None, 0))
+        known = [entry[0] for entry in found.values() if entry[0] == entry[0]]
+        cells.append(cell(value, bold=bool(known) and value == max(known)))
+        defined = rank is not None and rank == rank
+        cells.append(Cell(f"{int(rank)} of {of}", int(rank)) if defined else Cell("–", ""))
+    return cells
+
+
+def score_table(shop, scores, item):
+    models = [model for model in shop.models if any(model in scores.of("meshes", metric, item) for metric in METRICS)]
+    if not models:
+        raise Missing("The mesh has no scores: it has no ground truth, its jobs failed, or the run left meshes out.")
+    heads = [head for label in METRICS.values() for head in (label, f"Rank by {label}")]
+    rows = [[Cell(model)] + score_cells(scores, "meshes", item, "", model) for model in models]
+    return Table("mesh-scores", "Scores of the mesh, best in bold, and its rank among all meshes under the same model "
+                 "(1: highest score).", ["Model"] + heads, rows, [False] + [True] * 6)
+
+
+def scan_table(shop, scores, item):
+    rows = []
+    for view in scores.views(item):
+        for model in shop.models:
+            if any(model in scores.of("scans", metric, item, view) for metric in METRICS):
+                rows.append([Cell(view, int(view) if view.isdigit() else None), Cell(model)]
+                            + score_cells(scores, "scans", item, view, model))
+    if not rows:
+        raise Missing("The scans of the mesh have no scores.")
+    heads = [head for label in METRICS.values() for head in (label, f"Rank by {label}")]
+    return Table("scan-scores", "Scores of the scans, best of each scan in bold, and their rank among all scans.",
+                 ["Scan", "Model"] + heads, rows, [True, False] + [True] * 6, filters=[0, 1])
+
+
+def tile(painter, scores, what, when, small=False):
+    """One painted map with the scores of the matched map below."""
+    shape = painter.shape
+    title = label_of(what, when)
+    if not painter.has(what, when):
+        return Tile("", title, "Not in the export.")
+    picture = painter.paint(what, when, small)
+    if not picture:
+        return Tile("", title, "The picture does not fit the shape: damaged export.")
+    dots = "; dots: what participants picked" if what == "ground truth" and len(shape.picks) else ""
+    pieces = []
+    if when == "after":
+        for metric, label in METRICS.items():
+            found = scores.of(shape.dataset, metric, shape.item, shape.view)
+            value = found.get(what, (float("nan"),))[0]
+            known = [entry[0] for entry in found.values() if entry[0] == entry[0]]
+            if value == value:
+                pieces.append((f"{value:.2f}".replace("-", "−"), bool(known) and value == max(known)))
+    return Tile(picture, title, f"{title}: {describe(shape)}{dots}", pieces)
+
+
+def gallery(painter, scores, models, caption, small=False):
+    shown = [model for model in models if painter.has(model, "before") or painter.has(model, "after")]
+    truth = [tile(painter, scores, "ground truth", "before", small)] if painter.has("ground truth") else []
+    rows = [(label, (truth if when == "before" else []) + [tile(painter, scores, model, when, small)
+             for model in shown if painter.has(model, when)])
+            for when, label in (("before", "Before histogram matching"), ("after", "After histogram matching"))]
+    return Gallery(caption, [], [row for row in rows if row[1]])
+
+
+def models_of(shop, maps):
+    """Models in the order of the report; those that only the export knows come last."""
+    found = {model for model, _ in maps if model != "ground truth"}
+    return [model for model in shop.models if model in found] + sorted(found - set(shop.models))
+
+
+def pictures(shop, shape, painter, scores):
+    if painter.picture is None:
+        raise Missing(f"The export holds no picture of {describe(shape)}: salbench pictures makes it, salbench export "
+                      "then contains it.")
+    score_text = f"Below: {', '.join(METRICS.values())}; best in bold."
+    return gallery(painter, scores, models_of(shop, painter.maps), f"Saliency on {describe(shape)}. {score_text}",
+                   small=bool(shape.view))
+
+
+def write_page(shop, pages, scores, item, category):
+    """shapes/ITEM.html with its pictures and the viewer's data."""
+    from report.elements import attempt
+    mesh, views = shop.shapes.mesh(item), shop.shapes.scans(item)
+    shapes = ([mesh] if mesh else []) + views
+    painters = {shape.name: Painter(shop, shape) for shape in shapes}
+    titles = {shape.name: f"Scan {shape.view}" if shape.view else "Mesh" for shape in shapes}
+    entries = write_scripts(shop, shapes, titles, {name: painter.maps for name, painter in painters.items()})
+    where = [Note("No export given to the report holds this shape, so that its pictures and the viewer are missing: salbench "
+                  f"export CONFIG --items {item} --to OUT/shapes.h5, then make the report again.", missing=True)]
+    mesh_blocks = attempt(score_table, shop, scores, item)
+    if mesh:
+        mesh_blocks += attempt(pictures, shop, mesh, painters[mesh.name], scores)
+    scans = [(f"Scan {shape.view}", attempt(pictures, shop, shape, painters[shape.name], scores)) for shape in views
+             if painters[shape.name].picture is not None]
+    scan_blocks = attempt(scan_table, shop, scores, item)
+    if views and not scans:
+        scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
+    first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
+    pages.write(path_of(item), "shape.html", title=f"Mesh {item}", item=item, category=category, entries=entries,
+                second=label_of(first[0], "after") if first else "", mesh_blocks=mesh_blocks, scan_blocks=scan_blocks,
+                scans=scans, missing=[] if shapes else where)

@@ -1,0 +1,106 @@
+"use strict";
+// The table of all shapes: sorts and filters thousands of rows in memory, and shows a page of them.
+
+salbench.ROWS = 100; // per page
+
+salbench.scoreTable = function (root, data) {
+  const form = root.querySelector("form"), table = root.querySelector("table");
+  const part = (name) => form.querySelector(`[data-part=${name}]`);
+  const state = {column: 0, direction: 1, page: 0, rows: []};
+
+  const models = () => Array.from(form.querySelectorAll("input[name=model]:checked"), (box) => Number(box.value));
+
+  // Columns: a head, the key that a row is sorted by, and what fills its cell.
+  const columns = () => {
+    const scores = data.scores[part("metric").value], shown = models();
+    const mean = (row) => {
+      const known = shown.map((model) => scores[row][model]).filter((value) => value !== null);
+      return known.length ? known.reduce((a, b) => a + b, 0) / known.length : null;
+    };
+    const text = (field) => ({head: ["Data set", "Mesh", "Class", "Scan"][field], key: (row) => data.shapes[row][field]});
+    const number = (head, key) => ({head, key, numeric: true});
+    return [text(1), text(0), text(2), text(3),
+      ...shown.map((model) => number(data.models[model], (row) => scores[row][model])), number("Mean", mean)];
+  };
+
+  const format = (value) => value === null ? "–" : value.toFixed(3).replace("-", "−");
+
+  const cell = (column, row, first) => {
+    const made = document.createElement(first ? "th" : "td");
+    if (first) made.scope = "row";
+    if (column.numeric) made.className = "number";
+    const text = column.numeric ? format(column.key(row)) : column.key(row);
+    if (first && data.shapes[row][4]) {
+      const link = document.createElement("a");
+      link.href = data.shapes[row][4];
+      link.textContent = text;
+      made.append(link);
+    } else {
+      made.textContent = text;
+    }
+    return made;
+  };
+
+  const render = () => {
+    const shown = columns();
+    const from = state.page * salbench.ROWS, rows = state.rows.slice(from, from + salbench.ROWS);
+    table.tBodies[0].replaceChildren(...rows.map((row) => {
+      const line = document.createElement("tr");
+      line.append(...shown.map((column, index) => cell(column, row, index === 0)));
+      return line;
+    }));
+    form.querySelector("output").textContent = state.rows.length
+      ? `rows ${from + 1} to ${from + rows.length} of ${state.rows.length}` : "no row";
+    for (const button of root.querySelectorAll(".pager button")) {
+      const page = state.page + Number(button.dataset.step);
+      button.disabled = page < 0 || page * salbench.ROWS >= state.rows.length;
+    }
+  };
+
+  const arrange = () => {
+    const wanted = part("class").value, set = part("set").value, shown = columns();
+    const column = shown[Math.min(state.column, shown.length - 1)];
+    const keyed = [];
+    data.shapes.forEach((shape, row) => {
+      if ((wanted === "" || wanted === "=" + shape[2]) && (set === "" || set === shape[0])) keyed.push([column.key(row), row]);
+    });
+    keyed.sort((a, b) => salbench.compare(a[0], b[0], state.direction) || a[1] - b[1]);
+    state.rows = keyed.map((pair) => pair[1]);
+    state.page = 0;
+    render();
+  };
+
+  const heads = () => {
+    const line = table.tHead.rows[0];
+    line.replaceChildren(...columns().map((column, index) => {
+      const head = document.createElement("th"), button = document.createElement("button");
+      head.scope = "col";
+      if (column.numeric) head.className = "number";
+      if (index === state.column) head.setAttribute("aria-sort", state.direction > 0 ? "ascending" : "descending");
+      button.type = "button";
+      button.textContent = column.head;
+      button.addEventListener("click", () => {
+        state.direction = salbench.turn(head, line);
+        state.column = index;
+        arrange();
+      });
+      head.append(button);
+      return head;
+    }));
+  };
+
+  form.addEventListener("change", (event) => {
+    if (event.target.name === "model") { state.column = 0; state.direction = 1; }
+    heads();
+    arrange();
+  });
+  form.addEventListener("submit", (event) => event.preventDefault());
+  for (const button of root.querySelectorAll(".pager button")) {
+    button.addEventListener("click", () => { state.page += Number(button.dataset.step); render(); });
+  }
+  heads();
+  arrange();
+  root.hidden = false;
+};
+
+addEventListener("DOMContentLoaded", () => salbench.scoreTable(document.getElementById("scores"), salbench.scores));

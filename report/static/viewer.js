@@ -1,0 +1,209 @@
+"use strict";
+// Two views of a mesh or its scans, coupled if wanted. Shapes come as scripts (viewer.py), since pages opened from disk may
+// not read files in any other way; each is loaded when it is first shown.
+
+salbench.shapes = new Map();   // name -> promise of {points, faces, shade, maps, ...}
+salbench.arrivals = new Map(); // name -> function that takes what its script gives
+
+salbench.give = (name, description, data) => salbench.arrivals.get(name)({description, data});
+
+salbench.load = function (entry) {
+  if (!salbench.shapes.has(entry.name)) {
+    const given = new Promise((resolve, reject) => {
+      salbench.arrivals.set(entry.name, resolve);
+      const script = document.createElement("script");
+      script.src = entry.path;
+      script.onerror = () => reject(new Error(entry.path + " is missing"));
+      document.head.append(script);
+    });
+    salbench.shapes.set(entry.name, given.then(salbench.unpack));
+  }
+  return salbench.shapes.get(entry.name);
+};
+
+// The inverse of viewer.py's script(): undoes differences, and spreads positions over the shape's cube.
+salbench.unpack = async function ({description, data}) {
+  const packed = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const bytes = await new Response(stream).arrayBuffer();
+  const n = description.points;
+  let at = 0;
+  const take = (Type, count) => {
+    const part = new Type(bytes.slice(at, at + count * Type.BYTES_PER_ELEMENT));
+    at += count * Type.BYTES_PER_ELEMENT;
+    return part;
+  };
+  const sum = (values) => { for (let i = 1; i < values.length; ++i) values[i] += values[i - 1]; return values; };
+  const position = new Float32Array(3 * n);
+  for (let axis = 0; axis < 3; ++axis) {
+    const values = sum(take(Uint16Array, n));
+    for (let i = 0; i < n; ++i) position[3 * i + axis] = description.corner[axis] + values[i] / 65535 * description.edge;
+  }
+  const faces = new Uint32Array(sum(take(Int32Array, 3 * description.faces)));
+  const shade = description.shaded ? take(Uint8Array, n) : null;
+  const maps = new Map(description.maps.map((label) => [label, take(Uint8Array, n)]));
+  return {...description, position, faces, shade, maps};
+};
+
+salbench.View = class {
+  constructor(root, entries, onTurn) {
+    this.root = root;
+    this.entries = entries;
+    this.shapeMenu = root.querySelector("[data-part=shape]");
+    this.mapMenu = root.querySelector("[data-part=map]");
+    this.status = root.querySelector("[data-part=status]");
+    const canvas = root.querySelector("canvas");
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(0xffffff);
+    this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
+    this.light = new THREE.DirectionalLight(0xffffff, 0.65);
+    this.scene.add(new THREE.AmbientLight(0xffffff, 0.45), this.light);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableKeys = false; // the arrow keys turn the shape, below
+    this.controls.enablePan = false;
+    this.controls.addEventListener("change", () => { this.draw(); onTurn(this); });
+    this.shapeMenu.addEventListener("change", () => this.show());
+    this.mapMenu.addEventListener("change", () => this.paint());
+    canvas.addEventListener("keydown", (event) => {
+      const turn = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+      if (turn) { event.preventDefault(); this.turn(...turn); }
+    });
+    for (const button of root.querySelectorAll("button[data-turn]")) {
+      button.addEventListener("click", () => this.turn(...button.dataset.turn.split(",").map(Number)));
+    }
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+  }
+
+  async show(map) {
+    const entry = this.entries[this.shapeMenu.selectedIndex];
+    this.status.textContent = "Loading " + entry.title + " …";
+    try {
+      this.shape = await salbench.load(entry);
+    } catch (error) {
+      this.status.textContent = error.message;
+      return;
+    }
+    const wanted = map || this.mapMenu.value;
+    this.mapMenu.replaceChildren(...Array.from(this.shape.maps.keys(), (label) => new Option(label, label)));
+    this.mapMenu.value = this.shape.maps.has(wanted) ? wanted : this.mapMenu.options[0] ? this.mapMenu.options[0].value : "";
+    this.build();
+    this.paint();
+    this.resize();
+  }
+
+  build() {
+    if (this.object) { this.scene.remove(this.object, this.dots); this.object.geometry.dispose(); }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(this.shape.position, 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(3 * this.shape.points), 3, true));
+    geometry.computeBoundingSphere();
+    const {center, radius} = geometry.boundingSphere;
+    if (this.shape.faces.length) {
+      geometry.setIndex(new THREE.BufferAttribute(this.shape.faces, 1));
+      geometry.computeVertexNormals();
+      this.object = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
+        {vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
+    } else {
+      this.object = new THREE.Points(geometry, new THREE.PointsMaterial(
+        {vertexColors: THREE.VertexColors, size: 0.022, sizeAttenuation: true}));
+    }
+    const picked = new THREE.BufferGeometry();
+    const at = new Float32Array(3 * this.shape.picks.length);
+    this.shape.picks.forEach((pick, i) => at.set(this.shape.position.subarray(3 * pick, 3 * pick + 3), 3 * i));
+    picked.setAttribute("position", new THREE.BufferAttribute(at, 3));
+    this.dots = new THREE.Points(picked, new THREE.PointsMaterial({color: 0xd55e00, size: 0.05}));
+    for (const part of [this.object, this.dots]) { // every shape fills a sphere of radius 1 about the origin
+      part.scale.setScalar(1 / radius);
+      part.position.copy(center).multiplyScalar(-1 / radius);
+    }
+    this.scene.add(this.object, this.dots);
+    this.home = this.shape.camera ? new THREE.Vector3(...this.shape.camera).sub(center).normalize()
+      : new THREE.Vector3(1, 0.6, 1.2).normalize();
+    this.dots.visible = salbench.picks;
+  }
+
+  paint() {
+    const values = this.shape.maps.get(this.mapMenu.value);
+    const colours = this.object.geometry.getAttribute("color");
+    for (let i = 0; i < this.shape.points; ++i) {
+      const value = values ? values[i] : 0;
+      const shade = this.shape.shade ? 0.45 + 0.55 * this.shape.shade[i] / 255 : 1;
+      for (let c = 0; c < 3; ++c) {
+        const start = 6 * value + 2 * c;
+        colours.array[3 * i + c] = shade * parseInt(salbench.palette.slice(start, start + 2), 16);
+      }
+    }
+    colours.needsUpdate = true;
+    this.status.textContent = this.shape.title + ": " + (this.mapMenu.value || "no map") + ", "
+      + this.shape.points + " points";
+    this.draw();
+  }
+
+  lookFrom(direction) {
+    this.camera.position.copy(direction).multiplyScalar(4.2);
+    this.controls.update();
+    this.draw();
+  }
+
+  turn(right, down) { // steps of 15 degrees about the upright axis, and up or down
+    const place = new THREE.Spherical().setFromVector3(this.camera.position);
+    place.theta += right * Math.PI / 12;
+    place.phi += down * Math.PI / 12;
+    this.camera.position.setFromSpherical(place.makeSafe());
+    this.controls.update();
+    this.draw();
+  }
+
+  resize() {
+    const width = this.renderer.domElement.parentElement.clientWidth;
+    this.renderer.setSize(width, Math.round(width * 0.85));
+    this.camera.aspect = 1 / 0.85;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() {
+    this.light.position.copy(this.camera.position);
+    this.renderer.render(this.scene, this.camera);
+  }
+};
+
+salbench.view = async function (root) {
+  const entries = JSON.parse(root.dataset.shapes);
+  const coupled = root.querySelector("[data-part=coupled]");
+  const picks = root.querySelector("[data-part=picks]");
+  salbench.picks = picks.checked;
+  let following = false; // a view that follows the other does not lead it back
+  const views = [];
+  const follow = (leader) => {
+    if (following || !coupled.checked) return;
+    following = true;
+    for (const view of views) if (view !== leader) { view.camera.position.copy(leader.camera.position); view.controls.update(); view.draw(); }
+    following = false;
+  };
+  for (const part of root.querySelectorAll(".view")) views.push(new salbench.View(part, entries, follow));
+  salbench.views = views;
+  coupled.addEventListener("change", () => follow(views[0]));
+  picks.addEventListener("change", () => {
+    salbench.picks = picks.checked;
+    for (const view of views) if (view.dots) { view.dots.visible = picks.checked; view.draw(); }
+  });
+  for (const [index, view] of views.entries()) await view.show(index === 0 ? "Ground truth" : root.dataset.second);
+  for (const view of views) if (view.home) view.lookFrom(views[0].home || view.home);
+  root.querySelector("[data-part=home]").addEventListener("click", () => {
+    for (const view of views) if (view.home) view.lookFrom(view.home);
+  });
+  root.dataset.ready = "yes";
+};
+
+addEventListener("DOMContentLoaded", () => {
+  const root = document.querySelector(".viewer[data-shapes]");
+  if (!root) return;
+  root.hidden = false;
+  salbench.view(root).catch((error) => {
+    root.querySelector("[data-part=message]").textContent =
+      "The viewer cannot start here (" + error.message + "); the pictures below show the same maps.";
+  });
+});

@@ -1,0 +1,74 @@
+"""What the viewer of a shape's page reads: points, faces and maps, quantised and deflated, as scripts that a page opened
+from disk may load."""
+
+import base64
+import json
+import zlib
+
+import numpy
+
+from report.names import file_name
+from report.painting import palette
+
+
+def quantised(points):
+    """3 x n uint16 of n x 3 positions in their bounding cube, and the cube's corner and edge."""
+    low = points.min(axis=0)
+    edge = float((points.max(axis=0) - low).max()) or 1.0
+    return numpy.rint((points - low).T / edge * 65535).astype("<u2"), low.tolist(), edge
+
+
+def deltas(values):
+    """Differences of neighbours in memory, modulo the type's range: the same information, easier to compress."""
+    flat = values.reshape(-1)
+    return numpy.diff(flat, prepend=flat.dtype.type(0)).astype(values.dtype)
+
+
+def script(shape, maps, title):
+    """The script of one shape: a call of salbench.give with a description and one text of binary data, which holds x, y, z
+    (uint16 each), the corners of the faces (int32), the shade of scans (uint8), then each map (uint8, 255 is 1). All
+    but the shade and the maps are stored as differences of neighbours. None for a shape without points."""
+    points = shape.points
+    if points is None or len(points) == 0:
+        return None
+    positions, corner, edge = quantised(points)
+    faces = shape.faces if shape.faces is not None else numpy.zeros((0, 3), numpy.int32)
+    shade = shape.shade() if shape.view else None
+    known = {label: values for label, values in maps.items() if values is not None and len(values) == len(points)}
+    parts = [deltas(row).tobytes() for row in positions] + [deltas(faces.astype("<i4")).tobytes()]
+    if shade is not None:
+        parts.append((shade * 255).round().astype(numpy.uint8).tobytes())
+    parts += [(values * 255).round().astype(numpy.uint8).tobytes() for values in known.values()]
+    camera = None if not shape.view else shape._array("scan/camera")
+    description = {
+        "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge,
+        "shaded": shade is not None, "maps": list(known), "picks": shape.picks.tolist(),
+        "camera": None if camera is None else camera.tolist(),
+    }
+    data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()
+    return f"salbench.give({json.dumps(shape.name)}, {json.dumps(description)}, {json.dumps(data)});\n"
+
+
+def label_of(model, when):
+    if model == "ground truth":
+        return "Ground truth"
+    return f"{model}, {'before' if when == 'before' else 'after'} matching"
+
+
+def write_scripts(shop, shapes, titles, maps):
+    """Writes shapes/NAME.js for each shape; entries (name, title, path relative to the page, labels of maps)."""
+    entries = []
+    for shape in shapes:
+        labelled = {label_of(*key): values for key, values in maps[shape.name].items() if values is not None}
+        text = script(shape, labelled, titles[shape.name])
+        if text is None:
+            continue
+        path = f"{file_name(shape.name)}.js"
+        (shop.out / "shapes" / path).write_text(text, encoding="utf-8")
+        entries.append({"name": shape.name, "title": titles[shape.name], "path": path})
+    return entries
+
+
+def palette_script():
+    """The palette as a script: 256 colours as 6 hex digits each."""
+    return "salbench.palette = " + json.dumps("".join(f"{r:02x}{g:02x}{b:02x}" for r, g, b in palette())) + ";\n"
