@@ -1,16 +1,154 @@
-"""Galleries of painted pictures: the paper's examples."""
+"""Galleries of painted pictures: the paper's examples, before and after matching, difficult shapes, scans."""
 
+from PIL import Image
+
+from report import statistics, style
+from report.blocks import Gallery, Tile
+from report.gallery import Painter, describe
+from report.names import METRICS, natural
 from report.results import Missing
+from report.shape_pages import Scores, models_of
+from report.viewer import label_of
 
-HOW = "No export with pictures was given: salbench pictures and salbench export make one (see --help of scripts/report)."
+CHANCE = "RS"  # has a map, but shows nothing that the paper's figures show
+HOW = ("No export with pictures of {} was given. `salbench pictures CONFIG --items LIST` makes them, `salbench export CONFIG "
+       "--items LIST --to OUT/shapes.h5` puts them where the report looks; {}")
+
+
+def scored_pictures(shop, dataset):
+    """Painters of the shapes that have a picture and a mean AUC, highest first."""
+    if shop.painters is None:
+        made = [Painter(shop, shape) for shape in shop.shapes.shapes.values()]
+        shop.painters = [painter for painter in made if painter.picture is not None and painter.has("ground truth")]
+    try:
+        mean = statistics.mean_per_shape(shop.results, dataset, "auc").to_dict()
+    except Missing:
+        mean = {}
+    order = lambda painter: (-mean.get((painter.shape.item, painter.shape.view), -1.0), natural(painter.shape.name))  # noqa: E731
+    return sorted((painter for painter in shop.painters if painter.shape.dataset == dataset), key=order)
+
+
+def scores_of(shop):
+    if shop.scores is None:
+        shop.scores = Scores(shop.results)
+    return shop.scores
+
+
+def pieces(shop, shape, model):
+    """The three scores of a map as text, each bold where no other model's is higher."""
+    found = []
+    for metric in METRICS:
+        row = scores_of(shop).of(shape.dataset, metric, shape.item, shape.view)
+        value = row.get(model, (float("nan"),))[0]
+        known = [entry[0] for name, entry in row.items() if entry[0] == entry[0] and name != "HS"]
+        found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), value == value and value == max(known)))
+    return found
+
+
+def map_tile(shop, painter, what, when, title, scored=True, small=False):
+    shape = painter.shape
+    picture = painter.paint(what, when, small)
+    dots = "; dots: what participants picked" if what == "ground truth" and len(shape.picks) else ""
+    return Tile(picture, title, f"{label_of(what, when)}: {describe(shape)}{dots}" if picture else "Not in the export.",
+                pieces(shop, shape, what) if scored and what != "ground truth" else [], shop.page_of(shape.item))
+
+
+def rows_of_maps(shop, painters, small=False):
+    """Per shape the ground truth and every model's map before matching, scores below."""
+    rows = []
+    for painter in painters:
+        models = [model for model in models_of(shop, painter.maps) if model != CHANCE and painter.has(model)]
+        tiles = [map_tile(shop, painter, "ground truth", "before", "Ground truth", small=small)]
+        tiles += [map_tile(shop, painter, model, "before", model, small=small) for model in models]
+        rows.append((describe(painter.shape).capitalize(), tiles))
+    return rows
+
+
+def spread(painters, count):
+    """Some of the painters, evenly spread from the first to the one in the middle."""
+    last = (len(painters) - 1) / 2
+    at = dict.fromkeys(round(i * last / max(count - 1, 1)) for i in range(count))
+    return [painters[i] for i in at]
+
+
+def chosen(shop, dataset, count):
+    """The shapes named with --examples, else from the best to the median by mean AUC."""
+    painters = scored_pictures(shop, dataset)
+    named = [painter for painter in painters if painter.shape.item in shop.examples]
+    if not painters:
+        raise Missing(HOW.format(dataset, "see README.md."))
+    return named[:count] if named else spread(painters, count)
 
 
 def meshes(shop):
-    raise Missing(HOW)
+    gallery = Gallery("Saliency maps before histogram matching, with (AUC, NSS, LCC) of the matched map; best model in bold.",
+                      [], rows_of_maps(shop, chosen(shop, "meshes", 2)))
+    return printed(shop, "examples-meshes", gallery)
 
 
-matching = scans = meshes
+def scans(shop):
+    gallery = Gallery("Saliency maps before histogram matching on simulated range scans, with (AUC, NSS, LCC) of the matched "
+                      "map; best model in bold.", [], rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
+    return printed(shop, "examples-scans", gallery)
 
 
-def difficult(shop, dataset, metric):
-    raise Missing(HOW)
+def matching(shop):
+    """One shape under every model, before and after."""
+    painter = chosen(shop, "meshes", 1)[0]
+    models = [model for model in models_of(shop, painter.maps) if painter.has(model) and painter.has(model, "after")]
+    truth = map_tile(shop, painter, "ground truth", "before", "Ground truth")
+    rows = [(label, ([truth] if when == "before" else []) + [map_tile(shop, painter, model, when, model, scored=False)
+             for model in models]) for when, label in (("before", "Before"), ("after", "After"))]
+    gallery = Gallery(f"Saliency maps of {describe(painter.shape)} before and after their histograms were matched to that of the "
+                      "ground truth.", [], rows)
+    return printed(shop, "matching", gallery)
+
+
+def difficult(shop, dataset, metric, count=3):
+    """The shapes with the lowest mean score: ground truth beside the best model's map."""
+    mean = statistics.mean_per_shape(shop.results, dataset, metric)
+    if mean.empty:
+        raise Missing(f"No shape of the {dataset} has a {METRICS[metric]}.")
+    wide = statistics.scores(shop.results, dataset, metric)
+    painters = {(painter.shape.item, painter.shape.view): painter for painter in scored_pictures(shop, dataset)}
+    lowest = list(mean.index[:count])
+    absent = [item for item, view in lowest if (item, view) not in painters]
+    if len(absent) == len(lowest):
+        names = ", ".join(f"{item} ({mean[item, view]:.3f})" for item, view in lowest)
+        raise Missing(f"The lowest-scoring {dataset} by {METRICS[metric]} are {names}. "
+                      + HOW.format("them", f"LIST is {','.join(absent)}."))
+    tiles = []
+    for item, view in lowest:
+        label = f"{item}, mean {mean[item, view]:.3f}"
+        if (item, view) not in painters:
+            tiles.append(Tile("", label, f"Not in the exports: add {item} to --items.", href=shop.page_of(item)))
+            continue
+        painter = painters[item, view]
+        with_maps = [model for model in wide if painter.has(model)]
+        best = wide.loc[(item, view), with_maps].astype(float).dropna()
+        tiles.append(map_tile(shop, painter, "ground truth", "before", label))
+        if len(best):
+            tiles.append(map_tile(shop, painter, best.idxmax(), "after", f"best: {best.idxmax()}"))
+    gallery = Gallery(f"The lowest-scoring {dataset} by {METRICS[metric]}: ground truth, and the map of the model that scores best "
+                      "there, after matching; below: AUC, NSS, LCC.", [], [("", tiles)])
+    return printed(shop, f"difficult-{dataset}-{metric}", gallery)
+
+
+def printed(shop, name, gallery):
+    """The gallery, with the same pictures as one figure for print."""
+    columns = max(len(tiles) for _, tiles in gallery.rows)
+    figure = style.new_figure(1.7 * columns + 0.6, 2.25 * len(gallery.rows) + 0.3)
+    grid = figure.subplots(len(gallery.rows), columns, squeeze=False)
+    for line, (_, tiles) in zip(grid, gallery.rows):
+        for axes in line:
+            axes.axis("off")
+        for axes, tile in zip(line, tiles):
+            axes.set_title(tile.title, fontsize=9)
+            if tile.picture:
+                axes.imshow(Image.open(shop.out / tile.picture).convert("RGB"))
+                axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in tile.pieces),
+                          transform=axes.transAxes, ha="center", va="top", fontsize=9)
+    figure.colorbar(style.scale(), ax=grid, shrink=0.6, aspect=30)
+    style.save(figure, shop.out / "figures", name)
+    gallery.files = [("SVG", f"figures/{name}.svg"), ("PDF", f"figures/{name}.pdf")]
+    return gallery

@@ -1,6 +1,8 @@
 """How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes every time."""
 
 import matplotlib
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 INK = "#1a1a1a"
@@ -40,6 +42,11 @@ def apply():
 def new_figure(width, height):
     """An empty figure; inches."""
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def scale():
+    """What a colour bar of a map in [0, 1] is drawn from."""
+    return ScalarMappable(Normalize(0, 1), MAP)
 
 
 def save(figure, folder, name):

@@ -24,6 +24,11 @@ def deltas(values):
     return numpy.diff(flat, prepend=flat.dtype.type(0)).astype(values.dtype)
 
 
+def spacing(points):
+    """Median distance of points that follow each other in memory: of a scan, which is stored row by row, its grid's step."""
+    return float(numpy.median(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))) if len(points) > 1 else 0.0
+
+
 def script(shape, maps, title):
     """The script of one shape: a call of salbench.give with a description and one text of binary data, which holds x, y, z
     (uint16 each), the corners of the faces (int32), the shade of scans (uint8), then each map (uint8, 255 is 1). All
@@ -43,7 +48,7 @@ def script(shape, maps, title):
     description = {
         "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge,
         "shaded": shade is not None, "maps": list(known), "picks": shape.picks.tolist(),
-        "camera": None if camera is None else camera.tolist(),
+        "spacing": spacing(points), "camera": None if camera is None else camera.tolist(),
     }
     data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()
     return f"salbench.give({json.dumps(shape.name)}, {json.dumps(description)}, {json.dumps(data)});\n"

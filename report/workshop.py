@@ -15,6 +15,9 @@ class Workshop:
     shapes: object                                # exports.Shapes
     protocols: dict = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
     pages: dict = field(default_factory=dict)      # item -> path of its page within the report
+    examples: tuple = ()                          # meshes that the user wants to see
+    painters: list = None                         # of the shapes with pictures; made when first needed
+    scores: object = None                         # shape_pages.Scores; made when first needed
 
     def __post_init__(self):
         self.models = statistics.models(self.results)

@@ -19,9 +19,10 @@ def write_report(options, protocols):
     style.apply()
     copy_static(out)
     meshes = shape_pages.items(results, shapes)
-    shop = Workshop(results, out, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes})
+    shop = Workshop(results, out, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes},
+                    tuple(options.examples.split(",")) if options.examples else ())
     pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), ("run.html", "Run")])
-    scores = shape_pages.Scores(results)
+    scores = shop.scores = shape_pages.Scores(results)
     for item, category in meshes.items():
         shape_pages.write_page(shop, pages, scores, item, category)
     score_pages.write_page(shop, pages)

@@ -45,6 +45,23 @@ salbench.unpack = async function ({description, data}) {
   return {...description, position, faces, shade, maps};
 };
 
+// Size of a PointsMaterial whose points are `width` wide: three.js 111 leaves the field of view out.
+salbench.spread = (width) => width / Math.tan(Math.PI / 12);
+
+// A round dot with a white rim.
+salbench.dot = function () {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 64;
+  const context = canvas.getContext("2d");
+  for (const [radius, colour] of [[31, "#ffffff"], [22, "#d55e00"]]) {
+    context.fillStyle = colour;
+    context.beginPath();
+    context.arc(32, 32, radius, 0, 2 * Math.PI);
+    context.fill();
+  }
+  return new THREE.CanvasTexture(canvas);
+};
+
 salbench.View = class {
   constructor(root, entries, onTurn) {
     this.root = root;
@@ -104,16 +121,18 @@ salbench.View = class {
       geometry.setIndex(new THREE.BufferAttribute(this.shape.faces, 1));
       geometry.computeVertexNormals();
       this.object = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
-        {vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
+        {vertexColors: THREE.VertexColors, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
+          polygonOffsetUnits: 1})); // the offset keeps dots that lie on the surface in front of it
     } else {
       this.object = new THREE.Points(geometry, new THREE.PointsMaterial(
-        {vertexColors: THREE.VertexColors, size: 0.022, sizeAttenuation: true}));
+        {vertexColors: THREE.VertexColors, size: salbench.spread(1.4 * this.shape.spacing / radius)}));
     }
     const picked = new THREE.BufferGeometry();
     const at = new Float32Array(3 * this.shape.picks.length);
     this.shape.picks.forEach((pick, i) => at.set(this.shape.position.subarray(3 * pick, 3 * pick + 3), 3 * i));
     picked.setAttribute("position", new THREE.BufferAttribute(at, 3));
-    this.dots = new THREE.Points(picked, new THREE.PointsMaterial({color: 0xd55e00, size: 0.05}));
+    this.dots = new THREE.Points(picked, new THREE.PointsMaterial(
+      {map: salbench.dot(), alphaTest: 0.5, size: salbench.spread(0.035)}));
     for (const part of [this.object, this.dots]) { // every shape fills a sphere of radius 1 about the origin
       part.scale.setScalar(1 / radius);
       part.position.copy(center).multiplyScalar(-1 / radius);
