@@ -42,6 +42,7 @@ class Table:
     numeric: list
     filters: list = field(default_factory=list)  # indices of columns that get a menu
     files: list = field(default_factory=list)    # (label, path) of the same table in other forms
+    folded: str = ""     # what a reader opens it with; empty: it stands open
     kind: str = "table"
 
 
@@ -81,3 +82,9 @@ def p_value(value, **more):
     if value is None or value != value:
         return Cell("–", "", **more)
     return Cell("< 0.001" if value < 0.001 else f"{value:.3f}", float(value), **more)
+
+
+def interval(low, high, digits=3):
+    if low != low or high != high:
+        return Cell("–", "")
+    return Cell(f"{low:.{digits}f} to {high:.{digits}f}".replace("-", "−"), float(low))

@@ -137,8 +137,12 @@ def difficult(shop, dataset, metric, count=3):
 def printed(shop, name, gallery):
     """The gallery, with the same pictures as one figure for print."""
     columns = max(len(tiles) for _, tiles in gallery.rows)
-    figure = style.new_figure(1.7 * columns + 0.6, 2.25 * len(gallery.rows) + 0.3)
-    grid = figure.subplots(len(gallery.rows), columns, squeeze=False)
+    lines = len(gallery.rows)
+    width, height = 1.7 * columns + 0.9, 2.3 * lines + 0.2
+    figure = style.new_figure(width, height, layout=None)
+    grid = figure.subplots(lines, columns, squeeze=False, gridspec_kw={
+        "left": 0.1 / width, "right": 1 - 0.8 / width, "bottom": 0.35 / height, "top": 1 - 0.3 / height, "hspace": 0.28,
+        "wspace": 0.04})
     for line, (_, tiles) in zip(grid, gallery.rows):
         for axes in line:
             axes.axis("off")
@@ -148,7 +152,9 @@ def printed(shop, name, gallery):
                 axes.imshow(Image.open(shop.out / tile.picture).convert("RGB"))
                 axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in tile.pieces),
                           transform=axes.transAxes, ha="center", va="top", fontsize=9)
-    figure.colorbar(style.scale(), ax=grid, shrink=0.6, aspect=30)
+    bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
+    figure.colorbar(style.scale(), cax=bar)
+    bar.grid(visible=False)
     style.save(figure, shop.out / "figures", name)
     gallery.files = [("SVG", f"figures/{name}.svg"), ("PDF", f"figures/{name}.pdf")]
     return gallery

@@ -39,9 +39,9 @@ def apply():
     matplotlib.rcParams.update(_SETTINGS)
 
 
-def new_figure(width, height):
+def new_figure(width, height, layout="constrained"):
     """An empty figure; inches."""
-    return Figure(figsize=(width, height), layout="constrained")
+    return Figure(figsize=(width, height), layout=layout)
 
 
 def scale():
@@ -51,5 +51,7 @@ def scale():
 
 def save(figure, folder, name):
     """folder/name.svg and folder/name.pdf without dates."""
+    figure.draw_without_rendering()   # lays the axes out, once for both files
+    figure.set_layout_engine("none")
     figure.savefig(folder / f"{name}.svg", metadata={"Date": None, "Creator": "salbench"})
     figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})

@@ -14,22 +14,29 @@ def signed(value, digits=3):
 
 
 def means(shop):
-    """Every mean of summary.csv, beside the paper's where it prints one."""
+    """Every mean of summary.csv, beside the paper's where it prints one; the paper's metrics first."""
     table = shop.results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
-    best = table[table["metric"].isin(ALL_METRICS)].groupby(["dataset", "metric"])["mean"].transform("max")
+    if table.empty:
+        raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
+    table = table.assign(best=table.groupby(["dataset", "metric"])["mean"].transform("max"))
+    known = table["metric"].isin(METRICS)
+    caption = ("Means over the shapes. Best of each data set and metric in bold. The paper's mean AUC is that of its table of "
+               "classes; it prints no mean of the other metrics.")
+    return [means_table("means", caption, table[known]),
+            means_table("means-others", "Means of the other metrics.", table[~known], "Other metrics")]
+
+
+def means_table(identifier, caption, table, folded=""):
     rows = []
-    for at, row in table.iterrows():
+    for _, row in table.iterrows():
         known = paper.mean_auc(row["model"]) if (row["dataset"], row["metric"]) == ("meshes", "auc") else None
         rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(row["model"]),
                      Cell(ALL_METRICS.get(row["metric"], row["metric"])), count(row["n"]),
-                     cell(row["mean"], bold=row["mean"] == best.get(at)), cell(row["ci95_low"]), cell(row["ci95_high"]),
+                     cell(row["mean"], bold=row["mean"] == row["best"]), cell(row["ci95_low"]), cell(row["ci95_high"]),
                      cell(row["sd"]), cell(known, 2), signed(row["mean"] - known) if known else cell(None)])
-    if not rows:
-        raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
-    return Table("means", "Means over the shapes. Best of each data set and metric in bold. The paper's mean AUC is that of "
-                 "its table of classes; it prints no mean of the other metrics.",
+    return Table(identifier, caption,
                  ["Data set", "Model", "Metric", "Shapes", "Mean", "95 % low", "95 % high", "SD", "Paper", "Difference"],
-                 rows, [False] * 3 + [True] * 7, filters=[0, 1, 2])
+                 rows, [False] * 3 + [True] * 7, filters=[0, 1, 2], folded=folded)
 
 
 def per_class(shop, dataset, metric):
@@ -157,7 +164,7 @@ def all_options(flat):
         differ = len(set(values)) > 1
         rows.append([Cell(path)] + [Cell(value, bold=differ) for value in values])
     return Table("options", "Every option of models, descriptors and normals; bold where the columns differ.",
-                 ["Option", *flat], rows, [False] * (1 + len(flat)))
+                 ["Option", *flat], rows, [False] * (1 + len(flat)), folded="Every option")
 
 
 def flatten(values, prefix=""):

@@ -121,8 +121,7 @@ salbench.View = class {
       geometry.setIndex(new THREE.BufferAttribute(this.shape.faces, 1));
       geometry.computeVertexNormals();
       this.object = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial(
-        {vertexColors: THREE.VertexColors, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
-          polygonOffsetUnits: 1})); // the offset keeps dots that lie on the surface in front of it
+        {vertexColors: THREE.VertexColors, side: THREE.DoubleSide}));
     } else {
       this.object = new THREE.Points(geometry, new THREE.PointsMaterial(
         {vertexColors: THREE.VertexColors, size: salbench.spread(1.4 * this.shape.spacing / radius)}));
@@ -185,6 +184,9 @@ salbench.View = class {
 
   draw() {
     this.light.position.copy(this.camera.position);
+    if (this.dots) { // nearer to the eye than the surface that they lie on
+      this.dots.position.copy(this.object.position).addScaledVector(this.camera.position, 0.025 / this.camera.position.length());
+    }
     this.renderer.render(this.scene, this.camera);
   }
 };
