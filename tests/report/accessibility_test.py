@@ -1,0 +1,48 @@
+"""axe-core, which looks for what keeps people from using a page. It comes from npm into a temporary folder."""
+
+import shutil
+import subprocess
+import unittest
+
+import browser as chromium
+import support
+
+AXE = "axe-core@4.10.2"
+GRAVE = ("serious", "critical")
+
+
+@chromium.needs_browser
+class Accessibility(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        npm = shutil.which("npm")
+        if npm is None:
+            raise unittest.SkipTest("npm is not installed")
+        try:
+            subprocess.run([npm, "install", "--no-audit", "--no-fund", "--ignore-scripts", AXE], cwd=cls.folder, check=True,
+                           capture_output=True, timeout=120)
+        except (OSError, subprocess.SubprocessError):
+            raise unittest.SkipTest("npm cannot reach its registry") from None
+        cls.axe = (cls.folder / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")
+        cls.to = cls.folder / "report"
+        status, errors = support.make(support.make_full(cls.folder), cls.to)
+        assert status == 0, errors
+        cls.browser = chromium.start()
+        cls.addClassCleanup(cls.browser.quit)
+
+    def findings(self, path):
+        self.browser.get((self.to / path).as_uri())
+        self.browser.execute_script(self.axe)
+        found = self.browser.execute_async_script("axe.run().then(arguments[arguments.length - 1])")
+        return [f"{finding['id']}: {finding['help']}: {[node['target'] for node in finding['nodes']][:3]}"
+                for finding in found["violations"] if finding["impact"] in GRAVE]
+
+    def test_no_serious_finding_on_any_kind_of_page(self):
+        for path in ("index.html", "scores.html", "run.html", "shapes/1.html"):
+            with self.subTest(path):
+                self.assertEqual(self.findings(path), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,42 @@
+"""Headless Chromium on pages from disk, with everything that it logs and asks for."""
+
+import json
+import shutil
+import unittest
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+except ImportError:
+    webdriver = None
+
+DRIVER, CHROMIUM = shutil.which("chromedriver"), shutil.which("chromium")
+AVAILABLE = webdriver is not None and DRIVER is not None and CHROMIUM is not None
+needs_browser = unittest.skipUnless(AVAILABLE, "needs Debian's chromium, chromium-driver and python3-selenium")
+
+
+def start(width=1280, height=1000):
+    options = webdriver.ChromeOptions()
+    options.binary_location = CHROMIUM
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--enable-unsafe-swiftshader",
+                     "--disable-background-networking", f"--window-size={width},{height}"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    browser = webdriver.Chrome(service=Service(DRIVER), options=options)
+    browser.set_page_load_timeout(60)
+    return browser
+
+
+def console_errors(browser):
+    """Warnings of the graphics driver say nothing about the pages."""
+    return [entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+
+
+def requests(browser):
+    """Addresses that pages asked for since the last call."""
+    found = []
+    for entry in browser.get_log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            found.append(message["params"]["request"]["url"])
+    return found

@@ -1,0 +1,140 @@
+"""The report in a browser, from disk: what a reader does with it."""
+
+import base64
+import time
+import unittest
+from io import BytesIO
+
+from PIL import Image
+
+import browser as chromium
+import support
+
+if chromium.AVAILABLE:
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.support.ui import Select, WebDriverWait
+
+
+@chromium.needs_browser
+class Browser(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.to = cls.folder / "a report & more"  # an address that has to be escaped
+        status, errors = support.make(support.make_full(cls.folder), cls.to)
+        assert status == 0, errors
+        cls.browser = chromium.start()
+        cls.addClassCleanup(cls.browser.quit)
+
+    def open(self, path):
+        self.browser.get((self.to / path).as_uri())
+
+    def texts(self, selector):
+        return [element.text for element in self.browser.find_elements(By.CSS_SELECTOR, selector)]
+
+    def tearDown(self):
+        self.assertEqual(chromium.console_errors(self.browser), [])
+        inside = self.to.as_uri()
+        asked = chromium.requests(self.browser)
+        self.assertTrue(asked, "requests are recorded")
+        strangers = [url for url in asked if not url.startswith((inside, "data:"))]
+        self.assertEqual(strangers, [], "requests that leave the folder")
+
+    def wait(self, condition, seconds=60):
+        return WebDriverWait(self.browser, seconds).until(lambda _: condition())
+
+    def test_index_is_usable_within_two_seconds(self):
+        self.open("index.html")
+        spent = self.browser.execute_script("return performance.timing.domContentLoadedEventEnd - performance.timing.navigationStart")
+        self.assertLess(spent, 2000)
+        broken = self.browser.execute_script(
+            "return Array.from(document.images).filter(i => i.loading !== 'lazy' && !i.naturalWidth).map(i => i.src)")
+        self.assertEqual(broken, [])
+
+    def test_a_table_sorts_by_number_and_back(self):
+        self.open("index.html")
+        head = self.browser.find_element(By.XPATH, "//table[@id='table-means']//th[button='Mean']")
+        head.find_element(By.TAG_NAME, "button").click()
+        self.assertEqual(head.get_attribute("aria-sort"), "descending")
+        numbers = [float(text.replace("−", "-")) for text in self.texts("#table-means tbody tr td:nth-child(5)")]
+        self.assertEqual(numbers, sorted(numbers, reverse=True))
+        head.find_element(By.TAG_NAME, "button").click()
+        self.assertEqual(head.get_attribute("aria-sort"), "ascending")
+
+    def test_a_table_filters_by_model(self):
+        self.open("index.html")
+        Select(self.browser.find_element(By.CSS_SELECTOR, "form[data-for=table-means] select[data-column='1']")).select_by_visible_text("LS")
+        shown = [text for text in self.texts("#table-means tbody tr td:nth-child(2)") if text]
+        self.assertEqual(set(shown), {"LS"})
+
+    def test_scores_sort_filter_and_lead_to_the_shape(self):
+        self.open("scores.html")
+        self.assertEqual(self.texts("#scores output"), ["rows 1 to 100 of 104"])
+        Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=class]")).select_by_visible_text("teddy")
+        Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=set]")).select_by_visible_text("Meshes")
+        Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=metric]")).select_by_visible_text("NSS")
+        self.assertEqual(self.texts("#scores tbody th"), ["3", "4"])
+        self.browser.find_element(By.XPATH, "//div[@id='scores']//th/button[text()='LS']").click()
+        numbers = [float(text.replace("−", "-")) for text in self.texts("#scores tbody td:nth-child(5)")]
+        self.assertEqual(numbers, sorted(numbers, reverse=True))
+        self.browser.find_element(By.CSS_SELECTOR, "#scores input[name=model][value='0']").click()
+        self.assertNotIn("LS", [text.split()[0] for text in self.texts("#scores thead th")])
+        self.browser.find_element(By.CSS_SELECTOR, "#scores tbody a").click()
+        self.assertIn("teddy", self.browser.find_element(By.TAG_NAME, "h1").text)
+
+    def test_later_rows_of_the_scores(self):
+        self.open("scores.html")
+        self.browser.find_element(By.CSS_SELECTOR, "button[data-step='1']").click()
+        self.assertEqual(self.texts("#scores output"), ["rows 101 to 104 of 104"])
+
+    def canvas(self, index):
+        data = self.browser.execute_script("return document.querySelectorAll('canvas')[arguments[0]].toDataURL()", index)
+        return Image.open(BytesIO(base64.b64decode(data.partition(",")[2]))).convert("RGB")
+
+    def viewer(self, path):
+        self.open(path)
+        self.wait(lambda: self.browser.find_element(By.CSS_SELECTOR, ".viewer").get_attribute("data-ready") == "yes")
+
+    def test_the_model_turns_and_the_other_view_follows(self):
+        self.viewer("shapes/1.html")
+        before = [self.canvas(side) for side in (0, 1)]
+        self.assertGreater(len(before[0].getcolors(1 << 20)), 50, "the canvas shows a painted shape")
+        self.browser.find_element(By.CSS_SELECTOR, "[aria-label='Left view: turn right']").click()
+        after = [self.canvas(side) for side in (0, 1)]
+        self.assertNotEqual(before[0].tobytes(), after[0].tobytes())
+        self.assertNotEqual(before[1].tobytes(), after[1].tobytes())
+        self.browser.find_element(By.CSS_SELECTOR, "[data-part=coupled]").click()
+        self.browser.find_element(By.CSS_SELECTOR, "[aria-label='Left view: turn right']").click()
+        self.assertEqual(after[1].tobytes(), self.canvas(1).tobytes(), "uncoupled, the right view stays")
+
+    def test_the_viewer_shows_a_scan_and_another_map(self):
+        self.viewer("shapes/1.html")
+        left = self.browser.find_element(By.CSS_SELECTOR, ".view")
+        Select(left.find_element(By.CSS_SELECTOR, "[data-part=shape]")).select_by_visible_text("Scan 1")
+        self.wait(lambda: "Scan 1" in left.find_element(By.CSS_SELECTOR, "[data-part=status]").text
+                  and "points" in left.find_element(By.CSS_SELECTOR, "[data-part=status]").text)
+        Select(left.find_element(By.CSS_SELECTOR, "[data-part=map]")).select_by_visible_text("PS, after matching")
+        self.assertIn("PS, after matching", left.find_element(By.CSS_SELECTOR, "[data-part=status]").text)
+        self.assertGreater(len(self.canvas(0).getcolors(1 << 20)), 20)
+
+    def test_every_page_opens_and_prints(self):
+        for path in sorted(self.to.rglob("*.html")):
+            self.open(path.relative_to(self.to))
+            self.assertTrue(self.browser.find_element(By.TAG_NAME, "h1").text)
+        self.open("index.html")
+        printed = base64.b64decode(self.browser.print_page())
+        self.assertTrue(printed.startswith(b"%PDF"))
+        self.assertGreater(len(printed), 50_000)
+
+    def test_nothing_is_wider_than_a_phone(self):
+        self.browser.set_window_size(500, 900)  # Chromium's narrowest window
+        for path in ("index.html", "scores.html", "run.html", "shapes/1.html"):
+            self.open(path)
+            time.sleep(0.2)
+            wider = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+            self.assertLessEqual(wider, 0, path)
+        self.browser.set_window_size(1280, 1000)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,214 @@
+"""Results folders and exports made up from seeded numbers: small and fixed, or as large as the whole benchmark."""
+
+from pathlib import Path
+
+import h5py
+import numpy
+import pandas
+from scipy import stats
+
+import pinhole
+
+MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
+METRICS = ("auc", "auc_exact", "nss", "cc", "lcc")
+CLASSES = ("human", "teddy", "glasses", "spring")
+LEVELS = {"LS": 0.64, "CS": 0.61, "PS": 0.60, "MS": 0.55, "HS": 0.58, "RS": 0.5}  # mean AUC of a model
+
+CONFIGURATION = """configuration:
+  protocol: published
+  seed: 2016
+  dataset:
+    participants: {participants}
+  fpfh:
+    neighbourhood: nearest
+    radius: 0.01
+  models:
+{models}"""
+
+
+def scores(random, level, n):
+    """n rows of the five metrics."""
+    auc = numpy.clip(level + 0.05 * random.standard_normal(n), 0, 1)
+    cc = numpy.clip(3 * (auc - 0.5) + 0.1 * random.standard_normal(n), -1, 1)
+    return {"auc": auc, "auc_exact": numpy.clip(auc + 0.03, 0, 1), "nss": 5 * (auc - 0.5), "cc": cc, "lcc": numpy.abs(cc)}
+
+
+def results_table(items, models=MODELS, views=12, seed=1, datasets=("meshes", "scans")):
+    """items: (name, class) pairs. Scans have no HS."""
+    random = numpy.random.default_rng(seed)
+    frames = []
+    for dataset in datasets:
+        shapes = [(item, name, "") for item, name in items] if dataset == "meshes" else [
+            (item, name, str(view)) for item, name in items for view in range(views)]
+        for model in models:
+            if dataset == "scans" and model == "HS":
+                continue
+            frame = pandas.DataFrame(shapes, columns=["item", "class", "view"])
+            frame.insert(0, "dataset", dataset)
+            frame["model"] = model
+            for metric, values in scores(random, LEVELS.get(model, 0.57), len(shapes)).items():
+                frame[metric] = values
+            frame["n_points"], frame["n_picks"] = 2500, 120
+            frames.append(frame)
+    return pandas.concat(frames, ignore_index=True)
+
+
+def interval(values):
+    n = len(values)
+    half = stats.t.ppf(0.975, n - 1) * numpy.std(values, ddof=1) / n ** 0.5 if n > 1 else numpy.nan
+    return numpy.mean(values) - half, numpy.mean(values) + half, half
+
+
+def summary_table(results):
+    rows = []
+    for (dataset, model), group in results.groupby(["dataset", "model"], sort=False):
+        for metric in METRICS:
+            values = group[metric].dropna().to_numpy()
+            low, high, _ = interval(values) if len(values) else (numpy.nan,) * 3
+            deviation = numpy.std(values, ddof=1) if len(values) > 1 else numpy.nan
+            rows.append((dataset, model, metric, len(values), values.mean() if len(values) else numpy.nan, deviation, low, high))
+    return pandas.DataFrame(rows, columns=["dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"])
+
+
+def per_class_table(results):
+    rows = []
+    for (dataset, name), group in results.groupby(["dataset", "class"], sort=False):
+        means = []
+        for model, part in group.groupby("model", sort=False):
+            values = part["auc"].dropna().to_numpy()
+            if len(values):
+                means.append(values.mean())
+                rows.append((dataset, name, model, len(values), values.mean(), interval(values)[2]))
+        if means:
+            rows.append((dataset, name, "Avg-AUC", len(means), numpy.mean(means), interval(means)[2]))
+    return pandas.DataFrame(rows, columns=["dataset", "class", "model", "n", "auc_mean", "auc_ci95"])
+
+
+def significance_table(results):
+    rows = []
+    for dataset, part in results.groupby("dataset", sort=False):
+        for metric in METRICS:
+            wide = part.pivot(index=["item", "view"], columns="model", values=metric)
+            models = [model for model in part["model"].unique()]
+            for i, a in enumerate(models):
+                for b in models[i + 1:]:
+                    both = wide[[a, b]].dropna()
+                    if len(both) == 0:
+                        continue
+                    z, p = stats.ranksums(both[a], both[b])
+                    signed = stats.wilcoxon(both[a] - both[b]) if len(both) > 1 else (numpy.nan, numpy.nan)
+                    rows.append((dataset, metric, a, b, len(both), (both[a] - both[b]).mean(), z, p, signed[0], signed[1],
+                                 min(1.0, 15 * signed[1])))
+    return pandas.DataFrame(rows, columns=["dataset", "metric", "model_a", "model_b", "n", "mean_difference", "rank_sum_z",
+                                           "rank_sum_p", "signed_rank", "signed_rank_p", "signed_rank_p_holm"])
+
+
+def histograms(models, seed=2):
+    random = numpy.random.default_rng(seed)
+    table = {"bin_left": numpy.arange(100) / 100}
+    for name, (a, b) in zip(("GS", *models), ((0.3, 6), (1, 6), (1, 4), (1, 3), (5, 5), (1, 1), (2, 5), (2, 2), (3, 3))):
+        counts = numpy.histogram(random.beta(a, b, 20000), bins=100, range=(0, 1))[0]
+        table[name] = counts / counts.sum() * 100
+    return pandas.DataFrame(table)
+
+
+def human_curve():
+    rows = []
+    for n in range(1, 12):
+        for metric, start, gain in (("auc", 0.58, 0.06), ("auc_exact", 0.6, 0.06), ("nss", 0.9, 0.3), ("cc", 0.2, 0.3),
+                                    ("lcc", 0.2, 0.3)):
+            mean = start + gain * (1 - 1 / n)
+            rows.append((n, metric, 8, mean, 0.05, mean - 0.04, mean + 0.04))
+    return pandas.DataFrame(rows, columns=["n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"])
+
+
+def run_yaml(models, simulated, failed=(), extra=""):
+    sections = "".join(f"    {model}:\n" if model == "RS" else f"    {model}: {{radius: 0.02}}\n" for model in models)
+    failures = "failed: []\n" if not failed else "failed:\n" + "".join(
+        f'  - {{item: "{item}", stage: {stage}, cause: "{cause}"}}\n' for item, stage, cause in failed)
+    return (("# SIMULATED participants: the ground truth was made by the program.\n" if simulated else "")
+            + "program: salbench 0.1.0\nresults: finished\nhost: \"host\"\nthreads: 2\nseconds: 10.5\nartefacts_computed: 42\n"
+            + extra + "data_set: {folder: \"data\", layout: schelling, meshes: 8, files: 20, digest: abcdef}\n"
+            + "stages:\n  mesh: {version: 1, why: {}}\n  map.LS: {version: 3, why: {\"stage version 1 -> 3\": 8}}\n"
+            + "nodes:\n  - {stage: mesh, of: meshes, scope: mesh, items: 8, settled: 8, computed: 0, seconds: 0.0, median: 0.0, "
+            + "p95: 0.0, busy: 0.0}\n  - {stage: map.LS, of: meshes, scope: mesh, items: 8, settled: 8, computed: 8, seconds: "
+            + "12.5, median: 1.5, p95: 2.0, busy: 0.6}\n" + failures
+            + CONFIGURATION.format(participants="simulated" if simulated else "measured", models=sections))
+
+
+def write_results(folder, items, models=MODELS, simulated=False, results=None, **options):
+    """A results folder with all tables; returns the table of results."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    results = results_table(items, models) if results is None else results
+    head = "# SIMULATED participants: these scores say nothing about people.\n" if simulated else ""
+    tables = {"results": results, "summary": summary_table(results), "per_class": per_class_table(results),
+              "significance": significance_table(results), "mean_histograms_meshes": histograms(models),
+              "mean_histograms_scans": histograms([model for model in models if model != "HS"], 3),
+              "human_curve": human_curve()}
+    for name, table in tables.items():
+        (folder / f"{name}.csv").write_text(head + table.to_csv(index=False), encoding="utf-8")
+    (folder / "run.yaml").write_text(run_yaml(models, simulated, **options), encoding="utf-8")
+    return results
+
+
+def eight_meshes():
+    return [(str(index + 1), CLASSES[index // 2]) for index in range(8)]
+
+
+def write_timeline(folder):
+    rows = [(0.5 * i, 0.5 * (i + 1), node, busy) for i in range(20) for node, busy in (("map.LS", 0.6), ("fpfh", 0.3))]
+    table = pandas.DataFrame(rows, columns=["start", "end", "node", "busy"])
+    table.to_csv(Path(folder) / "timeline.csv", index=False)
+
+
+def sphere(rings=14, bumps=0.15):
+    """A bumpy sphere: n x 3 vertices, f x 3 faces."""
+    around = 2 * rings
+    theta, phi = numpy.meshgrid(numpy.linspace(0.1, numpy.pi - 0.1, rings), numpy.arange(around) * 2 * numpy.pi / around,
+                                indexing="ij")
+    radius = 1 + bumps * numpy.sin(3 * theta) * numpy.cos(4 * phi)
+    points = numpy.stack([radius * numpy.sin(theta) * numpy.cos(phi), radius * numpy.cos(theta),
+                          radius * numpy.sin(theta) * numpy.sin(phi)], axis=-1).reshape(-1, 3)
+    faces = []
+    for ring in range(rings - 1):
+        for step in range(around):
+            a, b = ring * around + step, ring * around + (step + 1) % around
+            faces += [(a, b, a + around), (b, b + around, a + around)]
+    return points, numpy.array(faces, dtype=numpy.int32)
+
+
+def write_export(path, items, models=MODELS, views=12, pictures=True, size=96):
+    """An export in the program's layout: bumpy spheres and their scans, with pictures if wanted."""
+    random = numpy.random.default_rng(4)
+    points, faces = sphere()
+    with h5py.File(path, "w") as file:
+        file.attrs["program"], file.attrs["layout"] = "salbench 0.1.0", "salbench export 1"
+        for item, category in items:
+            mesh = file.create_group(item)
+            mesh.attrs.update({"dataset": "meshes", "item": item, "class": category})
+            mesh["mesh/vertices"], mesh["mesh/faces"] = points, faces
+            fill(mesh, "ground_truth", points, models, random)
+            for view in range(views):
+                angle = 2 * numpy.pi * view / max(views, 1)
+                eye = 6 * numpy.array([numpy.cos(angle), 0.3, numpy.sin(angle)])
+                seen = points[points @ eye > 0.4 * numpy.linalg.norm(eye)]
+                scan = file.create_group(f"{item}_{view}")
+                scan.attrs.update({"dataset": "scans", "item": item, "class": category, "view": numpy.int64(view)})
+                scan["scan/points"], scan["scan/camera"] = seen, eye
+                scan["scan_normals/normals"] = seen / numpy.linalg.norm(seen, axis=1, keepdims=True)
+                fill(scan, "scan_ground_truth", seen, [model for model in models if model != "HS"], random)
+        if pictures:
+            pinhole.add_pictures(file, size)
+
+
+def fill(group, truth, points, models, random):
+    """Ground truth with ten picks, and a map of every model but HS before and after matching."""
+    group[f"{truth}/saliency"] = numpy.maximum(points[:, 1], 0) ** 2
+    group[f"{truth}/picks"] = numpy.argsort(points[:, 1])[-10:].astype(numpy.int32)
+    group[f"{truth}/pick_offsets"] = numpy.array([0, 10], dtype=numpy.int64)
+    for model in models:
+        if model != "HS":
+            values = points[:, 1] + 0.3 * random.standard_normal(len(points))
+            group[f"map.{model}/saliency"] = values
+            group[f"matched.{model}/saliency"] = ((values - values.min()) / numpy.ptp(values)) ** 3

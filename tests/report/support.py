@@ -1,0 +1,66 @@
+"""What the report's tests share: a report made in a temporary folder, and its pages as text and tables."""
+
+import contextlib
+import html
+import io
+import re
+import tempfile
+import unittest
+from pathlib import Path
+
+import fixture
+from report import cli
+
+
+def make(out, to, *arguments):
+    """Runs scripts/report in this process; its exit status and what it wrote to the error stream."""
+    errors = io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
+        status = cli.main([str(out), "--to", str(to), "--program", "/nonexistent/salbench", *map(str, arguments)])
+    return status, errors.getvalue()
+
+
+def page(folder, path="index.html"):
+    return (Path(folder) / path).read_text(encoding="utf-8")
+
+
+def section(text, identifier):
+    """The part of a page with an id, up to the next section."""
+    start = text.index(f'<section id="{identifier}"')
+    return text[start:text.find("</section>", start)]
+
+
+def rows(text, identifier):
+    """The rows of a table as lists of cell texts."""
+    start = text.index(f'id="table-{identifier}"')
+    body = text[text.index("<tbody>", start):text.index("</tbody>", start)]
+    found = []
+    for row in re.findall(r"<tr>(.*?)</tr>", body, flags=re.S):
+        cells = re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, flags=re.S)
+        found.append([html.unescape(re.sub(r"<[^>]*>", " ", cell)).strip() for cell in cells])
+    return found
+
+
+class ReportTest(unittest.TestCase):
+    """A temporary folder per class; `report()` makes a report in it."""
+
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = Path(holder.name)
+
+    def report(self, name, *arguments, out=None):
+        to = self.folder / f"{name}-report"
+        status, errors = make(out or self.folder / name, to, *arguments)
+        self.assertEqual(status, 0, errors)
+        return to
+
+
+def make_full(folder):
+    """A results folder with everything: tables, timeline, an export of two meshes with pictures. Returns its path."""
+    out = Path(folder) / "full"
+    fixture.write_results(out, fixture.eight_meshes(), extra='peak_memory_mb: 512\ncache_bytes: {mesh: 1000000, fpfh: 9000000}\n')
+    fixture.write_timeline(out)
+    fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:2], views=3)
+    return out
