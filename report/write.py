@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from report import run_page, score_pages, shape_pages, style
+from report import comparison, run_page, score_pages, shape_pages, style
 from report.elements import ELEMENTS, attempt
 from report.exports import Shapes
 from report.pages import Pages, copy_static, prepare_folder
@@ -14,6 +14,7 @@ def write_report(options, protocols):
     """The path of index.html. Unusable if there is nothing to report of, or nowhere to write."""
     results = read_results(options.results)
     out = Path(options.to) if options.to else results.folder / "report"
+    other = read_results(options.compare) if options.compare else None
     shapes = Shapes(exports(options, results))
     prepare_folder(out)
     style.apply()
@@ -21,11 +22,19 @@ def write_report(options, protocols):
     meshes = shape_pages.items(results, shapes)
     shop = Workshop(results, out, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes},
                     tuple(options.examples.split(",")) if options.examples else ())
-    pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), ("run.html", "Run")])
+    comparing = [("comparison.html", "Comparison")] if other else []
+    pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), ("run.html", "Run"), *comparing])
     scores = shop.scores = shape_pages.Scores(results)
     for item, category in meshes.items():
         shape_pages.write_page(shop, pages, scores, item, category)
-    score_pages.write_page(shop, pages)
+    score_pages.write_page(shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores",
+                           heading="Scores of every shape", shapes=shop.pages,
+                           caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.")
+    if other:
+        first, second = comparison.names(results, other)
+        score_pages.write_page(shop, pages, "comparison.html", lambda: comparison.differences(shop, other),
+                               comparison.blocks(shop, other), title="Comparison", heading="Two runs side by side", shapes={},
+                               caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
     sections = [(element, attempt(element.build, shop)) for element in ELEMENTS]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
     pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))

@@ -1,0 +1,115 @@
+"""Two runs side by side: what they were, how their configurations differ, their means, and the differences per shape."""
+
+from report import statistics
+from report.blocks import Cell, Note, Table, cell, count, interval
+from report.elements import attempt
+from report.names import ALL_METRICS, DATASETS
+from report.results import Missing, text_of
+from report.score_pages import page_data
+from report.tables import flatten, signed
+
+ABSENT = "–"
+
+
+def blocks(shop, other):
+    """(title, blocks) of each section."""
+    return [("What was run", attempt(facts, shop.results, other)),
+            ("Configuration", attempt(configuration, shop.results, other)),
+            ("Versions", attempt(versions, shop.results, other)),
+            ("Means", attempt(means, shop, other))]
+
+
+def names(results, other):
+    """Heads of the two columns; the folders' names where they tell the runs apart."""
+    first, second = results.folder.resolve().name, other.folder.resolve().name
+    return (first, second) if first != second else (str(results.folder), str(other.folder))
+
+
+def facts(results, other):
+    rows = []
+    for label, read in (("Program", lambda run: text_of(run.record.get("program"))), ("Results", lambda run: run.state),
+                        ("Protocol", lambda run: run.option("protocol")), ("Seed", lambda run: run.option("seed")),
+                        ("Data, digest", lambda run: digest(run)), ("Reference", lambda run: text_of(run.record.get("reference"))),
+                        ("Models of one's own", lambda run: ", ".join(run.evaluated)),
+                        ("Participants", lambda run: "simulated" if run.simulated else "measured")):
+        values = [read(run) or ABSENT for run in (results, other)]
+        rows.append([Cell(label)] + [Cell(value, bold=values[0] != values[1]) for value in values])
+    table = Table("compared-facts", "The two runs; bold where they differ.", ["What", *names(results, other)], rows, [False] * 3)
+    if digest(results) != digest(other):
+        return [Note("The runs were over different data: means of one are of other shapes than those of the other. Differences "
+                     "below are over the shapes that both have."), table]
+    return table
+
+
+def digest(results):
+    entry = results.record.get("data_set")
+    return text_of(entry.get("digest")) if isinstance(entry, dict) else ""
+
+
+def differing(first, second, caption, identifier, heads, what):
+    rows = [[Cell(key), Cell(first.get(key, ABSENT)), Cell(second.get(key, ABSENT))]
+            for key in dict.fromkeys([*first, *second]) if first.get(key) != second.get(key)]
+    if not rows:
+        return Note(f"{what} are the same in both runs.")
+    return Table(identifier, caption, ["What", *heads], rows, [False] * 3)
+
+
+def configuration(results, other):
+    found = [run.record.get("configuration") for run in (results, other)]
+    if not all(isinstance(entry, dict) for entry in found):
+        raise Missing("One of the two run.yaml holds no configuration.")
+    return differing(flatten(found[0]), flatten(found[1]), "Options that differ.", "compared-options", names(results, other),
+                     "All options")
+
+
+def versions(results, other):
+    found = []
+    for run in (results, other):
+        stages = run.record.get("stages")
+        if not isinstance(stages, dict):
+            raise Missing("One of the two run.yaml does not name the versions of its stages.")
+        found.append({stage: text_of(entry.get("version")) for stage, entry in stages.items() if isinstance(entry, dict)})
+    return differing(found[0], found[1], "Stages whose version differs, or that only one run has.", "compared-versions",
+                     names(results, other), "The versions of all stages")
+
+
+def pairs_of_scores(results, other):
+    """(data set, metric, scores of one run, scores of the other) over the shapes and models that both have."""
+    for dataset in DATASETS:
+        for metric in ALL_METRICS:
+            try:
+                first, second = (statistics.scores(run, dataset, metric) for run in (results, other))
+            except Missing:
+                continue
+            shapes = first.index.intersection(second.index, sort=False)
+            models = [model for model in first if model in second]
+            if len(shapes) and models:
+                yield dataset, metric, first.loc[shapes, models], second.loc[shapes, models]
+
+
+def means(shop, other):
+    rows = []
+    for dataset, metric, first, second in pairs_of_scores(shop.results, other):
+        for model in first:
+            difference = (first[model] - second[model]).dropna().to_numpy()
+            if len(difference) == 0:
+                continue
+            half, mean = statistics.student_half_width(difference), difference.mean()
+            both = first[model].notna() & second[model].notna()
+            rows.append([Cell(DATASETS[dataset]), Cell(model), Cell(ALL_METRICS[metric]), count(len(difference)),
+                         cell(first[model][both].mean()), cell(second[model][both].mean()), signed(mean),
+                         interval(mean - half, mean + half)])
+    if not rows:
+        raise Missing("The two runs have no model with scores of the same shape.")
+    missing = sorted(set(shop.models) ^ set(statistics.models(other)))
+    notes = [Note(f"Models that only one run has are left out: {', '.join(missing)}.")] if missing else []
+    return notes + [Table("compared-means", "Means over the shapes that both runs scored, and the mean of the differences per shape "
+                          "with its 95 % interval.", ["Data set", "Model", "Metric", "Shapes", *names(shop.results, other),
+                                                      "Difference", "95 % interval"], rows, [False] * 3 + [True] * 5,
+                          filters=[0, 1, 2])]
+
+
+def differences(shop, other):
+    """What comparison.html's script reads: as score_pages.data, with differences in place of scores."""
+    return page_data(shop, {(dataset, metric): first - second
+                            for dataset, metric, first, second in pairs_of_scores(shop.results, other)})
