@@ -11,8 +11,8 @@ from report.shape_pages import Scores, models_of
 from report.viewer import label_of
 
 CHANCE = "RS"  # has a map, but shows nothing that the paper's figures show
-HOW = ("No export with pictures of {} was given. `salbench pictures CONFIG --items LIST` makes them, `salbench export CONFIG "
-       "--items LIST --to OUT/shapes.h5` puts them where the report looks; {}")
+HOW = ("No export with pictures of {} was given. salbench pictures CONFIG --items LIST makes them, salbench export CONFIG "
+       "--items LIST --to OUT/shapes.h5 puts them where the report looks; {}")
 
 
 def scored_pictures(shop, dataset):

@@ -7,7 +7,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from report.names import METRICS
 from report.painting import colour_bar
-from report.results import Unusable
+from report.results import Unusable, text_of
 from report.viewer import palette_script
 
 HERE = Path(__file__).resolve().parent
@@ -32,7 +32,8 @@ def prepare_folder(out):
         if out.is_dir() and any(out.iterdir()):
             if not (index.is_file() and MARK in index.read_text(encoding="utf-8", errors="replace")[:600]):
                 raise Unusable(f"{out}: holds something else than a report; choose another folder with --to")
-            index.unlink()
+        out.mkdir(parents=True, exist_ok=True)
+        index.write_text(f'<meta name="generator" content="{MARK}"><title>Unfinished</title>')  # the last page replaces it
         for folder in FOLDERS:
             shutil.rmtree(out / folder, ignore_errors=True)
             (out / folder).mkdir(parents=True)
@@ -57,7 +58,8 @@ class Pages:
     def __init__(self, shop, navigation):
         self.shop = shop
         self.templates = environment()
-        self.common = {"results": shop.results, "navigation": navigation, "banners": banners(shop.results)}
+        self.common = {"results": shop.results, "navigation": navigation, "banners": banners(shop.results),
+                       "program": text_of(shop.results.record.get("program"))}
 
     def write(self, path, template, **values):
         """path: within the report; links in templates start with `root`."""

@@ -6,6 +6,7 @@ import io
 import re
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import fixture
@@ -18,6 +19,14 @@ def make(out, to, *arguments):
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
         status = cli.main([str(out), "--to", str(to), "--program", "/nonexistent/salbench", *map(str, arguments)])
     return status, errors.getvalue()
+
+
+def without_drawing():
+    """Figures are empty files: most of the time of a report goes into drawing them."""
+    def touch(_, folder, name):
+        for ending in ("svg", "pdf"):
+            (folder / f"{name}.{ending}").touch()
+    return unittest.mock.patch("report.style.save", touch)
 
 
 def page(folder, path="index.html"):
@@ -58,9 +67,10 @@ class ReportTest(unittest.TestCase):
 
 
 def make_full(folder):
-    """A results folder with everything: tables, timeline, an export of two meshes with pictures. Returns its path."""
+    """A results folder with everything: tables, timeline, an export of six meshes with pictures, the
+    lowest-scoring ones among them. Returns its path."""
     out = Path(folder) / "full"
     fixture.write_results(out, fixture.eight_meshes(), extra='peak_memory_mb: 512\ncache_bytes: {mesh: 1000000, fpfh: 9000000}\n')
     fixture.write_timeline(out)
-    fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:2], views=3)
+    fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:6], views=3, size=64)
     return out

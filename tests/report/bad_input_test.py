@@ -1,0 +1,194 @@
+"""Results folders that lack something: the report says what is missing where it would stand, and still opens."""
+
+import re
+import shutil
+import unittest
+
+import fixture
+import support
+
+NASTY = 'a <b>&"\'c d'
+
+
+class BadInput(support.ReportTest):
+    def setUp(self):
+        patch = support.without_drawing()
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def full(self, name, **options):
+        fixture.write_results(self.folder / name, fixture.eight_meshes(), **options)
+        return self.folder / name
+
+    def made(self, name, *arguments):
+        """Makes the report; every page is complete HTML. Returns the index."""
+        to = self.report(name, *arguments)
+        for path in to.rglob("*.html"):
+            self.assertTrue(path.read_text(encoding="utf-8").rstrip().endswith("</html>"), path)
+        return support.page(to)
+
+    def test_no_results_folder_is_one_line_and_status_2(self):
+        (self.folder / "empty").mkdir()
+        (self.folder / "file").write_text("x")
+        for name in ("nowhere", "empty", "file"):
+            status, errors = support.make(self.folder / name, self.folder / "to")
+            self.assertEqual(status, 2)
+            self.assertEqual(len(errors.strip().splitlines()), 1)
+            self.assertIn(name, errors)
+        self.assertFalse((self.folder / "to").exists())
+
+    def test_a_folder_with_other_things_is_left_alone(self):
+        out, to = self.full("occupied"), self.folder / "precious"
+        to.mkdir()
+        (to / "thesis.tex").write_text("years of work")
+        status, errors = support.make(out, to)
+        self.assertEqual(status, 2)
+        self.assertIn("choose another folder with --to", errors)
+        self.assertEqual([path.name for path in to.iterdir()], ["thesis.tex"])
+
+    def test_a_report_is_written_again_in_its_place(self):
+        self.full("again")
+        to = self.report("again")
+        (to / "shapes" / "999.html").write_text("stale")
+        self.report("again")
+        self.assertFalse((to / "shapes" / "999.html").exists())
+
+    def test_each_file_may_be_missing(self):
+        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "mean_histograms_meshes.csv",
+                     "mean_histograms_scans.csv", "human_curve.csv", "run.yaml"):
+            with self.subTest(name):
+                folder = f"without-{name}"
+                self.full(folder)
+                (self.folder / folder / name).unlink()
+                index = self.made(folder)
+                run = support.page(self.folder / f"{folder}-report", "run.html")
+                self.assertIn(f"{name} is ", run if name == "run.yaml" else index)
+
+    def test_each_table_may_be_cut_short(self):
+        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "human_curve.csv", "run.yaml"):
+            with self.subTest(name):
+                folder = f"cut-{name}"
+                path = self.full(folder) / name
+                path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 + 3])
+                self.made(folder)
+
+    def test_each_table_may_be_empty_or_no_table(self):
+        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "human_curve.csv",
+                     "mean_histograms_meshes.csv", "run.yaml"):
+            for content in (b"", b"\xff\xfe\x00\x01garbage\n\n,,,\n", b"one,two\n1,2\n"):
+                with self.subTest(name, content=content):
+                    (self.full("spoilt") / name).write_bytes(content)
+                    self.made("spoilt")
+                    shutil.rmtree(self.folder / "spoilt")
+
+    def test_a_run_that_was_ended_before_its_end(self):
+        out = self.full("ended")
+        for path in out.glob("*.csv"):
+            path.unlink()
+        (out / "run.yaml").write_text("# a run is under way, or was ended before its end\n")
+        index = self.made("ended")
+        self.assertIn("results.csv is not in the results folder", index)
+        self.assertIn("The run did not end", index)
+
+    def test_a_partial_run_says_so_on_every_page(self):
+        out = self.full("partial")
+        record = (out / "run.yaml").read_text().replace("results: finished", "results: partial, 3 of 8 shapes have all scores")
+        (out / "run.yaml").write_text(record)
+        self.made("partial")
+        for path in (self.folder / "partial-report").rglob("*.html"):
+            self.assertIn("partial, 3 of 8 shapes", path.read_text(encoding="utf-8"), path)
+
+    def test_simulated_participants_have_no_verdicts_and_every_page_says_so(self):
+        self.full("simulated", simulated=True)
+        index = self.made("simulated")
+        claims = support.rows(index, "claims")
+        self.assertEqual({row[-1] for row in claims}, {"no verdict"})
+        for path in (self.folder / "simulated-report").rglob("*.html"):
+            self.assertIn("Simulated participants", path.read_text(encoding="utf-8"), path)
+        tex = (self.folder / "simulated-report/data/classes-meshes-auc.tex").read_text()
+        self.assertIn("SIMULATED", tex)
+
+    def test_an_older_version_without_later_columns(self):
+        out = self.full("older")
+        results = fixture.results_table(fixture.eight_meshes()).drop(columns=["lcc", "auc_exact"])
+        results.to_csv(out / "results.csv", index=False)
+        index = self.made("older")
+        self.assertIn("has no column lcc", index)
+
+    def test_one_model(self):
+        self.full("one-model", models=("LS",))
+        self.assertIn("it takes two models", self.made("one-model"))
+
+    def test_one_shape(self):
+        fixture.write_results(self.folder / "one-shape", [("7", "teddy")])
+        self.made("one-shape")
+
+    def test_no_ground_truth(self):
+        out = self.full("no-truth")
+        for name in ("results", "summary", "per_class", "significance"):
+            path = out / f"{name}.csv"
+            path.write_text(path.read_text().splitlines()[0] + "\n")
+        index = self.made("no-truth")
+        self.assertIn("no shape of the run has ground truth", index)
+
+    def test_scores_that_are_not_numbers(self):
+        results = fixture.results_table(fixture.eight_meshes())
+        results.loc[results["item"] == "3", ["auc", "nss"]] = float("nan")
+        fixture.write_results(self.folder / "nan", fixture.eight_meshes(), results=results)
+        index = self.made("nan")
+        self.assertNotIn(">nan<", index)
+        results[["auc", "nss", "cc", "lcc", "auc_exact"]] = float("nan")
+        fixture.write_results(self.folder / "all-nan", fixture.eight_meshes(), results=results)
+        self.made("all-nan")
+
+    def test_failed_items_stand_with_their_causes(self):
+        self.full("failed", failed=[("3", "map.LS", "no faces: this is a point cloud <here>")])
+        self.made("failed")
+        run = support.page(self.folder / "failed-report", "run.html")
+        self.assertEqual(support.rows(run, "failed"), [["3", "map.LS", "no faces: this is a point cloud <here>"]])
+
+    def test_names_with_markup_and_spaces(self):
+        items = [(NASTY, '<i>&"class\''), ("NA", "null"), ("../up", ".hidden")]
+        models = ("LS", '<script>alert("1")</script>')
+        out = self.folder / "nasty <&\"' folder"
+        fixture.write_results(out, items, models)
+        fixture.write_export(out / "shapes.h5", [("NA", "null")], models[:1], views=1)
+        to = self.folder / "nasty-report"
+        self.assertEqual(support.make(out, to), (0, ""))
+        for path in to.rglob("*.html"):
+            text = path.read_text(encoding="utf-8")
+            self.assertNotIn("<script>alert", text)
+            self.assertNotIn("<i>&", text)
+            for link in re.findall(r'(?:href|src)="([^"]*)"', text):
+                if not link.startswith(("#", "data:")):
+                    self.assertTrue((path.parent / link).is_file(), f"{path}: {link}")
+        self.assertEqual(len(list((to / "shapes").glob("*.html"))), 3)
+
+    def test_nothing_is_written_outside_the_folder(self):
+        out = self.full("outside")
+        before = {path: path.stat().st_mtime_ns for path in out.rglob("*")}
+        self.made("outside")
+        self.assertEqual(before, {path: path.stat().st_mtime_ns for path in out.rglob("*")})
+
+    def test_exports_that_cannot_be_used(self):
+        out = self.full("export")
+        (self.folder / "text.h5").write_text("not HDF5")
+        status, errors = support.make(out, self.folder / "to", "--export", self.folder / "text.h5")
+        self.assertEqual((status, len(errors.strip().splitlines())), (2, 1))
+        fixture.write_export(self.folder / "cut.h5", fixture.eight_meshes()[:1], views=1)
+        whole = (self.folder / "cut.h5").read_bytes()
+        (self.folder / "cut.h5").write_bytes(whole[: len(whole) // 2])
+        status, errors = support.make(out, self.folder / "to", "--export", self.folder / "cut.h5")
+        self.assertEqual(len(errors.strip().splitlines()), 1 if status else 0)
+
+    def test_an_export_without_pictures(self):
+        out = self.full("unpainted")
+        fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:1], views=1, pictures=False)
+        self.made("unpainted")
+        shape = support.page(self.folder / "unpainted-report", "shapes/1.html")
+        self.assertIn("holds no picture of mesh 1", shape)
+        self.assertIn('class="viewer"', shape)
+
+
+if __name__ == "__main__":
+    unittest.main()

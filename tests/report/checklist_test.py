@@ -1,0 +1,57 @@
+"""Every figure and table of the paper has an element of the report that shows it."""
+
+import re
+import unittest
+from pathlib import Path
+
+import support
+from report.elements import ELEMENTS
+from report.names import METRICS
+
+# As numbered in the paper, with its LaTeX labels.
+PAPER = {
+    "Figure 1": "fig:teaser", "Figure 2": "fig:saliency_maps_avg_distribution", "Figure 3": "fig:maps_after_matching_hist",
+    "Figure 4": "fig:saliency_performance", "Figure 5": "fig:human_performance", "Figure 6": "fig:scans_saliency_performance",
+    "Figure 7": "fig:scans_saliency", "Table 1": "table:params_per_method", "Table 2": "auc_per-class",
+}
+SOURCE = Path(__file__).resolve().parents[2].parent / "shared/paper/quantitative-analysis-of-saliency-models.tex"
+
+# What has to stand in each element when nothing is missing.
+SHOWS = {
+    "figure-1": ["pictures/", "figures/examples-meshes.pdf", "colourbar"],
+    "figure-2": ["figures/distributions-meshes.svg", "figures/distributions-scans.svg"],
+    "figure-3": ["LS-before", "LS-after", "figures/matching.pdf"],
+    "table-1": ["table-parameters", "r_low", "epsilon"],
+    "figure-4": [f"figures/{name}.svg" for metric in METRICS
+                 for name in (f"performance-meshes-{metric}", f"difficult-meshes-{metric}")],
+    "figure-5": ["figures/human-curves.svg", "table-worth"],
+    "table-2": [f"table-classes-meshes-{metric}" for metric in METRICS] + ["data/classes-meshes-auc.tex"],
+    "figure-6": ["figures/ranking-scans.svg"],
+    "figure-7": ["figures/examples-scans.pdf", "Scan "],
+}
+
+
+class Checklist(support.ReportTest):
+    def test_every_figure_and_table_has_an_element(self):
+        self.assertEqual({element.paper: element.label for element in ELEMENTS if element.paper}, PAPER)
+
+    @unittest.skipUnless(SOURCE.is_file(), "the paper's source does not lie beside the checkout")
+    def test_the_paper_has_no_other(self):
+        labels = re.findall(r"\\label\{((?:fig|table):[^}]*|auc_per-class)\}", SOURCE.read_text(encoding="utf-8"))
+        self.assertEqual(sorted(labels), sorted(PAPER.values()))
+
+    def test_elements_show_what_the_paper_shows(self):
+        with support.without_drawing():
+            to = self.report("full", out=support.make_full(self.folder))
+        index = support.page(to)
+        for identifier, expected in SHOWS.items():
+            part = support.section(index, identifier)
+            if identifier != "table-1":  # there the program is asked, which these tests do without
+                self.assertNotIn("Missing.", part)
+            for text in expected:
+                self.assertIn(text, part, identifier)
+        self.assertEqual(set(SHOWS), {element.id for element in ELEMENTS if element.paper})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+"""Two runs side by side, and models of one's own."""
+
+import json
+import unittest
+
+import fixture
+import support
+
+
+class Comparison(support.ReportTest):
+    def setUp(self):
+        patch = support.without_drawing()
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def test_differences_are_ours_less_theirs(self):
+        results = fixture.results_table(fixture.eight_meshes())
+        fixture.write_results(self.folder / "first", fixture.eight_meshes(), results=results)
+        later = results.copy()
+        later.loc[later["model"] == "LS", "auc"] -= 0.125
+        later = later[later["item"] != "8"]
+        fixture.write_results(self.folder / "second", fixture.eight_meshes(), results=later)
+        to = self.report("first", "--compare", self.folder / "second")
+        page = support.page(to, "comparison.html")
+        means = {tuple(row[:3]): row for row in support.rows(page, "compared-means")}
+        self.assertEqual(means["Meshes", "LS", "AUC"][3], "7")
+        self.assertEqual(means["Meshes", "LS", "AUC"][6:], ["+0.125", "0.125 to 0.125"])
+        self.assertEqual(means["Meshes", "CS", "AUC"][6], "+0.000")
+        data = json.loads((to / "data/comparison.js").read_text().removeprefix("salbench.scores = ").removesuffix(";\n"))
+        self.assertEqual(len(data["shapes"]), 7 + 7 * 12)
+        at = data["models"].index("LS")
+        self.assertEqual({row[at] for row in data["scores"]["auc"]}, {0.125})
+
+    def test_a_folder_to_compare_with_must_be_one(self):
+        fixture.write_results(self.folder / "alone", fixture.eight_meshes())
+        status, errors = support.make(self.folder / "alone", self.folder / "to", "--compare", self.folder / "nowhere")
+        self.assertEqual((status, len(errors.strip().splitlines())), (2, 1))
+
+    def test_a_model_of_ones_own_appears_everywhere(self):
+        models = (*fixture.MODELS, "MINE")
+        out = self.folder / "own"
+        fixture.write_results(out, fixture.eight_meshes(), models,
+                              extra='evaluated: {model: MINE, maps: "maps", matched: false}\n')
+        fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:1], models, views=1)
+        to = self.report("own")
+        index = support.page(to)
+        for identifier in ("means", "figure-1", "figure-3", "figure-4", "figure-5", "figure-6", "table-2", "pairs"):
+            self.assertIn("MINE", support.section(index, identifier), identifier)
+        self.assertIn("MINE, after matching", support.page(to, "shapes/1.html"))
+        self.assertIn("MINE", (to / "data/scores.js").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,65 @@
+"""The plotted numbers of a small fixed results folder equal golden data (golden/*.csv), and figures are the same bytes every
+time. After a wanted change: REPORT_GOLDEN=write python3 -m unittest figures_test, and look at the difference."""
+
+import os
+import unittest
+from pathlib import Path
+
+import numpy
+import pandas
+
+import fixture
+import support
+
+GOLDEN = Path(__file__).resolve().parent / "golden"
+FIGURES = ["distributions-meshes", "distributions-scans", "human-curves", "performance-meshes-auc", "performance-meshes-lcc",
+           "performance-meshes-nss", "ranking-scans", "stages", "timeline"]
+
+
+class Figures(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        out = cls.folder / "fixed"
+        fixture.write_results(out, fixture.eight_meshes())
+        fixture.write_timeline(out)
+        cls.out, cls.to = out, cls.folder / "report"
+        status, errors = support.make(out, cls.to)
+        assert status == 0, errors
+
+    def test_plotted_numbers_equal_the_golden_ones(self):
+        for name in FIGURES:
+            with self.subTest(name):
+                made = pandas.read_csv(self.to / "data" / f"{name}.csv")
+                if os.environ.get("REPORT_GOLDEN") == "write":
+                    GOLDEN.mkdir(exist_ok=True)
+                    made.round(10).to_csv(GOLDEN / f"{name}.csv", index=False)
+                golden = pandas.read_csv(GOLDEN / f"{name}.csv")
+                self.assertEqual(list(made), list(golden))
+                for column in golden:
+                    if golden[column].dtype == object:
+                        self.assertEqual(made[column].tolist(), golden[column].tolist(), column)
+                    else:
+                        numpy.testing.assert_allclose(made[column], golden[column], atol=1e-9, err_msg=column)
+
+    def test_every_figure_is_there_as_svg_pdf_and_numbers(self):
+        for name in FIGURES:
+            self.assertTrue((self.to / "figures" / f"{name}.svg").read_bytes().startswith(b"<?xml"), name)
+            self.assertTrue((self.to / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF"), name)
+
+    def test_figures_are_the_same_bytes_every_time(self):
+        again = self.folder / "again"
+        status, errors = support.make(self.out, again)
+        self.assertEqual(status, 0, errors)
+        for path in sorted((self.to / "figures").iterdir()):
+            self.assertEqual(path.read_bytes(), (again / "figures" / path.name).read_bytes(), path.name)
+
+    def test_cumulative_distributions_rise_from_0_to_1(self):
+        data = pandas.read_csv(self.to / "data/distributions-meshes.csv").drop(columns="value")
+        self.assertEqual(set(data.iloc[0]), {0.0})
+        numpy.testing.assert_allclose(data.iloc[-1], 1)
+        self.assertTrue((data.diff().iloc[1:] >= 0).all(axis=None))
+
+
+if __name__ == "__main__":
+    unittest.main()

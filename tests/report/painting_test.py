@@ -1,0 +1,113 @@
+"""Painting a map on a picture, and what the viewer is given."""
+
+import base64
+import json
+import re
+import unittest
+import zlib
+
+import h5py
+import numpy
+from PIL import Image
+
+import fixture
+import pinhole
+import support
+from report.exports import Picture, Shapes, unit_range
+from report.painting import paint, palette, pixel_values, project, visible, with_dots
+
+
+def picture_of(points, faces, size=64):
+    return Picture(**pinhole.picture_of_mesh(points, faces, size=size))
+
+
+class Painting(support.ReportTest):
+    def setUp(self):
+        self.points, self.faces = fixture.sphere()
+
+    def test_a_linear_map_is_painted_as_interpolated(self):
+        picture = picture_of(self.points, self.faces)
+        row, column = numpy.argwhere(picture.primitive >= 0)[200]
+        values = numpy.linspace(0, 1, len(self.points))
+        corners = self.faces[picture.primitive[row, column]]
+        expected = (values[corners] * picture.weights[row, column]).sum()
+        self.assertAlmostEqual(pixel_values(picture, values, self.faces)[row, column], expected, places=6)
+
+    def test_nothing_is_white_and_shade_darkens(self):
+        picture = picture_of(self.points, self.faces)
+        picture.shade[:] = 128
+        image = numpy.asarray(paint(picture, numpy.ones(len(self.points)), self.faces))
+        self.assertTrue((image[picture.primitive < 0] == 255).all())
+        self.assertTrue((image[picture.primitive >= 0] == (palette()[255] * (128 / 255)).round()).all())
+
+    def test_a_scan_takes_the_values_of_its_points(self):
+        picture = Picture(**pinhole.picture_of_scan(self.points, (1, 0, 0), size=64))
+        values = numpy.linspace(0, 1, len(self.points))
+        shown = pixel_values(picture, values, None)
+        seen = picture.primitive >= 0
+        self.assertTrue((shown[seen] == values[picture.primitive[seen]]).all())
+
+    def test_projected_points_fall_on_faces_that_have_them(self):
+        picture = picture_of(self.points, self.faces, size=200)
+        front = numpy.unique(self.faces[picture.primitive[picture.primitive >= 0]])
+        at = project(self.points[front], picture.view_projection, (200, 200))
+        self.assertTrue(((at >= 0) & (at < 200)).all())
+        # Not all: some corners of faces at the rim lie behind it.
+        self.assertGreater(len(visible(picture, front, self.points, self.faces)), 0.85 * len(front))
+
+    def test_picks_on_the_far_side_are_not_seen(self):
+        picture = picture_of(self.points, self.faces, size=200)
+        eye, _ = pinhole.camera(self.points, (1.0, 0.6, 1.2), 200)
+        far = numpy.argsort(self.points @ eye)[:20]
+        self.assertEqual(len(visible(picture, far, self.points, self.faces)), 0)
+
+    def test_dots_are_drawn_where_they_belong(self):
+        image = with_dots(Image.new("RGB", (100, 100), "black"), numpy.array([[30.0, 70.0]]))
+        changed = numpy.argwhere(numpy.asarray(image).any(axis=2))
+        self.assertTrue((abs(changed.mean(axis=0) - [70, 30]) < 1).all())
+
+    def test_maps_are_scaled_to_the_unit_range(self):
+        self.assertEqual(unit_range(numpy.array([2.0, 4.0, 3.0])).tolist(), [0, 1, 0.5])
+        self.assertEqual(unit_range(numpy.array([7.0, 7.0])).tolist(), [0, 0])
+        self.assertEqual(unit_range(numpy.array([numpy.nan, 1.0, 0.0])).tolist(), [0, 1, 0])
+
+    def test_viewer_data_undo_to_the_shape(self):
+        """The steps of viewer.js's unpack() give back points, faces and maps."""
+        out = support.make_full(self.folder / "viewer")
+        with support.without_drawing():
+            to = self.report("viewer", out=out)
+        text = (to / "shapes/1_2.js").read_text() + (to / "shapes/1.js").read_text()
+        calls = re.findall(r"salbench\.give\((\".*?\"), (\{.*?\}), \"(.*?)\"\);", text)
+        self.assertEqual([json.loads(call[0]) for call in calls], ["1_2", "1"])
+        with h5py.File(out / "shapes.h5") as file:
+            mesh, description = file["1"], json.loads(calls[1][1])
+            data = zlib.decompress(base64.b64decode(calls[1][2]))
+            n, f = description["points"], description["faces"]
+            axes = numpy.frombuffer(data, "<u2", 3 * n).reshape(3, n).cumsum(axis=1, dtype="<u2")
+            points = axes.T / 65535 * description["edge"] + description["corner"]
+            self.assertLess(abs(points - mesh["mesh/vertices"][:]).max(), 1e-4)
+            faces = numpy.frombuffer(data, "<i4", 3 * f, 6 * n).cumsum(dtype="<i4").reshape(f, 3)
+            self.assertTrue((faces == mesh["mesh/faces"][:]).all())
+            maps = numpy.frombuffer(data, numpy.uint8, offset=6 * n + 12 * f).reshape(len(description["maps"]), n)
+            at = description["maps"].index("LS, after matching")
+            self.assertLessEqual(abs(maps[at] / 255 - unit_range(mesh["matched.LS/saliency"][:])).max(), 0.5 / 255 + 1e-9)
+
+    def test_pictures_are_the_same_bytes_every_time(self):
+        out = support.make_full(self.folder / "twice")
+        with support.without_drawing():
+            first, second = (self.report(name, out=out) for name in ("first", "second"))
+        pictures = sorted(path.relative_to(first) for path in first.rglob("*.webp"))
+        self.assertGreater(len(pictures), 50)
+        for path in pictures:
+            self.assertEqual((first / path).read_bytes(), (second / path).read_bytes(), path)
+
+    def test_every_exported_shape_is_found(self):
+        path = self.folder / "some.h5"
+        fixture.write_export(path, fixture.eight_meshes()[:1], views=2, pictures=False)
+        shapes = Shapes([path])
+        self.assertEqual(shapes.items, ["1"])
+        self.assertEqual([shape.view for shape in shapes.scans("1")], ["0", "1"])
+
+
+if __name__ == "__main__":
+    unittest.main()

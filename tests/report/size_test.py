@@ -1,0 +1,30 @@
+"""The whole benchmark, 400 meshes and 4800 scans with made-up scores: time and size without pictures."""
+
+import time
+import unittest
+
+import fixture
+import support
+
+CLASSES = ("human cup glasses airplane ant chair octopus table teddy hand plier fish bird spring armadillo buste mechanic bearing "
+           "vase four-legged").split()
+
+
+class Size(support.ReportTest):
+    def test_400_meshes_and_4800_scans(self):
+        out = self.folder / "whole"
+        fixture.write_results(out, [(str(index + 1), CLASSES[index // 20]) for index in range(400)])
+        begin = time.monotonic()
+        to = self.report("whole")
+        seconds = time.monotonic() - begin
+        index = (to / "index.html").stat().st_size
+        whole = sum(path.stat().st_size for path in to.rglob("*") if path.is_file())
+        print(f"written in {seconds:.0f} s; index {index / 1e6:.2f} MB; whole {whole / 1e6:.1f} MB")
+        self.assertLess(seconds, 180)
+        self.assertLess(index, 3e6)
+        self.assertLess(whole, 600e6)
+        self.assertEqual(len(list((to / "shapes").glob("*.html"))), 400)
+
+
+if __name__ == "__main__":
+    unittest.main()
