@@ -24,7 +24,14 @@ class Picture:
     weights: numpy.ndarray          # H x W x 3 float32: of the face's corners; of a scan 1, 0, 0
     shade: numpy.ndarray            # H x W uint8: brightness
     view_projection: numpy.ndarray  # 4 x 4 float64: world to clip space, column vectors; None if not recorded
-    depth: numpy.ndarray            # H x W float32: distance from the camera; None if not recorded
+    depth: numpy.ndarray            # H x W float32: along the viewing direction, the w of clip space; None if not recorded
+    coverage: numpy.ndarray = None  # H x W uint8: part of the pixel that the shape fills; None: all of it
+
+    def camera(self):
+        """Its position in the coordinates of the shape, and which axis points up in the picture, "y" or "z"."""
+        rows = self.view_projection[[0, 1, 3]]
+        eye = numpy.linalg.svd(rows)[2][-1]  # the only point that has no place in the image
+        return eye[:3] / eye[3], "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
 
 
 class Shape:
@@ -86,6 +93,14 @@ class Shape:
         towards /= numpy.linalg.norm(towards, axis=1, keepdims=True)
         return numpy.clip(numpy.abs((normals * towards).sum(axis=1)), 0, 1)
 
+    def eye(self):
+        """From where the shape is looked at first, or None, and its upward axis: as in its picture, else from where it was
+        scanned."""
+        picture = self.picture()
+        if picture is not None and picture.view_projection is not None:
+            return picture.camera()
+        return self._array("scan/camera"), "y"
+
     def picture(self):
         """The picture, or None where the export has none that can be used."""
         primitive, shade = self._array("picture/primitive"), self._array("picture/shade")
@@ -94,7 +109,8 @@ class Shape:
             return None
         if weights.dtype.kind == "u":  # share of the type's range
             weights = weights.astype(numpy.float32) / numpy.iinfo(weights.dtype).max
-        return Picture(primitive, weights, shade, self._array("picture/view_projection"), self._array("picture/depth"))
+        return Picture(primitive, weights, shade, self._array("picture/view_projection"), self._array("picture/depth"),
+                       self._array("picture/coverage"))
 
 
 def unit_range(values):

@@ -44,7 +44,7 @@ class Painter:
         if what == "ground truth":
             picks, points = self.shape.picks, self.shape.points
             if points is not None:
-                return with_dots(image, visible(self.picture, picks, points, self.faces))
+                return with_dots(image, visible(self.picture, picks, points))
         return image
 
 

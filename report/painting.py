@@ -8,6 +8,7 @@ from report.style import MAP
 
 PICK = (213, 94, 0)  # vermillion, with a white rim: seen on all of viridis
 SUPERSAMPLING = 3    # of the dots
+DEPTH_MARGIN = 0.004  # share of the depth by which a pick may lie behind what its pixels show
 
 
 def palette(name=MAP):
@@ -32,34 +33,35 @@ def paint(picture, values, faces):
     shown = pixel_values(picture, values, faces)
     seen = ~numpy.isnan(shown)
     image = numpy.full((*shown.shape, 3), 255, dtype=numpy.uint8)
-    colours = palette()[numpy.clip(shown[seen] * 255, 0, 255).round().astype(int)]
-    image[seen] = (colours * (picture.shade[seen, None] / 255.0)).round()
+    colours = palette()[numpy.clip(shown[seen] * 255, 0, 255).round().astype(int)] * (picture.shade[seen, None] / 255.0)
+    covered = 1.0 if picture.coverage is None else picture.coverage[seen, None] / 255.0
+    image[seen] = (255 + (colours - 255) * covered).round()
     return Image.fromarray(image)
 
 
 def project(points, view_projection, size):
-    """m x 2 pixel coordinates (x to the right, y down) of m x 3 points; size: (width, height)."""
+    """m x 2 pixel coordinates (x to the right, y down) and m depths of m x 3 points; size: (width, height)."""
     clip = numpy.column_stack([points, numpy.ones(len(points))]) @ numpy.asarray(view_projection).T
     x, y = (clip[:, :2] / clip[:, 3:]).T
-    return numpy.column_stack([(x + 1) / 2 * size[0], (1 - y) / 2 * size[1]])
+    return numpy.column_stack([(x + 1) / 2 * size[0], (1 - y) / 2 * size[1]]), clip[:, 3]
 
 
-def visible(picture, picks, points, faces):
-    """Pixel coordinates of the picks that the camera sees: near the projected point there is the point itself, or one of
-    its faces."""
-    if picture.view_projection is None or len(picks) == 0:
+def visible(picture, picks, points):
+    """Pixel coordinates, k x 2, of the picks that the camera sees: at least one of the pixels about a pick shows nothing
+    that is nearer to the camera."""
+    if picture.view_projection is None or picture.depth is None or len(picks) == 0:
         return numpy.zeros((0, 2))
     height, width = picture.primitive.shape
-    at = project(points[picks], picture.view_projection, (width, height))
-    found = []
-    for pick, (x, y) in zip(picks, at):
-        column, row = int(numpy.floor(x)), int(numpy.floor(y))
-        near = picture.primitive[max(row - 2, 0):max(row + 3, 0), max(column - 2, 0):max(column + 3, 0)]
-        near = near[near >= 0]
-        corners = near if faces is None else faces[near]
-        if (corners == pick).any():
-            found.append((x, y))
-    return numpy.array(found).reshape(-1, 2)
+    at, depth = project(points[picks], picture.view_projection, (width, height))
+    column, row = numpy.floor(at).astype(int).T
+    inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    column, row = column.clip(0, width - 1), row.clip(0, height - 1)
+    farthest = numpy.full(len(picks), -numpy.inf)  # of the 3 x 3 pixels about the pick, so that picks on edges count
+    for down in (-1, 0, 1):
+        for right in (-1, 0, 1):
+            near = picture.depth[(row + down).clip(0, height - 1), (column + right).clip(0, width - 1)]
+            farthest = numpy.maximum(farthest, numpy.where(numpy.isfinite(near), near, -numpy.inf))
+    return at[inside & (depth <= farthest * (1 + DEPTH_MARGIN))]
 
 
 def with_dots(image, dots):

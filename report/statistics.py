@@ -75,7 +75,7 @@ def per_class(results, dataset, metric):
         table = results.table("per_class.csv", "dataset", "class", "model", "n", "auc_mean", "auc_ci95")
         rows = table[table["dataset"] == dataset].rename(columns={"auc_mean": "mean", "auc_ci95": "ci95"})
         if rows.empty:
-            raise Missing(f"per_class.csv has no rows of {dataset}.")
+            raise Missing(f"per_class.csv has no rows of {dataset}: they have no scores, or no classes.")
         return rows.replace({"model": {"Avg-AUC": "Avg"}}).drop(columns="dataset").reset_index(drop=True)
     wide = scores(results, dataset, metric)
     class_of = classes(results)

@@ -44,11 +44,11 @@ def script(shape, maps, title):
     if shade is not None:
         parts.append((shade * 255).round().astype(numpy.uint8).tobytes())
     parts += [(values * 255).round().astype(numpy.uint8).tobytes() for values in known.values()]
-    camera = None if not shape.view else shape._array("scan/camera")
+    eye, up = shape.eye()
     description = {
         "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge,
         "shaded": shade is not None, "maps": list(known), "picks": shape.picks.tolist(),
-        "spacing": spacing(points), "camera": None if camera is None else camera.tolist(),
+        "spacing": spacing(points), "camera": None if eye is None else eye.tolist(), "up": up,
     }
     data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()
     return f"salbench.give({json.dumps(shape.name)}, {json.dumps(description)}, {json.dumps(data)});\n"

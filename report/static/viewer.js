@@ -74,6 +74,8 @@ salbench.View = class {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(0xffffff);
+    this.upright = new THREE.Group(); // turns the shape's upward axis to y, about which the controls turn
+    this.scene.add(this.upright);
     this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
     this.light = new THREE.DirectionalLight(0xffffff, 0.65);
     this.scene.add(new THREE.AmbientLight(0xffffff, 0.45), this.light);
@@ -111,7 +113,7 @@ salbench.View = class {
   }
 
   build() {
-    if (this.object) { this.scene.remove(this.object, this.dots); this.object.geometry.dispose(); }
+    if (this.object) { this.upright.remove(this.object, this.dots); this.object.geometry.dispose(); }
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(this.shape.position, 3));
     geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(3 * this.shape.points), 3, true));
@@ -136,9 +138,10 @@ salbench.View = class {
       part.scale.setScalar(1 / radius);
       part.position.copy(center).multiplyScalar(-1 / radius);
     }
-    this.scene.add(this.object, this.dots);
-    this.home = this.shape.camera ? new THREE.Vector3(...this.shape.camera).sub(center).normalize()
-      : new THREE.Vector3(1, 0.6, 1.2).normalize();
+    this.upright.rotation.x = this.shape.up === "z" ? -Math.PI / 2 : 0;
+    this.upright.add(this.object, this.dots);
+    this.home = (this.shape.camera ? new THREE.Vector3(...this.shape.camera).sub(center) : new THREE.Vector3(1, 0.6, 1.2))
+      .applyQuaternion(this.upright.quaternion).normalize();
     this.dots.visible = salbench.picks;
   }
 
@@ -185,7 +188,8 @@ salbench.View = class {
   draw() {
     this.light.position.copy(this.camera.position);
     if (this.dots) { // nearer to the eye than the surface that they lie on
-      this.dots.position.copy(this.object.position).addScaledVector(this.camera.position, 0.025 / this.camera.position.length());
+      const towards = this.camera.position.clone().applyQuaternion(this.upright.quaternion.clone().inverse()).normalize();
+      this.dots.position.copy(this.object.position).addScaledVector(towards, 0.025);
     }
     this.renderer.render(this.scene, this.camera);
   }

@@ -50,16 +50,31 @@ class Painting(support.ReportTest):
     def test_projected_points_fall_on_faces_that_have_them(self):
         picture = picture_of(self.points, self.faces, size=200)
         front = numpy.unique(self.faces[picture.primitive[picture.primitive >= 0]])
-        at = project(self.points[front], picture.view_projection, (200, 200))
+        at, depth = project(self.points[front], picture.view_projection, (200, 200))
         self.assertTrue(((at >= 0) & (at < 200)).all())
+        self.assertTrue((depth > 0).all())
         # Not all: some corners of faces at the rim lie behind it.
-        self.assertGreater(len(visible(picture, front, self.points, self.faces)), 0.85 * len(front))
+        self.assertGreater(len(visible(picture, front, self.points)), 0.8 * len(front))
 
     def test_picks_on_the_far_side_are_not_seen(self):
         picture = picture_of(self.points, self.faces, size=200)
         eye, _ = pinhole.camera(self.points, (1.0, 0.6, 1.2), 200)
         far = numpy.argsort(self.points @ eye)[:20]
-        self.assertEqual(len(visible(picture, far, self.points, self.faces)), 0)
+        self.assertEqual(len(visible(picture, far, self.points)), 0)
+
+    def test_partly_covered_pixels_are_mixed_with_white(self):
+        picture = picture_of(self.points, self.faces)
+        picture.coverage = numpy.full(picture.primitive.shape, 51, numpy.uint8)
+        picture.shade[:] = 255
+        image = numpy.asarray(paint(picture, numpy.zeros(len(self.points)), self.faces))
+        expected = (255 + (palette()[0].astype(float) - 255) * 0.2).round()
+        self.assertTrue((image[picture.primitive >= 0] == expected).all())
+
+    def test_the_camera_is_found_in_the_matrix(self):
+        eye, view_projection = pinhole.camera(self.points, (1.0, 0.6, 1.2), 64)
+        found, up = picture_of(self.points, self.faces).camera()
+        numpy.testing.assert_allclose(found, eye, atol=1e-9)
+        self.assertEqual(up, "y")
 
     def test_dots_are_drawn_where_they_belong(self):
         image = with_dots(Image.new("RGB", (100, 100), "black"), numpy.array([[30.0, 70.0]]))

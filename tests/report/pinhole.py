@@ -23,7 +23,7 @@ def camera(points, towards, size):
 def pixels(points, view_projection, size):
     clip = numpy.column_stack([points, numpy.ones(len(points))]) @ view_projection.T
     flat = clip[:, :2] / clip[:, 3:]
-    return (flat[:, 0] + 1) / 2 * size, (1 - flat[:, 1]) / 2 * size
+    return (flat[:, 0] + 1) / 2 * size, (1 - flat[:, 1]) / 2 * size, clip[:, 3]
 
 
 def empty(size):
@@ -34,8 +34,7 @@ def empty(size):
 def picture_of_mesh(points, faces, towards=(1.0, 0.6, 1.2), size=400):
     """The data sets of /ITEM/picture."""
     eye, view_projection = camera(points, towards, size)
-    x, y = pixels(points, view_projection, size)
-    distance = numpy.linalg.norm(points - eye, axis=1)
+    x, y, distance = pixels(points, view_projection, size)
     primitive, weights, shade, depth = empty(size)
     for index, (a, b, c) in enumerate(faces):
         area = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
@@ -51,25 +50,26 @@ def picture_of_mesh(points, faces, towards=(1.0, 0.6, 1.2), size=400):
         part = (slice(top, bottom), slice(left, right))
         seen = (wa >= 0) & (wb >= 0) & (wc >= 0) & (far < depth[part])
         normal = numpy.cross(points[b] - points[a], points[c] - points[a])
-        light = abs(normal @ (eye - points[a])) / max(numpy.linalg.norm(normal) * distance[a], 1e-30)
+        light = abs(normal @ (eye - points[a])) / max(numpy.linalg.norm(normal) * numpy.linalg.norm(eye - points[a]), 1e-30)
         primitive[part][seen], depth[part][seen] = index, far[seen]
         weights[part][seen] = numpy.stack([wa, wb, wc], axis=-1)[seen]
         shade[part][seen] = round(255 * (0.35 + 0.65 * light))
-    return {"primitive": primitive, "weights": weights, "shade": shade, "depth": depth, "view_projection": view_projection}
+    return {"primitive": primitive, "weights": weights, "shade": shade, "depth": depth, "view_projection": view_projection,
+            "coverage": numpy.where(primitive >= 0, 255, 0).astype(numpy.uint8)}
 
 
 def picture_of_scan(points, towards, size=400, half=3):
     """Points as squares of 2 half + 1 pixels."""
-    eye, view_projection = camera(points, towards, size)
-    x, y = pixels(points, view_projection, size)
-    distance = numpy.linalg.norm(points - eye, axis=1)
+    view_projection = camera(points, towards, size)[1]
+    x, y, distance = pixels(points, view_projection, size)
     primitive, weights, shade, depth = empty(size)
     for index in numpy.argsort(-distance):
         part = (slice(max(int(y[index]) - half, 0), int(y[index]) + half + 1),
                 slice(max(int(x[index]) - half, 0), int(x[index]) + half + 1))
         primitive[part], depth[part], shade[part] = index, distance[index], 235
     weights[primitive >= 0] = (1, 0, 0)
-    return {"primitive": primitive, "weights": weights, "shade": shade, "depth": depth, "view_projection": view_projection}
+    return {"primitive": primitive, "weights": weights, "shade": shade, "depth": depth, "view_projection": view_projection,
+            "coverage": numpy.where(primitive >= 0, 255, 0).astype(numpy.uint8)}
 
 
 def add_pictures(file, size=400):
