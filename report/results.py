@@ -28,6 +28,7 @@ class Results:
     folder: Path
     record: dict = field(default_factory=dict)    # run.yaml with every scalar as text
     remarks: list = field(default_factory=list)   # lines of '#' at the head of run.yaml and of the tables
+    pivoted: dict = field(default_factory=dict)   # (data set, metric) -> scores, for statistics.scores
     _tables: dict = field(default_factory=dict)
 
     def table(self, name, *columns):

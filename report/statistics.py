@@ -27,7 +27,15 @@ def models(results):
 
 
 def scores(results, dataset, metric):
-    """One row per shape (index item, view), one column per model; NaN where a score is undefined or missing."""
+    """One row per shape (index item, view), one column per model; NaN where a score is undefined or missing. Made once
+    per data set and metric: callers leave it as it is."""
+    known = results.pivoted.get((dataset, metric))
+    if known is None:
+        known = results.pivoted[dataset, metric] = pivot_scores(results, dataset, metric)
+    return known
+
+
+def pivot_scores(results, dataset, metric):
     table = results.table("results.csv", "dataset", "item", "view", "model", metric)
     rows = table[table["dataset"] == dataset].drop_duplicates(["item", "view", "model"], keep="last")
     if rows.empty:

@@ -126,19 +126,21 @@ def participants_worth(shop):
 
 def parameters(shop):
     """Table 1: the paper's parameters and where each protocol puts them; then every option of the models."""
-    protocols = dict(shop.protocols)
     ours = shop.results.option("protocol")
     configuration = shop.results.record.get("configuration")
+    flat = {name: model_options(values) for name, values in shop.protocols.items()}
     if isinstance(configuration, dict):
-        protocols[f"this run ({ours})" if ours else "this run"] = configuration
-    if not protocols:
+        own = model_options(configuration)
+        if flat.get(ours) == own:
+            del flat[ours]  # the run's own column says the same
+        flat = {f"this run ({ours})" if ours else "this run": own} | flat
+    if not flat:
         raise Missing("run.yaml holds no configuration.")
     blocks = []
     for protocol in ("published", "text"):
-        if protocol not in protocols and not (ours == protocol):
+        if protocol not in shop.protocols and ours != protocol:
             blocks.append(Note(f"The column of protocol {protocol} is missing: scripts/report asks the built program for it, "
                                "and found none.", missing=True))
-    flat = {name: flatten(values) for name, values in protocols.items()}
     rows = []
     for row in paper.read("parameters.csv").to_dict("records"):
         cells = [Cell(row["model"]), Cell(row["symbol"]), Cell(f"{row['value']} {row['unit']}".strip()), Cell(row["option"])]
@@ -156,8 +158,7 @@ def parameter_cell(values, row):
 
 
 def all_options(flat):
-    sections = ("models.", "fpfh.", "scan_fpfh.", "normals.", "scan_normals.", "surface.")
-    paths = dict.fromkeys(path for values in flat.values() for path in values if path.startswith(sections))
+    paths = dict.fromkeys(path for values in flat.values() for path in values)
     rows = []
     for path in paths:
         values = [options.get(path, "–") for options in flat.values()]
@@ -165,6 +166,12 @@ def all_options(flat):
         rows.append([Cell(path)] + [Cell(value, bold=differ) for value in values])
     return Table("options", "Every option of models, descriptors and normals; bold where the columns differ.",
                  ["Option", *flat], rows, [False] * (1 + len(flat)), folded="Every option")
+
+
+def model_options(configuration):
+    """The options that saliency maps depend on, by path."""
+    sections = ("models.", "fpfh.", "scan_fpfh.", "normals.", "scan_normals.", "surface.")
+    return {path: value for path, value in flatten(configuration).items() if path.startswith(sections)}
 
 
 def flatten(values, prefix=""):
