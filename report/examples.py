@@ -45,6 +45,12 @@ def pieces(shop, shape, model):
     return found
 
 
+def thumbnails(shop):
+    """(item, path of its painted ground truth) of the meshes that have both, in the order of their names."""
+    painters = sorted(scored_pictures(shop, "meshes"), key=lambda painter: natural(painter.shape.name))
+    return [(painter.shape.item, painter.paint("ground truth")) for painter in painters if painter.shape.item in shop.pages]
+
+
 def map_tile(shop, painter, what, when, title, scored=True, small=False):
     shape = painter.shape
     picture = painter.paint(what, when, small)

@@ -69,7 +69,7 @@ def with_dots(image, dots):
     if len(dots) == 0:
         return image
     k = SUPERSAMPLING
-    radius = max(2, image.width / 150)
+    radius = max(2, image.width / 100)
     large = image.resize((image.width * k, image.height * k), Image.Resampling.NEAREST)
     draw = ImageDraw.Draw(large)
     for x, y in dots * k:

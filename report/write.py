@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from report import comparison, run_page, score_pages, shape_pages, style
+from report import comparison, examples, run_page, score_pages, shape_pages, style
 from report.elements import ELEMENTS, attempt
 from report.exports import Shapes
 from report.pages import Pages, copy_static, prepare_folder
@@ -28,12 +28,12 @@ def write_report(options, protocols):
     for item, category in meshes.items():
         shape_pages.write_page(shop, pages, scores, item, category)
     score_pages.write_page(shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores",
-                           heading="Scores of every shape", shapes=shop.pages,
+                           heading="Scores of every shape", shapes=shop.pages, thumbnails=examples.thumbnails(shop),
                            caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.")
     if other:
         first, second = comparison.names(results, other)
         score_pages.write_page(shop, pages, "comparison.html", lambda: comparison.differences(shop, other),
-                               comparison.blocks(shop, other), title="Comparison", heading="Two runs side by side", shapes={},
+                               comparison.blocks(shop, other), title="Comparison", heading="Two runs side by side", shapes={}, thumbnails=[],
                                caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
     sections = [(element, attempt(element.build, shop)) for element in ELEMENTS]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
