@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from report.results import Missing
+
 
 @dataclass
 class Note:
@@ -58,12 +60,20 @@ class Tile:
 
 @dataclass
 class Gallery:
-    """Rows of tiles under column heads, with one colour bar."""
+    """Rows of tiles with one colour bar."""
     caption: str
-    heads: list
     rows: list           # (label, [Tile])
     files: list = field(default_factory=list)
     kind: str = "gallery"
+
+
+def attempt(build, *arguments):
+    """The blocks that build makes, or the note that stands in their place."""
+    try:
+        blocks = build(*arguments)
+    except Missing as reason:
+        return [Note(str(reason), missing=True)]
+    return blocks if isinstance(blocks, list) else [blocks]
 
 
 def cell(value, digits=3, **more):

@@ -171,7 +171,8 @@ def step(rows, first, second):
     freedom = variances.sum() ** 2 / (variances[0] ** 2 / (a["n_meshes"] - 1) + variances[1] ** 2 / (b["n_meshes"] - 1))
     half = stats.t.ppf(0.975, freedom) * numpy.sqrt(variances.sum())
     rise = b["mean"] - a["mean"]
-    return Finding("", f"n = {int(first)} to {int(second)}", rise, rise - half, rise + half, int(min(a["n_meshes"], b["n_meshes"])))
+    n = int(min(a["n_meshes"], b["n_meshes"]))
+    return Finding("", f"n = {int(first)} to {int(second)}", rise, rise - half, rise + half, n)
 
 
 def rises(results, claim):
@@ -235,7 +236,8 @@ def near_normal(results, claim):
     middles, weights = (ends[1:] + ends[:-1]) / 2, numpy.diff(shares)
     mean = (middles * weights).sum()
     deviation = numpy.sqrt(((middles - mean) ** 2 * weights).sum())
-    return distance(f"{claim['a']} and a normal distribution", shares, stats.norm.cdf(ends, mean, deviation), float(claim["b"]))
+    normal = stats.norm.cdf(ends, mean, deviation)
+    return distance(f"{claim['a']} and a normal distribution", shares, normal, float(claim["b"]))
 
 
 def distributions_differ(results, claim):

@@ -5,6 +5,10 @@ from report.blocks import Cell, Note, Table, cell, count, interval
 from report.names import ALL_METRICS, DATASETS
 from report.results import Missing
 
+CAPTION = ("What the paper's text says of its figures, and what this run finds. Differences with 95 % intervals; verdicts by "
+           "the paper's rank-sum test at 0.05. Without a significant difference a verdict takes nearly as many shapes as the "
+           "paper had.")
+HEADS = ["Section", "The paper", "Data set", "Metric", "Found", "Figure", "95 % interval", "Shapes", "Verdict"]
 STYLES = {checks.HOLDS: "holds", checks.FAILS: "fails", checks.UNDECIDED: "open"}
 
 
@@ -25,15 +29,13 @@ def table(shop):
             rows.append(head + [Cell(f"Missing: {str(reason).rstrip('.')}."), cell(None), cell(None), cell(None),
                                 Cell("no verdict", style="open")])
             continue
-        verdict = Cell("no verdict", style="open") if shop.results.simulated else Cell(finding.verdict, style=STYLES[finding.verdict])
+        verdict = Cell(finding.verdict, style=STYLES[finding.verdict])
+        if shop.results.simulated:
+            verdict = Cell("no verdict", style="open")
         counts[finding.verdict] += 1
         rows.append(head + [Cell(finding.figure), cell(finding.value), interval(finding.low, finding.high),
                             count(finding.n) if finding.n else cell(None), verdict])
-    made = Table("claims", "What the paper's text says of its figures, and what this run finds. Differences with 95 % intervals; "
-                 "verdicts by the paper's rank-sum test at 0.05. Without a significant difference a verdict takes nearly as "
-                 "many shapes as the paper had.", ["Section", "The paper", "Data set", "Metric", "Found", "Figure",
-                                                   "95 % interval", "Shapes", "Verdict"], rows,
-                 [False] * 5 + [True] * 3 + [False], filters=[2, 3, 8])
+    made = Table("claims", CAPTION, HEADS, rows, [False] * 5 + [True] * 3 + [False], filters=[2, 3, 8])
     if shop.results.simulated:
         return [Note("No verdicts: the participants are simulated, so that nothing here speaks for or against the paper."), made]
     return [Note(", ".join(f"{number} {verdict}" for verdict, number in counts.items()) + "."), made]

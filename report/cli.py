@@ -39,8 +39,9 @@ def protocols(program):
             file.write(f"protocol: {protocol}\n")
             file.flush()
             try:
-                printed = subprocess.run([program, "config", file.name], capture_output=True, text=True, timeout=60, check=True)
-                found[protocol] = yaml.load(printed.stdout, Loader=yaml.BaseLoader)
+                printed = subprocess.run([program, "config", file.name], stdout=subprocess.PIPE, text=True, timeout=60,
+                                         stderr=subprocess.DEVNULL, check=True).stdout
+                found[protocol] = yaml.load(printed, Loader=yaml.BaseLoader)
             except (OSError, subprocess.SubprocessError, yaml.YAMLError):
                 continue
     return found

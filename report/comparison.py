@@ -1,14 +1,30 @@
 """Two runs side by side: what they were, how their configurations differ, their means, and the differences per shape."""
 
 from report import statistics
-from report.blocks import Cell, Note, Table, cell, count, interval
-from report.elements import attempt
+from report.blocks import Cell, Note, Table, attempt, cell, count, interval
 from report.names import ALL_METRICS, DATASETS
 from report.results import Missing, text_of
 from report.score_pages import page_data
 from report.tables import flatten, signed
 
 ABSENT = "–"
+
+
+def digest(results):
+    entry = results.record.get("data_set")
+    return text_of(entry.get("digest")) if isinstance(entry, dict) else ""
+
+
+FACTS = {
+    "Program": lambda run: text_of(run.record.get("program")),
+    "Results": lambda run: run.state,
+    "Protocol": lambda run: run.option("protocol"),
+    "Seed": lambda run: run.option("seed"),
+    "Data, digest": digest,
+    "Reference": lambda run: text_of(run.record.get("reference")),
+    "Models of one's own": lambda run: ", ".join(run.evaluated),
+    "Participants": lambda run: "simulated" if run.simulated else "measured",
+}
 
 
 def blocks(shop, other):
@@ -27,23 +43,15 @@ def names(results, other):
 
 def facts(results, other):
     rows = []
-    for label, read in (("Program", lambda run: text_of(run.record.get("program"))), ("Results", lambda run: run.state),
-                        ("Protocol", lambda run: run.option("protocol")), ("Seed", lambda run: run.option("seed")),
-                        ("Data, digest", lambda run: digest(run)), ("Reference", lambda run: text_of(run.record.get("reference"))),
-                        ("Models of one's own", lambda run: ", ".join(run.evaluated)),
-                        ("Participants", lambda run: "simulated" if run.simulated else "measured")):
+    for label, read in FACTS.items():
         values = [read(run) or ABSENT for run in (results, other)]
         rows.append([Cell(label)] + [Cell(value, bold=values[0] != values[1]) for value in values])
-    table = Table("compared-facts", "The two runs; bold where they differ.", ["What", *names(results, other)], rows, [False] * 3)
+    heads = ["What", *names(results, other)]
+    table = Table("compared-facts", "The two runs; bold where they differ.", heads, rows, [False] * 3)
     if digest(results) != digest(other):
         return [Note("The runs were over different data: means of one are of other shapes than those of the other. Differences "
                      "below are over the shapes that both have."), table]
     return table
-
-
-def digest(results):
-    entry = results.record.get("data_set")
-    return text_of(entry.get("digest")) if isinstance(entry, dict) else ""
 
 
 def differing(first, second, caption, identifier, heads, what):
@@ -103,10 +111,9 @@ def means(shop, other):
         raise Missing("The two runs have no model with scores of the same shape.")
     missing = sorted(set(shop.models) ^ set(statistics.models(other)))
     notes = [Note(f"Models that only one run has are left out: {', '.join(missing)}.")] if missing else []
-    return notes + [Table("compared-means", "Means over the shapes that both runs scored, and the mean of the differences per shape "
-                          "with its 95 % interval.", ["Data set", "Model", "Metric", "Shapes", *names(shop.results, other),
-                                                      "Difference", "95 % interval"], rows, [False] * 3 + [True] * 5,
-                          filters=[0, 1, 2])]
+    caption = ("Means over the shapes that both runs scored, and the mean of the differences per shape with its 95 % interval.")
+    heads = ["Data set", "Model", "Metric", "Shapes", *names(shop.results, other), "Difference", "95 % interval"]
+    return notes + [Table("compared-means", caption, heads, rows, [False] * 3 + [True] * 5, filters=[0, 1, 2])]
 
 
 def differences(shop, other):

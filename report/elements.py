@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from typing import Callable
 
 from report import claims, examples, figures, tables
-from report.blocks import Note
+from report.blocks import attempt
 from report.names import DATASETS, METRICS
-from report.results import Missing
 
 
 @dataclass(frozen=True)
@@ -16,15 +15,6 @@ class Element:
     label: str       # the paper's LaTeX label
     title: str
     build: Callable  # Workshop -> blocks
-
-
-def attempt(build, *arguments):
-    """The blocks that build makes, or the note that stands in their place."""
-    try:
-        blocks = build(*arguments)
-    except Missing as reason:
-        return [Note(str(reason), missing=True)]
-    return blocks if isinstance(blocks, list) else [blocks]
 
 
 def distributions(shop):
@@ -64,7 +54,8 @@ ELEMENTS = (
     Element("claims", "", "", "What the paper says, checked", claims.table),
     Element("figure-1", "Figure 1", "fig:teaser", "Examples of saliency maps", examples.meshes),
     Element("figure-2", "Figure 2", "fig:saliency_maps_avg_distribution", "Distributions of saliency", distributions),
-    Element("figure-3", "Figure 3", "fig:maps_after_matching_hist", "Before and after histogram matching", examples.matching),
+    Element("figure-3", "Figure 3", "fig:maps_after_matching_hist", "Before and after histogram matching",
+            examples.matching),
     Element("table-1", "Table 1", "table:params_per_method", "Parameters", tables.parameters),
     Element("figure-4", "Figure 4", "fig:saliency_performance", "Performance on meshes", performance),
     Element("figure-5", "Figure 5", "fig:human_performance", "Human performance", participants),

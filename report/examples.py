@@ -24,7 +24,9 @@ def scored_pictures(shop, dataset):
         mean = statistics.mean_per_shape(shop.results, dataset, "auc").to_dict()
     except Missing:
         mean = {}
-    order = lambda painter: (-mean.get((painter.shape.item, painter.shape.view), -1.0), natural(painter.shape.name))  # noqa: E731
+
+    def order(painter):
+        return -mean.get((painter.shape.item, painter.shape.view), -1.0), natural(painter.shape.name)
     return sorted((painter for painter in shop.painters if painter.shape.dataset == dataset), key=order)
 
 
@@ -41,7 +43,8 @@ def pieces(shop, shape, model):
         row = scores_of(shop).of(shape.dataset, metric, shape.item, shape.view)
         value = row.get(model, (float("nan"),))[0]
         known = [entry[0] for name, entry in row.items() if entry[0] == entry[0] and name != "HS"]
-        found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), value == value and value == max(known)))
+        best = value == value and value == max(known, default=None)
+        found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), best))
     return found
 
 
@@ -87,14 +90,14 @@ def chosen(shop, dataset, count):
 
 
 def meshes(shop):
-    gallery = Gallery("Saliency maps before histogram matching, with (AUC, NSS, LCC) of the matched map; best model in bold.",
-                      [], rows_of_maps(shop, chosen(shop, "meshes", 2)))
+    gallery = Gallery("Saliency maps before histogram matching, with (AUC, NSS, LCC) of the matched map; best model in "
+                      "bold.", rows_of_maps(shop, chosen(shop, "meshes", 2)))
     return printed(shop, "examples-meshes", gallery)
 
 
 def scans(shop):
     gallery = Gallery("Saliency maps before histogram matching on simulated range scans, with (AUC, NSS, LCC) of the matched "
-                      "map; best model in bold.", [], rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
+                      "map; best model in bold.", rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
     return printed(shop, "examples-scans", gallery)
 
 
@@ -105,8 +108,8 @@ def matching(shop):
     truth = map_tile(shop, painter, "ground truth", "before", "Ground truth")
     rows = [(label, ([truth] if when == "before" else []) + [map_tile(shop, painter, model, when, model, scored=False)
              for model in models]) for when, label in (("before", "Before"), ("after", "After"))]
-    gallery = Gallery(f"Saliency maps of {describe(painter.shape)} before and after their histograms were matched to that of the "
-                      "ground truth.", [], rows)
+    gallery = Gallery(f"Saliency maps of {describe(painter.shape)} before and after their histograms were matched to that "
+                      "of the ground truth.", rows)
     return printed(shop, "matching", gallery)
 
 
@@ -135,8 +138,8 @@ def difficult(shop, dataset, metric, count=3):
         tiles.append(map_tile(shop, painter, "ground truth", "before", label))
         if len(best):
             tiles.append(map_tile(shop, painter, best.idxmax(), "after", f"best: {best.idxmax()}"))
-    gallery = Gallery(f"The lowest-scoring {dataset} by {METRICS[metric]}: ground truth, and the map of the model that scores best "
-                      "there, after matching; below: AUC, NSS, LCC.", [], [("", tiles)])
+    gallery = Gallery(f"The lowest-scoring {dataset} by {METRICS[metric]}: ground truth, and the map of the model that scores "
+                      "best there, after matching; below: AUC, NSS, LCC.", [("", tiles)])
     return printed(shop, f"difficult-{dataset}-{metric}", gallery)
 
 

@@ -12,7 +12,8 @@ from report.viewer import palette_script
 
 HERE = Path(__file__).resolve().parent
 MARK = "salbench report"  # <meta name="generator"> of index.html: a folder that has it may be written again
-THREE = tuple(Path("/usr/share/javascript/three") / name for name in ("three.min.js", "examples/js/controls/OrbitControls.js"))
+THREE = tuple(Path("/usr/share/javascript/three") / name  # Debian's libjs-three
+              for name in ("three.min.js", "examples/js/controls/OrbitControls.js"))
 FOLDERS = ("figures", "data", "shapes", "pictures", "static")
 
 

@@ -4,8 +4,7 @@ import numpy
 import pandas
 
 from report import style
-from report.blocks import Cell, Note, Table, cell, count
-from report.elements import attempt
+from report.blocks import Cell, Note, Table, attempt, cell, count
 from report.results import Missing, number_of, text_of
 from report.tables import flatten
 
@@ -41,12 +40,18 @@ def facts(shop):
                  [[Cell(name.replace("_", " ")), Cell(value)] for name, value in lines.items()], [False, False])
 
 
+def failed(results):
+    """The failed jobs of run.yaml: item, stage and cause of each."""
+    entries = results.record.get("failed")
+    return [{key: text_of(entry.get(key)) for key in ("item", "stage", "cause")}
+            for entry in (entries if isinstance(entries, list) else []) if isinstance(entry, dict)]
+
+
 def failures(shop):
-    failed = known_record(shop).get("failed") or []
-    if not isinstance(failed, list) or not failed:
+    known_record(shop)
+    rows = [[Cell(text) for text in entry.values()] for entry in failed(shop.results)]
+    if not rows:
         return Note("No item failed.")
-    rows = [[Cell(text_of(entry.get(key))) for key in ("item", "stage", "cause")] for entry in failed
-            if isinstance(entry, dict)]
     return Table("failed", f"{len(rows)} jobs failed; the others went on without them.", ["Item", "Stage", "Cause"], rows,
                  [False] * 3, filters=[1])
 
@@ -124,7 +129,8 @@ def timeline(shop):
     axes = figure.subplots()
     palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#767676"]
     ends = numpy.append(shown.index, len(starts)) * width  # the last interval is drawn to its end
-    axes.stackplot(ends, numpy.vstack([shown.to_numpy(), shown.to_numpy()[-1:]]).T, labels=shown.columns, colors=palette, step="post", lw=0)
+    heights = numpy.vstack([shown.to_numpy(), shown.to_numpy()[-1:]])
+    axes.stackplot(ends, heights.T, labels=shown.columns, colors=palette, step="post", lw=0)
     axes.set(xlabel="Seconds since the start", ylabel="Cores at work", xlim=(0, table["end"].max()))
     axes.set_ylim(0, max(number_of(shop.results.record.get("threads"), 1), shown.sum(axis=1).max()) * 1.02)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)

@@ -1,7 +1,7 @@
 """A page per mesh: its scores and ranks, its pictures, its scans, and the viewer."""
 
-from report import statistics
-from report.blocks import Cell, Gallery, Note, Table, Tile, cell
+from report import run_page, statistics
+from report.blocks import Cell, Gallery, Note, Table, Tile, attempt, cell
 from report.gallery import Painter, describe
 from report.names import METRICS, file_name, natural
 from report.results import DATASETS, Missing
@@ -113,7 +113,7 @@ def gallery(painter, scores, models, caption, small=False):
     rows = [(label, (truth if when == "before" else []) + [tile(painter, scores, model, when, small)
              for model in shown if painter.has(model, when)])
             for when, label in (("before", "Before histogram matching"), ("after", "After histogram matching"))]
-    return Gallery(caption, [], [row for row in rows if row[1]])
+    return Gallery(caption, [row for row in rows if row[1]])
 
 
 def models_of(shop, maps):
@@ -131,16 +131,25 @@ def pictures(shop, shape, painter, scores):
                    small=bool(shape.view))
 
 
+def notes(shop, item, exported):
+    """What a reader has to know first: what failed, and why there may be no pictures."""
+    made = []
+    for entry in run_page.failed(shop.results):
+        if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
+            made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
+    if not exported:
+        made.append(Note("No export given to the report holds this shape, so that its pictures and the viewer are missing: "
+                         f"salbench export CONFIG --items {item} --to OUT/shapes.h5, then make the report again.", missing=True))
+    return made
+
+
 def write_page(shop, pages, scores, item, category):
     """shapes/ITEM.html with its pictures and the viewer's data."""
-    from report.elements import attempt
     mesh, views = shop.shapes.mesh(item), shop.shapes.scans(item)
     shapes = ([mesh] if mesh else []) + views
     painters = {shape.name: Painter(shop, shape) for shape in shapes}
     titles = {shape.name: f"Scan {shape.view}" if shape.view else "Mesh" for shape in shapes}
     entries = write_scripts(shop, shapes, titles, {name: painter.maps for name, painter in painters.items()})
-    where = [Note("No export given to the report holds this shape, so that its pictures and the viewer are missing: salbench "
-                  f"export CONFIG --items {item} --to OUT/shapes.h5, then make the report again.", missing=True)]
     mesh_blocks = attempt(score_table, shop, scores, item)
     if mesh:
         mesh_blocks += attempt(pictures, shop, mesh, painters[mesh.name], scores)
@@ -152,4 +161,4 @@ def write_page(shop, pages, scores, item, category):
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
     pages.write(path_of(item), "shape.html", title=f"Mesh {item}", item=item, category=category, entries=entries,
                 second=label_of(first[0], "after") if first else "", mesh_blocks=mesh_blocks, scan_blocks=scan_blocks,
-                scans=scans, missing=[] if shapes else where)
+                scans=scans, notes=notes(shop, item, bool(shapes)))

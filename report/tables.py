@@ -19,17 +19,19 @@ def means(shop):
     if table.empty:
         raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
     table = table.assign(best=table.groupby(["dataset", "metric"])["mean"].transform("max"))
+    compare = not shop.results.simulated  # the paper's scores are of people
     known = table["metric"].isin(METRICS)
     caption = ("Means over the shapes. Best of each data set and metric in bold. The paper's mean AUC is that of its table of "
                "classes; it prints no mean of the other metrics.")
-    return [means_table("means", caption, table[known]),
-            means_table("means-others", "Means of the other metrics.", table[~known], "Other metrics")]
+    return [means_table("means", caption, table[known], compare),
+            means_table("means-others", "Means of the other metrics.", table[~known], compare, "Other metrics")]
 
 
-def means_table(identifier, caption, table, folded=""):
+def means_table(identifier, caption, table, compare, folded=""):
     rows = []
     for _, row in table.iterrows():
-        known = paper.mean_auc(row["model"]) if (row["dataset"], row["metric"]) == ("meshes", "auc") else None
+        printed = compare and (row["dataset"], row["metric"]) == ("meshes", "auc")
+        known = paper.mean_auc(row["model"]) if printed else None
         rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(row["model"]),
                      Cell(ALL_METRICS.get(row["metric"], row["metric"])), count(row["n"]),
                      cell(row["mean"], bold=row["mean"] == row["best"]), cell(row["ci95_low"]), cell(row["ci95_high"]),
@@ -46,7 +48,8 @@ def per_class(shop, dataset, metric):
     by_cell = {(row["class"], row["model"]): row for _, row in table.iterrows()}
     average = {name: row["mean"] for (name, model), row in by_cell.items() if model == "Avg"}
     order = sorted(dict.fromkeys(table["class"]), key=lambda name: -average.get(name, 0))
-    known = paper.per_class() if (dataset, metric) == ("meshes", "auc") else {}
+    printed = (dataset, metric) == ("meshes", "auc") and not shop.results.simulated
+    known = paper.per_class() if printed else {}
     rows = []
     for name in order:
         numbers = [by_cell.get((name, model)) for model in models]
@@ -54,11 +57,13 @@ def per_class(shop, dataset, metric):
         shapes = max((row["n"] for row in numbers if row is not None), default=0)
         cells = [Cell(name or "(no class)"), count(shapes)]
         for row, model in zip(numbers + [by_cell.get((name, "Avg"))], models + ["Avg"]):
-            cells.append(class_cell(row, known.get((name, model)), model != "Avg" and row is not None and row["mean"] == best))
+            bold = model != "Avg" and row is not None and row["mean"] == best
+            cells.append(class_cell(row, known.get((name, model)), bold))
         rows.append(cells)
     label = METRICS[metric]
     identifier = f"classes-{dataset}-{metric}"
-    write_per_class(shop.out / "data" / f"{identifier}.tex", order, models, by_cell, label, dataset, shop.results.simulated)
+    path = shop.out / "data" / f"{identifier}.tex"
+    write_per_class(path, order, models, by_cell, label, dataset, shop.results.simulated)
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
     return Table(identifier, f"{label} per class on {dataset}: mean and half of the 95 % interval, best in bold{remark}.",

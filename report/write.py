@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from report import comparison, examples, run_page, score_pages, shape_pages, style
-from report.elements import ELEMENTS, attempt
+from report.blocks import attempt
+from report.elements import ELEMENTS
 from report.exports import Shapes
 from report.pages import Pages, copy_static, prepare_folder
 from report.results import DATASETS, Missing, read_results
@@ -27,14 +28,16 @@ def write_report(options, protocols):
     scores = shop.scores = shape_pages.Scores(results)
     for item, category in meshes.items():
         shape_pages.write_page(shop, pages, scores, item, category)
-    score_pages.write_page(shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores",
-                           heading="Scores of every shape", shapes=shop.pages, thumbnails=examples.thumbnails(shop),
-                           caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.")
+    score_pages.write_page(
+        shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores", heading="Scores of every shape",
+        caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.",
+        shapes=shop.pages, thumbnails=examples.thumbnails(shop))
     if other:
         first, second = comparison.names(results, other)
-        score_pages.write_page(shop, pages, "comparison.html", lambda: comparison.differences(shop, other),
-                               comparison.blocks(shop, other), title="Comparison", heading="Two runs side by side", shapes={}, thumbnails=[],
-                               caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
+        score_pages.write_page(
+            shop, pages, "comparison.html", lambda: comparison.differences(shop, other), comparison.blocks(shop, other),
+            title="Comparison", heading="Two runs side by side", shapes={}, thumbnails=[],
+            caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
     sections = [(element, attempt(element.build, shop)) for element in ELEMENTS]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
     pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))
