@@ -3,6 +3,7 @@
 import time
 import unittest
 
+import browser as chromium
 import fixture
 import support
 
@@ -24,6 +25,17 @@ class Size(support.ReportTest):
         self.assertLess(index, 3e6)
         self.assertLess(whole, 600e6)
         self.assertEqual(len(list((to / "shapes").glob("*.html"))), 400)
+        if chromium.AVAILABLE:
+            for path in ("index.html", "scores.html"):
+                self.assert_usable_soon(to / path)
+
+    def assert_usable_soon(self, path):
+        browser = chromium.start()
+        self.addCleanup(browser.quit)
+        browser.get(path.as_uri())
+        spent = browser.execute_script("return performance.timing.domContentLoadedEventEnd - performance.timing.navigationStart")
+        print(f"{path.name}: usable after {spent} ms")
+        self.assertLess(spent, 2000)
 
 
 if __name__ == "__main__":
