@@ -11,11 +11,16 @@ from report.names import file_name
 from report.painting import palette
 
 
-def quantised(points):
-    """3 x n uint16 of n x 3 positions in their bounding cube, and the cube's corner and edge."""
+def quantised(points, steps):
+    """3 x n uint16 of n x 3 positions in their bounding cube, whose edge is so many steps; the cube's corner and edge."""
     low = points.min(axis=0)
     edge = float((points.max(axis=0) - low).max()) or 1.0
-    return numpy.rint((points - low).T / edge * 65535).astype("<u2"), low.tolist(), edge
+    return numpy.rint((points - low).T / edge * steps).astype("<u2"), low.tolist(), edge
+
+
+# Levels of a map and steps of a position. On a surface fewer would show as bands; on separate points nobody sees them.
+MESH_LEVELS, MESH_STEPS = 255, 65535
+SCAN_LEVELS, SCAN_STEPS = 63, 16383
 
 
 def deltas(values):
@@ -31,23 +36,23 @@ def spacing(points):
 
 def script(shape, maps, title):
     """The script of one shape: a call of salbench.give with a description and one text of binary data, which holds x, y, z
-    (uint16 each), the corners of the faces (int32), the shade of scans (uint8), then each map (uint8, 255 is 1). All
+    (uint16 each), the corners of the faces (int32), the shade of scans, then each map (uint8 each, `levels` is 1). All
     but the shade and the maps are stored as differences of neighbours. None for a shape without points."""
     points = shape.points
     if points is None or len(points) == 0:
         return None
-    positions, corner, edge = quantised(points)
+    levels, steps = (SCAN_LEVELS, SCAN_STEPS) if shape.view else (MESH_LEVELS, MESH_STEPS)
+    positions, corner, edge = quantised(points, steps)
     faces = shape.faces if shape.faces is not None else numpy.zeros((0, 3), numpy.int32)
     shade = shape.shade() if shape.view else None
     known = {label: values for label, values in maps.items() if values is not None and len(values) == len(points)}
     parts = [deltas(row).tobytes() for row in positions] + [deltas(faces.astype("<i4")).tobytes()]
-    if shade is not None:
-        parts.append((shade * 255).round().astype(numpy.uint8).tobytes())
-    parts += [(values * 255).round().astype(numpy.uint8).tobytes() for values in known.values()]
+    fields = ([] if shade is None else [shade]) + list(known.values())
+    parts += [(values * levels).round().astype(numpy.uint8).tobytes() for values in fields]
     eye, up = shape.eye()
     description = {
-        "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge,
-        "shaded": shade is not None, "maps": list(known), "picks": shape.picks.tolist(),
+        "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge, "steps": steps,
+        "levels": levels, "shaded": shade is not None, "maps": list(known), "picks": shape.picks.tolist(),
         "spacing": spacing(points), "camera": None if eye is None else eye.tolist(), "up": up,
     }
     data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()

@@ -37,7 +37,7 @@ salbench.unpack = async function ({description, data}) {
   const position = new Float32Array(3 * n);
   for (let axis = 0; axis < 3; ++axis) {
     const values = sum(take(Uint16Array, n));
-    for (let i = 0; i < n; ++i) position[3 * i + axis] = description.corner[axis] + values[i] / 65535 * description.edge;
+    for (let i = 0; i < n; ++i) position[3 * i + axis] = description.corner[axis] + values[i] / description.steps * description.edge;
   }
   const faces = new Uint32Array(sum(take(Int32Array, 3 * description.faces)));
   const shade = description.shaded ? take(Uint8Array, n) : null;
@@ -149,8 +149,8 @@ salbench.View = class {
     const values = this.shape.maps.get(this.mapMenu.value);
     const colours = this.object.geometry.getAttribute("color");
     for (let i = 0; i < this.shape.points; ++i) {
-      const value = values ? values[i] : 0;
-      const shade = this.shape.shade ? 0.45 + 0.55 * this.shape.shade[i] / 255 : 1;
+      const value = values ? Math.round(values[i] / this.shape.levels * 255) : 0;
+      const shade = this.shape.shade ? 0.45 + 0.55 * this.shape.shade[i] / this.shape.levels : 1;
       for (let c = 0; c < 3; ++c) {
         const start = 6 * value + 2 * c;
         colours.array[3 * i + c] = shade * parseInt(salbench.palette.slice(start, start + 2), 16);
