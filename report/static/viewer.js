@@ -83,7 +83,7 @@ salbench.View = class {
     this.controls.enableKeys = false; // the arrow keys turn the shape, below
     this.controls.enablePan = false;
     this.controls.addEventListener("change", () => { this.draw(); onTurn(this); });
-    this.shapeMenu.addEventListener("change", () => this.show());
+    this.shapeMenu.addEventListener("change", () => this.show().then(() => this.home && this.lookFrom(this.home)));
     this.mapMenu.addEventListener("change", () => this.paint());
     canvas.addEventListener("keydown", (event) => {
       const turn = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
@@ -218,7 +218,7 @@ salbench.view = async function (root) {
   for (const [index, view] of views.entries()) await view.show(index === 0 ? "Ground truth" : root.dataset.second);
   for (const view of views) if (view.home) view.lookFrom(views[0].home || view.home);
   root.querySelector("[data-part=home]").addEventListener("click", () => {
-    for (const view of views) if (view.home) view.lookFrom(view.home);
+    for (const view of views) if (view.home) view.lookFrom(coupled.checked && views[0].home || view.home);
   });
   root.dataset.ready = "yes";
 };
