@@ -11,10 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <iterator>
-#include <optional>
 #include <queue>
-#include <set>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,7 +22,8 @@
 namespace salbench {
 namespace {
 
-using Edge = std::pair<std::size_t, std::size_t>;  // ascending
+using Index = std::int32_t;            // of a vertex or a face
+using Edge = std::pair<Index, Index>;  // ascending
 
 constexpr double kBorderWeight = 1;  // of a border edge's plane, per squared length of the edge
 constexpr double kEvenness = 1e-8;  // factor of an edge's squared length in its error; decides in flat places
@@ -76,12 +74,27 @@ class EdgeCollapse {
 
  private:
   struct Candidate {
-    double cost;
     Edge edge;
     std::uint32_t state_a, state_b;  // of the end points when it was queued
-    bool operator>(const Candidate& other) const {
-      return std::tie(cost, edge) > std::tie(other.cost, other.edge);
+    Vec3 place;
+  };
+
+  // What the queue moves about is small; the edge of the candidate decides between equal costs.
+  struct Queued {
+    double cost;
+    std::size_t candidate;
+  };
+  struct Later {
+    const std::vector<Candidate>& candidates;
+    bool operator()(const Queued& a, const Queued& b) const {
+      return a.cost != b.cost ? a.cost > b.cost : candidates[a.candidate].edge > candidates[b.candidate].edge;
     }
+  };
+
+  // The distinct neighbours of a vertex along edges, ascending.
+  struct Ring {
+    std::vector<Index> vertices;
+    bool has_border = false;  // a neighbour that is on one face only
   };
 
   struct Moved {  // both ends of an edge are moved to one place
@@ -92,29 +105,39 @@ class EdgeCollapse {
   void add_faces(const Mesh& mesh);
   void add_border_planes();
   void fill_queue();
-  void push(std::size_t a, std::size_t b);
-  Vec3 place_for(const Edge& edge) const;
+  void push(Index a, Index b);
   bool is_current(const Candidate& candidate) const;
-  bool keeps_topology(const Edge& edge) const;
-  bool doubles_a_face(const Edge& edge, const std::vector<std::size_t>& shared) const;
+  bool keeps_topology(const Edge& edge);
+  bool doubles_a_face(const Edge& edge) const;
   bool folds(const Edge& edge, const Vec3& place) const;
   void collapse(const Edge& edge, const Vec3& place);
 
-  bool has(std::size_t face, std::size_t vertex) const;
-  Vec3 area_vector(std::size_t face, const std::optional<Moved>& moved) const;
-  std::size_t faces_on(std::size_t a, std::size_t b) const;
-  std::vector<std::size_t> ring(std::size_t vertex) const;
-  bool on_border(std::size_t vertex) const;
+  const Vec3& place(Index v) const { return places_[static_cast<std::size_t>(v)]; }
+  const std::array<Index, 3>& face(Index f) const { return faces_[static_cast<std::size_t>(f)]; }
+  const std::vector<Index>& faces_of(Index v) const { return faces_of_[static_cast<std::size_t>(v)]; }
+  std::vector<Index>& faces_of(Index v) { return faces_of_[static_cast<std::size_t>(v)]; }
+  bool has(Index f, Index v) const { return face(f)[0] == v || face(f)[1] == v || face(f)[2] == v; }
+  Vec3 area_vector(Index f) const {
+    return doubled_area(place(face(f)[0]), place(face(f)[1]), place(face(f)[2]));
+  }
+  Vec3 area_vector(Index f, const Moved& moved) const;
+  std::size_t faces_on(Index a, Index b) const;
+  void find_ring(Index v, Ring& ring) const;
+
+  static Vec3 doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
   Vec3 origin_ = Vec3::Zero();
   double unit_ = 1;
   std::vector<Vec3> places_;  // from the origin, in units
   std::vector<Quadric> quadrics_;
   std::vector<std::uint32_t> states_;  // counts the changes of each vertex
-  std::vector<std::array<std::size_t, 3>> faces_;
-  std::vector<std::vector<std::size_t>> faces_of_;  // no vertex lists a face that has collapsed
+  std::vector<std::array<Index, 3>> faces_;
+  std::vector<std::vector<Index>> faces_of_;  // no vertex lists a face that has collapsed
   std::size_t n_faces_ = 0;
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  std::vector<Candidate> candidates_;  // all that were queued
+  std::priority_queue<Queued, std::vector<Queued>, Later> queue_{Later{candidates_}};
+  Ring ring_a_, ring_b_;       // working memory
+  std::vector<Index> shared_;  // neighbours of both ends of an edge
 };
 
 EdgeCollapse::EdgeCollapse(const Mesh& mesh)
@@ -130,37 +153,45 @@ EdgeCollapse::EdgeCollapse(const Mesh& mesh)
   for (Vec3& place : places_) place = (place - origin_) / unit_;
   add_faces(mesh);
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const Vec3 doubled = area_vector(f, {});
-    for (const std::size_t v : faces_[f])
-      quadrics_[v].add_plane(doubled.normalized(), places_[v], doubled.norm() / 2);
+    const Vec3 doubled = area_vector(static_cast<Index>(f));
+    for (const Index v : faces_[f])
+      quadrics_[static_cast<std::size_t>(v)].add_plane(doubled.normalized(), place(v), doubled.norm() / 2);
   }
   add_border_planes();
 }
 
+// Of faces with the same corners the first counts.
 void EdgeCollapse::add_faces(const Mesh& mesh) {
-  std::set<Triangle> seen;
-  for (const Triangle& face : mesh.faces) {
-    Triangle key = face;
-    std::sort(key.begin(), key.end());
-    if (key[0] == key[1] || key[1] == key[2] || !seen.insert(key).second) continue;
-    for (const std::int32_t v : face) faces_of_[static_cast<std::size_t>(v)].push_back(faces_.size());
-    faces_.push_back({static_cast<std::size_t>(face[0]), static_cast<std::size_t>(face[1]),
-                      static_cast<std::size_t>(face[2])});
+  std::vector<std::pair<Triangle, std::size_t>> by_corners;
+  by_corners.reserve(mesh.faces.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    Triangle corners = mesh.faces[f];
+    std::sort(corners.begin(), corners.end());
+    if (corners[0] != corners[1] && corners[1] != corners[2]) by_corners.emplace_back(corners, f);
+  }
+  std::sort(by_corners.begin(), by_corners.end());
+  std::vector<bool> taken(mesh.faces.size(), false);
+  for (std::size_t i = 0; i < by_corners.size(); ++i)
+    if (i == 0 || by_corners[i].first != by_corners[i - 1].first) taken[by_corners[i].second] = true;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    if (!taken[f]) continue;
+    for (const Index v : mesh.faces[f]) faces_of(v).push_back(static_cast<Index>(faces_.size()));
+    faces_.push_back(mesh.faces[f]);
   }
   n_faces_ = faces_.size();
 }
 
 void EdgeCollapse::add_border_planes() {
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const auto& face = faces_[f];
-    const Vec3 normal = area_vector(f, {}).normalized();
+    const auto& corners = faces_[f];
+    const Vec3 normal = area_vector(static_cast<Index>(f)).normalized();
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t a = face[k], b = face[(k + 1) % 3];
+      const Index a = corners[k], b = corners[(k + 1) % 3];
       if (faces_on(a, b) != 1) continue;
-      const Vec3 edge = places_[b] - places_[a];
-      for (const std::size_t v : {a, b})
-        quadrics_[v].add_plane(edge.cross(normal).normalized(), places_[a],
-                               kBorderWeight * edge.squaredNorm());
+      const Vec3 edge = place(b) - place(a);
+      for (const Index v : {a, b})
+        quadrics_[static_cast<std::size_t>(v)].add_plane(edge.cross(normal).normalized(), place(a),
+                                                         kBorderWeight * edge.squaredNorm());
     }
   }
 }
@@ -170,152 +201,152 @@ void EdgeCollapse::run(std::size_t target_faces) {
     changed = false;
     fill_queue();
     while (!queue_.empty() && n_faces_ > target_faces) {
-      const Candidate next = queue_.top();
+      const Candidate next = candidates_[queue_.top().candidate];
       queue_.pop();
-      if (!is_current(next) || !keeps_topology(next.edge)) continue;
-      const Vec3 place = place_for(next.edge);
-      if (folds(next.edge, place)) continue;
-      collapse(next.edge, place);
+      if (!is_current(next) || !keeps_topology(next.edge) || folds(next.edge, next.place)) continue;
+      collapse(next.edge, next.place);
       changed = true;
     }
   }
 }
 
+// Finds the queue empty.
 void EdgeCollapse::fill_queue() {
-  for (std::size_t a = 0; a < places_.size(); ++a) {
-    for (const std::size_t b : ring(a))
+  candidates_.clear();
+  for (Index a = 0; a < static_cast<Index>(places_.size()); ++a) {
+    find_ring(a, ring_a_);
+    for (const Index b : ring_a_.vertices)
       if (a < b) push(a, b);
   }
 }
 
-void EdgeCollapse::push(std::size_t a, std::size_t b) {
+void EdgeCollapse::push(Index a, Index b) {
   const Edge edge = std::minmax(a, b);
-  Quadric sum = quadrics_[a];
-  sum += quadrics_[b];
-  const double evenness = kEvenness * sum.weight() * (places_[a] - places_[b]).squaredNorm();
-  queue_.push({sum(place_for(edge)) + evenness, edge, states_[edge.first], states_[edge.second]});
-}
-
-Vec3 EdgeCollapse::place_for(const Edge& edge) const {
-  Quadric sum = quadrics_[edge.first];
-  sum += quadrics_[edge.second];
-  return optimum(sum, (places_[edge.first] + places_[edge.second]) / 2);
+  const auto first = static_cast<std::size_t>(edge.first), second = static_cast<std::size_t>(edge.second);
+  Quadric sum = quadrics_[first];
+  sum += quadrics_[second];
+  const double evenness = kEvenness * sum.weight() * (place(a) - place(b)).squaredNorm();
+  const Vec3 best = optimum(sum, (place(edge.first) + place(edge.second)) / 2);
+  candidates_.push_back({edge, states_[first], states_[second], best});
+  queue_.push({sum(best) + evenness, candidates_.size() - 1});
 }
 
 bool EdgeCollapse::is_current(const Candidate& candidate) const {
-  return states_[candidate.edge.first] == candidate.state_a &&
-         states_[candidate.edge.second] == candidate.state_b;
+  return states_[static_cast<std::size_t>(candidate.edge.first)] == candidate.state_a &&
+         states_[static_cast<std::size_t>(candidate.edge.second)] == candidate.state_b;
 }
 
 // The link condition: where the surface is a manifold, it is homeomorphic before and after. A triangle that
 // alone connects a corner to the rest stays, so that connected points remain connected.
-bool EdgeCollapse::keeps_topology(const Edge& edge) const {
+bool EdgeCollapse::keeps_topology(const Edge& edge) {
   const auto [a, b] = edge;
-  const std::vector<std::size_t> ring_a = ring(a), ring_b = ring(b);
-  std::vector<std::size_t> shared;
-  std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(),
-                        std::back_inserter(shared));
+  find_ring(a, ring_a_);
+  find_ring(b, ring_b_);
+  shared_.clear();
+  std::set_intersection(ring_a_.vertices.begin(), ring_a_.vertices.end(), ring_b_.vertices.begin(),
+                        ring_b_.vertices.end(), std::back_inserter(shared_));
   const std::size_t n_faces = faces_on(a, b);
-  if (shared.size() != n_faces) return false;
-  if (n_faces > 1 && on_border(a) && on_border(b)) return false;
-  for (const std::size_t c : shared)
+  if (shared_.size() != n_faces) return false;
+  if (n_faces > 1 && ring_a_.has_border && ring_b_.has_border) return false;
+  for (const Index c : shared_)
     if (faces_on(a, c) == 1 && faces_on(b, c) == 1) return false;
-  return !doubles_a_face(edge, shared);
+  return !doubles_a_face(edge);
 }
 
 // Two faces (a, c, d) and (b, c, d) would become the same: the edges cd lie among the shared neighbours.
-bool EdgeCollapse::doubles_a_face(const Edge& edge, const std::vector<std::size_t>& shared) const {
-  const auto spans = [&](std::size_t v, std::size_t c, std::size_t d) {
-    return std::any_of(faces_of_[v].begin(), faces_of_[v].end(),
-                       [&](std::size_t face) { return has(face, c) && has(face, d); });
+bool EdgeCollapse::doubles_a_face(const Edge& edge) const {
+  const auto spans = [&](Index v, Index c, Index d) {
+    return std::any_of(faces_of(v).begin(), faces_of(v).end(),
+                       [&](Index f) { return has(f, c) && has(f, d); });
   };
-  for (std::size_t i = 0; i < shared.size(); ++i) {
-    for (std::size_t j = i + 1; j < shared.size(); ++j)
-      if (spans(edge.first, shared[i], shared[j]) && spans(edge.second, shared[i], shared[j])) return true;
+  for (std::size_t i = 0; i < shared_.size(); ++i) {
+    for (std::size_t j = i + 1; j < shared_.size(); ++j)
+      if (spans(edge.first, shared_[i], shared_[j]) && spans(edge.second, shared_[i], shared_[j]))
+        return true;
   }
   return false;
 }
 
-bool EdgeCollapse::folds(const Edge& edge, const Vec3& place) const {
-  const auto turns_over = [&](std::size_t face) {
-    if (has(face, edge.first) && has(face, edge.second)) return false;  // it vanishes
-    const Vec3 before = area_vector(face, {}), after = area_vector(face, Moved{edge, place});
+bool EdgeCollapse::folds(const Edge& edge, const Vec3& to) const {
+  const auto turns_over = [&](Index f) {
+    if (has(f, edge.first) && has(f, edge.second)) return false;  // it vanishes
+    const Vec3 before = area_vector(f), after = area_vector(f, Moved{edge, to});
     return before.norm() > 0 && before.dot(after) <= kMinCosine * before.norm() * after.norm();
   };
-  return std::any_of(faces_of_[edge.first].begin(), faces_of_[edge.first].end(), turns_over) ||
-         std::any_of(faces_of_[edge.second].begin(), faces_of_[edge.second].end(), turns_over);
+  return std::any_of(faces_of(edge.first).begin(), faces_of(edge.first).end(), turns_over) ||
+         std::any_of(faces_of(edge.second).begin(), faces_of(edge.second).end(), turns_over);
 }
 
 // The first vertex becomes the merged one.
-void EdgeCollapse::collapse(const Edge& edge, const Vec3& place) {
+void EdgeCollapse::collapse(const Edge& edge, const Vec3& to) {
   const auto [a, b] = edge;
-  places_[a] = place;
-  quadrics_[a] += quadrics_[b];
-  for (const std::size_t face : faces_of_[b]) {
-    if (has(face, a)) {
-      for (const std::size_t v : faces_[face])
-        if (v != b) std::erase(faces_of_[v], face);
+  const auto first = static_cast<std::size_t>(a), second = static_cast<std::size_t>(b);
+  places_[first] = to;
+  quadrics_[first] += quadrics_[second];
+  for (const Index f : faces_of(b)) {
+    if (has(f, a)) {
+      for (const Index v : face(f))
+        if (v != b) std::erase(faces_of(v), f);
       --n_faces_;
     } else {
-      std::replace(faces_[face].begin(), faces_[face].end(), b, a);
-      faces_of_[a].push_back(face);
+      auto& corners = faces_[static_cast<std::size_t>(f)];
+      std::replace(corners.begin(), corners.end(), b, a);
+      faces_of(a).push_back(f);
     }
   }
-  faces_of_[b].clear();
-  ++states_[a];
-  ++states_[b];
-  for (const std::size_t c : ring(a)) push(a, c);
+  faces_of(b).clear();
+  ++states_[first];
+  ++states_[second];
+  find_ring(a, ring_a_);
+  for (const Index c : ring_a_.vertices) push(a, c);
 }
 
-bool EdgeCollapse::has(std::size_t face, std::size_t vertex) const {
-  return std::find(faces_[face].begin(), faces_[face].end(), vertex) != faces_[face].end();
+Vec3 EdgeCollapse::area_vector(Index f, const Moved& moved) const {
+  const auto corner = [&](std::size_t k) {
+    const Index v = face(f)[k];
+    return v == moved.edge.first || v == moved.edge.second ? moved.place : place(v);
+  };
+  return doubled_area(corner(0), corner(1), corner(2));
 }
 
-Vec3 EdgeCollapse::area_vector(std::size_t face, const std::optional<Moved>& moved) const {
-  std::array<Vec3, 3> corner;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t v = faces_[face][k];
-    const bool merged = moved && (v == moved->edge.first || v == moved->edge.second);
-    corner[k] = merged ? moved->place : places_[v];
-  }
-  return (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+std::size_t EdgeCollapse::faces_on(Index a, Index b) const {
+  return static_cast<std::size_t>(
+      std::count_if(faces_of(a).begin(), faces_of(a).end(), [&](Index f) { return has(f, b); }));
 }
 
-std::size_t EdgeCollapse::faces_on(std::size_t a, std::size_t b) const {
-  return static_cast<std::size_t>(std::count_if(faces_of_[a].begin(), faces_of_[a].end(),
-                                                [&](std::size_t face) { return has(face, b); }));
-}
-
-// The distinct neighbours along edges, ascending.
-std::vector<std::size_t> EdgeCollapse::ring(std::size_t vertex) const {
-  std::vector<std::size_t> around;
-  for (const std::size_t face : faces_of_[vertex])
-    for (const std::size_t v : faces_[face])
-      if (v != vertex) around.push_back(v);
+void EdgeCollapse::find_ring(Index v, Ring& ring) const {
+  auto& around = ring.vertices;
+  around.clear();
+  for (const Index f : faces_of(v))
+    for (const Index other : face(f))
+      if (other != v) around.push_back(other);
   std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
-  return around;
-}
-
-bool EdgeCollapse::on_border(std::size_t vertex) const {
-  const std::vector<std::size_t> around = ring(vertex);
-  return std::any_of(around.begin(), around.end(),
-                     [&](std::size_t other) { return faces_on(vertex, other) == 1; });
+  ring.has_border = false;
+  std::size_t distinct = 0;
+  for (std::size_t i = 0, next; i < around.size(); i = next) {
+    for (next = i + 1; next < around.size() && around[next] == around[i];) ++next;
+    if (next == i + 1) ring.has_border = true;
+    around[distinct++] = around[i];
+  }
+  around.resize(distinct);
 }
 
 Mesh EdgeCollapse::result() const {
-  constexpr std::int32_t kUnused = -1;
-  std::vector<std::int32_t> index(places_.size(), kUnused);
+  constexpr Index kUnused = -1;
+  std::vector<Index> index(places_.size(), kUnused);
   Mesh mesh;
   for (std::size_t v = 0; v < places_.size(); ++v) {
     if (faces_of_[v].empty()) continue;
-    index[v] = static_cast<std::int32_t>(mesh.vertices.size());
+    index[v] = static_cast<Index>(mesh.vertices.size());
     mesh.vertices.push_back(origin_ + unit_ * places_[v]);
   }
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const auto& [a, b, c] = faces_[f];
-    const bool alive = std::find(faces_of_[a].begin(), faces_of_[a].end(), f) != faces_of_[a].end();
-    if (alive) mesh.faces.push_back({index[a], index[b], index[c]});
+    const auto& corners = faces_[f];
+    const auto& listed = faces_of(corners[0]);
+    if (std::find(listed.begin(), listed.end(), static_cast<Index>(f)) == listed.end()) continue;
+    Triangle renamed;
+    for (std::size_t k = 0; k < 3; ++k) renamed[k] = index[static_cast<std::size_t>(corners[k])];
+    mesh.faces.push_back(renamed);
   }
   return mesh;
 }

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -96,10 +97,19 @@ Shape& shape_of(const Source& source) {
   return last->second;
 }
 
+// By the header, since there are hundreds: "OFF", then the number of vertices.
+std::size_t vertices_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string word;
+  std::size_t vertices = 0;
+  stream >> word >> vertices;
+  return vertices;
+}
+
 std::map<std::size_t, fs::path> meshes_by_size(const fs::path& data) {
   std::map<std::size_t, fs::path> meshes;
   for (const auto& entry : fs::directory_iterator(data / "SchellingData" / "Meshes"))
-    meshes.emplace(read_mesh(entry.path()).vertices.size(), entry.path());
+    meshes.emplace(vertices_of(entry.path()), entry.path());
   return meshes;
 }
 
