@@ -55,7 +55,7 @@ done < <(includes)
 
 hides CGAL 'CGAL/'
 hides CLI11 'CLI/'
-hides Embree 'embree3/'
+hides Embree 'embree3/' stages/core/embree.h
 hides HDF5 'hdf5\.|H5' io/hdf5_library.h
 hides nanoflann 'nanoflann'
 hides PCL 'pcl/'
@@ -67,6 +67,10 @@ hides yaml-cpp 'yaml-cpp/'
 while IFS=: read -r path line included; do
   [[ $included != io/hdf5_library.h || $path == io/hdf5_*.cpp ]] ||
     complain "$path:$line" "$included" "it brings the HDF5 library with it"
+done < <(includes)
+while IFS=: read -r path line included; do
+  [[ $included != stages/core/embree.h || $path == *.cpp ]] ||
+    complain "$path:$line" "$included" "it brings the Embree library with it"
 done < <(includes)
 
 [[ $breaches -eq 0 ]]

@@ -11,16 +11,13 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <stdexcept>
-#include <string>
-#include <type_traits>
 #include <vector>
 
 #include <Eigen/Geometry>
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include "stages/core/check.h"
+#include "stages/core/embree.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 
@@ -112,66 +109,19 @@ Window window_of(const std::vector<Vec3>& local_vertices, const Mesh& mesh, cons
           static_cast<int>(first(seen.min().y())), static_cast<int>(last(seen.max().y()))};
 }
 
-template <auto release>
-struct Release {
-  template <class Handle>
-  void operator()(Handle* handle) const {
-    release(handle);
-  }
-};
-using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>>;
-using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release<rtcReleaseGeometry>>;
-
-// The only device of the process, never released. A second one, or a limit of one thread for this one, would
-// change the thread pool of all other users. Pinned to one instruction set, for the same candidates on every
-// machine.
-RTCDevice device() {
-  static RTCDevice device = rtcNewDevice("isa=sse2");
-  if (device == nullptr) throw std::runtime_error("Embree cannot be started");
-  return device;
-}
-
-void check_embree(const char* what) {
-  if (rtcGetDeviceError(device()) != RTC_ERROR_NONE)
-    throw std::runtime_error(std::string("Embree failed to ") + what);
-}
-
-Scene build_scene(const std::vector<Vec3>& local_vertices, const std::vector<Triangle>& faces) {
-  const Geometry geometry(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE));
-  auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                                             RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                             local_vertices.size()));
-  auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), faces.size()));
-  check_embree("allocate the mesh");
-  for (const Vec3& p : local_vertices)
-    for (const double x : p) *vertex++ = static_cast<float>(x);
-  for (const Triangle& face : faces)
-    for (const std::int32_t v : face) *index++ = static_cast<std::uint32_t>(v);
-  rtcCommitGeometry(geometry.get());
-
-  Scene scene(rtcNewScene(device()));
-  // Without ROBUST, 3-4 % of the rays slip through between two faces.
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);  // few rays: building is most of the time
-  rtcAttachGeometry(scene.get(), geometry.get());
-  rtcCommitScene(scene.get());
-  check_embree("build the scene");
-  return scene;
-}
-
 // Everything that the views of a mesh share. Each thread keeps it for its last mesh, because building the
 // hierarchy is a large part of one scan.
 struct Traced {
   Mesh mesh;
   LocalFrame frame;
   std::vector<Vec3> local_vertices;
-  Scene scene;
+  embree::Scene scene;
 
   explicit Traced(const Mesh& of) : mesh(of), frame(local_frame(of)) {
     local_vertices.reserve(mesh.vertices.size());
     for (const Vec3& p : mesh.vertices) local_vertices.push_back(frame.local_from_mesh(p));
-    scene = build_scene(local_vertices, mesh.faces);
+    scene = embree::scene_of(embree::triangles(local_vertices, mesh.faces),
+                             RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   }
   bool is_of(const Mesh& other) const { return mesh.vertices == other.vertices && mesh.faces == other.faces; }
 };

@@ -1,0 +1,130 @@
+#include "stages/picture/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+// Front of a shape that stands upright, as most of the benchmark's do: those along y look to +z, those along
+// z to +y.
+Vec3 front_of(const Vec3& up) { return up.y() > 0 ? Vec3::UnitZ() : Vec3::UnitY(); }
+
+CameraAxes axes_towards(const Vec3& back, const Vec3& up) {
+  CameraAxes axes{up.cross(back).normalized(), {}, back};
+  axes.up = axes.back.cross(axes.right);
+  return axes;
+}
+
+Vec3 turned(const Vec3& direction, double degrees, const Vec3& axis) {
+  return Eigen::AngleAxisd(degrees * kRadiansPerDegree, axis) * direction;
+}
+
+// Faces count from both sides, and those behind others too.
+double area_seen_from(const Mesh& mesh, const Vec3& direction) {
+  double area = 0;
+  for (const Triangle& face : mesh.faces) area += std::abs(face_area_vector(mesh, face).dot(direction));
+  return area;
+}
+
+}  // namespace
+
+Vec3 upward(const Mesh& mesh, const PictureOptions& options) {
+  if (options.up != PictureUp::automatic) return options.up == PictureUp::y ? Vec3::UnitY() : Vec3::UnitZ();
+  const double y = area_seen_from(mesh, axes_for_mesh(Vec3::UnitY(), options).back);
+  const double z = area_seen_from(mesh, axes_for_mesh(Vec3::UnitZ(), options).back);
+  return z > y ? Vec3::UnitZ() : Vec3::UnitY();
+}
+
+CameraAxes axes_for_mesh(const Vec3& up, const PictureOptions& options) {
+  const Vec3 horizontal = turned(front_of(up), options.azimuth, up);
+  return axes_towards(turned(horizontal, -options.elevation, up.cross(horizontal)), up);
+}
+
+CameraAxes axes_for_scan(const Vec3& up, const Vec3& towards_scanner, const PictureOptions& options) {
+  const Vec3 back = turned(towards_scanner.normalized(), options.scan_turn, up);
+  const bool vertical = std::abs(back.dot(up)) > 0.99;
+  return axes_towards(back, vertical ? front_of(up) : up);
+}
+
+// Of all cameras with these axes that see every point, the nearest. To see a point at (x, y, z) from (px, py,
+// d), where z grows towards the camera: |x - px| <= (d - z) t, so d t + px >= x + z t and d t - px >= -x + z
+// t.
+Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const PictureOptions& options,
+               const char* shape)
+    : axes_(axes), tan_half_(std::tan(options.field_of_view / 2 * kRadiansPerDegree)) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) {
+    if (!p.allFinite())
+      throw InputError(fmt::format("the {} has a coordinate that is not a finite number", shape));
+    box.extend(p);
+  }
+  if (points.empty()) throw InputError(fmt::format("the {} is empty: there is nothing to see", shape));
+  centre_ = box.center();
+  unit_ = 0;
+  for (const Vec3& p : points) unit_ = std::max(unit_, (p - centre_).norm());
+  if (!std::isfinite(unit_))
+    throw InputError(fmt::format("the {}'s coordinates are too large: their squares overflow", shape));
+  if (!(unit_ > 0))
+    throw InputError(fmt::format("all of the {} is in one place: there is nothing to see", shape));
+
+  const double t = tan_half_ * (1 - 2 * options.margin);
+  position_.setZero();
+  Vec3 least = Vec3::Constant(-std::numeric_limits<double>::infinity());  // of d t + px, d t - px; and of d
+  Vec3 others = least;
+  for (const Vec3& p : points) {
+    const Vec3 at = (p - centre_) / unit_;
+    const double x = at.dot(axes_.right), y = at.dot(axes_.up), z = at.dot(axes_.back);
+    least = least.cwiseMax(Vec3(x + z * t, y + z * t, z));
+    others = others.cwiseMax(Vec3(-x + z * t, -y + z * t, z));
+  }
+  const Vec3 sums = least + others;
+  constexpr double kNearest = 1e-3;  // even of a line that points at the camera
+  const double distance = std::max({sums.x() / (2 * t), sums.y() / (2 * t), least.z() + kNearest});
+  position_ = {(least.x() - others.x()) / 2, (least.y() - others.y()) / 2, distance};
+}
+
+Vec3 Camera::eye_from_world(const Vec3& point) const {
+  const Vec3 at = (point - centre_) / unit_;
+  return {at.dot(axes_.right) - position_.x(), at.dot(axes_.up) - position_.y(),
+          position_.z() - at.dot(axes_.back)};
+}
+
+Vec3 Camera::eye_from_world_direction(const Vec3& direction) const {
+  return {direction.dot(axes_.right), direction.dot(axes_.up), -direction.dot(axes_.back)};
+}
+
+// The third component of clip space puts what is between the shape's nearest and farthest point between -w
+// and w, as OpenGL does.
+std::array<double, 16> Camera::view_projection() const {
+  Eigen::Matrix4d eye = Eigen::Matrix4d::Identity();  // mesh unit; z away from the camera
+  const Vec3 rows[] = {axes_.right, axes_.up, -axes_.back};
+  const Vec3 shift(position_.x(), position_.y(), -position_.z());
+  for (int i = 0; i < 3; ++i) {
+    eye.block<1, 3>(i, 0) = rows[i].transpose();
+    eye(i, 3) = -rows[i].dot(centre_) - unit_ * shift[i];
+  }
+  const double near = std::max(position_.z() - 1, 1e-3 * position_.z()) * unit_;
+  const double far = (position_.z() + 1) * unit_;
+  Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
+  projection(0, 0) = projection(1, 1) = 1 / tan_half_;
+  projection(2, 2) = (far + near) / (far - near);
+  projection(2, 3) = -2 * far * near / (far - near);
+  projection(3, 2) = 1;
+  const Eigen::Matrix4d product = projection * eye;
+  std::array<double, 16> flat{};
+  for (int i = 0; i < 16; ++i) flat[static_cast<std::size_t>(i)] = product(i / 4, i % 4);
+  return flat;
+}
+
+}  // namespace salbench

@@ -1,0 +1,83 @@
+// Pictures of shapes, without colours: what a pinhole camera sees of a mesh or of a scan, pixel by pixel, and
+// how bright it is. Painting a saliency map is then a look-up.
+//
+// A picture is lit by one lamp that moves with the camera; a side turned away from it is dimmed and never
+// black, and no face has a back. Creases and hollows are darkened by ambient occlusion.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "stages/core/options.h"
+#include "stages/core/picture.h"
+#include "stages/core/rng.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+enum class PictureUp { automatic, y, z };
+template <>
+struct EnumNames<PictureUp> {
+  static constexpr std::array<std::string_view, 3> names{"automatic", "y", "z"};
+};
+
+struct PictureOptions {
+  std::int32_t size = 400;
+  PictureUp up = PictureUp::automatic;
+  double azimuth = 35;
+  double elevation = 20;
+  double scan_turn = 25;
+  double field_of_view = 30;
+  double margin = 0.04;
+  double light_azimuth = -35;
+  double light_elevation = 40;
+  double ambient = 0.3;
+  std::int32_t occlusion_samples = 6;
+  double occlusion_reach = 0.5;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("size", self.size, {"width and height", "pixels", between(16, 4096)});
+    visit("up", self.up,
+          {"axis of the mesh that points up; automatic: y or z, whichever shows more of its surface"});
+    visit("azimuth", self.azimuth,
+          {"of the camera of a mesh, around the upward axis; 0: in front of it", "degrees",
+           between(-180, 180)});
+    visit("elevation", self.elevation,
+          {"of the camera of a mesh, above the horizon", "degrees", between(-89, 89)});
+    visit("scan_turn", self.scan_turn,
+          {"of the camera of a scan, around the upward axis, from where it was scanned", "degrees",
+           between(-180, 180)});
+    visit("field_of_view", self.field_of_view,
+          {"between the edges of the picture; the distance follows from it", "degrees", between(1, 120)});
+    visit("margin", self.margin, {"left empty along each edge", "width of the picture", between(0, 0.45)});
+    visit("light_azimuth", self.light_azimuth,
+          {"of the lamp, to the right of the camera", "degrees", between(-180, 180)});
+    visit("light_elevation", self.light_elevation,
+          {"of the lamp, above the camera", "degrees", between(-90, 90)});
+    visit("ambient", self.ambient, {"brightness of what faces away from the lamp", {}, between(0, 1)});
+    visit("occlusion_samples", self.occlusion_samples,
+          {"rays per pixel for the ambient occlusion, shared by the 16 pixels around; 0: none",
+           {},
+           between(0, 1024)});
+    visit("occlusion_reach", self.occlusion_reach,
+          {"distance up to which surfaces darken each other", "radius of the shape", above(0)});
+  }
+};
+
+// What is seen of a mesh; `primitive` counts its faces. All faces count, whichever way they are turned:
+// turning some over changes nothing. Vertices without a face do not count.
+//
+// Both depend on nothing but their arguments: several threads may take pictures at once, and x86-64 machines
+// agree. Both throw InputError if a coordinate is not finite, or so large that its square overflows, if there
+// is nothing to see, or all of it is in one place.
+Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const RandomSource& random);
+
+// What is seen of a scan as discs around its points at right angles to the normals, large enough to leave no
+// gaps; `primitive` counts its points. The camera stands near the scan's own. Of discs that overlap, the one
+// whose centre is nearest is seen. The mesh, of which `scan` is one, tells which way is up.
+Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& mesh,
+                        const PictureOptions& options, const RandomSource& random);
+
+}  // namespace salbench

@@ -1,0 +1,2 @@
+#include "stages/picture/picture.h"
+#include <gtest/gtest.h>
