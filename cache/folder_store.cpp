@@ -215,6 +215,12 @@ std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& 
   return entry == nullptr ? std::nullopt : std::optional(impl_->path(stage, *entry));
 }
 
+std::optional<std::uint64_t> FolderStore::bytes_of(std::string_view stage, const Digest& key) const {
+  const std::shared_lock lock(impl_->mutex);
+  const ArtefactName* entry = impl_->entry(stage, key);
+  return entry == nullptr ? std::nullopt : std::optional<std::uint64_t>(entry->size);
+}
+
 std::vector<FolderStore::Usage> FolderStore::usage() const {
   const std::shared_lock lock(impl_->mutex);
   std::vector<Usage> result;

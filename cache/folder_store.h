@@ -40,6 +40,8 @@ class FolderStore final : public Store {
   // File of an artefact, for links to it; nothing if there is none.
   std::optional<std::filesystem::path> path(std::string_view stage, const Digest& key) const;
 
+  std::optional<std::uint64_t> bytes_of(std::string_view stage, const Digest& key) const;  // of that file
+
   struct Usage {
     std::string stage;
     std::size_t artefacts = 0;

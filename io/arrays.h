@@ -11,8 +11,9 @@
 
 namespace salbench {
 
+// In an order that content digests contain: new types come last.
 using ArrayValues = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int32_t>,
-                                 std::vector<std::int64_t>>;
+                                 std::vector<std::int64_t>, std::vector<std::uint8_t>>;
 
 struct Array {
   std::string name;                // unique; "group/name" nests
@@ -20,6 +21,7 @@ struct Array {
   ArrayValues values;
   std::string unit;  // "1" if there is none
   std::string description;
+  bool repetitive = false;  // deflate halves it at least, although it is not single precision
 
   std::size_t count() const;
 };

@@ -153,6 +153,8 @@ Array read_array(hid_t set, const std::string& name, std::uint64_t file) {
   const std::size_t count = array.count();
   if (real)
     array.values = size == 8 ? read_values<double>(set, count) : read_values<float>(set, count);
+  else if (size == 1 && H5Tget_sign(type) == H5T_SGN_NONE)
+    array.values = read_values<std::uint8_t>(set, count);
   else
     array.values = size == 8 ? read_values<std::int64_t>(set, count) : read_values<std::int32_t>(set, count);
   return array;

@@ -24,12 +24,15 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const vo
   must(H5Awrite(attribute, type, value), "H5Awrite");
 }
 
-// Deflate saves an eighth of coordinates, and half of descriptors (single precision, mostly zeros).
+// Deflate saves an eighth of coordinates, half of descriptors (single precision, mostly zeros), and most of
+// pictures.
 Handle creation_properties(const Array& array) {
   Handle properties = property_list(H5P_DATASET_CREATE);
   must(H5Pset_obj_track_times(properties, false), "H5Pset_obj_track_times");
-  if (!std::holds_alternative<std::vector<float>>(array.values) ||
-      array.count() * sizeof(float) < kCompressFrom)
+  const std::size_t value =
+      std::visit([]<class T>(const std::vector<T>&) { return sizeof(T); }, array.values);
+  if ((!array.repetitive && !std::holds_alternative<std::vector<float>>(array.values)) ||
+      array.count() * value < kCompressFrom)
     return properties;
   std::vector<hsize_t> chunk(array.shape.begin(), array.shape.end());
   chunk[0] = std::min<hsize_t>(chunk[0], kChunkRows);

@@ -43,6 +43,8 @@ template <class T>
 hid_t type_of() {
   if constexpr (std::is_floating_point_v<T>)
     return sizeof(T) == 8 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  else if constexpr (std::is_unsigned_v<T>)
+    return H5T_STD_U8LE;
   else
     return sizeof(T) == 8 ? H5T_STD_I64LE : H5T_STD_I32LE;
 }

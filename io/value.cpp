@@ -1,6 +1,7 @@
 // Vec3 and Triangle are plain triples, so a vector of them is an n x 3 array as it lies in memory.
 #include "io/value.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -194,6 +195,55 @@ Value scores_from(const Arrays& arrays) {
   return curve[0];
 }
 
+template <class T>
+Array pixels(const char* name, const Picture& picture, const std::vector<T>& values, const char* unit,
+             const char* description) {
+  const auto side = static_cast<std::size_t>(picture.size);
+  return {name, {side, side}, values, unit, description, true};
+}
+
+Arrays arrays_of(const Picture& picture) {
+  const auto side = static_cast<std::size_t>(picture.size);
+  return {pixels("primitive", picture, picture.primitive, "1",
+                 "face of the mesh or point of the scan that is seen; -1: nothing"),
+          {"weights", {side, side, 3}, picture.weights, "1", "of the face's corners; of a point 1, 0, 0"},
+          pixels("depth", picture, picture.depth, kLength,
+                 "along the viewing direction; infinity where nothing is seen"),
+          pixels("shade", picture, picture.shade, "1/255", "brightness of a white surface"),
+          pixels("coverage", picture, picture.coverage, "1/255", "the part that the shape fills"),
+          {"view_projection",
+           {4, 4},
+           std::vector<double>(picture.view_projection.begin(), picture.view_projection.end()),
+           "1",
+           "world to clip space, for column vectors"}};
+}
+
+template <class T>
+const std::vector<T>& pixels_of(const Arrays& arrays, std::string_view name, std::size_t count) {
+  const auto& values = values_of<T>(arrays, name);
+  if (values.size() != count)
+    throw InputError(
+        fmt::format("data set '{}': {} values, but the picture needs {}", name, values.size(), count));
+  return values;
+}
+
+Value picture_from(const Arrays& arrays) {
+  const Array* primitive = find_array(arrays, "primitive");
+  if (primitive == nullptr || primitive->shape.size() != 2 || primitive->shape[0] != primitive->shape[1])
+    throw InputError("the data set 'primitive' is not a square of pixels");
+  Picture picture;
+  picture.size = static_cast<std::int32_t>(primitive->shape[0]);
+  const std::size_t n = picture.pixels();
+  picture.primitive = pixels_of<std::int32_t>(arrays, "primitive", n);
+  picture.weights = pixels_of<float>(arrays, "weights", 3 * n);
+  picture.depth = pixels_of<float>(arrays, "depth", n);
+  picture.shade = pixels_of<std::uint8_t>(arrays, "shade", n);
+  picture.coverage = pixels_of<std::uint8_t>(arrays, "coverage", n);
+  const auto& matrix = pixels_of<double>(arrays, "view_projection", picture.view_projection.size());
+  std::copy(matrix.begin(), matrix.end(), picture.view_projection.begin());
+  return picture;
+}
+
 struct Kind {
   std::string_view name;
   Value (*read)(const Arrays&);
@@ -211,6 +261,7 @@ constexpr std::array<Kind, std::variant_size_v<Value>> kKinds = {{
     {"histogram", histogram_from},
     {"scores", scores_from},
     {"human_curve", human_curve_from},
+    {"picture", picture_from},
 }};
 
 }  // namespace

@@ -6,12 +6,13 @@
 #include <variant>
 
 #include "io/arrays.h"
+#include "stages/core/picture.h"
 #include "stages/core/types.h"
 
 namespace salbench {
 
 using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                           Scores, HumanCurve>;
+                           Scores, HumanCurve, Picture>;
 
 Arrays arrays_from(const Value& value);
 

@@ -14,6 +14,7 @@
 #include "stages/core/smoothing.h"
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/matching/matching.h"
+#include "stages/picture/picture.h"
 
 namespace salbench {
 namespace {
@@ -180,6 +181,16 @@ RowOf<Descriptors> add_fpfh(Catalog& catalog, const ShapeRows& shape, const Sect
   return catalog.add(shape.shapes, {"fpfh", 1}, describe, shape.points, shape.normals, chosen);
 }
 
+void add_pictures(Catalog& catalog, const Config& config, const RowOf<Mesh>& mesh, const RowOf<Scan>& scan,
+                  const RowOf<Normals>& scan_normals) {
+  RowHead head{"picture", 1};
+  head.only_if_cached = config.pictures == Pictures::cached;
+  const auto options = section("picture", config.picture);
+  if (config.dataset.meshes) catalog.add(Shapes::meshes, head, picture_of_mesh, mesh, options, kRandom);
+  if (config.dataset.scans)
+    catalog.add(Shapes::scans, head, picture_of_scan, scan, scan_normals, mesh, options, kRandom);
+}
+
 }  // namespace
 
 Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference) {
@@ -219,8 +230,11 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
     if (model.is_map() && config.dataset.meshes) add_model(catalog, meshes, config, model);
     if (model.is_map() && config.dataset.scans) add_model(catalog, scans, config, model);
   }
+  if (config.pictures != Pictures::none) add_pictures(catalog, config, mesh, scan, scans.normals);
   return catalog;
 }
+
+std::string node_name(const Row& row) { return fmt::format("{} of {}", row.name, name_of(row.shapes)); }
 
 std::string option_path(const Row& row, std::string_view key) {
   const std::string line = fmt::format("\n{}: ", key);

@@ -14,6 +14,8 @@ namespace salbench {
 // A reference histogram that is given takes the place of the data set's own mean.
 Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference = {});
 
+std::string node_name(const Row& row);  // "fpfh of scans": meshes and scans may have rows of one name
+
 // Configuration path of a row's option, such as "fpfh.radius"; the bare key if no section has it.
 std::string option_path(const Row& row, std::string_view key);
 

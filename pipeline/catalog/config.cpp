@@ -72,6 +72,15 @@ std::string indented(std::string_view lines, std::string_view by) {
   return result;
 }
 
+// Where pictures are not computed, an annotated configuration has their options as a comment.
+std::string picture_section(const Config& config, bool annotated) {
+  const std::string options = "picture:\n" + indented(options_text(config.picture, annotated), "  ");
+  if (config.pictures == Pictures::computed) return (annotated ? "\n" : "") + options;
+  return annotated ? "\n# Runs compute pictures of all shapes where this section is there:\n" +
+                         indented(options, "# ")
+                   : "";
+}
+
 std::string written(const Config& config, bool annotated) {
   std::string yaml;
   const auto add = [&](std::string_view key, std::string_view value, std::string_view note) {
@@ -91,6 +100,7 @@ std::string written(const Config& config, bool annotated) {
     begin_section(key);
     yaml += indented(options_text(options, annotated), "  ");
   });
+  yaml += picture_section(config, annotated);
   begin_section("models");
   for (const Model& model : config.models)
     if (!model.given)
@@ -108,7 +118,7 @@ void check(const DatasetOptions& options) {
 Config read_config(const Section& root, const std::string& name) {
   Config config;
   config.name = name;
-  std::vector<std::string_view> known = {"protocol", "seed", "data", "cache", "output", "models"};
+  std::vector<std::string_view> known = {"protocol", "seed", "data", "cache", "output", "models", "picture"};
   for_each_section(config, [&](std::string_view key, auto&) { known.push_back(key); });
   root.reject_unknown(known);
 
@@ -124,6 +134,10 @@ Config read_config(const Section& root, const std::string& name) {
     else
       root.child(key).read(options);
   });
+  if (root.has("picture")) {
+    config.pictures = Pictures::computed;
+    root.child("picture").read(config.picture);
+  }
   config.models = read_models(root, config.protocol);
   return config;
 }

@@ -14,6 +14,7 @@
 #include "stages/ground_truth/simulation.h"
 #include "stages/metrics/metrics.h"
 #include "stages/normals/normals.h"
+#include "stages/picture/picture.h"
 #include "stages/scan/scan.h"
 #include "stages/surface/surface.h"
 
@@ -41,6 +42,9 @@ struct DatasetOptions {
 };
 void check(const DatasetOptions& options);
 
+// What the catalog has of pictures, which no score needs: in this order, each has more than the one before.
+enum class Pictures { none, cached, computed };
+
 struct Config {
   std::string name;                 // the file's stem
   std::string data, cache, output;  // folders; empty where only the command line can say
@@ -55,7 +59,9 @@ struct Config {
   FpfhOptions fpfh;
   ScanFpfhOptions scan_fpfh;
   MetricsOptions metrics;
-  std::vector<Model> models;  // in the order of the file
+  PictureOptions picture;
+  Pictures pictures = Pictures::none;  // computed where the file has the section
+  std::vector<Model> models;           // in the order of the file
 
   bool simulated() const { return dataset.participants == Participants::simulated; }
 };

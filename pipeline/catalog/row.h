@@ -93,6 +93,7 @@ struct RowHead {
   std::int32_t version = 1;  // raised when the output changes; tests/pipeline/golden_test.cpp watches
   std::function<bool(const DatasetItem&)> applies = {};  // to an item and its scans; empty: to every one
   std::size_t limit = 0;                                 // jobs at work at the same time; 0: no limit
+  bool only_if_cached = false;  // taken from the cache where it is there, and never computed
 };
 
 struct Row : RowHead {

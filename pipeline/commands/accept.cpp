@@ -70,7 +70,7 @@ void accept_job(const Context& context, const Plan& plan, const JobRef& ref, Fol
 }
 
 ExitStatus run_accept(const Arguments& arguments, const std::string& stage, const std::atomic<bool>& stop) {
-  const Setup setup(arguments);
+  const Setup setup(arguments, {}, Pictures::computed);
   require_cache(setup.cache);
   FolderStore store(setup.cache, Access::read_write);
   const OrderlyEnd orderly;

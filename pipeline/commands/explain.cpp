@@ -66,7 +66,7 @@ std::vector<Explanation> explain(const Context& context, const Plan& plan, const
 namespace {
 
 ExitStatus print_explanation(const Arguments& arguments, const ExplainOptions& options) {
-  const Setup setup(arguments);
+  const Setup setup(arguments, {}, Pictures::cached);
   const FolderStore store(setup.cache, Access::read_only);
   const Plan plan = make_plan(setup.context, store);
   const auto explanations = explain(setup.context, plan, setup.cache, options);

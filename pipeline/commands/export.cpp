@@ -122,7 +122,7 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
         fmt::format("--format {}: must be h5 or {}", options.format, expected_of<ShapeFormat>()));
   if (shapes && options.link) throw ConfigError("--link: only one HDF5 file (--format h5) can hold links");
 
-  Session session(arguments, stop);
+  Session session(arguments, stop, {}, shapes ? Pictures::none : Pictures::cached);
   const StageNames stages = selected_stages(options.stages, session.setup.catalog);
   const OrderlyEnd orderly;
   session.runner.run(thread_count(arguments));

@@ -44,7 +44,7 @@ ExitStatus run_gc(Arguments arguments, const GcOptions& options) {
   fs::path folder;
   for (const std::string& config : options.configs) {
     arguments.config = config;
-    const Setup setup(arguments);
+    const Setup setup(arguments, {}, Pictures::cached);
     if (!folder.empty() && fs::weakly_canonical(folder) != fs::weakly_canonical(setup.cache))
       throw ConfigError(fmt::format("{}: its cache is {}, not {}: clean one cache at a time", config,
                                     setup.cache.string(), folder.string()));

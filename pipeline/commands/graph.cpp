@@ -12,9 +12,6 @@
 namespace salbench {
 namespace {
 
-// "fpfh of scans": rows for meshes and for scans may share a name.
-std::string node_name(const Row& row) { return fmt::format("{} of {}", row.name, name_of(row.shapes)); }
-
 std::string options_of(const Row& row, std::string_view between) {
   std::string text;
   for (const OptionLines& options : row.options) text += options.text;

@@ -17,15 +17,16 @@ namespace salbench {
 namespace {
 
 constexpr std::array kSubcommands = {
-    run_subcommand,    maps_subcommand,   evaluate_subcommand, export_subcommand,
-    plan_subcommand,   graph_subcommand,  explain_subcommand,  status_subcommand,
-    config_subcommand, verify_subcommand, gc_subcommand,       accept_subcommand,
+    run_subcommand,    maps_subcommand,  evaluate_subcommand, pictures_subcommand, export_subcommand,
+    plan_subcommand,   graph_subcommand, explain_subcommand,  status_subcommand,   config_subcommand,
+    verify_subcommand, gc_subcommand,    accept_subcommand,
 };
 
 constexpr const char* kExamples = R"(Examples:
   salbench run configs/shrec07.yaml --data SchellingData          the whole benchmark; run it again to resume
   salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
   salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
+  salbench pictures configs/shrec07.yaml --data SchellingData --items 52
   salbench export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5
   salbench plan configs/shrec07.yaml --data SchellingData         what a run would compute, and why
   salbench graph configs/shrec07.yaml --format dot | dot -Tsvg    the flow graph of a run, as a picture
@@ -36,15 +37,6 @@ constexpr const char* kExamples = R"(Examples:
 Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
 3 cache or output folder unusable; 70 a defect of the program, or memory ran out;
 130 interrupted, the line that resumes was printed.)";
-
-// As a shell reads it back as the same word.
-std::string shell_word(const std::string& word) {
-  constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 std::string joined(std::span<const char* const> words) {
   std::string line;

@@ -32,6 +32,7 @@ void print_summary(const Session& session, const std::vector<ResultRow>& rows) {
   fmt::print("{}", aligned(summary_table(rows, chosen_metrics(setup.config.metrics))));
   fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup.config.protocol),
              session.runner.computed(), setup.output.string());
+  fmt::print("to make a report of them: scripts/report {}\n", shell_word(setup.output.string()));
 }
 
 void write_results(Session& session, const RunRecord& record, const Arguments& arguments) {
@@ -58,8 +59,8 @@ ExitStatus run_session(Session& session, const Arguments& arguments, const std::
   const bool interrupted = stop;
   if (interrupted && setup.context.shard) return interrupted_status(arguments);
   Causes causes(setup.context, session.plan, setup.cache, kOpenedForCounting);
-  const RunRecord record{session.state(), thread_count(arguments), session.seconds(), interrupted,
-                         causes.words_of_computed()};
+  const RunRecord record{session.state(),   session.store, thread_count(arguments),   session.started,
+                         session.seconds(), interrupted,   causes.words_of_computed()};
   if (setup.context.shard)
     finish_shard(session, record, arguments);
   else

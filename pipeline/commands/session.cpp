@@ -40,11 +40,12 @@ std::optional<Histogram> reference_of(const Arguments& arguments) {
 
 }  // namespace
 
-Config read_configuration(const Arguments& arguments, const std::optional<Model>& given) {
+Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
   Config config =
       read_config(Section::from_file(arguments.config), fs::path(arguments.config).stem().string());
   select_models(config, arguments.models);
   if (given) config.models.push_back(*given);
+  config.pictures = std::max(config.pictures, pictures);
   if (!arguments.data.empty()) config.data = arguments.data;
   if (!arguments.cache.empty()) config.cache = arguments.cache;
   if (!arguments.output.empty()) config.output = arguments.output;
@@ -61,8 +62,8 @@ int thread_count(const Arguments& arguments) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-Setup::Setup(const Arguments& arguments, const std::optional<Model>& given)
-    : config(read_configuration(arguments, given)),
+Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
+    : config(read_configuration(arguments, given, pictures)),
       catalog(make_catalog(config, reference_of(arguments))),
       workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items,
                              shard_of(arguments))),
@@ -78,8 +79,9 @@ Setup::Setup(const Arguments& arguments, const std::optional<Model>& given)
   for (const std::string& note : workload.notes) spdlog::warn("{}", note);
 }
 
-Session::Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given)
-    : setup(arguments, given),
+Session::Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given,
+                 Pictures pictures)
+    : setup(arguments, given, pictures),
       store(setup.cache, Access::read_write),
       plan(make_plan(setup.context, store)),
       progress(progress_of(arguments.quiet)),

@@ -19,7 +19,9 @@ int thread_count(const Arguments& arguments);
 // Everything that stands before the first job. The context refers to its neighbours, so it is never moved.
 // Throws ConfigError or InputError for what makes the command impossible.
 struct Setup {
-  explicit Setup(const Arguments& arguments, const std::optional<Model>& given = {});  // a model more
+  // A model more; pictures, where the configuration has less of them.
+  explicit Setup(const Arguments& arguments, const std::optional<Model>& given = {},
+                 Pictures pictures = Pictures::none);
   Setup(const Setup&) = delete;
   Setup& operator=(const Setup&) = delete;
 
@@ -31,12 +33,14 @@ struct Setup {
 };
 
 // The configuration as the command line changes it: folders, models. Throws ConfigError.
-Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {});
+Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {},
+                          Pictures pictures = Pictures::none);
 
 // A setup with its cache opened for writing, planned, and ready to run.
 struct Session {
   // Throws as Setup does, and StorageError.
-  Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {});
+  Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {},
+          Pictures pictures = Pictures::none);
 
   RunState state() { return {setup.config, setup.context, plan, runner}; }
   double seconds() const;  // since it began

@@ -11,7 +11,7 @@ namespace salbench {
 namespace {
 
 ExitStatus print_status(const Arguments& arguments) {
-  const Setup setup(arguments);
+  const Setup setup(arguments, {}, Pictures::cached);
   const FolderStore store(setup.cache, Access::read_only);
   const Plan plan = make_plan(setup.context, store);
   Table table{.columns = {"stage", "done", "of", "in the cache", "MB"}, .rows = {}};

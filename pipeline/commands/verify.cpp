@@ -82,7 +82,7 @@ ExitStatus run_verify(Arguments arguments, const VerifyOptions& options, const s
   if (options.configs.empty()) faults += verify_folder(arguments.cache, arguments.quiet, stop);
   for (const std::string& config : options.configs) {
     arguments.config = config;
-    const Setup setup(arguments);
+    const Setup setup(arguments, {}, Pictures::cached);
     if (seen.insert(fs::weakly_canonical(setup.cache)).second)
       faults += verify_folder(setup.cache, arguments.quiet, stop);
     if (options.deep)

@@ -182,6 +182,8 @@ Job decide(const Context& context, const Plan& plan, const JobRef& job, const Lo
     decided.verdict = Verdict::cached;
     decided.reason = Reason::none;
     decided.content = *content;
+  } else if (context.row(job).only_if_cached) {
+    return verdict_of(Verdict::not_applicable, Reason::only_cached);
   }
   return decided;
 }

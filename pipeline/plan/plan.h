@@ -39,11 +39,12 @@ enum class Reason : std::uint8_t {
   damaged,       // the artefact is truncated or fails its checksum
   inapplicable,  // the row has nothing to say of the item
   not_given,     // a map of such items is not among those given
+  only_cached,   // not in the cache, and not to be computed
   needs_all,     // the mean over the whole data set, of which this is a share
 };
 template <>
 struct EnumNames<Reason> {  // for people
-  static constexpr std::array<std::string_view, 11> names{"",
+  static constexpr std::array<std::string_view, 12> names{"",
                                                           "not in the cache",
                                                           "options, inputs, seed or version changed",
                                                           "waits for",
@@ -53,6 +54,7 @@ struct EnumNames<Reason> {  // for people
                                                           "damaged",
                                                           "does not apply",
                                                           "not given",
+                                                          "not asked for",
                                                           "needs the mean over all shards"};
 };
 

@@ -1,14 +1,17 @@
 #include "pipeline/results/record.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "io/file.h"
 #include "pipeline/catalog/given_maps.h"
 #include "pipeline/config/section.h"
+#include "pipeline/results/timeline.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -93,14 +96,43 @@ std::string stage_lines(const RunRecord& record) {
   return yaml;
 }
 
+double peak_memory_mb() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
+}
+
+// By stage, in the order of the rows: what the artefacts of this run's jobs occupy. Items may share one.
+std::string cache_lines(const RunRecord& record) {
+  const Context& context = record.run.context;
+  std::vector<std::pair<std::string, std::uint64_t>> stages;
+  std::set<std::pair<std::string, Digest>> counted;
+  for (std::size_t row = 0; row < record.run.plan.jobs.size(); ++row) {
+    const std::string& stage = context.catalog.rows[row].name;
+    std::uint64_t bytes = 0;
+    for (const Job& job : record.run.plan.jobs[row])
+      if (job.known() && counted.emplace(stage, job.key).second)
+        bytes += record.store.bytes_of(stage, job.key).value_or(0);
+    const auto known =
+        std::find_if(stages.begin(), stages.end(), [&](const auto& of) { return of.first == stage; });
+    if (known == stages.end())
+      stages.emplace_back(stage, bytes);
+    else
+      known->second += bytes;
+  }
+  std::string yaml = "cache_bytes:  # of the artefacts of this run, by stage\n";
+  for (const auto& [stage, bytes] : stages) yaml += fmt::format("  {}: {}\n", stage, bytes);
+  return yaml;
+}
+
 std::string run_yaml(const RunRecord& record) {
   const auto& [config, context, plan, runner] = record.run;
   std::string yaml;
   if (config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
   yaml += fmt::format("program: salbench {}\nresults: {}\nhost: {}\n", SALBENCH_VERSION, state_line(record),
                       yaml_quoted(host_name()));
-  yaml += fmt::format("threads: {}\nseconds: {:.3f}\nartefacts_computed: {}\n", record.threads,
-                      record.seconds, runner.computed());
+  yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {:.1f}\nartefacts_computed: {}\n",
+                      record.threads, record.seconds, peak_memory_mb(), runner.computed());
   if (context.shard) yaml += fmt::format("shard: {}\n", context.shard->text());
   yaml += fmt::format("reference: {}\n", reference_line(context));
   for (const Model& model : config.models)
@@ -113,6 +145,7 @@ std::string run_yaml(const RunRecord& record) {
                       data.files, data.digest.hex());
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
+  yaml += cache_lines(record);
   const std::vector<Failure> failures = runner.failures();
   yaml += failures.empty() ? "failed: []\n" : "failed:\n";
   for (const Failure& failure : failures)
@@ -127,6 +160,9 @@ std::string run_yaml(const RunRecord& record) {
 }  // namespace
 
 void write_record(const fs::path& folder, const RunRecord& record) {
+  write_file(folder / "timeline.csv",
+             to_csv(timeline_table(record.run.context.catalog, record.run.runner.records(), record.started,
+                                   record.seconds)));
   write_file(folder / "run.yaml", run_yaml(record));
 }
 

@@ -1,22 +1,26 @@
-// run.yaml: what ran, over which data, with which configuration, and what each node of the graph did.
+// run.yaml: what ran, over which data, with which configuration, and what each node of the graph did. What
+// depends on the machine and its load stands here and in timeline.csv, and in no table.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
+#include "cache/folder_store.h"
 #include "pipeline/results/results.h"
 
 namespace salbench {
 
 struct RunRecord {
   RunState run;
+  const FolderStore& store;
   int threads = 1;
+  Clock::time_point started;
   double seconds = 0;
   bool interrupted = false;  // the tables hold what was finished
   Why why = {};              // of what was computed; empty: not recorded
 };
 
-// Throws StorageError.
+// run.yaml and timeline.csv. Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
 // The record of a run over a share: shard_2_of_4.yaml. Throws StorageError.

@@ -1,7 +1,5 @@
 #include "pipeline/run/executor.h"
 
-#include <chrono>
-
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -10,8 +8,8 @@
 namespace salbench {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 // Counts a job as long as it lives, however the job ends.
@@ -150,8 +148,8 @@ Executor::Result Executor::run(const JobRef& job, std::vector<SourceData> files)
   inputs.member = [&](std::size_t i) { return load(members[i]); };
 
   const AtWork at_work(running_[job.row]);
-  const auto started = std::chrono::steady_clock::now();
-  Result result{row.run(inputs), 0};
+  const auto started = Clock::now();
+  Result result{row.run(inputs), started, 0};
   result.seconds = seconds_since(started);
   return result;
 }
@@ -161,6 +159,7 @@ Digest Executor::store(const JobRef& job, const Recipe& recipe, const Result& re
   const Digest content = store_.save(recipe, context_.row(job).kind, arrays_from(result.value), note);
   const std::lock_guard lock(mutex_);
   records_[job.row].seconds.push_back(static_cast<float>(result.seconds));
+  records_[job.row].started.push_back(result.started);
   return content;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -20,10 +21,13 @@ struct Failure {
   bool defect = false;  // of the program, or memory ran out: nothing is wrong with the item
 };
 
+using Clock = std::chrono::steady_clock;
+
 // What a row's node has done.
 struct NodeRecord {
-  std::size_t settled = 0;          // jobs that passed through the node
-  std::vector<float> seconds = {};  // of each job that was computed
+  std::size_t settled = 0;                      // jobs that passed through the node
+  std::vector<float> seconds = {};              // of each job that was computed
+  std::vector<Clock::time_point> started = {};  // of the same jobs
 };
 
 class Executor {
@@ -55,6 +59,7 @@ class Executor {
  private:
   struct Result {
     Value value;
+    Clock::time_point started;
     double seconds = 0;
   };
   ValuePtr held(const JobRef& job);

@@ -59,6 +59,10 @@ void Runner::run(int threads) {
   settle("evaluation", std::vector<bool>(context_.catalog.rows.size(), true), threads, Claimed::awaited);
 }
 
+void Runner::run_rows(const std::string& what, const std::vector<bool>& rows, int threads) {
+  settle(what, rows, threads, Claimed::awaited);
+}
+
 std::size_t Runner::open_jobs(const std::vector<bool>& rows) const {
   std::size_t open = 0;
   for (std::size_t row = 0; row < rows.size(); ++row)

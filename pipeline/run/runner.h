@@ -19,6 +19,9 @@ class Runner {
   // early once `stop` is set. An item's failure is recorded and stops nothing else. Throws StorageError.
   void run(int threads);
 
+  // The jobs of the rows named, [row], and no others; rows that they read are among them. Otherwise as run.
+  void run_rows(const std::string& what, const std::vector<bool>& rows, int threads);
+
   // A known result, from the cache where it is there. Damaged artefacts are computed again.
   ValuePtr result(const JobRef& job) { return executor_.load(job); }
 

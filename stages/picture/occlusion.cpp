@@ -21,9 +21,16 @@ struct Occluders::Scene {
 Occluders::Occluders(std::span<const Vec3> points, std::span<const Triangle> faces)
     : scene_(new Scene{embree::scene_of(embree::triangles(points, faces))}) {}
 
-Occluders::Occluders(std::span<const Vec3> points, std::span<const Vec3> normals,
-                     std::span<const double> radii)
-    : scene_(new Scene{embree::scene_of(embree::discs(points, normals, radii))}) {}
+Occluders::Occluders(std::span<const Disc> discs) {
+  std::vector<Vec3> centres, normals;
+  std::vector<double> radii;
+  for (const Disc& disc : discs) {
+    centres.push_back(disc.centre);
+    normals.push_back(disc.normal);
+    radii.push_back(disc.radius);
+  }
+  scene_.reset(new Scene{embree::scene_of(embree::discs(centres, normals, radii))});
+}
 
 Occluders::~Occluders() = default;
 

@@ -16,7 +16,7 @@ namespace salbench {
 class Occluders {
  public:
   Occluders(std::span<const Vec3> points, std::span<const Triangle> faces);
-  Occluders(std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const double> radii);
+  explicit Occluders(std::span<const Disc> discs);  // round ones
   ~Occluders();
 
   bool between(const Vec3f& origin, const Vec3f& direction, float reach) const;

@@ -20,6 +20,8 @@ namespace {
 
 constexpr int kCells = 3;  // along each side of a pixel
 constexpr int kCellsPerPixel = kCells * kCells;
+constexpr double kDiscRadius = 0.8;   // steps of the scanner's grid; from 0.71 on, discs of a square meet
+constexpr double kLeastCosine = 0.2;  // between normal and ray: discs of steeper surfaces are not longer
 
 // The image planes of a picture: its pixels, and their cells.
 struct Planes {
@@ -52,20 +54,16 @@ struct Planes {
 struct Surfaces {
   virtual ~Surfaces() = default;
   virtual Vec3 weights(std::int32_t primitive, const Vec3& ray) const = 0;
-  virtual Vec3f plane_normal(std::int32_t primitive) const = 0;
+  virtual Vec3f plane_normal(std::int32_t primitive, const Vec3& ray) const = 0;  // towards the viewer
   virtual float lift(std::int32_t primitive) const = 0;
 };
-
-Vec3f towards_camera(const Vec3f& normal, const Vec3& ray) {
-  return normal.dot(ray.cast<float>()) > 0 ? Vec3f(-normal) : normal;
-}
 
 Site site_of(int cell, const Seen& seen, const ImagePlane& cells, const Surfaces& surfaces) {
   const auto at = static_cast<std::size_t>(cell);
   const Vec3 ray = cells.ray_of_cell(cell);
   const std::int32_t primitive = seen.primitive[at];
   return {true, (static_cast<double>(seen.depth[at]) * ray).cast<float>(), seen.normal[at],
-          towards_camera(surfaces.plane_normal(primitive), ray), surfaces.lift(primitive)};
+          surfaces.plane_normal(primitive, ray), surfaces.lift(primitive)};
 }
 
 std::uint8_t byte_of(float part) {
@@ -164,7 +162,10 @@ struct FaceSurfaces final : Surfaces {
   Vec3 weights(std::int32_t face, const Vec3& ray) const override {
     return weights_at(points, faces[static_cast<std::size_t>(face)], ray);
   }
-  Vec3f plane_normal(std::int32_t face) const override { return normals.of_face(face); }
+  Vec3f plane_normal(std::int32_t face, const Vec3& ray) const override {
+    const Vec3f& normal = normals.of_face(face);
+    return normal.dot(ray.cast<float>()) > 0 ? Vec3f(-normal) : normal;
+  }
   float lift(std::int32_t) const override { return 1e-3F; }
 };
 
@@ -192,25 +193,20 @@ void add_normals(const FaceSurfaces& surfaces, const ImagePlane& cells, Seen& se
 // --- scans ------------------------------------------------------------------------------------------------
 
 struct DiscSurfaces final : Surfaces {
-  const std::vector<Vec3>& normals;
-  const std::vector<double>& radii;
+  const std::vector<Disc>& discs;
 
-  DiscSurfaces(const std::vector<Vec3>& the_normals, const std::vector<double>& the_radii)
-      : normals(the_normals), radii(the_radii) {}
+  explicit DiscSurfaces(const std::vector<Disc>& the_discs) : discs(the_discs) {}
   Vec3 weights(std::int32_t, const Vec3&) const override { return Vec3::UnitX(); }
-  Vec3f plane_normal(std::int32_t point) const override {
-    return normals[static_cast<std::size_t>(point)].cast<float>();
+  Vec3f plane_normal(std::int32_t point, const Vec3&) const override {
+    return discs[static_cast<std::size_t>(point)].normal.cast<float>();
   }
   float lift(std::int32_t point) const override {
-    return static_cast<float>(radii[static_cast<std::size_t>(point)]);
+    return static_cast<float>(discs[static_cast<std::size_t>(point)].radius);
   }
 };
 
-// Half the diagonal of the cell of the scanner's grid that a point stands for. The grid's angle is the median
-// angle between nearest points, as seen by the scanner; on a slanted surface cells are long.
-std::vector<double> disc_radii(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                               const Vec3& scanner) {
-  constexpr double kOverlap = 1.25, kLeastCosine = 0.25;
+// Angle between neighbouring rays of the scanner: the median of those between nearest points.
+double grid_angle(const std::vector<Vec3>& points, const Vec3& scanner) {
   const KdTree tree(points);
   std::vector<double> angles;
   std::vector<Neighbour> nearest;
@@ -218,16 +214,27 @@ std::vector<double> disc_radii(const std::vector<Vec3>& points, const std::vecto
     tree.nearest(p, 2, nearest);
     if (nearest.size() == 2) angles.push_back(std::sqrt(nearest[1].distance_squared) / (p - scanner).norm());
   }
-  if (angles.empty()) return std::vector<double>(points.size(), 0);
+  if (angles.empty()) return 0;
   const auto median = angles.begin() + std::ssize(angles) / 2;
   std::nth_element(angles.begin(), median, angles.end());
-  std::vector<double> radii;
+  return *median;
+}
+
+std::vector<Disc> discs_of(const Scan& scan, const Normals& normals, const Camera& camera) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : scan.points) points.push_back(camera.eye_from_world(p));
+  const Vec3 scanner = camera.eye_from_world(scan.camera);
+  const double radius_per_depth = kDiscRadius * grid_angle(points, scanner);
+  std::vector<Disc> discs;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 ray = points[i] - scanner;
-    const double cosine = std::max(std::abs(normals[i].dot(ray)) / ray.norm(), kLeastCosine);
-    radii.push_back(kOverlap * *median * ray.norm() / 2 * std::sqrt(1 + 1 / (cosine * cosine)));
+    Disc disc{points[i], camera.eye_from_world_direction(normals[i]), points[i] - scanner};
+    disc.radius = radius_per_depth * disc.ray.norm();
+    disc.ray.normalize();
+    if (disc.normal.dot(disc.ray) > 0) disc.normal = -disc.normal;
+    disc.reach = disc.radius / std::max(-disc.normal.dot(disc.ray), kLeastCosine);
+    discs.push_back(disc);
   }
-  return radii;
+  return discs;
 }
 
 }  // namespace
@@ -258,14 +265,11 @@ Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& me
   const Camera camera(scan.points, axes_for_scan(upward(mesh, options), scan.camera - centre, options),
                       options, "scan");
   const Planes planes(camera, options);
-  std::vector<Vec3> points, discs;
-  for (const Vec3& p : scan.points) points.push_back(camera.eye_from_world(p));
-  for (const Vec3& n : normals) discs.push_back(camera.eye_from_world_direction(n));
-  const std::vector<double> radii = disc_radii(points, discs, camera.eye_from_world(scan.camera));
-  const Seen seen = see_discs(points, discs, radii, planes.cells);
+  const std::vector<Disc> discs = discs_of(scan, normals, camera);
+  const Seen seen = see_discs(discs, planes.cells);
   require_something_seen(seen, "scan");
-  return Developer{camera, options, planes, seen, DiscSurfaces(discs, radii)}.develop(
-      Occluders(points, discs, radii), random.rng("picture"));
+  return Developer{camera, options, planes, seen, DiscSurfaces(discs)}.develop(Occluders(discs),
+                                                                               random.rng("picture"));
 }
 
 }  // namespace salbench

@@ -27,12 +27,12 @@ struct PictureOptions {
   PictureUp up = PictureUp::automatic;
   double azimuth = 35;
   double elevation = 20;
-  double scan_turn = 25;
+  double scan_turn = 12;
   double field_of_view = 30;
   double margin = 0.04;
-  double light_azimuth = -35;
-  double light_elevation = 40;
-  double ambient = 0.3;
+  double light_azimuth = -30;
+  double light_elevation = 35;
+  double ambient = 0.35;
   std::int32_t occlusion_samples = 6;
   double occlusion_reach = 0.5;
 

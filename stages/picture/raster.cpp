@@ -91,41 +91,37 @@ struct FlatFace {
   }
 };
 
-struct Disc {
-  const Vec3& centre;
-  const Vec3& normal;
-  double radius;
-
-  struct Hit {
-    double depth, distance;  // from the camera along z; from the centre, in radii
-  };
-  // Calls visit(cell, hit) for every cell whose ray meets the disc.
-  template <class Visit>
-  void for_each_hit(const ImagePlane& plane, const Visit& visit) const {
-    const double along_normal = normal.dot(centre);
-    const Cells rows = extent(plane.row(centre), centre.y(), plane);
-    const Cells columns = extent(plane.column(centre), centre.x(), plane);
-    for (int row = rows.first; row <= rows.last; ++row)
-      for (int column = columns.first; column <= columns.last; ++column) {
-        const Vec3 ray = plane.ray(column + 0.5, row + 0.5);
-        const double depth = along_normal / normal.dot(ray);
-        const double distance_squared = (depth * ray - centre).squaredNorm();
-        if (distance_squared <= radius * radius)  // false for NaN: a disc seen edge-on
-          visit(static_cast<std::size_t>(row * plane.side + column),
-                Hit{depth, std::sqrt(distance_squared) / radius});
-      }
-  }
-
- private:
-  // Cells around a coordinate of the centre that the disc may reach.
-  Cells extent(double at, double coordinate, const ImagePlane& plane) const {
-    const double nearest = centre.z() - radius;
-    if (!(nearest > 0)) return {0, plane.side - 1};
-    const double reach = radius * (1 + std::abs(coordinate) / centre.z()) / nearest;
-    const double cells = reach / plane.tan_half_field / 2 * plane.side;
-    return cells_between(at - cells, at + cells, plane.side);
-  }
+struct Hit {
+  double depth, distance;  // from the camera along z; from the centre across the disc's ray, in radii
 };
+
+// Cells around a coordinate of the centre that the disc may reach.
+Cells extent(const Disc& disc, double at, double coordinate, const ImagePlane& plane) {
+  const double nearest = disc.centre.z() - disc.reach;
+  if (!(nearest > 0)) return {0, plane.side - 1};
+  const double reach = disc.reach * (1 + std::abs(coordinate) / disc.centre.z()) / nearest;
+  const double cells = reach / plane.tan_half_field / 2 * plane.side;
+  return cells_between(at - cells, at + cells, plane.side);
+}
+
+// Calls visit(cell, hit) for every cell whose ray meets the disc.
+template <class Visit>
+void for_each_hit(const Disc& disc, const ImagePlane& plane, const Visit& visit) {
+  const double along_normal = disc.normal.dot(disc.centre);
+  const Cells rows = extent(disc, plane.row(disc.centre), disc.centre.y(), plane);
+  const Cells columns = extent(disc, plane.column(disc.centre), disc.centre.x(), plane);
+  for (int row = rows.first; row <= rows.last; ++row)
+    for (int column = columns.first; column <= columns.last; ++column) {
+      const Vec3 ray = plane.ray(column + 0.5, row + 0.5);
+      const double depth = along_normal / disc.normal.dot(ray);
+      const Vec3 offset = depth * ray - disc.centre;
+      const double along = offset.dot(disc.ray), squared = offset.squaredNorm();
+      const double across_squared = std::max(0.0, squared - along * along);
+      if (across_squared <= disc.radius * disc.radius && squared <= disc.reach * disc.reach)  // false for NaN
+        visit(static_cast<std::size_t>(row * plane.side + column),
+              Hit{depth, std::sqrt(across_squared) / disc.radius});
+    }
+}
 
 }  // namespace
 
@@ -141,21 +137,17 @@ Seen see_faces(std::span<const Vec3> points, std::span<const Triangle> faces, co
 
 // Discs at one place of the surface overlap, so that the frontmost alone would give ragged cells. First the
 // depth of the front; then those discs share it that are not farther behind than their radius.
-Seen see_discs(std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const double> radii,
-               const ImagePlane& plane) {
+Seen see_discs(std::span<const Disc> discs, const ImagePlane& plane) {
   Seen seen(plane);
-  const auto disc = [&](std::size_t i) { return Disc{points[i], normals[i], radii[i]}; };
-  std::vector<float> front(plane.cells(), kNothing);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    disc(i).for_each_hit(plane, [&](std::size_t cell, const Disc::Hit& hit) {
+  std::vector<float> front(plane.cells(), kNothing), nearest(plane.cells(), kNothing);
+  for (const Disc& disc : discs)
+    for_each_hit(disc, plane, [&](std::size_t cell, const Hit& hit) {
       front[cell] = std::min(front[cell], static_cast<float>(hit.depth));
     });
-  std::vector<float> nearest(plane.cells(), kNothing);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    // Towards the camera at the centre: discs that share a place are turned the same way.
-    const Vec3f normal = (normals[i].dot(points[i]) > 0 ? Vec3(-normals[i]) : normals[i]).cast<float>();
-    disc(i).for_each_hit(plane, [&](std::size_t cell, const Disc::Hit& hit) {
-      if (hit.depth > static_cast<double>(front[cell]) + radii[i]) return;
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    const Vec3f normal = discs[i].normal.cast<float>();
+    for_each_hit(discs[i], plane, [&](std::size_t cell, const Hit& hit) {
+      if (hit.depth > static_cast<double>(front[cell]) + discs[i].radius) return;
       const auto distance = static_cast<float>(hit.distance);
       seen.normal[cell] += (1.001F - distance * distance) * normal;
       if (!(distance < nearest[cell])) return;

@@ -1,6 +1,7 @@
 #include "io/value.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -85,6 +86,44 @@ TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
   Histogram histogram{};
   histogram[99] = 3;
   EXPECT_EQ(round_trip(histogram), histogram);
+}
+
+Picture toy_picture() {
+  Picture picture;
+  picture.size = 200;  // large enough to be packed
+  for (std::int32_t i = 0; i < 200 * 200; ++i) {
+    picture.primitive.push_back(i % 7 - 1);
+    picture.weights.insert(picture.weights.end(), {0.25F, 0.5F, 0.25F});
+    picture.depth.push_back(i % 7 == 0 ? std::numeric_limits<float>::infinity() : 1.5F);
+    picture.shade.push_back(static_cast<std::uint8_t>(i % 256));
+    picture.coverage.push_back(static_cast<std::uint8_t>(255 - i % 256));
+  }
+  for (std::size_t i = 0; i < 16; ++i) picture.view_projection[i] = 1.0 / static_cast<double>(i + 1);
+  return picture;
+}
+
+TEST(Value, PicturesComeBackPacked) {
+  const Picture picture = toy_picture();
+  const Picture back = round_trip(picture);
+  EXPECT_EQ(back.size, picture.size);
+  EXPECT_EQ(back.primitive, picture.primitive);
+  EXPECT_EQ(back.weights, picture.weights);
+  EXPECT_EQ(back.depth, picture.depth);
+  EXPECT_EQ(back.shade, picture.shade);
+  EXPECT_EQ(back.coverage, picture.coverage);
+  EXPECT_EQ(back.view_projection, picture.view_projection);
+  EXPECT_LT(hdf5_image({arrays_from(picture), {}}).size(), 4 * picture.pixels());  // of 22
+}
+
+TEST(Value, APictureWhoseDataSetsDoNotBelongTogetherIsNamed) {
+  Picture other = toy_picture();
+  other.shade.pop_back();
+  Arrays arrays = arrays_from(Value(other));
+  EXPECT_THAT([&] { value_from("picture", arrays); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("shade")));
+  arrays[0].shape = {400, 100};
+  EXPECT_THAT([&] { value_from("picture", arrays); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("primitive")));
 }
 
 TEST(Value, MissingOrStrangeArraysAreNamed) {

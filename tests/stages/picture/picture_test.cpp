@@ -1,2 +1,288 @@
 #include "stages/picture/picture.h"
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include <Eigen/LU>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "tests/support/options.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr PictureOptions kSmall{.size = 120};
+const RandomSource kRandom{2016, "1"};
+
+// Without symmetry, with parts that hide others, off centre, and in a unit of its own.
+Mesh two_bodies() {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  const Mesh small = shapes::tetrahedron();
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Vec3& v : small.vertices) mesh.vertices.push_back(0.4 * v + Vec3(0.5, 0.8, 1.1));
+  for (const Triangle& face : small.faces)
+    mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+  for (Vec3& v : mesh.vertices) v = 20 * v + Vec3(70, -30, 20);
+  return mesh;
+}
+
+Mesh box() {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.vertices.emplace_back(i & 1, (i >> 1) & 1, i >> 2);
+  mesh.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+// --- the camera, as a reader of the file has it: from view_projection alone --------------------------------
+
+struct Projection {
+  explicit Projection(const Picture& picture) : size(picture.size) {
+    for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = picture.view_projection[static_cast<std::size_t>(i)];
+  }
+  struct Place {
+    double column, row, depth;
+  };
+  Place of(const Vec3& p) const {
+    const Eigen::Vector4d clip = matrix * p.homogeneous();
+    return {(clip.x() / clip.w() + 1) / 2 * size, (1 - clip.y() / clip.w()) / 2 * size, clip.w()};
+  }
+  Vec3 point(double column, double row, double depth) const {  // the inverse
+    const double x = (2 * column / size - 1) * depth, y = (1 - 2 * row / size) * depth;
+    Eigen::Matrix3d system;
+    system << matrix.block<1, 3>(0, 0), matrix.block<1, 3>(1, 0), matrix.block<1, 3>(3, 0);
+    return system.inverse() * (Vec3(x, y, depth) - Vec3(matrix(0, 3), matrix(1, 3), matrix(3, 3)));
+  }
+  Vec3 camera() const { return point(0, 0, 0); }
+
+  int size;
+  Eigen::Matrix4d matrix;
+};
+
+template <class Visit>  // visit(pixel, column, row) for all that show something
+void for_each_seen(const Picture& picture, const Visit& visit) {
+  for (std::size_t i = 0; i < picture.pixels(); ++i)
+    if (picture.primitive[i] >= 0)
+      visit(i, static_cast<int>(i) % picture.size, static_cast<int>(i) / picture.size);
+}
+
+Vec3 position(const Mesh& mesh, const Picture& picture, std::size_t pixel) {
+  Vec3 p = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k)
+    p += static_cast<double>(picture.weights[3 * pixel + k]) *
+         mesh.vertices[static_cast<std::size_t>(
+             mesh.faces[static_cast<std::size_t>(picture.primitive[pixel])][k])];
+  return p;
+}
+
+std::size_t seen_pixels(const Picture& picture) {
+  std::size_t count = 0;
+  for_each_seen(picture, [&](auto...) { ++count; });
+  return count;
+}
+
+// Depth and face of the nearest hit over all faces, by solving for the plane and two coordinates in it.
+std::pair<double, std::int32_t> nearest_hit(const Mesh& mesh, const Vec3& from, const Vec3& direction) {
+  std::pair<double, std::int32_t> nearest = {std::numeric_limits<double>::infinity(), -1};
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto corner = [&](std::size_t k) {
+      return mesh.vertices[static_cast<std::size_t>(mesh.faces[f][k])];
+    };
+    Eigen::Matrix3d system;
+    system << direction, corner(0) - corner(1), corner(0) - corner(2);
+    if (system.determinant() == 0) continue;
+    const Vec3 solution = system.inverse() * (corner(0) - from);
+    if (solution[1] < 0 || solution[2] < 0 || solution[1] + solution[2] > 1 || solution[0] <= 0) continue;
+    nearest = std::min(nearest, {solution[0], static_cast<std::int32_t>(f)});
+  }
+  return nearest;
+}
+
+TEST(PictureOfMesh, WhatAPixelShowsLiesInIt) {
+  for (const Mesh& mesh : {two_bodies(), box()}) {
+    const Picture picture = picture_of_mesh(mesh, kSmall, kRandom);
+    const Projection projection(picture);
+    ASSERT_GT(seen_pixels(picture), picture.pixels() / 5);
+    for_each_seen(picture, [&](std::size_t pixel, int column, int row) {
+      const float* w = &picture.weights[3 * pixel];
+      ASSERT_EQ(w[0] + w[1] + w[2], 1.0F);
+      ASSERT_TRUE(w[0] >= 0 && w[1] >= 0 && w[2] >= 0);
+      const auto place = projection.of(position(mesh, picture, pixel));
+      const double reach = picture.coverage[pixel] == 255 ? 0.02 : 0.4;
+      ASSERT_NEAR(place.column, column + 0.5, reach);
+      ASSERT_NEAR(place.row, row + 0.5, reach);
+      ASSERT_NEAR(place.depth, static_cast<double>(picture.depth[pixel]), 1e-3 * place.depth);
+    });
+  }
+}
+
+TEST(PictureOfMesh, ShowsTheNearestFace) {
+  const Mesh mesh = two_bodies();
+  const Picture picture = picture_of_mesh(mesh, {.size = 60}, kRandom);
+  const Projection projection(picture);
+  std::size_t differ = 0, compared = 0;
+  for (int row = 0; row < picture.size; ++row)
+    for (int column = 0; column < picture.size; ++column) {
+      const auto pixel = static_cast<std::size_t>(row * picture.size + column);
+      if (picture.coverage[pixel] != 0 && picture.coverage[pixel] != 255) continue;
+      const Vec3 from = projection.camera();
+      const auto [depth, face] = nearest_hit(mesh, from, projection.point(column + 0.5, row + 0.5, 1) - from);
+      ++compared;
+      differ += face != picture.primitive[pixel] ? 1U : 0U;
+      if (face < 0) continue;
+      ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), depth, 1e-4 * depth);
+    }
+  EXPECT_GT(compared, 3000U);
+  EXPECT_EQ(differ, 0U);
+}
+
+TEST(PictureOfMesh, DepthOfASphereIsTheAnalyticOne) {
+  const Picture picture = picture_of_mesh(shapes::sphere(5), kSmall, kRandom);
+  const Projection projection(picture);
+  const Vec3 camera = projection.camera();
+  for_each_seen(picture, [&](std::size_t pixel, int column, int row) {
+    if (picture.coverage[pixel] != 255) return;
+    const Vec3 ray = projection.point(column + 0.5, row + 0.5, 1) - camera;  // of depth 1
+    const double a = ray.squaredNorm(), b = ray.dot(camera), c = camera.squaredNorm() - 1;
+    if (b * b < a * c) return;  // between the sphere and its mesh
+    const double depth = (-b - std::sqrt(b * b - a * c)) / a;
+    const double slant = std::sqrt(b * b - a * c) / std::sqrt(a);  // cosine at the surface
+    ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), depth, 1.5e-3 / slant);
+  });
+}
+
+TEST(PictureOfMesh, AClosedShapeHasNoHolesInItsOutline) {
+  // A box from the front: its edges pass through the centres of cells.
+  const PictureOptions front{.size = 121, .azimuth = 0, .elevation = 0, .margin = 0.1};
+  const Picture picture = picture_of_mesh(box(), front, kRandom);
+  int filled = 0;
+  for_each_seen(picture,
+                [&](std::size_t pixel, int, int) { filled += picture.coverage[pixel] == 255 ? 1 : 0; });
+  EXPECT_NEAR(filled, 0.8 * 121 * 0.8 * 121, 2 * 121);
+  for (int row = 20; row < 101; ++row)
+    for (int column = 20; column < 101; ++column)
+      ASSERT_EQ(picture.coverage[static_cast<std::size_t>(row * 121 + column)], 255) << row << " " << column;
+}
+
+TEST(PictureOfMesh, TheShapeFillsThePictureUpToTheMargin) {
+  Mesh mesh = two_bodies();
+  mesh.vertices.emplace_back(1e4, 0, 0);  // without a face
+  mesh.vertices.emplace_back(std::nan(""), 0, 0);
+  for (const double field : {5.0, 30.0, 60.0}) {
+    const Picture picture =
+        picture_of_mesh(mesh, {.size = 200, .field_of_view = field, .margin = 0.05}, kRandom);
+    int left = 200, right = -1, top = 200, bottom = -1;
+    for_each_seen(picture, [&](std::size_t, int column, int row) {
+      left = std::min(left, column), right = std::max(right, column);
+      top = std::min(top, row), bottom = std::max(bottom, row);
+    });
+    EXPECT_GE(std::min(left, top), 9);
+    EXPECT_LE(std::max(right, bottom), 190);
+    EXPECT_GE(std::max(right - left, bottom - top), 176) << field;
+    EXPECT_NEAR(left + right, 199, 4);
+    EXPECT_NEAR(top + bottom, 199, 4);
+  }
+}
+
+TEST(PictureOfMesh, FacesHaveNoBack) {
+  const Mesh mesh = two_bodies();
+  Mesh turned = mesh;
+  for (std::size_t f = 0; f < turned.faces.size(); f += 3) std::swap(turned.faces[f][1], turned.faces[f][2]);
+  const Picture one = picture_of_mesh(mesh, kSmall, kRandom),
+                other = picture_of_mesh(turned, kSmall, kRandom);
+  EXPECT_EQ(one.primitive, other.primitive);
+  EXPECT_EQ(one.depth, other.depth);
+  EXPECT_EQ(one.coverage, other.coverage);
+  for (std::size_t i = 0; i < one.pixels(); ++i) ASSERT_NEAR(one.shade[i], other.shade[i], 1);
+}
+
+TEST(PictureOfMesh, LightFollowsTheLampAndAmbientOcclusionDarkensHollowsOnly) {
+  const PictureOptions plain{.size = 120, .occlusion_samples = 0};
+  const auto darkest = [](const Picture& picture) {
+    return *std::min_element(picture.shade.begin(), picture.shade.end());
+  };
+  const Picture ball = picture_of_mesh(shapes::sphere(5), kSmall, kRandom);
+  const Picture bare = picture_of_mesh(shapes::sphere(5), plain, kRandom);
+  for (std::size_t i = 0; i < ball.pixels(); ++i) ASSERT_NEAR(ball.shade[i], bare.shade[i], 1) << "convex";
+  EXPECT_GE(darkest(bare), static_cast<int>(255 * plain.ambient));
+  EXPECT_GT(bare.shade[40 * 120 + 40], bare.shade[80 * 120 + 80] + 40) << "the lamp is to the upper left";
+
+  // Two walls at right angles: half of the sky at the foot of one is behind the other.
+  Mesh corner{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}},
+              {{0, 1, 2}, {1, 3, 2}, {0, 4, 1}, {1, 4, 5}}};
+  const PictureOptions close{.size = 121,
+                             .up = PictureUp::y,
+                             .azimuth = 0,
+                             .elevation = 45,
+                             .ambient = 1,
+                             .occlusion_samples = 16,
+                             .occlusion_reach = 100};
+  const Picture walls = picture_of_mesh(corner, close, kRandom);
+  EXPECT_NEAR(walls.shade[60 * 121 + 60], 255 * 0.5, 20) << "in the corner";
+  EXPECT_GT(walls.shade[20 * 121 + 60], 200) << "above it";
+}
+
+TEST(PictureOfMesh, TheAxisThatPointsUpShowsMoreOfTheSurface) {
+  Mesh plate =
+      shapes::grid(4);  // in the plane z = 0: seen from above where z is up, from the front where y is
+  const auto seen = [&](PictureUp up) {
+    return seen_pixels(picture_of_mesh(plate, {.size = 120, .up = up}, kRandom));
+  };
+  EXPECT_EQ(seen(PictureUp::automatic), seen(PictureUp::y));
+  EXPECT_NE(seen(PictureUp::y), seen(PictureUp::z));
+  for (Vec3& v : plate.vertices) std::swap(v.y(), v.z());
+  EXPECT_EQ(seen(PictureUp::automatic), seen(PictureUp::z));
+}
+
+TEST(PictureOfMesh, DoesNotDependOnOtherThreadsAndTheSeedMovesTheShadeAlone) {
+  const Mesh mesh = two_bodies();
+  const Picture alone = picture_of_mesh(mesh, kSmall, kRandom);
+  std::vector<Picture> together(4);
+  std::vector<std::thread> threads;
+  for (Picture& picture : together)
+    threads.emplace_back([&] { picture = picture_of_mesh(mesh, kSmall, kRandom); });
+  for (std::thread& thread : threads) thread.join();
+  for (const Picture& picture : together) {
+    EXPECT_EQ(picture.primitive, alone.primitive);
+    EXPECT_EQ(picture.weights, alone.weights);
+    EXPECT_EQ(picture.shade, alone.shade);
+  }
+  const Picture other = picture_of_mesh(mesh, kSmall, {7, "1"});
+  EXPECT_EQ(other.primitive, alone.primitive);
+  EXPECT_NE(other.shade, alone.shade);
+  for (std::size_t i = 0; i < alone.pixels(); ++i) ASSERT_NEAR(other.shade[i], alone.shade[i], 40);
+}
+
+TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
+  const auto taking = [](Mesh mesh) { return [mesh] { picture_of_mesh(mesh, kSmall, kRandom); }; };
+  EXPECT_THAT(taking({}), ThrowsMessage<InputError>(HasSubstr("the mesh is empty")));
+  EXPECT_THAT(taking({{{1, 2, 3}}, {{0, 0, 0}}}), ThrowsMessage<InputError>(HasSubstr("in one place")));
+  EXPECT_THAT(taking({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}}),
+              ThrowsMessage<InputError>(HasSubstr("no pixel shows the mesh")));
+  Mesh broken = shapes::tetrahedron();
+  broken.vertices[2].y() = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("finite")));
+  broken.vertices[2].y() = 1e200;
+  EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("too large")));
+}
+
+TEST(PictureOptions, NameTheFieldThatIsWrong) {
+  using Options = PictureOptions;
+  EXPECT_EQ(wrong_field(Options{}), "");
+  EXPECT_EQ(wrong_field(Options{.size = 5}), "size");
+  EXPECT_EQ(wrong_field(Options{.elevation = 90}), "elevation");
+  EXPECT_EQ(wrong_field(Options{.field_of_view = 180}), "field_of_view");
+  EXPECT_EQ(wrong_field(Options{.margin = 0.5}), "margin");
+  EXPECT_EQ(wrong_field(Options{.occlusion_reach = 0}), "occlusion_reach");
+}
+
+}  // namespace
+}  // namespace salbench
