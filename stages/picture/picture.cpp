@@ -9,8 +9,8 @@
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
-#include "stages/core/neighbours.h"
 #include "stages/picture/camera.h"
+#include "stages/picture/discs.h"
 #include "stages/picture/occlusion.h"
 #include "stages/picture/raster.h"
 #include "stages/picture/shading.h"
@@ -20,8 +20,6 @@ namespace {
 
 constexpr int kCells = 3;  // along each side of a pixel
 constexpr int kCellsPerPixel = kCells * kCells;
-constexpr double kDiscRadius = 0.8;   // steps of the scanner's grid; from 0.71 on, discs of a square meet
-constexpr double kLeastCosine = 0.2;  // between normal and ray: discs of steeper surfaces are not longer
 
 // The image planes of a picture: its pixels, and their cells.
 struct Planes {
@@ -137,7 +135,8 @@ struct Developer {
         sum += lamp.brightness(seen.normal[static_cast<std::size_t>(cell)]);
         ++count;
       }
-      picture.shade[pixel] = byte_of(open[pixel] * sum / static_cast<float>(count));
+      const float light = 1 - static_cast<float>(options.occlusion_strength) * (1 - open[pixel]);
+      picture.shade[pixel] = byte_of(light * sum / static_cast<float>(count));
       picture.coverage[pixel] = byte_of(static_cast<float>(count) / kCellsPerPixel);
     }
   }
@@ -204,38 +203,6 @@ struct DiscSurfaces final : Surfaces {
     return static_cast<float>(discs[static_cast<std::size_t>(point)].radius);
   }
 };
-
-// Angle between neighbouring rays of the scanner: the median of those between nearest points.
-double grid_angle(const std::vector<Vec3>& points, const Vec3& scanner) {
-  const KdTree tree(points);
-  std::vector<double> angles;
-  std::vector<Neighbour> nearest;
-  for (const Vec3& p : points) {
-    tree.nearest(p, 2, nearest);
-    if (nearest.size() == 2) angles.push_back(std::sqrt(nearest[1].distance_squared) / (p - scanner).norm());
-  }
-  if (angles.empty()) return 0;
-  const auto median = angles.begin() + std::ssize(angles) / 2;
-  std::nth_element(angles.begin(), median, angles.end());
-  return *median;
-}
-
-std::vector<Disc> discs_of(const Scan& scan, const Normals& normals, const Camera& camera) {
-  std::vector<Vec3> points;
-  for (const Vec3& p : scan.points) points.push_back(camera.eye_from_world(p));
-  const Vec3 scanner = camera.eye_from_world(scan.camera);
-  const double radius_per_depth = kDiscRadius * grid_angle(points, scanner);
-  std::vector<Disc> discs;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    Disc disc{points[i], camera.eye_from_world_direction(normals[i]), points[i] - scanner};
-    disc.radius = radius_per_depth * disc.ray.norm();
-    disc.ray.normalize();
-    if (disc.normal.dot(disc.ray) > 0) disc.normal = -disc.normal;
-    disc.reach = disc.radius / std::max(-disc.normal.dot(disc.ray), kLeastCosine);
-    discs.push_back(disc);
-  }
-  return discs;
-}
 
 }  // namespace
 

@@ -33,14 +33,15 @@ struct PictureOptions {
   double light_azimuth = -30;
   double light_elevation = 35;
   double ambient = 0.35;
-  std::int32_t occlusion_samples = 6;
+  std::int32_t occlusion_samples = 4;
   double occlusion_reach = 0.5;
+  double occlusion_strength = 0.75;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("size", self.size, {"width and height", "pixels", between(16, 4096)});
     visit("up", self.up,
-          {"axis of the mesh that points up; automatic: y or z, whichever shows more of its surface"});
+          {"axis of the mesh that points up; automatic: y or z, on which it stands taller and shows more"});
     visit("azimuth", self.azimuth,
           {"of the camera of a mesh, around the upward axis; 0: in front of it", "degrees",
            between(-180, 180)});
@@ -63,6 +64,8 @@ struct PictureOptions {
            between(0, 1024)});
     visit("occlusion_reach", self.occlusion_reach,
           {"distance up to which surfaces darken each other", "radius of the shape", above(0)});
+    visit("occlusion_strength", self.occlusion_strength,
+          {"1: no light where nothing of the sky is seen; 0: no occlusion", {}, between(0, 1)});
   }
 };
 

@@ -1,0 +1,47 @@
+#include "stages/picture/discs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stages/core/neighbours.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kRadius = 0.8;       // steps of the scanner's grid; from 0.71 on, the discs of a square meet
+constexpr double kLeastCosine = 0.2;  // between normal and ray: discs of steeper surfaces are not longer
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+// The angle between neighbouring rays of the scanner is the median of those between nearest points.
+std::vector<Disc> discs_of(const Scan& scan, const Normals& normals, const Camera& camera) {
+  const Vec3 scanner = camera.eye_from_world(scan.camera);
+  std::vector<Vec3> points;
+  for (const Vec3& p : scan.points) points.push_back(camera.eye_from_world(p));
+  const KdTree tree(points);
+  std::vector<Disc> discs;
+  std::vector<double> angles;
+  std::vector<Neighbour> nearest;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = (points[i] - scanner).norm();
+    tree.nearest(points[i], 2, nearest);
+    if (nearest.size() > 1) angles.push_back(std::sqrt(nearest[1].distance_squared) / distance);
+    const Vec3 ray = (points[i] - scanner) / distance, normal = camera.eye_from_world_direction(normals[i]);
+    discs.push_back({points[i], normal.dot(ray) > 0 ? Vec3(-normal) : normal, ray});
+  }
+  const double angle = median(std::move(angles));
+  for (Disc& disc : discs) {
+    disc.radius = kRadius * angle * (disc.centre - scanner).norm();
+    disc.reach = disc.radius / std::max(-disc.normal.dot(disc.ray), kLeastCosine);
+  }
+  return discs;
+}
+
+}  // namespace salbench
