@@ -9,7 +9,7 @@ namespace salbench {
 namespace {
 
 constexpr double kRadius = 0.8;       // steps of the scanner's grid; from 0.71 on, the discs of a square meet
-constexpr double kLeastCosine = 0.2;  // between normal and ray: discs of steeper surfaces are not longer
+constexpr double kLeastCosine = 0.1;  // between normal and ray: discs of steeper surfaces are not longer
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;

@@ -1,6 +1,6 @@
-// Interleaved sampling: each pixel of a tile has directions of its own, and the mean over any 4 x 4 pixels
-// has them all. Any hit is a hit, so neither the order in which Embree visits its tree nor the number of
-// threads that built it can change the result.
+// Interleaved sampling [keller2001]: each pixel of a tile has directions of its own, and the mean over any 4
+// x 4 pixels has them all. Any hit is a hit, so neither the order in which Embree visits its tree nor the
+// number of threads that built it can change the result.
 #include "stages/picture/occlusion.h"
 
 #include <array>
@@ -58,8 +58,8 @@ constexpr float kSurfaceCosine = 0.7F;  // of one surface, between normals
 constexpr float kGrazing = 0.02F;       // cosine to the plane below which a ray would leave through it
 
 // Directions around +z with density proportional to the cosine, spread evenly over the hemisphere by an
-// additive recurrence in two dimensions, at a random place of its period, and dealt out to the pixels of a
-// tile at random.
+// additive recurrence in two dimensions, [roberts2018] from a random place of it, and dealt out to the pixels
+// of a tile at random.
 std::vector<Vec3f> directions(std::size_t count, Rng& rng) {
   constexpr double kPlastic = 1.32471795724474602596;  // x^3 = x + 1
   const double shift_u = rng.uniform(), shift_v = rng.uniform();

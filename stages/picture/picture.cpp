@@ -48,7 +48,7 @@ struct Planes {
   }
 };
 
-// What a stage knows of a shape beyond what is seen of it.
+// What is asked of a face or of a disc that is seen.
 struct Surfaces {
   virtual ~Surfaces() = default;
   virtual Vec3 weights(std::int32_t primitive, const Vec3& ray) const = 0;

@@ -27,7 +27,7 @@ struct PictureOptions {
   PictureUp up = PictureUp::automatic;
   double azimuth = 35;
   double elevation = 20;
-  double scan_turn = 12;
+  double scan_turn = 8;
   double field_of_view = 30;
   double margin = 0.04;
   double light_azimuth = -30;
@@ -39,7 +39,7 @@ struct PictureOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("size", self.size, {"width and height", "pixels", between(16, 4096)});
+    visit("size", self.size, {"width and height", "pixels", between(16, 2048)});
     visit("up", self.up,
           {"axis of the mesh that points up; automatic: y or z, on which it stands taller and shows more"});
     visit("azimuth", self.azimuth,

@@ -210,7 +210,7 @@ Outputs toy_outputs() {
   Outputs outputs;
   for (const std::string protocol : {"published", "text"}) {
     RecordingStore store;
-    ToyRun toy(data.path(), store, "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\n");
+    ToyRun toy(data.path(), store, "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\npicture: {size: 64}\n");
     toy.run();
     for (const Failure& failure : toy.runner.failures())
       ADD_FAILURE() << toy.context.name(failure.job) << ": " << toy.context.row(failure.job).name << ": "

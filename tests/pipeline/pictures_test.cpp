@@ -1,0 +1,159 @@
+// Pictures cost nothing that was not asked for, and no score knows of them.
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/commands/gc.h"
+#include "tests/support/job_counts.h"
+#include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+using testing::StartsWith;
+
+const std::string kWithPictures = std::string(kToyConfig) + "picture: {size: 40}\n";
+
+Config toy_config_with(Pictures pictures) {
+  Config config = toy_config();
+  config.picture.size = 40;
+  config.pictures = pictures;
+  return config;
+}
+
+class PicturesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
+    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
+  }
+
+  std::vector<std::string> run(const std::string& yaml, int threads = 2) {
+    ToyRun toy(data_.path(), store_, yaml);
+    toy.run(threads);
+    EXPECT_THAT(toy.runner.failures(), IsEmpty());
+    results_ = to_csv(results_table(toy.results()));
+    return store_.take_saved();
+  }
+  // As `salbench pictures` does.
+  std::vector<std::string> take_pictures() {
+    ToyRun toy(data_.path(), store_, toy_config_with(Pictures::computed));
+    toy.runner.run_rows("pictures",
+                        ancestors(toy.catalog, {toy.row("picture"), toy.row("picture", Shapes::scans)}), 2);
+    return store_.take_saved();
+  }
+
+  TemporaryFolder data_;
+  MemoryStore store_;
+  std::string results_;
+};
+
+TEST(PictureRows, AreThereWhereTheConfigurationHasTheirSection) {
+  EXPECT_FALSE(make_catalog(toy_config()).has(Shapes::meshes, "picture"));
+  EXPECT_THAT(config_yaml(toy_config()), Not(HasSubstr("picture")));
+  for (const std::string yaml : {"picture:\n", "picture: {size: 77}\n"}) {
+    const Config config = toy_config(yaml);
+    const Catalog catalog = make_catalog(config);
+    EXPECT_TRUE(catalog.has(Shapes::meshes, "picture") && catalog.has(Shapes::scans, "picture"));
+    EXPECT_EQ(config_yaml(toy_config(config_yaml(config))), config_yaml(config));
+    EXPECT_EQ(config_yaml(toy_config(annotated_config_yaml(config))), config_yaml(config));
+  }
+  EXPECT_EQ(toy_config("picture: {size: 77}").picture.size, 77);
+  EXPECT_FALSE(make_catalog(toy_config("picture:\ndataset: {scans: false}")).has(Shapes::scans, "picture"));
+}
+
+TEST(PictureRows, TheirOptionsAreACommentWhereTheyAreOff) {
+  EXPECT_THAT(annotated_config_yaml(toy_config()), HasSubstr("# picture:\n#   # width and height"));
+}
+
+TEST_F(PicturesTest, ARunThatIsAskedForThemComputesThemOnceAndTheSameScores) {
+  run(kToyConfig);
+  const std::string without = results_;
+  const auto added = run(kWithPictures);
+  EXPECT_THAT(added, SizeIs(JobCounts().shapes()));
+  EXPECT_THAT(added, Each(StartsWith("picture@")));
+  EXPECT_EQ(results_, without);
+  EXPECT_THAT(run(kWithPictures), IsEmpty());
+  EXPECT_THAT(run(kToyConfig), IsEmpty());
+}
+
+TEST_F(PicturesTest, AloneTheyNeedNoModel) {
+  std::set<std::string> stages;
+  for (const std::string& saved : take_pictures()) stages.insert(saved.substr(0, saved.find('@')));
+  EXPECT_THAT(stages, ElementsAre("mesh", "picture", "scan", "scan_normals"));
+  EXPECT_THAT(take_pictures(), IsEmpty());
+}
+
+TEST_F(PicturesTest, AnotherOptionTakesNewPicturesAndNothingElse) {
+  run(kWithPictures);
+  const auto again = run(std::string(kToyConfig) + "picture: {size: 40, azimuth: 10}\n");
+  EXPECT_THAT(again, SizeIs(JobCounts().shapes()));
+  EXPECT_THAT(again, Each(StartsWith("picture@")));
+}
+
+TEST_F(PicturesTest, FromTheCacheOnlyTheyAreFoundOrNotApplicable) {
+  const auto find = [&] {
+    ToyRun toy(data_.path(), store_, toy_config_with(Pictures::cached));
+    toy.run();
+    EXPECT_THAT(toy.runner.failures(), IsEmpty());
+    std::size_t found = 0;
+    for (const Shapes shapes : {Shapes::meshes, Shapes::scans})
+      for (const Job& job : toy.plan.jobs[toy.row("picture", shapes)]) {
+        found += job.known() ? 1U : 0U;
+        EXPECT_TRUE(job.known() || job.reason == Reason::only_cached);
+      }
+    return found;
+  };
+  EXPECT_EQ(find(), 0U);
+  EXPECT_THAT(store_.take_saved(), Not(testing::Contains(StartsWith("picture@"))));
+  take_pictures();
+  EXPECT_EQ(find(), JobCounts().shapes());
+  for (const char* stage : {"mesh", "scan"}) store_.remove(stage, stage == std::string("mesh") ? "1" : "2_3");
+  EXPECT_EQ(find(), JobCounts().shapes()) << "although what they read had to be computed again";
+}
+
+TEST_F(PicturesTest, AreCollectedOnlyWithTheirOptions) {
+  take_pictures();
+  const auto needed = [&](Config config) {
+    const ToyRun toy(data_.path(), store_, std::move(config));
+    KeepSet keep;
+    add_needed(toy.context, toy.plan, keep);
+    const JobRef picture{toy.row("picture"), Item::mesh(0)};
+    ArtefactName name;
+    name.item = "1";
+    name.key = toy.plan[picture].key;
+    return toy.plan[picture].known() && keep.covers("picture", name);
+  };
+  EXPECT_TRUE(needed(toy_config_with(Pictures::cached)));
+  Config other = toy_config_with(Pictures::cached);
+  other.picture.size = 50;
+  EXPECT_FALSE(needed(other));
+}
+
+TEST_F(PicturesTest, AreTheSameWithAnyNumberOfThreads) {
+  const auto contents = [&](int threads) {
+    store_.clear();
+    ToyRun toy(data_.path(), store_, kWithPictures);
+    toy.run(threads);
+    std::vector<std::string> digests;
+    for (const Shapes shapes : {Shapes::meshes, Shapes::scans})
+      for (const Job& job : toy.plan.jobs[toy.row("picture", shapes)]) digests.push_back(job.content.hex());
+    return digests;
+  };
+  const auto one = contents(1);
+  EXPECT_THAT(one, SizeIs(JobCounts().shapes()));
+  EXPECT_EQ(contents(2), one);
+  EXPECT_EQ(contents(4), one);
+}
+
+}  // namespace
+}  // namespace salbench
