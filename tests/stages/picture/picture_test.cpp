@@ -224,7 +224,8 @@ TEST(PictureOfMesh, LightFollowsTheLampAndAmbientOcclusionDarkensHollowsOnly) {
                              .elevation = 45,
                              .ambient = 1,
                              .occlusion_samples = 16,
-                             .occlusion_reach = 100};
+                             .occlusion_reach = 100,
+                             .occlusion_strength = 1};
   const Picture walls = picture_of_mesh(corner, close, kRandom);
   EXPECT_NEAR(walls.shade[60 * 121 + 60], 255 * 0.5, 20) << "in the corner";
   EXPECT_GT(walls.shade[20 * 121 + 60], 200) << "above it";

@@ -81,7 +81,7 @@ TEST(PictureOfScan, APixelShowsThePointWhoseDiscItMeets) {
       return m[4 * r] * p.x() + m[4 * r + 1] * p.y() + m[4 * r + 2] * p.z() + m[4 * r + 3];
     };
     const double w = row_of(3), column = (row_of(0) / w + 1) / 2 * 150, row = (1 - row_of(1) / w) / 2 * 150;
-    const double reach = 5 * step;  // of a long disc at the outline, in radii of the sphere
+    const double reach = 10 * step;  // of a long disc at the outline, in radii of the sphere
     ASSERT_NEAR(column, static_cast<double>(pixel % 150) + 0.5, reach * 75);
     ASSERT_NEAR(row, static_cast<double>(pixel / 150) + 0.5, reach * 75);
     ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), w, reach);
