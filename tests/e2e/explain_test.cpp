@@ -31,11 +31,11 @@ TEST(Explain, ThePlanTheExplanationAndTheRecordAgree) {
 
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::string record = read_file(toy.out() / "run.yaml");
-  EXPECT_THAT(lines_with(record, " map.PS:"),
+  EXPECT_THAT(lines_with(record, " map.PS: {"),
               ElementsAre(HasSubstr("why: {\"models.PS.absolute false -> true\": 2}}")));
-  EXPECT_THAT(lines_with(record, " matched.PS:"),
+  EXPECT_THAT(lines_with(record, " matched.PS: {"),
               ElementsAre(HasSubstr("why: {\"input map.PS changed\": 2}}")));
-  EXPECT_THAT(lines_with(record, " map.RS:"), ElementsAre(HasSubstr("why: {}}")));
+  EXPECT_THAT(lines_with(record, " map.RS: {"), ElementsAre(HasSubstr("why: {}}")));
 }
 
 TEST(Explain, WordsThatNameNothingAreUnusableArguments) {
