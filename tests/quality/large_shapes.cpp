@@ -1,0 +1,113 @@
+// What the samples of LS and CS cost in fidelity:  quality_large_shapes DATA [SUBDIVISIONS]
+//
+// DATA holds SchellingData/ with Meshes/, and RawData/ of some of them. These are subdivided, and their maps
+// with the default samples are compared with those of all points: rank correlation, and difference of the
+// exact AUC over the picked vertices.
+#include <algorithm>
+#include <charconv>
+#include <ctime>
+#include <exception>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/ground_truth_file.h"
+#include "io/mesh_file.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/metrics/metrics.h"
+#include "stages/models/cs.h"
+#include "stages/models/ls.h"
+#include "stages/normals/normals.h"
+#include "stages/stats/correlation.h"
+#include "tests/support/subdivided.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMeshes = 4;  // the largest of those with picks
+
+struct Picked {
+  std::string name;
+  Mesh mesh;
+  std::vector<std::int32_t> picks;  // ascending, each once
+};
+
+std::vector<Picked> largest_with_picks(const fs::path& data) {
+  std::vector<Picked> all;
+  for (const auto& entry : fs::directory_iterator(data / "Meshes")) {
+    Picked picked{entry.path().stem().string(), {}, {}};
+    fs::path file = data / "RawData" / (picked.name + "_0.pid");
+    if (!fs::exists(file)) continue;
+    picked.mesh = read_mesh(entry.path());
+    for (int k = 0; fs::exists(file); file = data / "RawData" / fmt::format("{}_{}.pid", picked.name, ++k)) {
+      const auto own = parse_picks(read_file(file), file.string(), picked.mesh.vertices.size());
+      picked.picks.insert(picked.picks.end(), own.begin(), own.end());
+    }
+    std::sort(picked.picks.begin(), picked.picks.end());
+    picked.picks.erase(std::unique(picked.picks.begin(), picked.picks.end()), picked.picks.end());
+    all.push_back(std::move(picked));
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Picked& a, const Picked& b) { return a.mesh.vertices.size() > b.mesh.vertices.size(); });
+  all.resize(std::min(all.size(), kMeshes));
+  return all;
+}
+
+template <class Options, class Saliency>
+void compare(const std::string& model, const Picked& of, std::size_t n, Saliency&& saliency) {
+  Options all_points;
+  all_points.sample = std::numeric_limits<std::int32_t>::max();
+  const std::clock_t start = std::clock();
+  const ScalarField exact = saliency(all_points);
+  const std::clock_t middle = std::clock();
+  const ScalarField estimate = saliency(Options{});
+  const std::clock_t end = std::clock();
+  const auto seconds = [](std::clock_t ticks) { return static_cast<double>(ticks) / CLOCKS_PER_SEC; };
+  fmt::print(
+      "{} of mesh {}, {} points: rank correlation {:.4f}, AUC {:.4f} to {:.4f} ({:+.4f}), {:.1f} to {:.1f} s "
+      "of "
+      "processor time\n",
+      model, of.name, n, spearman(exact, estimate), auc_exact(exact, of.picks), auc_exact(estimate, of.picks),
+      auc_exact(estimate, of.picks) - auc_exact(exact, of.picks), seconds(middle - start),
+      seconds(end - middle));
+}
+
+void compare_all(const fs::path& data, unsigned int subdivisions) {
+  for (const Picked& picked : largest_with_picks(data)) {
+    const Mesh fine = subdivided(picked.mesh, subdivisions);
+    const Normals normals = mesh_normals(fine);
+    const Descriptors descriptors = fpfh(fine.vertices, normals, FpfhOptions{});
+    const std::size_t n = fine.vertices.size();
+    compare<LsOptions>("LS", picked, n, [&](const LsOptions& options) {
+      return ls_saliency(fine.vertices, normals, descriptors, options);
+    });
+    compare<CsOptions>("CS", picked, n, [&](const CsOptions& options) {
+      return cs_saliency(fine.vertices, normals, options);
+    });
+  }
+}
+
+}  // namespace
+}  // namespace salbench
+
+int main(int argc, char** argv) {
+  const std::string given = argc == 3 ? argv[2] : "2";
+  unsigned int subdivisions = 0;
+  const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), subdivisions);
+  if (argc < 2 || argc > 3 || error != std::errc() || end != given.data() + given.size()) {
+    fmt::print(stderr, "usage: quality_large_shapes DATA [SUBDIVISIONS]\n");
+    return 2;
+  }
+  try {
+    salbench::compare_all(std::filesystem::path(argv[1]) / "SchellingData", subdivisions);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "quality_large_shapes: {}\n", e.what());
+    return 1;
+  }
+}
