@@ -1,6 +1,8 @@
 """How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes every time."""
 
 import matplotlib
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -50,8 +52,11 @@ def scale():
 
 
 def save(figure, folder, name):
-    """folder/name.svg and folder/name.pdf without dates."""
-    figure.draw_without_rendering()   # lays the axes out, once for both files
+    """folder/name.svg and folder/name.pdf without dates. Laid out once; savefig would draw each file twice."""
+    figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    figure.savefig(folder / f"{name}.svg", metadata={"Date": None, "Creator": "salbench"})
-    figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})
+    dpi = figure.dpi
+    FigureCanvasSVG(figure).print_svg(folder / f"{name}.svg", metadata={"Date": None, "Creator": "salbench"})
+    figure.dpi = dpi
+    FigureCanvasPdf(figure).print_pdf(folder / f"{name}.pdf",
+                                      metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})
