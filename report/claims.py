@@ -2,7 +2,7 @@
 
 from report import checks, paper
 from report.blocks import Cell, Note, Table, cell, count, interval
-from report.names import ALL_METRICS, DATASETS
+from report.names import DATASETS
 from report.results import Missing
 
 CAPTION = ("What the paper's text says of its figures, and what this run finds. Differences with 95 % intervals; verdicts by "
@@ -22,7 +22,7 @@ def table(shop):
     counts = dict.fromkeys(STYLES, 0)
     for claim in paper.read("claims.csv").to_dict("records"):
         head = [Cell(claim["section"]), Cell(claim["claim"]), Cell(DATASETS[claim["dataset"]]),
-                Cell(ALL_METRICS.get(claim["metric"], ""))]
+                Cell(shop.results.metric(claim["metric"]).label if claim["metric"] else "")]
         try:
             finding = find(shop.results, claim)
         except Missing as reason:

@@ -2,7 +2,7 @@
 
 from report import statistics
 from report.blocks import Cell, Note, Table, attempt, cell, count, interval
-from report.names import ALL_METRICS, DATASETS
+from report.names import DATASETS
 from report.results import Missing, text_of
 from report.score_pages import page_data
 from report.tables import flatten, signed
@@ -84,7 +84,7 @@ def versions(results, other):
 def pairs_of_scores(results, other):
     """(data set, metric, scores of one run, scores of the other) over the shapes and models that both have."""
     for dataset in DATASETS:
-        for metric in ALL_METRICS:
+        for metric in results.metrics:
             try:
                 first, second = (statistics.scores(run, dataset, metric) for run in (results, other))
             except Missing:
@@ -96,7 +96,7 @@ def pairs_of_scores(results, other):
 
 
 def means(shop, other):
-    rows = []
+    rows, others = [], []
     for dataset, metric, first, second in pairs_of_scores(shop.results, other):
         for model in first:
             difference = (first[model] - second[model]).dropna().to_numpy()
@@ -104,16 +104,19 @@ def means(shop, other):
                 continue
             half, mean = statistics.student_half_width(difference), difference.mean()
             both = first[model].notna() & second[model].notna()
-            rows.append([Cell(DATASETS[dataset]), Cell(model), Cell(ALL_METRICS[metric]), count(len(difference)),
-                         cell(first[model][both].mean()), cell(second[model][both].mean()), signed(mean),
-                         interval(mean - half, mean + half)])
-    if not rows:
+            row = [Cell(DATASETS[dataset]), Cell(model), Cell(shop.results.metric(metric).label), count(len(difference)),
+                   cell(first[model][both].mean()), cell(second[model][both].mean()), signed(mean),
+                   interval(mean - half, mean + half)]
+            (rows if metric in shop.results.leading else others).append(row)
+    if not rows + others:
         raise Missing("The two runs have no model with scores of the same shape.")
     missing = sorted(set(shop.models) ^ set(statistics.models(other)))
     notes = [Note(f"Models that only one run has are left out: {', '.join(missing)}.")] if missing else []
     caption = ("Means over the shapes that both runs scored, and the mean of the differences per shape with its 95 % interval.")
     heads = ["Data set", "Model", "Metric", "Shapes", *names(shop.results, other), "Difference", "95 % interval"]
-    return notes + [Table("compared-means", caption, heads, rows, [False] * 3 + [True] * 5, filters=[0, 1, 2])]
+    made = [("compared-means", rows, ""), ("compared-means-others", others, "Other metrics")]
+    return notes + [Table(name, caption, heads, part, [False] * 3 + [True] * 5, filters=[0, 1, 2], folded=folded)
+                    for name, part, folded in made if part]
 
 
 def differences(shop, other):

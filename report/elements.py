@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Callable
 
-from report import claims, examples, figures, tables
+from report import claims, examples, figures, sensitivity, tables
 from report.blocks import attempt
-from report.names import DATASETS, METRICS
+from report.names import DATASETS
 
 
 @dataclass(frozen=True)
@@ -23,18 +23,18 @@ def distributions(shop):
 
 def performance(shop):
     blocks = []
-    for metric in METRICS:
+    for metric in shop.results.leading:
         blocks += attempt(figures.performance, shop, "meshes", metric)
         blocks += attempt(examples.difficult, shop, "meshes", metric)
     return blocks
 
 
 def classes(shop):
-    return [block for metric in METRICS for block in attempt(tables.per_class, shop, "meshes", metric)]
+    return [block for metric in shop.results.leading for block in attempt(tables.per_class, shop, "meshes", metric)]
 
 
 def classes_of_scans(shop):
-    return [block for metric in METRICS for block in attempt(tables.per_class, shop, "scans", metric)]
+    return [block for metric in shop.results.leading for block in attempt(tables.per_class, shop, "scans", metric)]
 
 
 def scans(shop):
@@ -42,7 +42,7 @@ def scans(shop):
 
 
 def scan_panels(shop):
-    return [block for metric in METRICS for block in attempt(figures.performance, shop, "scans", metric)]
+    return [block for metric in shop.results.leading for block in attempt(figures.performance, shop, "scans", metric)]
 
 
 def participants(shop):
@@ -63,6 +63,7 @@ ELEMENTS = (
     Element("figure-6", "Figure 6", "fig:scans_saliency_performance", "Performance on scans", scans),
     Element("figure-7", "Figure 7", "fig:scans_saliency", "Saliency maps on scans", examples.scans),
     Element("pairs", "", "", "Pairwise tests", tables.pairwise),
+    Element("sensitivity", "", "", "Where the ranking depends on the convention", sensitivity.tables),
     Element("scan-panels", "", "", "Scan by scan", scan_panels),
     Element("scan-classes", "", "", "Performance per class on scans", classes_of_scans),
 )

@@ -5,7 +5,7 @@ from PIL import Image
 from report import statistics, style
 from report.blocks import Gallery, Tile
 from report.gallery import Painter, describe
-from report.names import METRICS, natural
+from report.names import natural
 from report.results import Missing
 from report.shape_pages import Scores, models_of
 from report.viewer import label_of
@@ -16,17 +16,18 @@ HOW = ("No export with pictures of {} was given. salbench pictures CONFIG --item
 
 
 def scored_pictures(shop, dataset):
-    """Painters of the shapes that have a picture and a mean AUC, highest first."""
+    """Painters of the shapes that have a picture and a mean score by the first metric, best first."""
     if shop.painters is None:
         made = [Painter(shop, shape) for shape in shop.shapes.shapes.values()]
         shop.painters = [painter for painter in made if painter.picture is not None and painter.has("ground truth")]
     try:
-        mean = statistics.mean_per_shape(shop.results, dataset, "auc").to_dict()
+        first = next(iter(shop.results.leading))
+        place = {key: at for at, key in enumerate(statistics.mean_per_shape(shop.results, dataset, first).index)}
     except Missing:
-        mean = {}
+        place = {}
 
     def order(painter):
-        return -mean.get((painter.shape.item, painter.shape.view), -1.0), natural(painter.shape.name)
+        return -place.get((painter.shape.item, painter.shape.view), -1), natural(painter.shape.name)
     return sorted((painter for painter in shop.painters if painter.shape.dataset == dataset), key=order)
 
 
@@ -37,13 +38,12 @@ def scores_of(shop):
 
 
 def pieces(shop, shape, model):
-    """The three scores of a map as text, each bold where no other model's is higher."""
+    """The leading scores of a map as text, each bold where no other model's is better."""
     found = []
-    for metric in METRICS:
+    for metric, of in shop.results.leading.items():
         row = scores_of(shop).of(shape.dataset, metric, shape.item, shape.view)
         value = row.get(model, (float("nan"),))[0]
-        known = [entry[0] for name, entry in row.items() if entry[0] == entry[0] and name != "HS"]
-        best = value == value and value == max(known, default=None)
+        best = value == value and value == of.best(entry[0] for name, entry in row.items() if name != "HS")
         found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), best))
     return found
 
@@ -52,6 +52,10 @@ def thumbnails(shop):
     """(item, path of its painted ground truth) of the meshes that have both, in the order of their names."""
     painters = sorted(scored_pictures(shop, "meshes"), key=lambda painter: natural(painter.shape.name))
     return [(painter.shape.item, painter.paint("ground truth")) for painter in painters if painter.shape.item in shop.pages]
+
+
+def leading_labels(shop):
+    return ", ".join(of.label for of in shop.results.leading.values())
 
 
 def map_tile(shop, painter, what, when, title, scored=True, small=False):
@@ -90,14 +94,14 @@ def chosen(shop, dataset, count):
 
 
 def meshes(shop):
-    gallery = Gallery("Saliency maps before histogram matching, with (AUC, NSS, LCC) of the matched map; best model in "
-                      "bold.", rows_of_maps(shop, chosen(shop, "meshes", 2)))
+    gallery = Gallery(f"Saliency maps before histogram matching, with ({leading_labels(shop)}) of the matched map; best model "
+                      "in bold.", rows_of_maps(shop, chosen(shop, "meshes", 2)))
     return printed(shop, "examples-meshes", gallery)
 
 
 def scans(shop):
-    gallery = Gallery("Saliency maps before histogram matching on simulated range scans, with (AUC, NSS, LCC) of the matched "
-                      "map; best model in bold.", rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
+    gallery = Gallery(f"Saliency maps before histogram matching on simulated range scans, with ({leading_labels(shop)}) of the "
+                      "matched map; best model in bold.", rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
     return printed(shop, "examples-scans", gallery)
 
 
@@ -114,17 +118,19 @@ def matching(shop):
 
 
 def difficult(shop, dataset, metric, count=3):
-    """The shapes with the lowest mean score: ground truth beside the best model's map."""
+    """The shapes with the worst mean score: ground truth beside the best model's map."""
+    of = shop.results.metric(metric)
+    lowest_scoring = f"{'highest' if of.lower else 'lowest'}-scoring {dataset} by {of.label}"
     mean = statistics.mean_per_shape(shop.results, dataset, metric)
     if mean.empty:
-        raise Missing(f"No shape of the {dataset} has a {METRICS[metric]}.")
+        raise Missing(f"No shape of the {dataset} has a {of.label}.")
     wide = statistics.scores(shop.results, dataset, metric)
     painters = {(painter.shape.item, painter.shape.view): painter for painter in scored_pictures(shop, dataset)}
     lowest = list(mean.index[:count])
     absent = [item for item, view in lowest if (item, view) not in painters]
     if len(absent) == len(lowest):
         names = ", ".join(f"{item} ({mean[item, view]:.3f})" for item, view in lowest)
-        raise Missing(f"The lowest-scoring {dataset} by {METRICS[metric]} are {names}. "
+        raise Missing(f"The {lowest_scoring} are {names}. "
                       + HOW.format("them", f"LIST is {','.join(absent)}."))
     tiles = []
     for item, view in lowest:
@@ -137,9 +143,10 @@ def difficult(shop, dataset, metric, count=3):
         best = wide.loc[(item, view), with_maps].astype(float).dropna()
         tiles.append(map_tile(shop, painter, "ground truth", "before", label))
         if len(best):
-            tiles.append(map_tile(shop, painter, best.idxmax(), "after", f"best: {best.idxmax()}"))
-    gallery = Gallery(f"The lowest-scoring {dataset} by {METRICS[metric]}: ground truth, and the map of the model that scores "
-                      "best there, after matching; below: AUC, NSS, LCC.", [("", tiles)])
+            name = best.idxmin() if of.lower else best.idxmax()
+            tiles.append(map_tile(shop, painter, name, "after", f"best: {name}"))
+    gallery = Gallery(f"The {lowest_scoring}: ground truth, and the map of the model that scores best there, after "
+                      f"matching; below: {leading_labels(shop)}.", [("", tiles)])
     return printed(shop, f"difficult-{dataset}-{metric}", gallery)
 
 

@@ -4,7 +4,8 @@ import numpy
 import pandas
 
 from report import statistics, style
-from report.names import DATASETS, METRICS
+from report.metrics import family_of
+from report.names import DATASETS
 from report.results import Missing
 
 
@@ -40,12 +41,12 @@ def cumulative(shop, dataset):
 
 
 def ranking_data(results, dataset, metric):
-    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, highest mean first."""
+    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first."""
     return statistics.summary(results, dataset, metric)[["model", "n", "mean", "ci95_low", "ci95_high"]]
 
 
 def draw_ranking(axes, data, shop, metric):
-    """Bars of the mean, highest on top, with 95 % intervals."""
+    """Bars of the mean, best on top, with 95 % intervals."""
     data = data.dropna(subset=["mean"])
     at = numpy.arange(len(data))
     axes.barh(at, data["mean"], color=[shop.colours.get(model) for model in data["model"]], height=0.62)
@@ -60,8 +61,8 @@ def draw_ranking(axes, data, shop, metric):
     axes.invert_yaxis()
     axes.set_xlim(min(0, data["mean"].min() * 1.2) if len(data) else 0, span * 1.22)
     axes.grid(axis="y", visible=False)
-    axes.set_xlabel(f"Mean {METRICS[metric]}")
-    if metric == "auc":
+    axes.set_xlabel(f"Mean {metric.label}" + (", lower is better" if metric.lower else ""))
+    if family_of(metric.name) == "auc":
         axes.axvline(0.5, color="#555555", lw=1, ls=":")
 
 
@@ -70,19 +71,21 @@ def sentence(data):
 
 
 def heat_data(results, dataset, metric):
-    """Shapes by models, lowest mean over the models first; columns item, view, mean, then one per model."""
+    """Shapes by models, worst mean over the models first; columns item, view, mean, then one per model."""
     mean = statistics.mean_per_shape(results, dataset, metric)
     wide = statistics.scores(results, dataset, metric).loc[mean.index]
-    order = wide.mean().sort_values(ascending=False, kind="stable", na_position="last").index
+    lower = results.metric(metric).lower
+    order = wide.mean().sort_values(ascending=lower, kind="stable", na_position="last").index
     return pandas.concat([mean.rename("mean"), wide[order]], axis=1).reset_index()
 
 
 def performance(shop, dataset, metric):
     """The paper's panels of one metric: colour map, ranking, mean per shape."""
+    of = shop.results.metric(metric)
     heat = heat_data(shop.results, dataset, metric)
     ranking = ranking_data(shop.results, dataset, metric)
     if heat.empty:
-        raise Missing(f"No shape of the {dataset} has a {METRICS[metric]}.")
+        raise Missing(f"No shape of the {dataset} has a {of.label}.")
     models = list(heat.columns[3:])
     figure = style.new_figure(11, 4.6)
     panels = figure.subplot_mosaic([["map", "bars"], ["line", "bars"]], width_ratios=[1.75, 1], height_ratios=[1.1, 1])
@@ -93,19 +96,20 @@ def performance(shop, dataset, metric):
                                  extent=(0.5, len(heat) + 0.5, len(models) - 0.5, -0.5))
     panels["map"].set_yticks(range(len(models)), models)
     panels["map"].grid(visible=False)
-    figure.colorbar(image, ax=panels["map"], location="top", shrink=0.5, aspect=40, label=METRICS[metric], extend="both")
+    figure.colorbar(image, ax=panels["map"], location="top", shrink=0.5, aspect=40, label=of.label, extend="both")
     rank = numpy.arange(1, len(heat) + 1)
     panels["line"].plot(rank, heat["mean"], color=style.INK, lw=1.6, marker="o" if len(heat) < 60 else "", ms=3.5)
-    panels["line"].set(xlabel=f"Shapes, lowest mean {METRICS[metric]} first", ylabel=f"Mean {METRICS[metric]}")
+    panels["line"].set(xlabel=f"Shapes, {'highest' if of.lower else 'lowest'} mean {of.label} first",
+                       ylabel=f"Mean {of.label}")
     for panel in ("map", "line"):
         panels[panel].set_xlim(0.5, len(heat) + 0.5)
         panels[panel].xaxis.get_major_locator().set_params(integer=True)
-    draw_ranking(panels["bars"], ranking, shop, metric)
+    draw_ranking(panels["bars"], ranking, shop, of)
     name = f"performance-{dataset}-{metric}"
     block = shop.plot(name, figure, heat,
-                      f"{METRICS[metric]} on {dataset}, best model first: {sentence(ranking)}. The mean per shape runs from "
+                      f"{of.label} on {dataset}, best model first: {sentence(ranking)}. The mean per shape runs from "
                       f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
-                      f"{METRICS[metric]}: every shape under every model, shapes ordered by their mean; models ordered by "
+                      f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
                       "their mean, with 95 % confidence intervals; mean per shape.")
     return block
 
@@ -113,7 +117,7 @@ def performance(shop, dataset, metric):
 def rankings(shop, dataset):
     """Models ordered by mean, one panel per metric."""
     data, missing = {}, []
-    for metric in METRICS:
+    for metric in shop.results.leading:
         try:
             data[metric] = ranking_data(shop.results, dataset, metric)
         except Missing as reason:
@@ -122,9 +126,10 @@ def rankings(shop, dataset):
         raise Missing(" ".join(missing))
     figure = style.new_figure(11, 0.42 * max(len(table) for table in data.values()) + 1.1)
     for axes, (metric, table) in zip(figure.subplots(1, len(data), squeeze=False)[0], data.items()):
-        draw_ranking(axes, table, shop, metric)
-        axes.set_title(METRICS[metric])
-    text = "; ".join(f"{METRICS[metric]}: {sentence(table)}" for metric, table in data.items())
+        of = shop.results.metric(metric)
+        draw_ranking(axes, table, shop, of)
+        axes.set_title(of.label)
+    text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
     return shop.plot(f"ranking-{dataset}", figure, plotted, f"Models on {dataset}, best first. {text}.",
                      f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
@@ -136,13 +141,13 @@ def human_data(results, metric):
     table = results.table("human_curve.csv", "metric", *columns)
     rows = table[table["metric"] == metric][columns].reset_index(drop=True)
     if rows.empty:
-        raise Missing(f"human_curve.csv has no {METRICS[metric]}.")
+        raise Missing(f"human_curve.csv has no {results.metric(metric).label}.")
     return rows
 
 
 def human_curves(shop):
     """n participants against n others, one panel per metric, with each model's mean as a line across."""
-    data = {metric: human_data(shop.results, metric) for metric in METRICS}
+    data = {metric: human_data(shop.results, metric) for metric in shop.results.leading}
     figure = style.new_figure(11, 4.1)
     for axes, (metric, table) in zip(figure.subplots(1, len(data)), data.items()):
         if shop.results.has("summary.csv"):
@@ -151,12 +156,13 @@ def human_curves(shop):
                     axes.axhline(row.mean, color=shop.colours.get(row.model), lw=1.2, ls="--", label=row.model)
         axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
         axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4, label="participants")
-        axes.set(title=METRICS[metric], xlabel="Participants n", ylabel=f"Mean {METRICS[metric]}")
+        label = shop.results.metric(metric).label
+        axes.set(title=label, xlabel="Participants n", ylabel=f"Mean {label}")
         axes.set_xticks(range(1, int(table["n"].max()) + 1, 2))
     axes.legend(loc="lower right", ncol=2, fontsize=9, handlelength=1.4, columnspacing=1)
-    ends = "; ".join(f"{METRICS[metric]} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
+    ends = "; ".join(f"{shop.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
                      for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
     return shop.plot("human-curves", figure, plotted,
-                     f"n participants against n others, n = 1 to {int(data['auc']['n'].max())}: {ends}.",
+                     f"n participants against n others, n = 1 to {int(table['n'].max())}: {ends}.",
                      "How well n participants predict n others, with the 95 % interval; dashed: each model's mean.")

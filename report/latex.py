@@ -34,16 +34,16 @@ def number(row, bold):
     return rf"$\mathbf{{{value}}}$" if bold else f"${value}$"
 
 
-def write_per_class(path, classes, models, by_cell, label, dataset, simulated):
+def write_per_class(path, classes, models, by_cell, metric, dataset, simulated):
     """by_cell: (class, model or "Avg") -> a row with mean and ci95."""
     rows = []
     for name in classes:
         values = [by_cell.get((name, model)) for model in models]
-        best = max((row["mean"] for row in values if row is not None and row["mean"] == row["mean"]), default=None)
+        best = metric.best(row["mean"] for row in values if row is not None)
         cells = [number(row, row is not None and row["mean"] == best) for row in values]
         rows.append((name, cells + [number(by_cell.get((name, "Avg")), False)]))
     environment = Environment(trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, autoescape=False)
     environment.filters["tex"] = escape
-    text = environment.from_string(_TEMPLATE).render(rows=rows, models=models, label=label, dataset=dataset,
+    text = environment.from_string(_TEMPLATE).render(rows=rows, models=models, label=escape(metric.label), dataset=dataset,
                                                      simulated=simulated)
     path.write_text(text, encoding="utf-8")

@@ -1,9 +1,7 @@
-"""Names, order and colours of metrics and models; names of files and of items."""
+"""Names, order and colours of models; names of files and of items."""
 
 import re
 
-METRICS = {"auc": "AUC", "nss": "NSS", "lcc": "LCC"}                     # the paper's
-ALL_METRICS = {**METRICS, "auc_exact": "AUC (exact)", "cc": "CC"}
 DATASETS = {"meshes": "Meshes", "scans": "Scans"}
 
 MODELS = {

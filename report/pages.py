@@ -5,7 +5,6 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from report.names import METRICS
 from report.painting import colour_bar
 from report.results import Unusable, text_of
 from report.viewer import palette_script
@@ -20,7 +19,7 @@ FOLDERS = ("figures", "data", "shapes", "pictures", "static")
 def environment():
     made = Environment(loader=FileSystemLoader(HERE / "templates"), autoescape=True, undefined=StrictUndefined,
                        trim_blocks=True, lstrip_blocks=True)
-    made.globals.update(METRICS=METRICS, MARK=MARK)
+    made.globals.update(MARK=MARK)
     return made
 
 

@@ -9,6 +9,9 @@ import numpy
 import pandas
 import yaml
 
+from report import metrics
+
+NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
 TEXT_COLUMNS = ("dataset", "item", "class", "view", "model", "metric", "model_a", "model_b", "node")
 DATASETS = ("meshes", "scans")
 
@@ -65,6 +68,29 @@ class Results:
         """True if the program made the participants up: then scores say nothing about people."""
         said = any("simulated" in remark.lower() for remark in self.remarks)
         return said or self.option("dataset.participants") == "simulated"
+
+    @cached_property
+    def metrics(self):
+        """name -> Metric of every metric that run.yaml or a table has, the leading ones first."""
+        listed = self.record.get("metrics")
+        listed = listed if isinstance(listed, dict) else {}
+        found = list(listed)
+        if self.has("results.csv") and "model" in self.table("results.csv"):
+            found += [name for name in self.table("results.csv") if name not in TEXT_COLUMNS + NO_METRICS]
+        if self.has("summary.csv") and "metric" in self.table("summary.csv"):
+            found += [name for name in self.table("summary.csv")["metric"].unique() if name]
+        first = metrics.leading(listed or metrics.PAPER)
+        return {name: metrics.described(name, listed.get(name)) for name in dict.fromkeys(first + found)}
+
+    @cached_property
+    def leading(self):
+        """The metrics that every page shows: the paper's, where the run has them."""
+        listed = self.record.get("metrics")
+        names = metrics.leading(listed if isinstance(listed, dict) and listed else metrics.PAPER)
+        return {name: self.metrics[name] for name in names}
+
+    def metric(self, name):
+        return self.metrics.get(name) or metrics.described(name)
 
     @property
     def state(self):

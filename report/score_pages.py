@@ -3,7 +3,7 @@
 import json
 
 from report import statistics
-from report.names import ALL_METRICS, DATASETS
+from report.names import DATASETS, file_name
 from report.results import Missing
 
 
@@ -13,10 +13,11 @@ def rounded(value):
 
 
 def page_data(shop, tables):
-    """{models, metrics, shapes: [[data set, item, class, view, page]], scores: {metric: [[a value per model] per shape]}}.
+    """{models, metrics, lower, shapes: [[data set, item, class, view, page]], scores: {metric: [[a value per model] per shape]}}.
     tables: (data set, metric) -> shapes by models."""
     class_of = statistics.classes(shop.results)
-    metrics = [metric for metric in ALL_METRICS if any(metric == key[1] for key in tables)]
+    known = shop.results.metrics
+    metrics = [metric for metric in known if any(metric == key[1] for key in tables)]
     shapes, scores = [], {metric: [] for metric in metrics}
     for dataset in DATASETS:
         found = {metric: tables[dataset, metric] for metric in metrics if (dataset, metric) in tables}
@@ -29,14 +30,26 @@ def page_data(shop, tables):
             scores[metric].extend([rounded(value) for value in row] for row in wide.to_numpy())
     if not shapes:
         raise Missing("There are no scores: no shape has ground truth, or none was finished.")
-    return {"models": shop.models, "metrics": {metric: ALL_METRICS[metric] for metric in metrics}, "shapes": shapes,
-            "scores": scores}
+    return {"models": shop.models, "metrics": {metric: known[metric].label for metric in metrics},
+            "lower": [metric for metric in metrics if known[metric].lower], "shapes": shapes, "scores": scores}
 
 
 def all_scores(shop):
     columns = shop.results.table("results.csv", "dataset", "item", "class", "view", "model")
     return page_data(shop, {(dataset, metric): statistics.scores(shop.results, dataset, metric)
-                            for dataset in statistics.datasets(shop.results) for metric in ALL_METRICS if metric in columns})
+                            for dataset in statistics.datasets(shop.results) for metric in shop.results.metrics if metric in columns})
+
+
+def write_scripts(shop, script, table):
+    """The leading metrics stand in the script itself, each other one in its own, which the page loads when it is chosen."""
+    def write(path, name, value):
+        text = json.dumps(value, separators=(",", ":"), ensure_ascii=True)
+        (shop.out / path).write_text(f"{name} = {text};\n", encoding="utf-8")
+    later = [metric for metric in table["scores"] if metric not in shop.results.leading]
+    table["files"] = {metric: f"{script.removesuffix('.js')}-{file_name(metric)}.js" for metric in later}
+    for metric, path in table["files"].items():
+        write(path, f"salbench.scores.scores[{json.dumps(metric)}]", table["scores"].pop(metric))
+    write(script, "salbench.scores", table)
 
 
 def write_page(shop, pages, path, build, sections=(), **values):
@@ -47,8 +60,7 @@ def write_page(shop, pages, path, build, sections=(), **values):
         table, missing = None, str(reason)
     script = f"data/{path.removesuffix('.html')}.js"
     if table:
-        text = json.dumps(table, separators=(",", ":"), ensure_ascii=True)
-        (shop.out / script).write_text(f"salbench.scores = {text};\n", encoding="utf-8")
+        write_scripts(shop, script, table)
     classes = sorted({row[2] for row in table["shapes"]}) if table else []
     sets = list(dict.fromkeys(row[0] for row in table["shapes"])) if table else []
     pages.write(path, "scores.html", missing=missing, table=table, classes=classes, sets=sets, script=script,

@@ -3,23 +3,24 @@
 from report import run_page, statistics
 from report.blocks import Cell, Gallery, Note, Table, Tile, attempt, cell
 from report.gallery import Painter, describe
-from report.names import METRICS, file_name, natural
+from report.names import file_name, natural
 from report.results import DATASETS, Missing
 from report.viewer import label_of, write_scripts
 
 
 class Scores:
-    """Scores and ranks of all shapes, looked up by shape: read once for all pages."""
+    """Scores and ranks of all shapes under the leading metrics, looked up by shape: read once for all pages."""
 
     def __init__(self, results):
+        self.metrics = results.leading
         self.wide, self.ranks = {}, {}
         for dataset in DATASETS:
-            for metric in METRICS:
+            for metric, of in self.metrics.items():
                 try:
                     wide = statistics.scores(results, dataset, metric)
                 except Missing:
                     continue
-                ranks = statistics.ranks(wide)
+                ranks = statistics.ranks(wide, of)
                 self.wide[dataset, metric] = wide.to_dict("index")
                 self.ranks[dataset, metric] = (ranks.to_dict("index"), wide.notna().sum().to_dict())
 
@@ -52,38 +53,42 @@ def path_of(item):
 def score_cells(scores, dataset, item, view, model):
     """Per metric the score and its rank; best of the shape in bold."""
     cells = []
-    for metric in METRICS:
+    for metric, of_metric in scores.metrics.items():
         found = scores.of(dataset, metric, item, view)
         value, rank, of = found.get(model, (None, None, 0))
-        known = [entry[0] for entry in found.values() if entry[0] == entry[0]]
-        cells.append(cell(value, bold=bool(known) and value == max(known)))
+        best = of_metric.best(entry[0] for entry in found.values())
+        cells.append(cell(value, bold=best is not None and value == best))
         defined = rank is not None and rank == rank
         cells.append(Cell(f"{int(rank)} of {of}", int(rank)) if defined else Cell("–", ""))
     return cells
 
 
+def heads_of(scores):
+    return [head for of in scores.metrics.values() for head in (of.label, f"Rank by {of.label}")]
+
+
 def score_table(shop, scores, item):
-    models = [model for model in shop.models if any(model in scores.of("meshes", metric, item) for metric in METRICS)]
+    models = [model for model in shop.models if any(model in scores.of("meshes", metric, item) for metric in scores.metrics)]
     if not models:
         raise Missing("The mesh has no scores: it has no ground truth, its jobs failed, or the run left meshes out.")
-    heads = [head for label in METRICS.values() for head in (label, f"Rank by {label}")]
+    heads = heads_of(scores)
     rows = [[Cell(model)] + score_cells(scores, "meshes", item, "", model) for model in models]
     return Table("mesh-scores", "Scores of the mesh, best in bold, and its rank among all meshes under the same model "
-                 "(1: highest score).", ["Model"] + heads, rows, [False] + [True] * 6)
+                 "(1: best score).", ["Model"] + heads, rows, [False] + [True] * len(heads))
 
 
 def scan_table(shop, scores, item):
     rows = []
     for view in scores.views(item):
         for model in shop.models:
-            if any(model in scores.of("scans", metric, item, view) for metric in METRICS):
+            if any(model in scores.of("scans", metric, item, view) for metric in scores.metrics):
                 rows.append([Cell(view, int(view) if view.isdigit() else None), Cell(model)]
                             + score_cells(scores, "scans", item, view, model))
     if not rows:
         raise Missing("The scans of the mesh have no scores.")
-    heads = [head for label in METRICS.values() for head in (label, f"Rank by {label}")]
+    heads = heads_of(scores)
     return Table("scan-scores", "Scores of the scans, best of each scan in bold, and their rank among all scans.",
-                 ["Scan", "Model"] + heads, rows, [True, False] + [True] * 6, filters=[0, 1])
+                 ["Scan", "Model"] + heads, rows, [True, False] + [True] * len(heads), filters=[0, 1])
 
 
 def tile(painter, scores, what, when, small=False):
@@ -98,12 +103,12 @@ def tile(painter, scores, what, when, small=False):
     dots = "; dots: what participants picked" if what == "ground truth" and len(shape.picks) else ""
     pieces = []
     if when == "after":
-        for metric, label in METRICS.items():
+        for metric, of in scores.metrics.items():
             found = scores.of(shape.dataset, metric, shape.item, shape.view)
             value = found.get(what, (float("nan"),))[0]
-            known = [entry[0] for entry in found.values() if entry[0] == entry[0]]
             if value == value:
-                pieces.append((f"{value:.2f}".replace("-", "−"), bool(known) and value == max(known)))
+                best = of.best(entry[0] for entry in found.values())
+                pieces.append((f"{value:.2f}".replace("-", "−"), value == best))
     return Tile(picture, title, f"{title}: {describe(shape)}{dots}", pieces)
 
 
@@ -126,7 +131,7 @@ def pictures(shop, shape, painter, scores):
     if painter.picture is None:
         raise Missing(f"The export holds no picture of {describe(shape)}: salbench pictures makes it, salbench export "
                       "then contains it.")
-    score_text = f"Below: {', '.join(METRICS.values())}; best in bold."
+    score_text = f"Below: {', '.join(of.label for of in scores.metrics.values())}; best in bold."
     return gallery(painter, scores, models_of(shop, painter.maps), f"Saliency on {describe(shape)}. {score_text}",
                    small=bool(shape.view))
 

@@ -52,22 +52,24 @@ def classes(results):
 
 
 def mean_per_shape(results, dataset, metric):
-    """Mean over the models per shape, lowest first; shapes without any score are left out."""
-    return scores(results, dataset, metric).mean(axis=1).dropna().sort_values(kind="stable")
+    """Mean over the models per shape, worst first; shapes without any score are left out."""
+    means = scores(results, dataset, metric).mean(axis=1).dropna()
+    return means.sort_values(ascending=not results.metric(metric).lower, kind="stable")
 
 
-def ranks(wide):
-    """Rank of each shape within its data set per model, 1 for the highest score; NaN where there is no score."""
-    return wide.rank(ascending=False, method="min")
+def ranks(wide, metric):
+    """Rank of each shape within its data set per model, 1 for the best score; NaN where there is no score."""
+    return wide.rank(ascending=metric.lower, method="min")
 
 
 def summary(results, dataset, metric):
-    """Rows of summary.csv of one metric, highest mean first."""
+    """Rows of summary.csv of one metric, best mean first."""
     table = results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
     rows = table[(table["dataset"] == dataset) & (table["metric"] == metric)]
     if rows.empty:
         raise Missing(f"summary.csv has no {metric} of {dataset}.")
-    return rows.sort_values("mean", ascending=False, kind="stable", na_position="last").reset_index(drop=True)
+    lower = results.metric(metric).lower
+    return rows.sort_values("mean", ascending=lower, kind="stable", na_position="last").reset_index(drop=True)
 
 
 def student_half_width(values):
@@ -77,14 +79,30 @@ def student_half_width(values):
 
 
 def per_class(results, dataset, metric):
-    """Columns class, model, n, mean, ci95. Of AUC these are the rows of per_class.csv; of other metrics they are made
-    from results.csv in the same way. The model "Avg" is the mean over the models' means."""
-    if metric == "auc":
-        table = results.table("per_class.csv", "dataset", "class", "model", "n", "auc_mean", "auc_ci95")
-        rows = table[table["dataset"] == dataset].rename(columns={"auc_mean": "mean", "auc_ci95": "ci95"})
-        if rows.empty:
-            raise Missing(f"per_class.csv has no rows of {dataset}: they have no scores, or no classes.")
-        return rows.replace({"model": {"Avg-AUC": "Avg"}}).drop(columns="dataset").reset_index(drop=True)
+    """Columns class, model, n, mean, ci95: of per_class.csv where it has the metric, as of the paper's metrics it has AUC
+    alone; else made from results.csv in the same way. The model "Avg" is the mean over the models' means."""
+    mean, half = f"{metric}_mean", f"{metric}_ci95"
+    needed = (mean, half) if metric == "auc" else ()
+    try:
+        table = results.table("per_class.csv", "dataset", "class", "model", "n", *needed)
+    except Missing:
+        if needed:
+            raise
+        return class_means(results, dataset, metric)
+    if mean not in table or half not in table:
+        return class_means(results, dataset, metric)
+    rows = table[table["dataset"] == dataset].rename(columns={mean: "mean", half: "ci95"})
+    if rows.empty:
+        raise Missing(f"per_class.csv has no rows of {dataset}: they have no scores, or no classes.")
+    rows = rows.replace({"model": {"Avg-AUC": "Avg"}})[["class", "model", "n", "mean", "ci95"]].reset_index(drop=True)
+    if next(column for column in table if column.endswith("_mean")) != mean:  # n counts what the first is defined for
+        counted = class_means(results, dataset, metric).set_index(["class", "model"])["n"].to_dict()
+        rows["n"] = [counted.get(key, 0) for key in zip(rows["class"], rows["model"])]
+    return rows
+
+
+def class_means(results, dataset, metric):
+    """What per_class gives, from results.csv."""
     wide = scores(results, dataset, metric)
     class_of = classes(results)
     rows = []

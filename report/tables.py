@@ -3,7 +3,7 @@
 from report import paper, statistics
 from report.blocks import Cell, Note, Table, cell, count, p_value
 from report.latex import write_per_class
-from report.names import ALL_METRICS, DATASETS, METRICS
+from report.names import DATASETS
 from report.results import Missing
 
 LEVEL = 0.05  # of the paper's tests
@@ -14,56 +14,55 @@ def signed(value, digits=3):
 
 
 def means(shop):
-    """Every mean of summary.csv, beside the paper's where it prints one; the paper's metrics first."""
+    """Means of the leading metrics from summary.csv, beside the paper's where it prints one."""
     table = shop.results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
     if table.empty:
         raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
-    table = table.assign(best=table.groupby(["dataset", "metric"])["mean"].transform("max"))
-    compare = not shop.results.simulated  # the paper's scores are of people
-    known = table["metric"].isin(METRICS)
     caption = ("Means over the shapes. Best of each data set and metric in bold. The paper's mean AUC is that of its table of "
                "classes; it prints no mean of the other metrics.")
-    return [means_table("means", caption, table[known], compare),
-            means_table("means-others", "Means of the other metrics.", table[~known], compare, "Other metrics")]
+    return means_table(shop, "means", caption, table[table["metric"].isin(shop.results.leading)])
 
 
-def means_table(identifier, caption, table, compare, folded=""):
+def means_table(shop, identifier, caption, table):
+    compare = not shop.results.simulated  # the paper's scores are of people
+    best = {key: shop.results.metric(key[1]).best(part) for key, part in table.groupby(["dataset", "metric"])["mean"]}
     rows = []
-    for _, row in table.iterrows():
+    for row in table.to_dict("records"):
         printed = compare and (row["dataset"], row["metric"]) == ("meshes", "auc")
         known = paper.mean_auc(row["model"]) if printed else None
         rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(row["model"]),
-                     Cell(ALL_METRICS.get(row["metric"], row["metric"])), count(row["n"]),
-                     cell(row["mean"], bold=row["mean"] == row["best"]), cell(row["ci95_low"]), cell(row["ci95_high"]),
+                     Cell(shop.results.metric(row["metric"]).label), count(row["n"]),
+                     cell(row["mean"], bold=row["mean"] == best[row["dataset"], row["metric"]]), cell(row["ci95_low"]), cell(row["ci95_high"]),
                      cell(row["sd"]), cell(known, 2), signed(row["mean"] - known) if known else cell(None)])
     return Table(identifier, caption,
                  ["Data set", "Model", "Metric", "Shapes", "Mean", "95 % low", "95 % high", "SD", "Paper", "Difference"],
-                 rows, [False] * 3 + [True] * 7, filters=[0, 1, 2], folded=folded)
+                 rows, [False] * 3 + [True] * 7, filters=[0, 1, 2])
 
 
 def per_class(shop, dataset, metric):
     """Classes by models, best in bold; below each of our means of AUC on meshes the paper's and the difference."""
+    of = shop.results.metric(metric)
     table = statistics.per_class(shop.results, dataset, metric)
     models = [model for model in shop.models if (table["model"] == model).any()]
     by_cell = {(row["class"], row["model"]): row for _, row in table.iterrows()}
     average = {name: row["mean"] for (name, model), row in by_cell.items() if model == "Avg"}
-    order = sorted(dict.fromkeys(table["class"]), key=lambda name: -average.get(name, 0))
+    order = sorted(dict.fromkeys(table["class"]), key=lambda name: average.get(name, 0) * (1 if of.lower else -1))
     printed = (dataset, metric) == ("meshes", "auc") and not shop.results.simulated
     known = paper.per_class() if printed else {}
     rows = []
     for name in order:
         numbers = [by_cell.get((name, model)) for model in models]
-        best = max((row["mean"] for row in numbers if row is not None and row["mean"] == row["mean"]), default=None)
+        best = of.best(row["mean"] for row in numbers if row is not None)
         shapes = max((row["n"] for row in numbers if row is not None), default=0)
         cells = [Cell(name or "(no class)"), count(shapes)]
         for row, model in zip(numbers + [by_cell.get((name, "Avg"))], models + ["Avg"]):
             bold = model != "Avg" and row is not None and row["mean"] == best
             cells.append(class_cell(row, known.get((name, model)), bold))
         rows.append(cells)
-    label = METRICS[metric]
+    label = of.label
     identifier = f"classes-{dataset}-{metric}"
     path = shop.out / "data" / f"{identifier}.tex"
-    write_per_class(path, order, models, by_cell, label, dataset, shop.results.simulated)
+    write_per_class(path, order, models, by_cell, of, dataset, shop.results.simulated)
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
     return Table(identifier, f"{label} per class on {dataset}: mean and half of the 95 % interval, best in bold{remark}.",
@@ -81,18 +80,27 @@ def class_cell(row, known, bold):
 
 
 def pairwise(shop):
-    """Every row of significance.csv; both tests at 0.05."""
+    """The rows of significance.csv of the leading metrics; both tests at 0.05."""
+    table = significance(shop)
+    return pairs_table(shop, "pairs", table[table["metric"].isin(shop.results.leading)])
+
+
+def significance(shop):
     columns = ["dataset", "metric", "model_a", "model_b", "n", "mean_difference", "rank_sum_p", "signed_rank_p_holm"]
     table = shop.results.table("significance.csv", *columns)
+    if table.empty:
+        raise Missing("significance.csv holds no test: it takes two models and a shape with ground truth.")
+    return table
+
+
+def pairs_table(shop, identifier, table):
     rows = []
     for row in table.to_dict("records"):
         rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])),
-                     Cell(ALL_METRICS.get(row["metric"], row["metric"])), Cell(f"{row['model_a']} − {row['model_b']}"),
+                     Cell(shop.results.metric(row["metric"]).label), Cell(f"{row['model_a']} − {row['model_b']}"),
                      count(row["n"]), signed(row["mean_difference"]), p_value(row["rank_sum_p"]), decided(row["rank_sum_p"]),
                      p_value(row["signed_rank_p_holm"]), decided(row["signed_rank_p_holm"])])
-    if not rows:
-        raise Missing("significance.csv holds no test: it takes two models and a shape with ground truth.")
-    return Table("pairs", f"Every pair of models at level {LEVEL}: the paper's rank-sum test, and the paired signed-rank test "
+    return Table(identifier, f"Every pair of models at level {LEVEL}: the paper's rank-sum test, and the paired signed-rank test "
                  "with Holm's correction over the pairs.",
                  ["Data set", "Metric", "Pair", "Shapes", "Mean difference", "Rank sum p", "Differs", "Signed rank p (Holm)",
                   "Differs (Holm)"], rows, [False] * 3 + [True, True, True, False, True, False], filters=[0, 1, 2])
@@ -103,18 +111,19 @@ def decided(p):
 
 
 def participants_worth(shop):
-    """For each model and metric the smallest n whose human curve reaches the model's mean."""
+    """For each model and leading metric the smallest n whose human curve reaches the model's mean."""
     curve = shop.results.table("human_curve.csv", "n", "metric", "mean")
     rows = []
     for model in shop.models:
         if model == "HS":
             continue
         cells = [Cell(model)]
-        for metric in METRICS:
+        for metric, of in shop.results.leading.items():
             summary = statistics.summary(shop.results, "meshes", metric)
             mean = summary.loc[summary["model"] == model, "mean"]
             part = curve[curve["metric"] == metric].sort_values("n")
-            reached = part[part["mean"] >= mean.iloc[0]] if len(mean) else part.iloc[:0]
+            sign = -1 if of.lower else 1
+            reached = part[sign * part["mean"] >= sign * mean.iloc[0]] if len(mean) else part.iloc[:0]
             if not len(mean) or part.empty or mean.iloc[0] != mean.iloc[0]:
                 cells.append(cell(None))
             elif reached.empty:
@@ -126,7 +135,8 @@ def participants_worth(shop):
     if not rows:
         raise Missing("The run has no model to compare with the participants.")
     return Table("worth", "How many participants a model is worth: where the human curve reaches the model's mean.",
-                 ["Model"] + list(METRICS.values()), rows, [False, True, True, True])
+                 ["Model"] + [of.label for of in shop.results.leading.values()], rows,
+                 [False] + [True] * len(shop.results.leading))
 
 
 def parameters(shop):

@@ -19,6 +19,8 @@ class Workshop:
     painters: list = None                         # of the shapes with pictures; made when first needed
     scores: object = None                         # shape_pages.Scores; made when first needed
 
+    other: Results = None                         # of the run to compare with
+
     def __post_init__(self):
         self.models = statistics.models(self.results)
         self.colours = names.colours(self.models)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from report import comparison, examples, run_page, score_pages, shape_pages, style
+from report import comparison, examples, metric_page, run_page, score_pages, shape_pages, style
 from report.blocks import attempt
 from report.elements import ELEMENTS
 from report.exports import Shapes
@@ -22,9 +22,11 @@ def write_report(options, protocols):
     copy_static(out)
     meshes = shape_pages.items(results, shapes)
     shop = Workshop(results, out, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes},
-                    tuple(options.examples.split(",")) if options.examples else ())
+                    tuple(options.examples.split(",")) if options.examples else (), other=other)
     comparing = [("comparison.html", "Comparison")] if other else []
-    pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), ("run.html", "Run"), *comparing])
+    metrics = [("metrics.html", "Other metrics")] if metric_page.others(shop) else []
+    pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), *metrics, ("run.html", "Run"),
+                         *comparing])
     scores = shop.scores = shape_pages.Scores(results)
     for item, category in meshes.items():
         shape_pages.write_page(shop, pages, scores, item, category)
@@ -38,6 +40,10 @@ def write_report(options, protocols):
             shop, pages, "comparison.html", lambda: comparison.differences(shop, other), comparison.blocks(shop, other),
             title="Comparison", heading="Two runs side by side", shapes={}, thumbnails=[],
             caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
+    if metrics:
+        pages.write("metrics.html", "metrics.html", title="Other metrics", sections=metric_page.blocks(shop),
+                    leading=", ".join(of.label for of in results.leading.values()),
+                    labels=[results.metric(name).label for name in metric_page.others(shop)])
     sections = [(element, attempt(element.build, shop)) for element in ELEMENTS]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
     pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))

@@ -6,13 +6,13 @@ salbench.ROWS = 100; // per page
 salbench.scoreTable = function (root, data) {
   const form = root.querySelector("form"), table = root.querySelector("table");
   const part = (name) => form.querySelector(`[data-part=${name}]`);
-  const state = {column: 0, direction: 1, page: 0, rows: []};
+  const state = {metric: part("metric").value, column: 0, direction: 1, page: 0, rows: []};
 
   const models = () => Array.from(form.querySelectorAll("input[name=model]:checked"), (box) => Number(box.value));
 
   // Columns: a head, the key that a row is sorted by, and what fills its cell.
   const columns = () => {
-    const scores = data.scores[part("metric").value], shown = models();
+    const scores = data.scores[state.metric], shown = models();
     const mean = (row) => {
       const known = shown.map((model) => scores[row][model]).filter((value) => value !== null);
       return known.length ? known.reduce((a, b) => a + b, 0) / known.length : null;
@@ -80,7 +80,7 @@ salbench.scoreTable = function (root, data) {
       button.type = "button";
       button.textContent = column.head;
       button.addEventListener("click", () => {
-        state.direction = salbench.turn(head, line);
+        state.direction = salbench.turn(head, line, data.lower.includes(state.metric));
         state.column = index;
         arrange();
       });
@@ -89,17 +89,29 @@ salbench.scoreTable = function (root, data) {
     }));
   };
 
+  // Scores of a metric that the page's own script leaves out come from another one.
+  const show = (metric) => {
+    if (data.scores[metric]) {
+      state.metric = metric;
+      heads();
+      arrange();
+      return;
+    }
+    const script = document.createElement("script");
+    script.src = data.files[metric];
+    script.addEventListener("load", () => { if (part("metric").value === metric) show(metric); });
+    document.head.append(script);
+  };
+
   form.addEventListener("change", (event) => {
     if (event.target.name === "model") { state.column = 0; state.direction = 1; }
-    heads();
-    arrange();
+    show(part("metric").value);
   });
   form.addEventListener("submit", (event) => event.preventDefault());
   for (const button of root.querySelectorAll(".pager button")) {
     button.addEventListener("click", () => { state.page += Number(button.dataset.step); render(); });
   }
-  heads();
-  arrange();
+  show(state.metric);
   root.hidden = false;
 };
 

@@ -11,11 +11,12 @@ salbench.compare = function (a, b, direction) {
   return direction * order;
 };
 
-// Marks the column that a table is sorted by, and returns the direction: numbers start with the largest.
-salbench.turn = function (header, row) {
+// Marks the column that a table is sorted by, and returns the direction: numbers start with the largest, or the
+// smallest where that is better.
+salbench.turn = function (header, row, smallestFirst = false) {
   const numeric = header.classList.contains("number");
   const before = header.getAttribute("aria-sort");
-  const ascending = before ? before === "descending" : !numeric;
+  const ascending = before ? before === "descending" : !numeric || smallestFirst;
   for (const other of row.cells) other.removeAttribute("aria-sort");
   header.setAttribute("aria-sort", ascending ? "ascending" : "descending");
   return ascending ? 1 : -1;
@@ -53,7 +54,22 @@ salbench.filterable = function (form) {
   apply();
 };
 
+// One menu that sets those of all tables below it; it starts with its first metric.
+salbench.choose = function (chooser) {
+  const menu = chooser.querySelector("select");
+  const apply = () => {
+    for (const other of document.querySelectorAll("form.filters[data-for] select[data-label=Metric]")) {
+      other.value = Array.from(other.options).some((option) => option.value === menu.value) ? menu.value : "";
+      other.form.dispatchEvent(new Event("change"));
+    }
+  };
+  chooser.addEventListener("change", apply);
+  chooser.addEventListener("submit", (event) => event.preventDefault());
+  apply();
+};
+
 addEventListener("DOMContentLoaded", () => {
   document.querySelectorAll("table.sortable").forEach(salbench.sortable);
   document.querySelectorAll("form.filters[data-for]").forEach(salbench.filterable);
+  document.querySelectorAll("#chooser").forEach(salbench.choose);
 });

@@ -11,6 +11,11 @@ import pinhole
 
 MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
 METRICS = ("auc", "auc_exact", "nss", "cc", "lcc")
+_PICKED = ("auc", "auc_exact", "nss", "auc_judd", "auc_borji", "ig")
+_PER_VERTEX = (*METRICS, "auc_judd", "auc_borji", "ig", "spearman", "kl", "kl_smoothed", "sim", "sim_minmax", "mse", "mae",
+               *(f"{kind}_top{share}" for kind in ("auc", "nss") for share in (20, 10, 5, 1)),
+               *(f"{name}_multiplicity" for name in _PICKED))
+ALL_METRICS = (*_PER_VERTEX, *(f"{name}_area" for name in _PER_VERTEX))  # what `metrics: all` chooses
 CLASSES = ("human", "teddy", "glasses", "spring")
 LEVELS = {"LS": 0.64, "CS": 0.61, "PS": 0.60, "MS": 0.55, "HS": 0.58, "RS": 0.5}  # mean AUC of a model
 
@@ -31,6 +36,30 @@ def scores(random, level, n):
     auc = numpy.clip(level + 0.05 * random.standard_normal(n), 0, 1)
     cc = numpy.clip(3 * (auc - 0.5) + 0.1 * random.standard_normal(n), -1, 1)
     return {"auc": auc, "auc_exact": numpy.clip(auc + 0.03, 0, 1), "nss": 5 * (auc - 0.5), "cc": cc, "lcc": numpy.abs(cc)}
+
+
+def is_distance(metric):
+    return metric.startswith(("kl", "mse", "mae"))
+
+
+def with_metrics(results, metrics, seed=7):
+    """The table with columns for these metrics: those that it has, and others that follow the AUC, with some noise."""
+    random = numpy.random.default_rng(seed)
+    made = results[["dataset", "item", "class", "view", "model"]].copy()
+    for metric in metrics:
+        noise = results["auc"] + 0.02 * random.standard_normal(len(results))
+        made[metric] = results[metric] if metric in results else 1 - noise if is_distance(metric) else noise
+    return made.assign(n_points=results["n_points"], n_picks=results["n_picks"])
+
+
+def metric_lines(metrics):
+    """The block `metrics` of run.yaml."""
+    return "metrics:  # columns of the tables\n" + "".join(
+        f'  {metric}: {{unit: "1", better: {"lower" if is_distance(metric) else "higher"}}}\n' for metric in metrics)
+
+
+def metrics_of(results):
+    return [column for column in results if column not in ("dataset", "item", "class", "view", "model", "n_points", "n_picks")]
 
 
 def results_table(items, models=MODELS, views=12, seed=1, datasets=("meshes", "scans")):
@@ -62,7 +91,7 @@ def interval(values):
 def summary_table(results):
     rows = []
     for (dataset, model), group in results.groupby(["dataset", "model"], sort=False):
-        for metric in METRICS:
+        for metric in metrics_of(results):
             values = group[metric].dropna().to_numpy()
             low, high, _ = interval(values) if len(values) else (numpy.nan,) * 3
             deviation = numpy.std(values, ddof=1) if len(values) > 1 else numpy.nan
@@ -71,23 +100,30 @@ def summary_table(results):
 
 
 def per_class_table(results):
+    """AUC alone for the paper's metrics, else a mean and half an interval per metric."""
+    metrics = metrics_of(results)
+    papers = metrics == list(METRICS)
+    shown = ["auc"] if papers else metrics
     rows = []
     for (dataset, name), group in results.groupby(["dataset", "class"], sort=False):
         means = []
         for model, part in group.groupby("model", sort=False):
-            values = part["auc"].dropna().to_numpy()
-            if len(values):
-                means.append(values.mean())
-                rows.append((dataset, name, model, len(values), values.mean(), interval(values)[2]))
+            values = [part[metric].dropna().to_numpy() for metric in shown]
+            if len(values[0]):
+                means.append([column.mean() for column in values])
+                rows.append((dataset, name, model, len(values[0]), *(x for v in values for x in (v.mean(), interval(v)[2]))))
         if means:
-            rows.append((dataset, name, "Avg-AUC", len(means), numpy.mean(means), interval(means)[2]))
-    return pandas.DataFrame(rows, columns=["dataset", "class", "model", "n", "auc_mean", "auc_ci95"])
+            columns = numpy.transpose(means)
+            rows.append((dataset, name, "Avg-AUC" if papers else "Avg", len(means),
+                         *(x for v in columns for x in (v.mean(), interval(v)[2]))))
+    return pandas.DataFrame(rows, columns=["dataset", "class", "model", "n"] + [
+        f"{metric}_{part}" for metric in shown for part in ("mean", "ci95")])
 
 
 def significance_table(results):
     rows = []
     for dataset, part in results.groupby("dataset", sort=False):
-        for metric in METRICS:
+        for metric in metrics_of(results):
             wide = part.pivot(index=["item", "view"], columns="model", values=metric)
             models = [model for model in part["model"].unique()]
             for i, a in enumerate(models):
@@ -128,7 +164,7 @@ def run_yaml(models, simulated, failed=(), extra=""):
         f'  - {{item: "{item}", stage: {stage}, cause: "{cause}"}}\n' for item, stage, cause in failed)
     return (("# SIMULATED participants: the ground truth was made by the program.\n" if simulated else "")
             + "program: salbench 0.1.0\nresults: finished\nhost: \"host\"\nthreads: 2\nseconds: 10.5\nartefacts_computed: 42\n"
-            + extra + "data_set: {folder: \"data\", layout: schelling, meshes: 8, files: 20, digest: abcdef}\n"
+            + extra + ("" if "metrics:" in extra else metric_lines(METRICS)) + "data_set: {folder: \"data\", layout: schelling, meshes: 8, files: 20, digest: abcdef}\n"
             + "stages:\n  mesh: {version: 1, why: {}}\n  map.LS: {version: 3, why: {\"stage version 1 -> 3\": 8}}\n"
             + "nodes:\n  - {stage: mesh, of: meshes, scope: mesh, items: 8, settled: 8, computed: 0, seconds: 0.0, median: 0.0, "
             + "p95: 0.0, busy: 0.0}\n  - {stage: map.LS, of: meshes, scope: mesh, items: 8, settled: 8, computed: 8, seconds: "

@@ -1,0 +1,65 @@
+"""The page of all metrics of a run: what they are, and the tables of those that the other pages leave out, one at a time."""
+
+from report import statistics, tables
+from report.blocks import Cell, Table, attempt, cell, count
+from report.names import DATASETS
+from report.results import Missing
+
+
+def others(shop):
+    return [name for name in shop.results.metrics if name not in shop.results.leading]
+
+
+def blocks(shop):
+    """(title, blocks) of each section."""
+    return [("Means", attempt(means, shop)),
+            *((f"Performance per class on {dataset}", attempt(classes, shop, dataset)) for dataset in DATASETS),
+            ("Pairwise tests", attempt(pairs, shop)), ("Every metric of the run", [listing(shop)])]
+
+
+def listing(shop):
+    rows = [[Cell(of.label), Cell(of.name), Cell(of.unit), Cell("lower" if of.lower else "higher")]
+            for of in shop.results.metrics.values()]
+    return Table("metrics", "Metrics of the run, as run.yaml lists them: unit, and whether higher or lower is better.",
+                 ["Metric", "Column", "Unit", "Better"], rows, [False] * 4)
+
+
+def means(shop):
+    table = shop.results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
+    return tables.means_table(shop, "means-others", "Means over the shapes. Best of each data set in bold.",
+                              table[table["metric"].isin(others(shop))])
+
+
+def pairs(shop):
+    table = tables.significance(shop)
+    return tables.pairs_table(shop, "pairs-others", table[table["metric"].isin(others(shop))])
+
+
+def classes(shop, dataset):
+    rows = []
+    for name in others(shop):
+        try:
+            table = statistics.per_class(shop.results, dataset, name)
+        except Missing:
+            continue
+        rows += class_rows(shop, name, table)
+    if not rows:
+        raise Missing(f"There are no scores of {dataset} by class.")
+    models = shop.models
+    return Table(f"classes-{dataset}-others", f"Mean per class on {dataset} and half of the 95 % interval, best in bold.",
+                 ["Metric", "Class", "Shapes", *models, "Avg"], rows, [False] * 2 + [True] * (len(models) + 2), filters=[0])
+
+
+def class_rows(shop, name, table):
+    of = shop.results.metric(name)
+    by_cell = {(row["class"], row["model"]): row for row in table.to_dict("records")}
+    rows = []
+    for category in dict.fromkeys(table["class"]):
+        found = [by_cell.get((category, model)) for model in shop.models]
+        best = of.best(row["mean"] for row in found if row)
+        line = [Cell(of.label), Cell(category or "(no class)"), count(max((row["n"] for row in found if row), default=0))]
+        for row in found + [by_cell.get((category, "Avg"))]:
+            bold = bool(row) and row["model"] != "Avg" and row["mean"] == best
+            line.append(tables.class_cell(row, None, bold) if row else cell(None))
+        rows.append(line)
+    return rows

@@ -1,0 +1,69 @@
+"""Metrics by name: label, unit, direction, and which are conventions of the same measurement."""
+
+from dataclasses import dataclass
+
+PAPER = {"auc": "AUC", "nss": "NSS", "lcc": "LCC"}
+LEADING = 3  # metrics that every page shows; the others stand behind a menu
+
+_LABELS = {**PAPER, "auc_exact": "AUC (exact)", "auc_judd": "AUC (Judd)", "auc_borji": "AUC (Borji)", "cc": "CC",
+           "ig": "Information gain", "spearman": "Spearman", "kl": "KL", "kl_smoothed": "KL (smoothed)", "sim": "SIM",
+           "sim_minmax": "SIM (min-max)", "mse": "MSE", "mae": "MAE"}
+_ENDINGS = {"_multiplicity": "with multiplicity", "_area": "by area"}
+_DISTANCES = ("kl", "kl_smoothed", "mse", "mae")  # for results of a run.yaml that does not say what is better
+_FAMILIES = {"auc": "AUC", "nss": "NSS", "lcc": "Correlation", "kl": "KL", "sim": "SIM", "mse": "Error",
+             "ig": "Information gain"}
+_FAMILY_OF = {"cc": "lcc", "spearman": "lcc", "mae": "mse"}
+
+
+def split(name):
+    """("nss", ["_multiplicity", "_area"]) of nss_multiplicity_area."""
+    endings = []
+    while found := [ending for ending in _ENDINGS if name.endswith(ending)]:
+        endings.insert(0, found[0])
+        name = name.removesuffix(found[0])
+    return name, endings
+
+
+def label_of(name):
+    base, endings = split(name)
+    kind, top, share = base.partition("_top")
+    label = f"{_LABELS[kind]} (top {share} %)" if top and kind in _LABELS else _LABELS.get(base, base)
+    return ", ".join([label] + [_ENDINGS[ending] for ending in endings])
+
+
+def family_of(name):
+    """The metric that the others of its family are variants of: "auc" of auc_judd_area, "lcc" of cc."""
+    base = split(name)[0]
+    base = base if base in _FAMILY_OF else base.partition("_")[0]
+    return _FAMILY_OF.get(base, base)
+
+
+def family_label(family):
+    return _FAMILIES.get(family, family)
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A column of the tables, as run.yaml describes it."""
+    name: str
+    label: str
+    unit: str = "1"
+    lower: bool = False  # better
+
+    def best(self, values):
+        """The best of some values, NaN left out; None if there is none."""
+        known = [value for value in values if value == value]
+        return (min if self.lower else max)(known, default=None)
+
+
+def described(name, entry=None):
+    """entry: {"unit": ..., "better": ...} of run.yaml, if it has one."""
+    entry = entry if isinstance(entry, dict) else {}
+    better = entry.get("better") or ("lower" if split(name)[0] in _DISTANCES else "higher")
+    return Metric(name, label_of(name), str(entry.get("unit") or "1"), better == "lower")
+
+
+def leading(names):
+    """The paper's metrics among some, filled up to three with the first of the others."""
+    papers = [name for name in PAPER if name in names]
+    return (papers + [name for name in names if name not in PAPER])[:max(LEADING, len(papers))]

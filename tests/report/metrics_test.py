@@ -1,0 +1,187 @@
+"""Runs with other metrics than the paper's: names, units and directions are those of run.yaml and of the tables."""
+
+import json
+import re
+import unittest
+
+import numpy
+import pandas
+from scipy import stats
+
+import fixture
+import support
+from report import metrics, statistics
+from report.results import read_results
+
+LEADING = ("AUC", "NSS", "LCC")
+MODELS = ("LS", "CS", "PS", "RS")
+
+
+class Names(unittest.TestCase):
+    def test_labels_and_families(self):
+        self.assertEqual(metrics.label_of("nss_multiplicity_area"), "NSS, with multiplicity, by area")
+        self.assertEqual(metrics.label_of("auc_top5_area"), "AUC (top 5 %), by area")
+        self.assertEqual(metrics.label_of("of_tomorrow"), "of_tomorrow")
+        self.assertEqual(metrics.family_of("auc_judd_multiplicity_area"), "auc")
+        self.assertEqual({metrics.family_of(name) for name in ("cc", "lcc_area", "spearman")}, {"lcc"})
+        self.assertEqual(metrics.family_of("of_tomorrow_area"), "of")
+
+    def test_every_metric_of_the_program_has_its_own_label(self):
+        self.assertEqual(len(fixture.ALL_METRICS), 58)
+        labels = [metrics.label_of(name) for name in fixture.ALL_METRICS]
+        self.assertEqual(len(set(labels)), 58)
+        self.assertFalse([label for label in labels if "_" in label])
+
+    def test_what_leads(self):
+        self.assertEqual(metrics.leading(fixture.ALL_METRICS), ["auc", "nss", "lcc"])
+        self.assertEqual(metrics.leading(["kl", "nss", "sim", "mse"]), ["nss", "kl", "sim"])
+        self.assertEqual(metrics.leading(["kl"]), ["kl"])
+
+    def test_better_is_what_run_yaml_says_else_known_by_name(self):
+        self.assertTrue(metrics.described("kl_area").lower)
+        self.assertFalse(metrics.described("kl_area", {"better": "higher"}).lower)
+        self.assertTrue(metrics.described("of_tomorrow", {"better": "lower", "unit": "bits"}).lower)
+        self.assertEqual(metrics.described("kl").best([3.0, float("nan"), 1.0]), 1.0)
+        self.assertIsNone(metrics.described("kl").best([float("nan")]))
+
+
+class AllMetrics(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = cls.folder / "all"
+        table = fixture.results_table(fixture.eight_meshes()[:4], MODELS, views=2)
+        cls.table = fixture.with_metrics(table, fixture.ALL_METRICS)
+        fixture.write_results(cls.out, [], MODELS, results=cls.table, extra=fixture.metric_lines(fixture.ALL_METRICS))
+        cls.to = cls.folder / "report"
+        with support.without_drawing():
+            status, errors = support.make(cls.out, cls.to)
+        assert status == 0, errors
+        cls.index, cls.other = support.page(cls.to), support.page(cls.to, "metrics.html")
+        cls.results = read_results(cls.out)
+
+    def test_the_index_shows_the_papers_three(self):
+        for identifier in ("means", "pairs"):
+            column = 2 if identifier == "means" else 1
+            self.assertEqual({row[column] for row in support.rows(self.index, identifier)}, set(LEADING))
+        self.assertNotIn("table-classes-meshes-kl", self.index)
+        self.assertLess(len(self.index), 400_000)
+
+    def test_the_other_55_stand_behind_a_menu(self):
+        self.assertIn('href="metrics.html"', self.index)
+        options = re.findall(r"<option>(.*?)</option>", self.other[:self.other.index("</form>")])
+        self.assertEqual(len(options), 55)
+        self.assertEqual({row[2] for row in support.rows(self.other, "means-others")}, set(options))
+        self.assertEqual({row[0] for row in support.rows(self.other, "classes-scans-others")}, set(options))
+        self.assertEqual(len(support.rows(self.other, "metrics")), 58)
+
+    def test_best_of_a_distance_is_the_lowest(self):
+        body = self.other[self.other.index('id="table-means-others"'):]
+        found = {}
+        for line in re.findall(r"<tr>(.*?)</tr>", body[:body.index("</tbody>")], flags=re.S)[1:]:
+            cells = re.findall(r"<t[hd]([^>]*)>(.*?)</t[hd]>", line, flags=re.S)
+            key = tuple(re.sub("<[^>]*>", "", cells[at][1]).strip() for at in (0, 2))
+            found.setdefault(key, []).append((float(re.search('data-key="([^"]*)"', cells[4][0])[1]), "<strong>" in cells[4][1]))
+        for metric, pick in (("KL", min), ("MSE, by area", min), ("SIM", max), ("AUC (Judd), by area", max)):
+            values = found["Meshes", metric]
+            self.assertEqual([value for value, bold in values if bold], [pick(values)[0]], metric)
+
+    def test_classes_are_those_of_the_file(self):
+        file = pandas.read_csv(self.out / "per_class.csv")
+        row = file[(file["dataset"] == "meshes") & (file["class"] == "human") & (file["model"] == "LS")].iloc[0]
+        shown = next(row for row in support.rows(self.other, "classes-meshes-others") if row[:2] == ["KL, by area", "human"])
+        self.assertEqual(shown[2:4], ["2", f"{row['kl_area_mean']:.3f} ± {row['kl_area_ci95']:.3f}"])
+
+    def test_scores_of_the_others_are_scripts_of_their_own(self):
+        text = (self.to / "data/scores.js").read_text()
+        data = json.loads(text.removeprefix("salbench.scores = ").removesuffix(";\n"))
+        self.assertEqual(list(data["scores"]), ["auc", "nss", "lcc"])
+        self.assertEqual(len(data["files"]), 55)
+        self.assertEqual(set(data["lower"]), {name for name in fixture.ALL_METRICS if fixture.is_distance(name)})
+        script = (self.to / data["files"]["kl"]).read_text()
+        rows = json.loads(script.removeprefix('salbench.scores.scores["kl"] = ').removesuffix(";\n"))
+        expected = statistics.scores(self.results, "meshes", "kl")["LS"].round(5).tolist()
+        self.assertEqual([row[0] for row in rows[:4]], expected)
+
+    def test_orders_and_ranks_start_with_the_best(self):
+        self.assertTrue(statistics.summary(self.results, "meshes", "kl")["mean"].is_monotonic_increasing)
+        self.assertTrue(statistics.mean_per_shape(self.results, "meshes", "kl").is_monotonic_decreasing)
+        wide = statistics.scores(self.results, "meshes", "kl")
+        ranks = statistics.ranks(wide, self.results.metric("kl"))
+        self.assertEqual(ranks["LS"].idxmin(), wide["LS"].idxmin())
+
+    def test_sensitivity_is_scipys_and_marks_what_changes(self):
+        rows = {row[1].split("  ")[0]: row for row in support.rows(self.index, "sensitivity-meshes")}
+        self.assertEqual(len(rows), 58)
+        means = {}
+        for name in ("auc", "auc_judd_area", "auc_top1"):
+            wide = self.table[self.table["dataset"] == "meshes"].pivot(index="item", columns="model", values=name)
+            means[name] = wide[list(MODELS)].mean()
+        reference = means["auc"].rank(ascending=False)
+        changed = 0
+        for name, mean in means.items():
+            row = rows[metrics.label_of(name)]
+            tau = stats.kendalltau(reference, mean.rank(ascending=False))[0]
+            self.assertEqual(row[3], f"{tau:.2f}".replace("-", "−"))
+            for cell, model in zip(row[4:], MODELS):
+                rank = int(mean.rank(ascending=False)[model])
+                same = rank == reference[model]
+                changed += not same
+                self.assertEqual(" ".join(cell.split()),
+                                 f"{mean[model]:.3f} rank {rank}" + ("" if same else f", not {int(reference[model])}"))
+        self.assertGreater(changed, 0, "the fixture has rankings that differ")
+
+    def test_sensitivity_as_numbers(self):
+        numbers = pandas.read_csv(self.to / "data/sensitivity-meshes.csv")
+        self.assertEqual(numbers["metric"].nunique(), 58)
+        distances = numbers[numbers["metric"] == "kl"]
+        self.assertEqual(distances.sort_values("mean")["rank"].tolist(), [1, 2, 3, 4])
+
+
+class FewMetrics(support.ReportTest):
+    def setUp(self):
+        patch = support.without_drawing()
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def test_a_run_without_the_papers_metrics(self):
+        chosen = ("kl", "sim")
+        table = fixture.with_metrics(fixture.results_table(fixture.eight_meshes()[:4], views=1), chosen)
+        fixture.write_results(self.folder / "few", [], results=table, extra=fixture.metric_lines(chosen))
+        fixture.write_export(self.folder / "few/shapes.h5", fixture.eight_meshes()[:2], views=1, size=32)
+        to = self.report("few")
+        index = support.page(to)
+        self.assertEqual({row[2] for row in support.rows(index, "means")}, {"KL", "SIM"})
+        self.assertIn("(KL, SIM)", support.section(index, "figure-1"))
+        self.assertIn("highest-scoring meshes by KL", support.section(index, "figure-4"))
+        self.assertFalse((to / "metrics.html").exists())
+        page = support.page(to, "shapes/1.html")
+        first = table[(table["dataset"] == "meshes") & (table["model"] == "LS")]
+        rank = int(first["kl"].rank()[first["item"] == "1"].iloc[0])
+        self.assertEqual(support.rows(page, "mesh-scores")[0][2], f"{rank} of 4")
+        heat = pandas.read_csv(to / "data/performance-meshes-kl.csv")
+        self.assertTrue(heat["mean"].is_monotonic_decreasing)
+        numpy.testing.assert_array_less(heat[heat.columns[3]].mean() - 1e-12, heat[heat.columns[4:]].mean())
+
+    def test_another_run_adds_its_conventions(self):
+        items = fixture.eight_meshes()[:4]
+        table = fixture.results_table(items, views=1)
+        fixture.write_results(self.folder / "matched", items, results=table)
+        other = table[table["model"] != "HS"].copy()
+        other["auc"] = 1 - other["auc"]
+        fixture.write_results(self.folder / "unmatched", items, results=other)
+        index = support.page(self.report("matched", "--compare", self.folder / "unmatched"))
+        rows = {row[1].split("  ")[0]: row for row in support.rows(index, "sensitivity-meshes")}
+        self.assertEqual(rows["AUC, unmatched"][3], "−1.00")
+        self.assertEqual(rows["AUC (exact), unmatched"][3], rows["AUC (exact)"][3])
+        self.assertEqual(len(rows["AUC"]), 4 + 5)
+        self.assertNotIn("the run holds scores of matched maps alone", index)
+
+    def test_what_a_run_without_a_second_one_lacks(self):
+        items = fixture.eight_meshes()[:2]
+        fixture.write_results(self.folder / "single", items, results=fixture.results_table(items, views=1))
+        self.assertIn("the run holds scores of matched maps alone", support.page(self.report("single")))
+
+
+if __name__ == "__main__":
+    unittest.main()
