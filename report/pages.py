@@ -1,6 +1,7 @@
 """Pages from templates, and the folder that they stand in."""
 
 import shutil
+from functools import cache
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -16,6 +17,7 @@ THREE = tuple(Path("/usr/share/javascript/three") / name  # Debian's libjs-three
 FOLDERS = ("figures", "data", "shapes", "pictures", "static")
 
 
+@cache
 def environment():
     made = Environment(loader=FileSystemLoader(HERE / "templates"), autoescape=True, undefined=StrictUndefined,
                        trim_blocks=True, lstrip_blocks=True)

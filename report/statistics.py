@@ -37,12 +37,28 @@ def scores(results, dataset, metric):
 
 def pivot_scores(results, dataset, metric):
     table = results.table("results.csv", "dataset", "item", "view", "model", metric)
-    rows = table[table["dataset"] == dataset].drop_duplicates(["item", "view", "model"], keep="last")
+    rows = table[table["dataset"] == dataset]
     if rows.empty:
         raise Missing(f"results.csv has no scores of {dataset}: none of them has ground truth, or the run left them out.")
-    wide = rows.pivot(index=["item", "view"], columns="model", values=metric)
-    order = sorted(wide.index, key=lambda key: (natural(key[0]), natural(key[1])))
-    return wide.loc[order, [model for model in models(results) if model in wide]]
+    index, columns, at = placed(results, dataset, rows)
+    values = numpy.full((len(index), len(columns) + 1), numpy.nan)
+    values[at] = rows[metric].to_numpy(dtype=float)
+    return pandas.DataFrame(values[:, :-1], index, columns)
+
+
+def placed(results, dataset, rows):
+    """Index and columns of every metric's scores of a data set, and where each row stands: one without a model, which was
+    cut short, behind the last column. Made once."""
+    if (dataset, None) not in results.pivoted:
+        shapes = list(zip(rows["item"], rows["view"]))
+        order = sorted(set(shapes), key=lambda key: (natural(key[0]), natural(key[1])))
+        present = set(rows["model"])
+        columns = [model for model in models(results) if model in present]
+        row_of, column_of = ({name: at for at, name in enumerate(names)} for names in (order, columns))
+        at = ([row_of[shape] for shape in shapes], [column_of.get(model, len(columns)) for model in rows["model"]])
+        results.pivoted[dataset, None] = (pandas.MultiIndex.from_tuples(order, names=["item", "view"]),
+                                          pandas.Index(columns, name="model"), at)
+    return results.pivoted[dataset, None]
 
 
 def classes(results):
@@ -96,7 +112,9 @@ def per_class(results, dataset, metric):
         raise Missing(f"per_class.csv has no rows of {dataset}: they have no scores, or no classes.")
     rows = rows.replace({"model": {"Avg-AUC": "Avg"}})[["class", "model", "n", "mean", "ci95"]].reset_index(drop=True)
     if next(column for column in table if column.endswith("_mean")) != mean:  # n counts what the first is defined for
-        counted = class_means(results, dataset, metric).set_index(["class", "model"])["n"].to_dict()
+        wide, class_of = scores(results, dataset, metric), classes(results)
+        counts = wide.groupby(wide.index.get_level_values("item").map(class_of)).count()
+        counted = counts.assign(Avg=(counts > 0).sum(axis=1)).stack().to_dict()
         rows["n"] = [counted.get(key, 0) for key in zip(rows["class"], rows["model"])]
     return rows
 

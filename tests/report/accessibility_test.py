@@ -26,7 +26,8 @@ class Accessibility(support.ReportTest):
             raise unittest.SkipTest("npm cannot reach its registry") from None
         cls.axe = (cls.folder / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")
         cls.to = cls.folder / "report"
-        status, errors = support.make(support.make_full(cls.folder), cls.to)
+        with support.without_drawing():
+            status, errors = support.make(support.make_full(cls.folder, meshes=1), cls.to)
         assert status == 0, errors
         cls.browser = chromium.start()
         cls.addClassCleanup(cls.browser.quit)
@@ -39,7 +40,7 @@ class Accessibility(support.ReportTest):
                 for finding in found["violations"] if finding["impact"] in GRAVE]
 
     def test_no_serious_finding_on_any_kind_of_page(self):
-        for path in ("index.html", "scores.html", "run.html", "shapes/1.html"):
+        for path in ("index.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
             with self.subTest(path):
                 self.assertEqual(self.findings(path), [])
 

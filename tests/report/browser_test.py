@@ -82,6 +82,24 @@ class Browser(support.ReportTest):
         self.browser.find_element(By.CSS_SELECTOR, "#scores tbody a").click()
         self.assertIn("teddy", self.browser.find_element(By.TAG_NAME, "h1").text)
 
+    def test_scores_of_a_metric_that_stands_behind_the_menu(self):
+        self.open("scores.html")
+        self.assertEqual(self.browser.execute_script("return salbench.scores.scores.cc"), None)
+        before = self.texts("#scores tbody td:nth-child(5)")
+        Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=metric]")).select_by_visible_text("CC")
+        self.wait(lambda: self.texts("#scores tbody td:nth-child(5)") != before)
+        first = self.browser.execute_script("return salbench.scores.scores.cc[0][0]")
+        self.assertEqual(self.texts("#scores tbody td:nth-child(5)")[0], f"{first:.3f}".replace("-", "−"))
+
+    def test_one_menu_chooses_the_metric_of_every_table(self):
+        self.open("metrics.html")
+        shown = [text for text in self.texts("#table-means-others tbody td:nth-child(3)") if text]
+        self.assertEqual(set(shown), {"AUC (exact)"})
+        Select(self.browser.find_element(By.CSS_SELECTOR, "#chooser select")).select_by_visible_text("CC")
+        for column in ("#table-means-others tbody td:nth-child(3)", "#table-pairs-others tbody td:nth-child(2)",
+                       "#table-classes-meshes-others tbody th"):
+            self.assertEqual({text for text in self.texts(column) if text}, {"CC"}, column)
+
     def test_later_rows_of_the_scores(self):
         self.open("scores.html")
         self.browser.find_element(By.CSS_SELECTOR, "button[data-step='1']").click()
@@ -128,7 +146,7 @@ class Browser(support.ReportTest):
 
     def test_nothing_is_wider_than_a_phone(self):
         self.browser.set_window_size(500, 900)  # Chromium's narrowest window
-        for path in ("index.html", "scores.html", "run.html", "shapes/1.html"):
+        for path in ("index.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
             self.open(path)
             time.sleep(0.2)
             wider = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")

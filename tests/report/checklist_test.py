@@ -6,10 +6,10 @@ from pathlib import Path
 
 import support
 from report.elements import ELEMENTS
-from report.names import METRICS
+from report.metrics import PAPER
 
 # As numbered in the paper, with its LaTeX labels.
-PAPER = {
+PAPERS_ELEMENTS = {
     "Figure 1": "fig:teaser", "Figure 2": "fig:saliency_maps_avg_distribution", "Figure 3": "fig:maps_after_matching_hist",
     "Figure 4": "fig:saliency_performance", "Figure 5": "fig:human_performance", "Figure 6": "fig:scans_saliency_performance",
     "Figure 7": "fig:scans_saliency", "Table 1": "table:params_per_method", "Table 2": "auc_per-class",
@@ -22,10 +22,10 @@ SHOWS = {
     "figure-2": ["figures/distributions-meshes.svg", "figures/distributions-scans.svg"],
     "figure-3": ["LS-before", "LS-after", "figures/matching.pdf"],
     "table-1": ["table-parameters", "r_low", "epsilon"],
-    "figure-4": [f"figures/{name}.svg" for metric in METRICS
+    "figure-4": [f"figures/{name}.svg" for metric in PAPER
                  for name in (f"performance-meshes-{metric}", f"difficult-meshes-{metric}")],
     "figure-5": ["figures/human-curves.svg", "table-worth"],
-    "table-2": [f"table-classes-meshes-{metric}" for metric in METRICS] + ["data/classes-meshes-auc.tex"],
+    "table-2": [f"table-classes-meshes-{metric}" for metric in PAPER] + ["data/classes-meshes-auc.tex"],
     "figure-6": ["figures/ranking-scans.svg"],
     "figure-7": ["figures/examples-scans.pdf", "Scan "],
 }
@@ -33,15 +33,15 @@ SHOWS = {
 
 class Checklist(support.ReportTest):
     def test_every_figure_and_table_has_an_element(self):
-        self.assertEqual({element.paper: element.label for element in ELEMENTS if element.paper}, PAPER)
+        self.assertEqual({element.paper: element.label for element in ELEMENTS if element.paper}, PAPERS_ELEMENTS)
 
     @unittest.skipUnless(SOURCE.is_file(), "the paper's source does not lie beside the checkout")
     def test_the_paper_has_no_other(self):
         labels = re.findall(r"\\label\{((?:fig|table):[^}]*|auc_per-class)\}", SOURCE.read_text(encoding="utf-8"))
-        self.assertEqual(sorted(labels), sorted(PAPER.values()))
+        self.assertEqual(sorted(labels), sorted(PAPERS_ELEMENTS.values()))
 
     def test_elements_show_what_the_paper_shows(self):
-        with support.without_drawing():
+        with support.without_figures():
             to = self.report("full", out=support.make_full(self.folder))
         index = support.page(to)
         for identifier, expected in SHOWS.items():

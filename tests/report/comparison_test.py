@@ -9,9 +9,9 @@ import support
 
 class Comparison(support.ReportTest):
     def setUp(self):
-        patch = support.without_drawing()
-        patch.start()
-        self.addCleanup(patch.stop)
+        figures = support.without_figures()
+        figures.__enter__()
+        self.addCleanup(figures.__exit__, None, None, None)
 
     def test_differences_are_ours_less_theirs(self):
         results = fixture.results_table(fixture.eight_meshes())

@@ -88,8 +88,8 @@ class Painting(support.ReportTest):
 
     def test_viewer_data_undo_to_the_shape(self):
         """The steps of viewer.js's unpack() give back points, faces and maps."""
-        out = support.make_full(self.folder / "viewer")
-        with support.without_drawing():
+        out = support.make_full(self.folder / "viewer", meshes=1)
+        with support.without_figures():
             to = self.report("viewer", out=out)
         text = (to / "shapes/1_2.js").read_text() + (to / "shapes/1.js").read_text()
         calls = re.findall(r"salbench\.give\((\".*?\"), (\{.*?\}), \"(.*?)\"\);", text)
@@ -108,8 +108,8 @@ class Painting(support.ReportTest):
             self.assertLessEqual(abs(maps[at] / 255 - unit_range(mesh["matched.LS/saliency"][:])).max(), 0.5 / 255 + 1e-9)
 
     def test_pictures_are_the_same_bytes_every_time(self):
-        out = support.make_full(self.folder / "twice")
-        with support.without_drawing():
+        out = support.make_full(self.folder / "twice", meshes=2)
+        with support.without_figures():
             first, second = (self.report(name, out=out) for name in ("first", "second"))
         pictures = sorted(path.relative_to(first) for path in first.rglob("*.webp"))
         self.assertGreater(len(pictures), 50)

@@ -42,7 +42,7 @@ class Statistics(support.ReportTest):
                               cls.out, "--quiet"], capture_output=True, text=True)
         assert ran.returncode == 0, ran.stderr
         cls.to = cls.folder / "report"
-        with support.without_drawing():
+        with support.without_figures():
             status, errors = support.make(cls.out, cls.to)
         assert status == 0, errors
         cls.results = read_results(cls.out)

@@ -21,12 +21,41 @@ def make(out, to, *arguments):
     return status, errors.getvalue()
 
 
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>\n'
+
+
 def without_drawing():
-    """Figures are empty files: most of the time of a report goes into drawing them."""
+    """Figures are laid out but not drawn, and their files are empty ones: drawing takes most of the time of a report."""
     def touch(_, folder, name):
-        for ending in ("svg", "pdf"):
-            (folder / f"{name}.{ending}").touch()
+        (folder / f"{name}.svg").write_text(SVG)
+        (folder / f"{name}.pdf").touch()
     return unittest.mock.patch("report.style.save", touch)
+
+
+class Nothing:
+    """Stands for a figure, its axes and what they return: takes every call, and shows nothing."""
+
+    def __call__(self, *_, **__):
+        return self
+
+    def __getattr__(self, name):
+        return self
+
+    def __getitem__(self, key):
+        return self
+
+    def __iter__(self):
+        return iter([self] * 16)  # more axes than any figure has
+
+    def __mul__(self, other):
+        return other
+
+
+@contextlib.contextmanager
+def without_figures():
+    """For tests of something else than figures, over data that tests with figures have drawn."""
+    with without_drawing(), unittest.mock.patch("report.style.new_figure", lambda *_, **__: Nothing()):
+        yield
 
 
 def page(folder, path="index.html"):
@@ -66,11 +95,11 @@ class ReportTest(unittest.TestCase):
         return to
 
 
-def make_full(folder):
-    """A results folder with everything: tables, timeline, an export of six meshes with pictures, the
-    lowest-scoring ones among them. Returns its path."""
+def make_full(folder, meshes=6):
+    """A results folder with everything: tables, timeline, an export of some meshes with pictures; of six, the
+    lowest-scoring ones are among them. Returns its path."""
     out = Path(folder) / "full"
     fixture.write_results(out, fixture.eight_meshes(), extra='peak_memory_mb: 512\ncache_bytes: {mesh: 1000000, fpfh: 9000000}\n')
     fixture.write_timeline(out)
-    fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:6], views=3, size=64)
+    fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:meshes], views=3, size=64)
     return out

@@ -14,7 +14,7 @@ class Tables(support.ReportTest):
         super().setUpClass()
         cls.out = cls.folder / "tables"
         cls.results = fixture.write_results(cls.out, fixture.eight_meshes())
-        with support.without_drawing():
+        with support.without_figures():
             status, errors = support.make(cls.out, cls.folder / "report")
         assert status == 0, errors
         cls.to = cls.folder / "report"
