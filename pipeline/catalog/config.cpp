@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/catalog/command_model.h"
+
 namespace salbench {
 namespace {
 
@@ -26,11 +28,14 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   const Section section = root.child("models");
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows()) known.push_back(row.name);
+  const std::vector<std::string> commands = command_models(section);
+  known.insert(known.end(), commands.begin(), commands.end());
   section.reject_unknown(known);
   std::vector<Model> models;
   for (const ModelRow& row : model_rows())
     if (!root.has("models") || section.has(row.name))
       models.push_back(row.bind(section.child(row.name), protocol));
+  for (const std::string& name : commands) models.push_back(command_model(name, section));
   if (models.empty()) root.fail("models", "names no model; leave the key out to run all of them");
   return models;
 }

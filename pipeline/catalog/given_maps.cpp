@@ -1,7 +1,5 @@
 #include "pipeline/catalog/given_maps.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,6 +8,7 @@
 #include "io/ground_truth_file.h"
 #include "io/hdf5_file.h"
 #include "io/text_scanner.h"
+#include "pipeline/catalog/model_name.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -17,22 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In the tables and in the cache the name stands beside others: these mean something else there.
-constexpr std::array<std::string_view, 3> kTaken = {"GS", "Avg-AUC", "Avg"};
-constexpr std::size_t kLongestName = 40;
-
 void check_name(std::string_view name) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-  };
-  if (name.empty() || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), plain))
-    throw ConfigError(fmt::format("--name {}: must be 1 to {} letters, digits, '-' and '_'", in_quotes(name),
-                                  kLongestName));
-  const auto rows = model_rows();
-  if (std::find(kTaken.begin(), kTaken.end(), name) != kTaken.end() ||
-      std::any_of(rows.begin(), rows.end(), [&](const ModelRow& row) { return row.name == name; }))
-    throw ConfigError(fmt::format("--name {}: is the name of something else in the tables; choose another",
-                                  in_quotes(name)));
+  if (const std::string wrong = wrong_with_model_name(name); !wrong.empty())
+    throw ConfigError(fmt::format("--name {}: {}", in_quotes(name), wrong));
 }
 
 bool is_folder(const fs::path& path) {

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include "io/process.h"
 #include "pipeline/commands/subcommand.h"
 
 namespace salbench {
@@ -15,12 +16,20 @@ std::atomic<int> orderly_ends = 0;
 std::string farewell;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
+void on_second_signal(int signal) {
+  end_commands(SIGKILL);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);  // delivered when the handler returns
+}
+
 void on_signal(int signal) {
   if (orderly_ends > 0 && !asked) {
     asked = true;
-    std::signal(signal, SIG_DFL);
+    std::signal(signal, on_second_signal);
+    end_commands(SIGTERM);
     return;
   }
+  end_commands(SIGKILL);
   // Nothing can be done about a standard error that takes no text.
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, farewell.data(), farewell.size());
   ::_exit(kInterrupted);

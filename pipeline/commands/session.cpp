@@ -44,7 +44,13 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
   Config config =
       read_config(Section::from_file(arguments.config), fs::path(arguments.config).stem().string());
   select_models(config, arguments.models);
-  if (given) config.models.push_back(*given);
+  if (given) {
+    for (const Model& model : config.models)
+      if (model.name == given->name)
+        throw ConfigError(
+            fmt::format("--name {}: is a model of the configuration; choose another", given->name));
+    config.models.push_back(*given);
+  }
   config.pictures = std::max(config.pictures, pictures);
   if (!arguments.data.empty()) config.data = arguments.data;
   if (!arguments.cache.empty()) config.cache = arguments.cache;

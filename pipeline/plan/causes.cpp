@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/catalog/command_model.h"
+
 namespace salbench {
 namespace {
 
@@ -52,6 +54,8 @@ std::string group_text(const Context& context, const JobRef& job, const RecipeDi
     case Part::version:
       return fmt::format("stage version {} -> {}", difference.before, difference.after);
     case Part::option:
+      if (difference.name.starts_with(kDependsOption))
+        return fmt::format("{} {}", difference.name.substr(kDependsOption.size()), fate(difference));
       return fmt::format("{} {} -> {}", option_path(context.row(job), difference.name),
                          or_none(difference.before), or_none(difference.after));
     case Part::seed:

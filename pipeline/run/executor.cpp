@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "io/process.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -48,6 +49,7 @@ void Executor::settle(const JobRef& ref) {
   if (job.verdict == Verdict::compute) {
     if (job.reason != Reason::unreadable) job.reason = reason;
     compute(ref, std::move(files));
+    if (job.open()) return;
   }
   const std::lock_guard lock(mutex_);
   ++records_[ref.row].settled;
@@ -64,6 +66,7 @@ void Executor::compute(const JobRef& ref, std::vector<SourceData> files) {
     hold(ref, std::make_shared<const Value>(std::move(result.value)));
   } catch (const StorageError&) {
     throw;
+  } catch (const CommandInterrupted&) {  // the job stays open: a later run computes it
   } catch (const InputError& error) {
     fail(ref, error.what());
   } catch (...) {

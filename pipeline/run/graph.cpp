@@ -63,7 +63,7 @@ class Stream {
   }
 
   void run() {
-    for (std::size_t row = 0; row < nodes_.size(); ++row)
+    for (std::size_t row = 0; row < node_of_.size(); ++row)
       if (context_.catalog.rows[row].gathers) start({row, Item::set()});
     source_.activate();
     graph_.wait_for_all();
@@ -106,23 +106,36 @@ class Stream {
 
   void build() {
     const std::vector<Row>& rows = context_.catalog.rows;
-    for (std::size_t row = 0; row < rows.size(); ++row)
-      nodes_.emplace_back(
-          graph_, rows[row].limit == 0 ? std::size_t{flow::unlimited} : rows[row].limit,
-          [this, row](const Ticket& ticket, RowNode::output_ports_type& out) { arrive(row, ticket, out); },
-          static_cast<flow::node_priority_t>(row + 1));
+    for (std::size_t row = 0; row < rows.size(); ++row) node_of_.push_back(shared_node(row));
     for (const Edge& edge : edges(context_.catalog)) {
       const bool to_scans = rows[edge.from].scope() == Scope::mesh && rows[edge.to].scope() == Scope::scan;
       if (to_scans)
-        flow::make_edge(flow::output_port<kScans>(nodes_[edge.from]), nodes_[edge.to]);
+        flow::make_edge(flow::output_port<kScans>(*node_of_[edge.from]), *node_of_[edge.to]);
       else
-        flow::make_edge(flow::output_port<kItem>(nodes_[edge.from]), nodes_[edge.to]);
+        flow::make_edge(flow::output_port<kItem>(*node_of_[edge.from]), *node_of_[edge.to]);
     }
     for (RowNode& node : nodes_) flow::make_edge(flow::output_port<kToken>(node), tokens_);
     flow::make_edge(source_, flow::input_port<0>(gate_));
     flow::make_edge(tokens_, flow::input_port<1>(gate_));
     flow::make_edge(gate_, entrance_);
     flow::make_edge(entrance_, tokens_);
+  }
+
+  // A limit holds for meshes and scans together: rows of one name with a limit share a node, where the ticket
+  // tells the row.
+  RowNode* shared_node(std::size_t row) {
+    const std::vector<Row>& rows = context_.catalog.rows;
+    const std::size_t limit = rows[row].limit;
+    for (std::size_t earlier = 0; limit > 0 && earlier < row; ++earlier)
+      if (rows[earlier].limit == limit && rows[earlier].name == rows[row].name) return node_of_[earlier];
+    return &nodes_.emplace_back(
+        graph_, limit == 0 ? std::size_t{flow::unlimited} : limit,
+        [this, row](const Ticket& ticket, RowNode::output_ports_type& out) {
+          if (context_.catalog.rows[row].limit == 0) return arrive(row, ticket, out);
+          for (std::size_t other = row; other < node_of_.size(); ++other)
+            if (node_of_[other] == node_of_[row]) arrive(other, ticket, out);
+        },
+        static_cast<flow::node_priority_t>(row + 1));
   }
 
   std::size_t next_family(tbb::flow_control& control) {
@@ -144,7 +157,7 @@ class Stream {
   }
 
   void start(const JobRef& job) {
-    if (missing(job) != kNotOpen && open_inputs(job) == 0) nodes_[job.row].try_put(job.item);
+    if (missing(job) != kNotOpen && open_inputs(job) == 0) node_of_[job.row]->try_put(job.item);
   }
 
   // A ticket of a mesh stands for the mesh, or at a row of scans for the scan that it was sent for; at a row
@@ -152,6 +165,8 @@ class Stream {
   void arrive(std::size_t row, const Ticket& ticket, RowNode::output_ports_type& out) {
     const Row& of = context_.catalog.rows[row];
     if (ticket.is_set() && !of.gathers) return;
+    // A node that rows for meshes and for scans share sends on the tickets of both.
+    if (!ticket.is_set() && ticket.is_mesh() != (of.shapes == Shapes::meshes)) return;
     const JobRef job{row, of.gathers ? Item::set() : ticket};
     if (missing(job) == kNotOpen || --missing(job) > 0 || ended()) return;
     bool settled = false;
@@ -186,6 +201,7 @@ class Stream {
                        if (!enter(std::get<0>(entered))) std::get<0>(out).try_put(Token());
                      }};
   std::deque<RowNode> nodes_;
+  std::vector<RowNode*> node_of_;  // [row]
 };
 
 }  // namespace

@@ -1,0 +1,17 @@
+// A file with one value per point, as other programs write it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// Reads text (a number per line, as .val), NumPy's .npy (float32 or float64, n or n x 1) or an HDF5 file with
+// one data set of numbers, or one called "saliency"; the content tells which. `name` stands for the file in
+// messages. Throws InputError: unreadable, another number of values than n, a value that is not finite.
+ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n);
+
+}  // namespace salbench

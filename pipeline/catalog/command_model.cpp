@@ -1,0 +1,287 @@
+// The key of a map has the command line, its version, what it reads and the digests of the files it depends
+// on; not the timeout and the limits, which change no value. Paths of the files are those from where salbench
+// is started, like the folder of the data set; a link in the command's own folder leads to each.
+#include "pipeline/catalog/command_model.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/hdf5_file.h"
+#include "io/process.h"
+#include "io/shape_file.h"
+#include "io/values_file.h"
+#include "pipeline/catalog/model_name.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 5> kReadable = {"mesh", "points", "normals", "faces", "fpfh"};
+constexpr const char* kMeshFile = "shape.ply";
+constexpr const char* kShapeFile = "shape.h5";
+
+struct Placeholder {
+  std::string_view text, file;
+};
+constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", kMeshFile},
+                                                       {"{shape}", kShapeFile},
+                                                       {"{out}", "out.val"},
+                                                       {"{out.npy}", "out.npy"},
+                                                       {"{out.h5}", "out.h5"}}};
+
+bool contains(const Words& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+// --- the configuration ------------------------------------------------------------------------------------
+
+std::string yaml_list(const Words& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + yaml_quoted(word);
+  return "[" + list + "]";
+}
+
+// As options_text has it, but for quotes: a command line holds whatever YAML has other uses for.
+std::string command_text(const CommandOptions& options, bool annotated) {
+  std::string lines;
+  CommandOptions::fields(options,
+                         [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
+                           if (annotated) lines += fmt::format("# {}\n", option_note<Value>(help));
+                           if constexpr (std::is_same_v<Value, std::string>)
+                             lines += fmt::format("{}: {}\n", key, yaml_quoted(value));
+                           else if constexpr (std::is_same_v<Value, Words>)
+                             lines += fmt::format("{}: {}\n", key, yaml_list(value));
+                           else
+                             lines += fmt::format("{}: {}\n", key, option_text(value));
+                         });
+  return lines;
+}
+
+void check_reads(const CommandOptions& options, const Section& written) {
+  for (const std::string& word : options.reads)
+    if (std::find(kReadable.begin(), kReadable.end(), word) == kReadable.end())
+      written.fail("reads", fmt::format("names '{}', expected some of {}", word, fmt::join(kReadable, ", ")));
+  if (options.reads.empty()) written.fail("reads", "names nothing; leave the key out for [mesh]");
+}
+
+void check_command(const CommandOptions& options, const Section& written) {
+  const auto has = [&](std::string_view text) { return options.command.find(text) != std::string::npos; };
+  if (options.command.find('\0') != std::string::npos) written.fail("command", "holds a zero byte");
+  if (has("{list}"))
+    written.fail("command",
+                 "has {list}: one command for many shapes is not supported; use {mesh} or {shape}");
+  if (!has("{out}") && !has("{out.npy}") && !has("{out.h5}"))
+    written.fail("command", "must have {out} where the file is named that it writes its values to");
+  if (!has("{mesh}") && !has("{shape}"))
+    written.fail("command", "must have {mesh} or {shape}, the file it reads");
+  if (contains(options.reads, "fpfh") && !has("{shape}"))
+    written.fail("command",
+                 "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
+}
+
+// What a user of the folder expects to be found there, and would be found nowhere.
+void check_depends(const CommandOptions& options, const Section& written) {
+  for (const std::string& file : options.depends) {
+    const fs::path path(file);
+    if (path.filename().empty() || std::find(path.begin(), path.end(), "..") != path.end())
+      written.fail(
+          "depends",
+          fmt::format("names '{}', expected a file below the present folder, or its whole path", file));
+    for (const Placeholder& taken : kPlaceholders)
+      if (file == taken.file)
+        written.fail("depends", fmt::format("names '{}', which salbench writes itself", file));
+  }
+  std::istringstream words(options.command);
+  for (std::string word; words >> word;) {
+    std::error_code ignored;
+    if (!contains(options.depends, word) && !fs::path(word).is_absolute() &&
+        fs::is_regular_file(word, ignored))
+      written.fail("command",
+                   fmt::format("names the file '{0}', which is not in the folder where the command runs: add "
+                               "depends: [{0}], or give its whole path",
+                               word));
+  }
+}
+
+CommandOptions read_options(const Section& written) {
+  CommandOptions options;
+  written.read(options);
+  check_reads(options, written);
+  check_command(options, written);
+  check_depends(options, written);
+  return options;
+}
+
+// --- the files that it depends on -------------------------------------------------------------------------
+
+class DependsFiles {
+ public:
+  DependsFiles(Words names, Section written) : names_(std::move(names)), written_(std::move(written)) {}
+
+  // The lines of a key; read when first asked for, which may be never.
+  const std::string& lines() {
+    std::call_once(read_, [&] {
+      for (const std::string& name : names_) lines_ += line(name);
+    });
+    return lines_;
+  }
+
+  void link_into(const fs::path& folder) const {
+    for (const std::string& name : names_) {
+      if (fs::path(name).is_absolute()) continue;
+      std::error_code error;
+      fs::create_directories((folder / name).parent_path(), error);
+      if (!error) fs::create_symlink(fs::absolute(name), folder / name, error);
+      if (error)
+        throw StorageError(fmt::format("{}: cannot be written to: {}", folder.string(), error.message()));
+    }
+  }
+
+ private:
+  std::string line(const std::string& name) const try {
+    return fmt::format("{}{}: {}\n", kDependsOption, name, file_digest(read_file(name)).hex());
+  } catch (const InputError& error) {
+    written_.fail("depends", fmt::format("names a file that the command needs: {}", error.what()));
+  }
+
+  Words names_;
+  Section written_;
+  std::once_flag read_;
+  std::string lines_;
+};
+
+// --- the map ----------------------------------------------------------------------------------------------
+
+// What the command reads of a shape. Which of them a job loads follows from `reads`.
+struct ShapeParts {
+  Points points;
+  const Normals* normals = nullptr;
+  Surface faces = {};
+  const Descriptors* fpfh = nullptr;
+};
+
+Array rows_of(const char* name, std::span<const Vec3> rows, const char* description) {
+  std::vector<double> values;
+  values.reserve(3 * rows.size());
+  for (const Vec3& row : rows) values.insert(values.end(), {row.x(), row.y(), row.z()});
+  return {name, {rows.size(), 3}, std::move(values), "1", description};
+}
+
+void write_hdf5(const fs::path& path, const ShapeParts& shape) {
+  Hdf5Content content{{rows_of("points", shape.points, "coordinates, in the mesh's unit")}, {}};
+  if (shape.normals != nullptr) content.arrays.push_back(rows_of("normals", *shape.normals, "unit normals"));
+  if (!shape.faces.empty()) {
+    std::vector<std::int32_t> corners;
+    for (const Triangle& face : shape.faces) corners.insert(corners.end(), face.begin(), face.end());
+    content.arrays.push_back(
+        {"faces", {shape.faces.size(), 3}, std::move(corners), "1", "0-based points of each triangle"});
+  }
+  if (shape.fpfh != nullptr)
+    content.arrays.push_back(
+        {"fpfh", {shape.fpfh->size(), kFpfhBins}, shape.fpfh->values, "1", "descriptors"});
+  const Bytes image = hdf5_image(content);
+  write_file(path, {reinterpret_cast<const char*>(image.data()), image.size()});
+}
+
+std::string in_folder(std::string command, const fs::path& folder) {
+  for (const Placeholder& placeholder : kPlaceholders) {
+    const std::string file = shell_quoted((folder / placeholder.file).string());
+    for (std::size_t at = 0; (at = command.find(placeholder.text, at)) != std::string::npos;
+         at += file.size())
+      command.replace(at, placeholder.text.size(), file);
+  }
+  return command;
+}
+
+// Also under the name that numpy.save makes of one without ".npy". Throws InputError.
+fs::path written_file(const fs::path& folder) {
+  for (const char* name : {"out.val", "out.npy", "out.h5", "out.val.npy"}) {
+    std::error_code missing;
+    if (fs::exists(folder / name, missing)) return folder / name;
+  }
+  throw InputError("the command ended without a file {out}; it must write one value per point there");
+}
+
+ScalarField map_by_command(const CommandOptions& options, const DependsFiles& depends,
+                           const ShapeParts& shape) {
+  const ScratchFolder scratch;
+  depends.link_into(scratch.path());
+  if (options.command.find("{mesh}") != std::string::npos)
+    write_file(scratch.path() / kMeshFile,
+               shape_text({.points = shape.points,
+                           .normals = shape.normals == nullptr ? Points() : Points(*shape.normals),
+                           .faces = shape.faces},
+                          ShapeFormat::ply));
+  if (options.command.find("{shape}") != std::string::npos) write_hdf5(scratch.path() / kShapeFile, shape);
+  run_command(in_folder(options.command, scratch.path()), scratch.path(),
+              std::chrono::duration<double>(options.timeout));
+  const fs::path written = written_file(scratch.path());
+  return read_point_values(written, "the command's " + written.filename().string(), shape.points.size());
+}
+
+// Rows are made of functions elsewhere; what this one reads is known from the configuration only.
+RowOf<ScalarField> add_command(Catalog& catalog, const ShapeRows& rows, RowHead head, const std::string& name,
+                               const CommandOptions& options, const std::shared_ptr<DependsFiles>& depends) {
+  const auto reads = [&](std::string_view part) {
+    return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
+  };
+  const bool normals = reads("normals"), faces = reads("faces"), fpfh = reads("fpfh");
+  head.limit = static_cast<std::size_t>(options.at_once > 0 ? options.at_once : options.gpu);
+  Row row{{std::move(head)}, rows.shapes};
+  row.kind = kind_of(Value(ScalarField()));
+  row.options.push_back({"models." + name, command_text(options, false),
+                         fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),
+                                     yaml_list(options.reads), depends->lines())});
+  row.inputs.push_back(rows.points.row);
+  if (normals) row.inputs.push_back(rows.normals.row);
+  if (faces) row.inputs.push_back(rows.surface.row);
+  if (fpfh) row.inputs.push_back(rows.fpfh.row);
+  row.run = [=](const JobInputs& in) -> Value {
+    std::size_t next = 0;
+    ShapeParts shape{binding::parameter<Points>(RowOf<Points>(), in, next)};
+    if (normals) shape.normals = &binding::parameter<Normals>(RowOf<Normals>(), in, next);
+    if (faces) shape.faces = binding::parameter<Surface>(RowOf<Surface>(), in, next);
+    if (fpfh) shape.fpfh = &binding::parameter<Descriptors>(RowOf<Descriptors>(), in, next);
+    return map_by_command(options, *depends, shape);
+  };
+  catalog.rows.push_back(std::move(row));
+  return RowOf<ScalarField>(catalog.rows.size() - 1);
+}
+
+}  // namespace
+
+std::vector<std::string> command_models(const Section& models) {
+  std::vector<std::string> names;
+  for (const std::string& name : models.keys()) {
+    const auto rows = model_rows();
+    const bool built_in =
+        std::any_of(rows.begin(), rows.end(), [&](const ModelRow& row) { return row.name == name; });
+    if (!built_in && models.has_mapping(name) && models.child(name).has("command")) names.push_back(name);
+  }
+  return names;
+}
+
+Model command_model(const std::string& name, const Section& models) {
+  if (const std::string wrong = wrong_with_model_name(name); !wrong.empty()) models.fail(name, wrong);
+  const Section written = models.child(name);
+  const CommandOptions options = read_options(written);
+  const auto depends = std::make_shared<DependsFiles>(options.depends, written);
+  return {.name = name,
+          .version = options.version,
+          .options = command_text(options, false),
+          .annotated_options = command_text(options, true),
+          .add_map = [=](Catalog& catalog, const ShapeRows& rows, RowHead head) {
+            return add_command(catalog, rows, std::move(head), name, options, depends);
+          }};
+}
+
+}  // namespace salbench

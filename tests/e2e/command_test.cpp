@@ -1,0 +1,209 @@
+// A model that is a command: what it computes, when it is run, and what becomes of one that misbehaves.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/file.h"
+#include "io/ground_truth_file.h"
+#include "tests/e2e/workspace.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::string command_config(const std::string& options, const std::string& others = "PS: , ") {
+  return "dataset: {scans: false}\nmodels: {" + others + "MINE: {" + options + "}}\n";
+}
+
+// Writes the number of each point's line: a saliency that any command can make.
+constexpr const char* kCount = R"(n=$(grep -a -m1 'element vertex' {mesh} | cut -d' ' -f3); seq $n > {out})";
+
+// A command that first appends a line to a file, so that its runs can be counted.
+std::string counted(const fs::path& log) {
+  return fmt::format("command: \"echo run >> '{}'; {}\"", log.string(), kCount);
+}
+
+std::size_t lines_of(const fs::path& file) {
+  return fs::exists(file) ? lines_with(read_file(file), "run").size() : 0;
+}
+
+// Processes whose command line holds the text.
+std::vector<std::string> processes_with(const std::string& text) {
+  std::vector<std::string> found;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    if (entry.path().filename().string().find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream file(entry.path() / "cmdline");
+    const std::string line((std::istreambuf_iterator<char>(file)), {});
+    if (line.find(text) != std::string::npos) found.push_back(line);
+  }
+  return found;
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string& csv, const std::string& model) {
+  std::vector<std::vector<std::string>> rows;
+  for (const std::string& line : lines_with(csv, "," + model + ",")) {
+    std::vector<std::string>& cells = rows.emplace_back();
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  }
+  return rows;
+}
+
+TEST(Command, AModelInPythonEqualsTheBuiltInOne) {
+  const Workspace toy(
+      fmt::format("scan: {{step_degrees: 1}}\nmodels: {{PS: , MINE: {{command: "
+                  "\"/usr/bin/python3 {} {{shape}} {{out}}\", reads: [fpfh]}}}}\n",
+                  SALBENCH_PS_MODEL));
+  const Outcome run = toy.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto built_in = cells_of(toy.results(), "PS"), own = cells_of(toy.results(), "MINE");
+  ASSERT_THAT(built_in, SizeIs(2 * (1 + 12)));
+  ASSERT_EQ(own.size(), built_in.size());
+  for (std::size_t i = 0; i < own.size(); ++i)
+    for (std::size_t c = 5; c < own[i].size(); ++c)
+      EXPECT_NEAR(std::stod(own[i][c]), std::stod(built_in[i][c]), 1e-4) << i << " " << c;
+
+  ASSERT_EQ(toy.salbench("maps", {"--to", (toy / "maps").string()}).status, 0);
+  for (const auto& entry : fs::directory_iterator(toy / "maps/PS")) {
+    const std::string name = entry.path().filename().string();
+    const auto a = parse_values(read_file(entry.path()), name);
+    const auto b = parse_values(read_file(toy / "maps/MINE" / name), name);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-6) << name << " " << i;
+  }
+  EXPECT_THAT(read_file(toy.out() / "significance.csv"), HasSubstr("PS,MINE"));
+}
+
+TEST(Command, IsNotRunAgainAndAChangedFileRerunsItAlone) {
+  const Workspace toy;
+  const fs::path log = toy / "log";
+  const fs::path weights = toy.write("weights.txt", "1");
+  toy.configure(command_config(counted(log) + fmt::format(", depends: [\"{}\"]", weights.string())));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(lines_of(log), 2U);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(lines_of(log), 2U);
+  EXPECT_EQ(toy.computed(), 0U);
+
+  toy.write("weights.txt", "2");
+  EXPECT_THAT(toy.salbench("explain", {"1", "map.MINE"}).out, HasSubstr("weights.txt changed"));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(lines_of(log), 4U);
+  EXPECT_EQ(toy.computed(), 2U) << "the map of each mesh, and nothing else: the values are as before";
+
+  fs::remove(weights);
+  const Outcome missing = toy.salbench("run");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, AllOf(HasSubstr("models.MINE.depends"), HasSubstr("weights.txt")));
+}
+
+TEST(Command, TheConfigurationOfARunIsReadBack) {
+  const Workspace toy(command_config(R"(command: 'seq 162 > {out} # "{mesh}" \')"));
+  const std::string printed = toy.salbench("config").out;
+  const std::size_t at = printed.find("  MINE:");
+  ASSERT_NE(at, std::string::npos) << printed;
+  toy.configure(printed);
+  EXPECT_EQ(toy.salbench("config").out, printed);
+}
+
+struct Hostile {
+  const char* name;
+  const char* command;
+  const char* says;  // a regular expression
+};
+
+class HostileCommand : public testing::TestWithParam<Hostile> {};
+
+TEST_P(HostileCommand, FailsItsItemWithAClearLineAndLeavesNothing) {
+  const Workspace toy;
+  const std::string mark = (toy / "mark").string();  // seen in the command lines of its processes
+  const std::string first_only =
+      fmt::format("if [ $(grep -a -m1 'element vertex' {{mesh}} | cut -d' ' -f3) = 162 ]; then {}; fi",
+                  fmt::format(fmt::runtime(GetParam().command), fmt::arg("mark", mark)));
+  write_toy_item(toy.data(), "3", shapes::bumpy_sphere(3));
+  toy.configure(command_config(fmt::format("timeout: 1, command: \"{}; {}\"", first_only, kCount)));
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 1) << run.err;
+  const auto lines = lines_with(run.err, "  1: map.MINE: ");
+  ASSERT_THAT(lines, SizeIs(1)) << run.err;
+  EXPECT_THAT(lines[0], ContainsRegex(GetParam().says));
+  EXPECT_LT(lines[0].size(), 6000U);
+  EXPECT_THAT(lines_with(toy.results(), "3,,,MINE"), SizeIs(1)) << "the others go on";
+  EXPECT_THAT(lines_with(toy.results(), ",PS,"), SizeIs(3));
+  EXPECT_THAT(processes_with(mark), IsEmpty());
+}
+INSTANTIATE_TEST_SUITE_P(
+    Command, HostileCommand,
+    testing::Values(
+        Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
+                "longer than its timeout of 1 s.*: loading"},
+        Hostile{"Floods", "yes noise | head -c 50000000; echo at last >&2; exit 3",
+                "status 3; .*noise \\| at last"},
+        Hostile{"WritesTooFew", "seq 7 > {{out}}; exit 0", "7 values, but the shape has 162 points"},
+        Hostile{"WritesNaN", "seq 161 > {{out}}; echo nan >> {{out}}; exit 0", "not a finite number"},
+        Hostile{"KillsItself", "sh -c 'sleep 100' '{mark}' & kill -9 $$", "killed by signal 9"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Command, AnInterruptEndsItsWholeGroupAndTheNextRunGoesOn) {
+  const Workspace toy;
+  const std::string mark = (toy / "mark").string();
+  const std::string slow = fmt::format("[ -e '{}' ] || sh -c 'echo; sleep 100' '{}' & wait; {}",
+                                       (toy / "quick").string(), mark, kCount);
+  toy.configure(command_config("command: \"" + slow + "\""));
+  {
+    Process process(toy.command("run"));
+    ASSERT_TRUE(wait_until(process, [&] { return !processes_with(mark).empty(); }));
+    const auto before = std::chrono::steady_clock::now();
+    process.send(SIGINT);
+    EXPECT_EQ(process.wait().status, 130);
+    EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(20));
+  }
+  EXPECT_THAT(processes_with(mark), IsEmpty());
+  toy.write("quick", "");
+  const Outcome resumed = toy.salbench("run");
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+}
+
+// Each run holds a folder as long as it is at work, and complains if another holds it.
+TEST(Command, NoMoreAreAtWorkAtOnceThanTheLimitSays) {
+  const Workspace toy;
+  const std::string busy = (toy / "busy").string();
+  const std::string alone = fmt::format("mkdir '{0}' || exit 9; {1}; sleep 0.05; rmdir '{0}'", busy, kCount);
+  toy.configure("scan: {step_degrees: 1}\nmodels: {MINE: {gpu: 1, command: \"" + alone + "\"}}\n");
+  const Outcome run = toy.salbench("run", {"--threads", "4"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(lines_with(toy.results(), ",MINE,"), SizeIs(2 * (1 + 12)));
+}
+
+TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
+  const auto refused = [](const std::string& options) {
+    const Workspace toy(command_config(options));
+    const Outcome run = toy.salbench("run");
+    EXPECT_EQ(run.status, 2) << options;
+    return run.err;
+  };
+  EXPECT_THAT(refused("command: 'cat {mesh}'"), HasSubstr("models.MINE.command must have {out}"));
+  EXPECT_THAT(refused("command: 'date > {out}'"), HasSubstr("must have {mesh} or {shape}"));
+  EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [fpfh]"), HasSubstr("must have {shape}"));
+  EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [colour]"), HasSubstr("names 'colour'"));
+  EXPECT_THAT(refused("command: 'x {mesh} {out}', timeout: 0"), HasSubstr("timeout must be > 0"));
+  EXPECT_THAT(refused("command: 'x {list} {out}'"), HasSubstr("{list}"));
+  EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known key"));
+}
+
+}  // namespace
+}  // namespace salbench
