@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -17,6 +15,7 @@
 #include "io/process.h"
 #include "io/shape_file.h"
 #include "io/values_file.h"
+#include "pipeline/catalog/depended_files.h"
 #include "pipeline/catalog/model_name.h"
 #include "stages/core/errors.h"
 
@@ -121,44 +120,6 @@ CommandOptions read_options(const Section& written) {
   return options;
 }
 
-// --- the files that it depends on -------------------------------------------------------------------------
-
-class DependsFiles {
- public:
-  DependsFiles(Words names, Section written) : names_(std::move(names)), written_(std::move(written)) {}
-
-  // The lines of a key; read when first asked for, which may be never.
-  const std::string& lines() {
-    std::call_once(read_, [&] {
-      for (const std::string& name : names_) lines_ += line(name);
-    });
-    return lines_;
-  }
-
-  void link_into(const fs::path& folder) const {
-    for (const std::string& name : names_) {
-      if (fs::path(name).is_absolute()) continue;
-      std::error_code error;
-      fs::create_directories((folder / name).parent_path(), error);
-      if (!error) fs::create_symlink(fs::absolute(name), folder / name, error);
-      if (error)
-        throw StorageError(fmt::format("{}: cannot be written to: {}", folder.string(), error.message()));
-    }
-  }
-
- private:
-  std::string line(const std::string& name) const try {
-    return fmt::format("{}{}: {}\n", kDependsOption, name, file_digest(read_file(name)).hex());
-  } catch (const InputError& error) {
-    written_.fail("depends", fmt::format("names a file that the command needs: {}", error.what()));
-  }
-
-  Words names_;
-  Section written_;
-  std::once_flag read_;
-  std::string lines_;
-};
-
 // --- the map ----------------------------------------------------------------------------------------------
 
 // What the command reads of a shape. Which of them a job loads follows from `reads`.
@@ -211,8 +172,7 @@ fs::path written_file(const fs::path& folder) {
   throw InputError("the command ended without a file {out}; it must write one value per point there");
 }
 
-ScalarField map_by_command(const CommandOptions& options, const DependsFiles& depends,
-                           const ShapeParts& shape) {
+ScalarField map_by_command(const CommandOptions& options, DependedFiles& depends, const ShapeParts& shape) {
   const ScratchFolder scratch;
   depends.link_into(scratch.path());
   if (options.command.find("{mesh}") != std::string::npos)
@@ -224,13 +184,14 @@ ScalarField map_by_command(const CommandOptions& options, const DependsFiles& de
   if (options.command.find("{shape}") != std::string::npos) write_hdf5(scratch.path() / kShapeFile, shape);
   run_command(in_folder(options.command, scratch.path()), scratch.path(),
               std::chrono::duration<double>(options.timeout));
+  depends.check_unchanged();
   const fs::path written = written_file(scratch.path());
   return read_point_values(written, "the command's " + written.filename().string(), shape.points.size());
 }
 
 // Rows are made of functions elsewhere; what this one reads is known from the configuration only.
 RowOf<ScalarField> add_command(Catalog& catalog, const ShapeRows& rows, RowHead head, const std::string& name,
-                               const CommandOptions& options, const std::shared_ptr<DependsFiles>& depends) {
+                               const CommandOptions& options, const std::shared_ptr<DependedFiles>& depends) {
   const auto reads = [&](std::string_view part) {
     return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
   };
@@ -240,7 +201,7 @@ RowOf<ScalarField> add_command(Catalog& catalog, const ShapeRows& rows, RowHead 
   row.kind = kind_of(Value(ScalarField()));
   row.options.push_back({"models." + name, command_text(options, false),
                          fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),
-                                     yaml_list(options.reads), depends->lines())});
+                                     yaml_list(options.reads), depends->key_lines())});
   row.inputs.push_back(rows.points.row);
   if (normals) row.inputs.push_back(rows.normals.row);
   if (faces) row.inputs.push_back(rows.surface.row);
@@ -274,7 +235,7 @@ Model command_model(const std::string& name, const Section& models) {
   if (const std::string wrong = wrong_with_model_name(name); !wrong.empty()) models.fail(name, wrong);
   const Section written = models.child(name);
   const CommandOptions options = read_options(written);
-  const auto depends = std::make_shared<DependsFiles>(options.depends, written);
+  const auto depends = std::make_shared<DependedFiles>(options.depends, written);
   return {.name = name,
           .version = options.version,
           .options = command_text(options, false),

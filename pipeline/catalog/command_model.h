@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pipeline/catalog/models.h"
@@ -42,8 +41,5 @@ std::vector<std::string> command_models(const Section& models);
 // Throws ConfigError. Its map's row throws ConfigError when it is added, if a file of `depends` cannot be
 // read.
 Model command_model(const std::string& name, const Section& models);
-
-// What the key of a map has for each such file: this and the file's name, with its digest.
-inline constexpr std::string_view kDependsOption = "depends on ";
 
 }  // namespace salbench

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/catalog/command_model.h"
+#include "pipeline/catalog/depended_files.h"
 
 namespace salbench {
 namespace {

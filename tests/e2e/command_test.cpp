@@ -73,9 +73,11 @@ TEST(Command, AModelInPythonEqualsTheBuiltInOne) {
   const auto built_in = cells_of(toy.results(), "PS"), own = cells_of(toy.results(), "MINE");
   ASSERT_THAT(built_in, SizeIs(2 * (1 + 12)));
   ASSERT_EQ(own.size(), built_in.size());
+  // The first score, the paper's AUC, draws negatives by the model's name: it is as near as its draws.
+  constexpr std::size_t kAuc = 5;
   for (std::size_t i = 0; i < own.size(); ++i)
-    for (std::size_t c = 5; c < own[i].size(); ++c)
-      EXPECT_NEAR(std::stod(own[i][c]), std::stod(built_in[i][c]), 1e-4) << i << " " << c;
+    for (std::size_t c = kAuc; c < own[i].size(); ++c)
+      EXPECT_NEAR(std::stod(own[i][c]), std::stod(built_in[i][c]), c == kAuc ? 0.1 : 1e-4) << i << " " << c;
 
   ASSERT_EQ(toy.salbench("maps", {"--to", (toy / "maps").string()}).status, 0);
   for (const auto& entry : fs::directory_iterator(toy / "maps/PS")) {
@@ -113,11 +115,11 @@ TEST(Command, IsNotRunAgainAndAChangedFileRerunsItAlone) {
 
 TEST(Command, TheConfigurationOfARunIsReadBack) {
   const Workspace toy(command_config(R"(command: 'seq 162 > {out} # "{mesh}" \')"));
-  const std::string printed = toy.salbench("config").out;
-  const std::size_t at = printed.find("  MINE:");
-  ASSERT_NE(at, std::string::npos) << printed;
+  const auto config = [&] { return run_process({SALBENCH_PROGRAM, "config", toy.config().string()}).out; };
+  const std::string printed = config();
+  ASSERT_THAT(printed, HasSubstr("  MINE:"));
   toy.configure(printed);
-  EXPECT_EQ(toy.salbench("config").out, printed);
+  EXPECT_EQ(config(), printed);
 }
 
 struct Hostile {
@@ -142,7 +144,7 @@ TEST_P(HostileCommand, FailsItsItemWithAClearLineAndLeavesNothing) {
   ASSERT_THAT(lines, SizeIs(1)) << run.err;
   EXPECT_THAT(lines[0], ContainsRegex(GetParam().says));
   EXPECT_LT(lines[0].size(), 6000U);
-  EXPECT_THAT(lines_with(toy.results(), "3,,,MINE"), SizeIs(1)) << "the others go on";
+  EXPECT_THAT(cells_of(toy.results(), "MINE"), SizeIs(1)) << "the others go on";
   EXPECT_THAT(lines_with(toy.results(), ",PS,"), SizeIs(3));
   EXPECT_THAT(processes_with(mark), IsEmpty());
 }
@@ -151,7 +153,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
                 "longer than its timeout of 1 s.*: loading"},
-        Hostile{"Floods", "yes noise | head -c 50000000; echo at last >&2; exit 3",
+        Hostile{"Floods", "yes noise | head -c 50000000; echo; echo at last >&2; exit 3",
                 "status 3; .*noise \\| at last"},
         Hostile{"WritesTooFew", "seq 7 > {{out}}; exit 0", "7 values, but the shape has 162 points"},
         Hostile{"WritesNaN", "seq 161 > {{out}}; echo nan >> {{out}}; exit 0", "not a finite number"},
@@ -200,7 +202,8 @@ TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
   EXPECT_THAT(refused("command: 'date > {out}'"), HasSubstr("must have {mesh} or {shape}"));
   EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [fpfh]"), HasSubstr("must have {shape}"));
   EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [colour]"), HasSubstr("names 'colour'"));
-  EXPECT_THAT(refused("command: 'x {mesh} {out}', timeout: 0"), HasSubstr("timeout must be > 0"));
+  EXPECT_THAT(refused("command: 'x {mesh} {out}', timeout: 0"),
+              HasSubstr("timeout must be a number above 0"));
   EXPECT_THAT(refused("command: 'x {list} {out}'"), HasSubstr("{list}"));
   EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known key"));
 }

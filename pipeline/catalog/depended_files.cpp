@@ -1,0 +1,53 @@
+#include "pipeline/catalog/depended_files.h"
+
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+
+namespace fs = std::filesystem;
+
+const std::string& DependedFiles::key_lines() {
+  const std::lock_guard lock(mutex_);
+  if (!files_.empty()) return lines_;
+  for (const std::string& name : names_) try {
+      std::error_code none;
+      File& file = files_.emplace_back(File{fs::absolute(name), {}, fs::last_write_time(name, none)});
+      file.digest = file_digest(read_file(file.path));
+      lines_ += fmt::format("{}{}: {}\n", kDependsOption, name, file.digest.hex());
+    } catch (const InputError& error) {
+      written_.fail("depends", fmt::format("names a file that the command needs: {}", error.what()));
+    }
+  return lines_;
+}
+
+void DependedFiles::link_into(const fs::path& folder) const {
+  for (const std::string& name : names_) {
+    if (fs::path(name).is_absolute()) continue;
+    std::error_code error;
+    fs::create_directories((folder / name).parent_path(), error);
+    if (!error) fs::create_symlink(fs::absolute(name), folder / name, error);
+    if (error)
+      throw StorageError(fmt::format("{}: cannot be written to: {}", folder.string(), error.message()));
+  }
+}
+
+// A file with the same time is not read again: weights are large, and commands are many.
+void DependedFiles::check_unchanged() {
+  const std::lock_guard lock(mutex_);
+  for (File& file : files_) {
+    std::error_code none;
+    const auto time = fs::last_write_time(file.path, none);
+    if (!none && time == file.time) continue;
+    if (file_digest(read_file(file.path)) != file.digest)
+      throw InputError(
+          fmt::format("{}: changed since this run was planned; run it again", file.path.string()));
+    file.time = time;
+  }
+}
+
+}  // namespace salbench

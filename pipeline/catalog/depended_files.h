@@ -1,0 +1,47 @@
+// Files that a model's command needs beside the shape: their content is part of the key of its maps.
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cache/digest.h"
+#include "pipeline/config/section.h"
+
+namespace salbench {
+
+// What a key has for each such file, as an option: this and the file's name, with its digest.
+inline constexpr std::string_view kDependsOption = "depends on ";
+
+class DependedFiles {
+ public:
+  // Paths from the present folder, or whole ones; `written` is the section whose key `depends` names them.
+  DependedFiles(Words names, Section written) : names_(std::move(names)), written_(std::move(written)) {}
+
+  // Lines of a key. Reads the files when first called. Throws ConfigError that names an unreadable one.
+  const std::string& key_lines();
+
+  // Links in the folder, by the same names; none to a file that is named by its whole path. Throws
+  // StorageError.
+  void link_into(const std::filesystem::path& folder) const;
+
+  // Throws InputError if one holds something else by now: a result could be of either.
+  void check_unchanged();
+
+ private:
+  struct File {
+    std::filesystem::path path;
+    Digest digest;
+    std::filesystem::file_time_type time;  // when it was last found to hold that
+  };
+
+  Words names_;
+  Section written_;
+  std::mutex mutex_;
+  std::vector<File> files_;
+  std::string lines_;
+};
+
+}  // namespace salbench
