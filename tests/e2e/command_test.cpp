@@ -128,6 +128,8 @@ struct Hostile {
   const char* says;  // a regular expression
 };
 
+void PrintTo(const Hostile& param, std::ostream* out) { *out << param.name; }
+
 class HostileCommand : public testing::TestWithParam<Hostile> {};
 
 TEST_P(HostileCommand, FailsItsItemWithAClearLineAndLeavesNothing) {
