@@ -25,8 +25,8 @@ def tables(shop):
 
 def matching(shop):
     if shop.other is None:
-        return Note("Matched against unmatched maps: the run holds scores of matched maps alone. The results folder of a run over "
-                    "unmatched maps (salbench maps, then salbench evaluate --matched), given with --compare, stands here.",
+        return Note("Matched against unmatched maps: the program scores matched maps alone, and has no option that leaves the "
+                    "matching out. The conventions of another run, given with --compare, stand beside those of this one.",
                     missing=True)
     return Note(f"Conventions of {shop.other.folder.resolve().name} are those of the run given with --compare, over the shapes "
                 "and models that both runs have.")
@@ -127,5 +127,6 @@ def sentence(dataset, rows):
     if not changed:
         return f"On {dataset} none of {len(others)} other conventions changes the ranking of the models."
     least = min(changed, key=lambda row: row[4])
+    tau = f"{least[4]:.2f}".replace("-", "−")
     return (f"On {dataset} {len(changed)} of {len(others)} other conventions change the ranking of the models; furthest from the "
-            f"first of its family is {least[2].label}, with a tau of {least[4]:.2f}.").replace("-0.", "−0.")
+            f"first of its family is {least[2].label}, with a tau of {tau}.")

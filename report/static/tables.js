@@ -66,6 +66,7 @@ salbench.choose = function (chooser) {
   chooser.addEventListener("change", apply);
   chooser.addEventListener("submit", (event) => event.preventDefault());
   apply();
+  document.documentElement.classList.remove("choosing");  // until here the page has thousands of rows to lay out
 };
 
 addEventListener("DOMContentLoaded", () => {

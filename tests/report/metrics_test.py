@@ -176,12 +176,12 @@ class FewMetrics(support.ReportTest):
         self.assertEqual(rows["AUC, unmatched"][3], "−1.00")
         self.assertEqual(rows["AUC (exact), unmatched"][3], rows["AUC (exact)"][3])
         self.assertEqual(len(rows["AUC"]), 4 + 5)
-        self.assertNotIn("the run holds scores of matched maps alone", index)
+        self.assertNotIn("the program scores matched maps alone", index)
 
     def test_what_a_run_without_a_second_one_lacks(self):
         items = fixture.eight_meshes()[:2]
         fixture.write_results(self.folder / "single", items, results=fixture.results_table(items, views=1))
-        self.assertIn("the run holds scores of matched maps alone", support.page(self.report("single")))
+        self.assertIn("the program scores matched maps alone", support.page(self.report("single")))
 
 
 if __name__ == "__main__":
