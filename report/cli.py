@@ -1,4 +1,5 @@
-"""scripts/report OUT [--to DIR] [--export FILE.h5 ...] [--compare OUT2]: the report of a results folder."""
+"""scripts/report OUT [--to DIR] [--export FILE.h5 ...] [--compare OUT2]: the report of a results folder. It is installed
+as salbench-report."""
 
 import argparse
 import os
@@ -7,12 +8,15 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent  # of the checkout; installed: PREFIX/share/salbench
+INSTALLED = not (ROOT / "scripts").exists()
+NAME = "salbench-report" if INSTALLED else "scripts/report"
+PROGRAM = ROOT.parent.parent / "bin/salbench" if INSTALLED else ROOT / "build/release/salbench"
 
 
 def arguments(argv):
     parser = argparse.ArgumentParser(
-        prog="scripts/report",
+        prog=NAME,
         description="Turns the results folder of a run into a report: HTML pages that open from disk. Pictures and the "
                     "viewer are made of what exports hold: salbench pictures CONFIG --items 1,2,3, then salbench export "
                     "CONFIG --items 1,2,3 --to OUT/shapes.h5.",
@@ -24,7 +28,7 @@ def arguments(argv):
     parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
     parser.add_argument("--examples", metavar="ITEMS", default="",
                         help="meshes to show as examples, such as 52,125 (default: chosen by score)")
-    parser.add_argument("--program", metavar="FILE", default=str(ROOT / "build/release/salbench"),
+    parser.add_argument("--program", metavar="FILE", default=str(PROGRAM),
                         help="the built program, asked for the configuration of both protocols (default: %(default)s)")
     return parser.parse_args(argv)
 
@@ -57,7 +61,7 @@ def main(argv=None):
         try:
             path = write_report(options, protocols(options.program))
         except Unusable as error:
-            print(f"scripts/report: {error}", file=sys.stderr)
+            print(f"{NAME}: {error}", file=sys.stderr)
             return 2
     print(path)
     return 0

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/commands/installed.h"
 #include "pipeline/commands/subcommands.h"
 
 namespace salbench {
@@ -14,8 +15,9 @@ Subcommand config_subcommand(Arguments& arguments) {
           "print the complete configuration: every option with its help, unit and range",
           {file},
           [&arguments](const std::atomic<bool>&) {
-            const Section written = arguments.config.empty() ? Section::from_text("", "defaults")
-                                                             : Section::from_file(arguments.config);
+            const Section written = arguments.config.empty()
+                                        ? Section::from_text("", "defaults")
+                                        : Section::from_file(configuration_path(arguments.config));
             fmt::print("{}", annotated_config_yaml(read_config(written, "")));
             return kAllDone;
           }};

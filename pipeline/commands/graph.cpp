@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/commands/installed.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/run/graph.h"
@@ -36,7 +37,7 @@ std::vector<std::size_t> open_jobs(const Arguments& arguments) {
 ExitStatus print_graph(const Arguments& arguments, const std::string& format) {
   if (format != "text" && format != "dot")
     throw ConfigError(fmt::format("--format {}: must be text or dot", format));
-  const Config config = read_config(Section::from_file(arguments.config), "");
+  const Config config = read_config(Section::from_file(configuration_path(arguments.config)), "");
   const auto to_do = arguments.data.empty() ? std::vector<std::size_t>{} : open_jobs(arguments);
   const Catalog catalog = make_catalog(config);
   fmt::print("{}", format == "dot" ? graph_dot(catalog, to_do) : graph_text(catalog, to_do));

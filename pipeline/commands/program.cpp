@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
+#include "pipeline/commands/help.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
@@ -21,22 +22,6 @@ constexpr std::array kSubcommands = {
     plan_subcommand,   graph_subcommand, explain_subcommand,  status_subcommand,   config_subcommand,
     verify_subcommand, gc_subcommand,    accept_subcommand,
 };
-
-constexpr const char* kExamples = R"(Examples:
-  salbench run configs/shrec07.yaml --data SchellingData          the whole benchmark; run it again to resume
-  salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
-  salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
-  salbench pictures configs/shrec07.yaml --data SchellingData --items 52
-  salbench export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5
-  salbench plan configs/shrec07.yaml --data SchellingData         what a run would compute, and why
-  salbench graph configs/shrec07.yaml --format dot | dot -Tsvg    the flow graph of a run, as a picture
-  salbench explain configs/shrec07.yaml 52_3 --data SchellingData what differs from what the cache has
-  salbench status configs/shrec07.yaml --data SchellingData       what is there already
-  salbench config                                                 every option, its default, unit and range
-
-Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
-3 cache or output folder unusable; 70 a defect of the program, or memory ran out;
-130 interrupted, the line that resumes was printed.)";
 
 std::string joined(std::span<const char* const> words) {
   std::string line;
@@ -63,9 +48,9 @@ struct Declare {
 };
 
 int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> rows) {
-  CLI::App app{"Benchmark of 3D saliency models on meshes and simulated range scans."};
+  CLI::App app{kDescription};
   app.set_version_flag("--version", "salbench " SALBENCH_VERSION);
-  app.footer(kExamples);
+  app.footer(help_footer());
   app.require_subcommand(1);
   Arguments arguments;
   arguments.command_line = joined(words);

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "pipeline/catalog/given_reference.h"
+#include "pipeline/commands/installed.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -41,8 +42,8 @@ std::optional<Histogram> reference_of(const Arguments& arguments) {
 }  // namespace
 
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
-  Config config =
-      read_config(Section::from_file(arguments.config), fs::path(arguments.config).stem().string());
+  const std::string path = configuration_path(arguments.config);
+  Config config = read_config(Section::from_file(path), fs::path(path).stem().string());
   select_models(config, arguments.models);
   if (given) {
     for (const Model& model : config.models)

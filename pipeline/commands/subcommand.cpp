@@ -28,7 +28,8 @@ std::string shell_word(const std::string& word) {
 }
 
 Parameter config_parameter(Arguments& arguments) {
-  return {"CONFIG", &arguments.config, "configuration file (YAML); see configs/", true};
+  return {"CONFIG", &arguments.config,
+          "configuration file (YAML), or the name of an installed one, such as shrec07", true};
 }
 
 Parameter shard_parameter(Arguments& arguments) {

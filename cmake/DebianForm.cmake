@@ -1,0 +1,43 @@
+# Brings the files of the package into the form that Debian's policy asks for (chapter 12): compressed manual pages and
+# changelogs, and a copyright file in place of the licence, whose text every Debian system has. Run by cpack.
+
+set(root ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/share)
+if(NOT IS_DIRECTORY ${root}/doc/salbench)
+  message(FATAL_ERROR "${root}/doc/salbench is not there: what is to be packaged?")
+endif()
+
+file(REMOVE ${root}/doc/salbench/LICENSE)
+file(WRITE ${root}/doc/salbench/copyright
+"Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: salbench
+
+Files: *
+Copyright: 2026 The salbench maintainers
+License: GPL-3+
+
+License: GPL-3+
+ This program is free software: you can redistribute it and/or modify it under
+ the terms of the GNU General Public License as published by the Free Software
+ Foundation, either version 3 of the License, or (at your option) any later
+ version.
+ .
+ This program is distributed in the hope that it will be useful, but WITHOUT
+ ANY WARRANTY; without even the implied warranty of MERCHANTABILITY or FITNESS
+ FOR A PARTICULAR PURPOSE. See the GNU General Public License for more details.
+ .
+ On Debian systems the full text of the GNU General Public License version 3 is
+ in /usr/share/common-licenses/GPL-3.
+")
+
+execute_process(COMMAND date -R -u -d ${CPACK_SALBENCH_DATE} OUTPUT_VARIABLE date
+  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+file(RENAME ${root}/doc/salbench/CHANGELOG.md ${root}/doc/salbench/changelog)
+file(WRITE ${root}/doc/salbench/changelog.Debian
+"salbench (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=medium
+
+  * Version ${CPACK_PACKAGE_VERSION}: see changelog.gz.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${date}
+")
+execute_process(COMMAND gzip -9n man/man1/salbench.1 man/man1/salbench-report.1 doc/salbench/changelog
+  doc/salbench/changelog.Debian WORKING_DIRECTORY ${root} COMMAND_ERROR_IS_FATAL ANY)

@@ -1,0 +1,62 @@
+# What `cmake --install` and `cpack -G DEB` put where, and the two documents made from the program's help texts.
+
+include(GNUInstallDirs)
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # cpack would otherwise build every test first
+set(share ${CMAKE_INSTALL_DATADIR}/salbench)
+set(documents ${PROJECT_BINARY_DIR}/documents)
+
+# The date of the version, from the changelog: the same tree gives the same package on any day.
+string(REPLACE "." "\\." version_pattern ${PROJECT_VERSION})
+file(STRINGS CHANGELOG.md heading REGEX "^## \\[${version_pattern}\\] - ")
+string(REGEX MATCH "[0-9]+-[0-9]+-[0-9]+$" SALBENCH_DATE "${heading}")
+if(NOT SALBENCH_DATE)
+  message(FATAL_ERROR "CHANGELOG.md has no heading '## [${PROJECT_VERSION}] - DATE'")
+endif()
+
+file(MAKE_DIRECTORY ${documents})
+add_custom_command(
+  OUTPUT ${documents}/salbench.1 ${documents}/salbench.bash
+  COMMAND salbench_manual page ${PROJECT_VERSION} ${SALBENCH_DATE} > ${documents}/salbench.1
+  COMMAND salbench_manual completion > ${documents}/salbench.bash
+  DEPENDS salbench_manual VERBATIM)
+if(NOT SALBENCH_SANITIZE)  # a build that nobody installs
+  set(all ALL)
+endif()
+add_custom_target(salbench_documents ${all} DEPENDS ${documents}/salbench.1 ${documents}/salbench.bash)
+file(WRITE ${documents}/salbench-report.1 ".so man1/salbench.1\n")
+
+install(TARGETS salbench)
+install(PROGRAMS scripts/report DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME salbench-report)
+install(DIRECTORY configs report DESTINATION ${share} PATTERN __pycache__ EXCLUDE)
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff docs/data_dictionary.md docs/bibliography.bib
+  DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES scripts/read_export.py DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+install(FILES ${documents}/salbench.1 ${documents}/salbench-report.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${documents}/salbench.bash
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME salbench)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME salbench)
+set(CPACK_PACKAGE_VENDOR "The salbench maintainers")
+set(CPACK_PACKAGE_CONTACT "The salbench maintainers <maintainers@salbench.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "benchmark of 3D saliency models")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"How well does a program predict which points of a shape people find important?
+salbench takes meshes, and simulated range scans of them, through normals,
+descriptors, saliency models, histogram matching and metrics, scores models
+against the published ones, and keeps every intermediate in a cache.
+.
+The recommended packages are those of the report: figures and tables as pages
+that open from disk.")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
+  "libjs-three, python3, python3-h5py, python3-jinja2, python3-matplotlib, python3-pandas, python3-pil, python3-yaml")
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/DebianForm.cmake)
+set(CPACK_SALBENCH_DATE ${SALBENCH_DATE})
+include(CPack)
