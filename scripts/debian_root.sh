@@ -1,0 +1,55 @@
+# shellcheck shell=bash
+# Sourced by scripts/package and scripts/container: fresh Debian 12 roots below build/debian, made with debootstrap. Their
+# functions need root. The first call fetches the base from Debian's mirror, later ones copy it; packages that were installed
+# in a root before are kept in build/debian/archives.
+
+debian_mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
+
+# fresh_root NAME: makes build/debian/NAME anew and prints its path.
+fresh_root() {
+  local folder=$PWD/build/debian
+  mkdir -p "$folder/archives/partial"
+  if [[ ! -d $folder/base ]]; then
+    rm -rf --one-file-system "$folder/base.part"
+    debootstrap --variant=minbase bookworm "$folder/base.part" "$debian_mirror" > "$folder/debootstrap.log" 2>&1 ||
+      { tail -n 5 "$folder/debootstrap.log" >&2; return 1; }
+    echo force-unsafe-io > "$folder/base.part/etc/dpkg/dpkg.cfg.d/unsafe-io"  # if the power fails, the root is made again
+    mv "$folder/base.part" "$folder/base"
+  fi
+  rm -rf --one-file-system "${folder:?}/$1"
+  cp -a --reflink=auto "$folder/base" "$folder/$1"
+  cp /etc/resolv.conf "$folder/$1/etc/resolv.conf"
+  echo "$folder/$1"
+}
+
+# inside ROOT USER COMMAND...: runs a command in a root, with mounts and processes that end with it. USER: a number.
+inside() {
+  local root=$1 user=$2
+  shift 2
+  # shellcheck disable=SC2016  # the inner shell expands it
+  unshare --mount --pid --fork --kill-child bash -c '
+    mount --bind "$(dirname "$1")/archives" "$1/var/cache/apt/archives" && mount -t proc proc "$1/proc" && mount -t tmpfs tmpfs "$1/dev/shm" &&
+    exec chroot --userspec="$2:$2" "$1" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
+      DEBIAN_FRONTEND=noninteractive "${@:3}"' inside "$root" "$user" "$@"
+}
+
+need_root() { # NAME of the script
+  [[ $(id -u) -eq 0 ]] || { echo "$1: needs root, for debootstrap and chroot" >&2; exit 1; }
+}
+
+# put_toy_data ROOT: two small meshes, and a configuration that scores them against simulated participants, in ROOT/work,
+# which belongs to user 1000.
+put_toy_data() {
+  mkdir -p "$1/work"
+  python3 scripts/slurm/toy_meshes.py "$1/work/meshes" 2 24 12
+  printf 'dataset: {layout: folder, participants: simulated}\n' > "$1/work/toy.yaml"
+  chown -R 1000:1000 "$1/work"
+}
+
+# run_toy ROOT: what a user does in the folder /work of a root: run twice, the second time with nothing to do.
+run_toy() {
+  inside "$1" 1000 sh -euc 'cd /work && salbench run toy.yaml --data meshes --quiet'
+  inside "$1" 1000 sh -euc 'cd /work && salbench run toy.yaml --data meshes 2>&1' | grep ' 0 artefacts computed' ||
+    { echo "the second run computed something" >&2; return 1; }
+  [[ -s $1/work/salbench-out/toy/results.csv ]]
+}
