@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# installation.sh BUILD: what `cmake --install` puts into an empty folder works there, and says what the program says.
+set -euo pipefail
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+prefix=$(mktemp -d)
+trap 'rm -rf "$prefix"' EXIT
+complain() { echo "$*"; exit 1; }
+
+cmake --install "$1" --prefix "$prefix" > /dev/null
+cd /
+salbench=$prefix/bin/salbench
+version=$("$salbench" --version)
+version=${version#salbench }
+for file in share/doc/salbench/{README.md,CHANGELOG.md,CITATION.cff,LICENSE,data_dictionary.md} share/man/man1/salbench.1; do
+  [[ -s $prefix/$file ]] || complain "$file: not installed"
+done
+
+# One version everywhere, with one date.
+date=$(sed -n "s/^## \[$version\] - //p" "$source/CHANGELOG.md")
+grep -qx "version: $version" "$source/CITATION.cff" || complain "CITATION.cff: version is not $version"
+grep -qx "date-released: \"$date\"" "$source/CITATION.cff" || complain "CITATION.cff: date is not that of CHANGELOG.md"
+grep -q "^.TH SALBENCH 1 \"$date\" \"salbench $version\"" "$prefix/share/man/man1/salbench.1" ||
+  complain "salbench.1: not of $version, $date"
+
+# Configurations by name, and a file of that name first.
+[[ $("$salbench" config shrec07_text) == *$'\nprotocol: text'* ]] || complain "shrec07_text: not found by its name"
+(cd "$prefix" && echo 'protocol: published' > shrec07_text &&
+  [[ $("$salbench" config shrec07_text) == *$'\nprotocol: published'* ]]) || complain "shrec07_text: the file comes first"
+"$salbench" config shrec08 2> /dev/null && complain "shrec08: there is no such configuration"
+"$prefix/bin/salbench-report" --help | grep -qF "$salbench" || complain "salbench-report: does not know its program"
+
+# The manual page and the completion have every subcommand and option of the help.
+page=$(sed 's/\\-/-/g' "$prefix/share/man/man1/salbench.1")
+source "$prefix/share/bash-completion/completions/salbench"
+completed() { # WORD...: what the shell would offer for the last one
+  COMP_WORDS=("$salbench" "$@") COMP_CWORD=$#
+  _salbench || true
+  echo " ${COMPREPLY[*]} "
+}
+subcommands=$("$salbench" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p')
+[[ $(wc -w <<< "$subcommands") -ge 12 ]] || complain "--help: subcommands not recognised"
+for subcommand in $subcommands; do
+  [[ $page == *$'\n.SS '"$subcommand"$'\n'* ]] || complain "salbench.1: no $subcommand"
+  [[ $(completed '') == *" $subcommand "* ]] || complain "completion: no $subcommand"
+  for option in $("$salbench" "$subcommand" --help | sed -n 's/^  \(--[a-z-]\+\).*/\1/p'); do
+    [[ $page == *"\\fB$option\\fR"* ]] || complain "salbench.1: no $option"
+    [[ $(completed "$subcommand" -) == *" $option "* ]] || complain "completion: no $subcommand $option"
+  done
+done
+[[ $(completed run shrec07_t) == ' shrec07_text ' ]] || complain "completion: no installed configuration"
+[[ $(completed run shrec07_text --out shrec) == '  ' ]] || complain "completion: a configuration in place of a folder"
+
+command -v groff > /dev/null || exit 0
+warnings=$(groff -man -Kutf8 -Tutf8 -ww -z "$prefix/share/man/man1/salbench.1" 2>&1)
+[[ -z $warnings ]] || complain "salbench.1: $warnings"
