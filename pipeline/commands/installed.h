@@ -9,4 +9,6 @@ namespace salbench {
 // "shrec07" is PREFIX/share/salbench/configs/shrec07.yaml for a program PREFIX/bin/salbench.
 std::string configuration_path(const std::string& given);
 
+std::string report_command();  // that of the installation, or of the checkout
+
 }  // namespace salbench

@@ -4,6 +4,7 @@
 
 #include "io/file.h"
 #include "io/table.h"
+#include "pipeline/commands/installed.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/plan/causes.h"
@@ -32,7 +33,7 @@ void print_summary(const Session& session, const std::vector<ResultRow>& rows) {
   fmt::print("{}", aligned(summary_table(rows, chosen_metrics(setup.config.metrics))));
   fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup.config.protocol),
              session.runner.computed(), setup.output.string());
-  fmt::print("to make a report of them: scripts/report {}\n", shell_word(setup.output.string()));
+  fmt::print("to make a report of them: {} {}\n", report_command(), shell_word(setup.output.string()));
 }
 
 void write_results(Session& session, const RunRecord& record, const Arguments& arguments) {
