@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The file name of an artefact: a label for people, then what the index needs to know.
 #pragma once
 

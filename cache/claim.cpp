@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // All claims are locks on single bytes of one empty file, the byte chosen by the digest of the work's name:
 // there is nothing to write, to clean up or to find left behind. The locks are those of the open file
 // (F_OFD_SETLK), not of the process: they hold between threads too, and closing another descriptor of the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Claims: processes that share a cache divide the work, so that each piece is done by one of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Empty folders stay: another process may be about to rename an artefact into one.
 #include "cache/collect.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Garbage collection: removes the artefacts that a named scope does not need.
 #pragma once
 

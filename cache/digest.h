@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // 128-bit content digests (XXH3): of files, of arrays, of keys.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The artefacts of a folder:
 //   <folder>/<stage>/<2 digits>/<item>.<key>.<content>.<checksum>.<size>.h5
 // The names carry everything that planning needs, so the index is one listing of the folder and there is no

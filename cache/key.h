@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Everything that an artefact depends on; no time stamps, paths, thread counts or source text.
 #pragma once
 

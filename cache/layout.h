@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contents of a cache folder:
 //   CACHEDIR.TAG           what makes a folder a cache; holds the format
 //   <stage>/<2 digits>/    artefacts, by the first digits of the key

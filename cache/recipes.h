@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reads the recipes of a folder's artefacts and compares two recipes. Changes nothing.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Content-addressed artefacts. An artefact is found by (stage, key) and known by the digest of its content;
 // what depends on it is keyed by that digest, so a recomputation with an equal result changes nothing
 // downstream.

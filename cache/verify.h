@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of one artefact, and of every artefact in a cache folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Brings the files of the package into the form that Debian's policy asks for (chapter 12): compressed manual pages and
 # changelogs, and a copyright file in place of the licence, whose text every Debian system has. Run by cpack.
 

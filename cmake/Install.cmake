@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` and `cpack -G DEB` put where, and the two documents made from the program's help texts.
 
 include(GNUInstallDirs)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Compiler settings, and the functions that declare a folder's library and its tests.
 
 set(CMAKE_CXX_STANDARD 20)

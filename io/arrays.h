@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Named, typed, shaped arrays with their units: what a file holds, free of any file format.
 #pragma once
 

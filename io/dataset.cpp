@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A layout is a list of places: where the meshes may lie and, for each, where their ground truth may. The
 // first place with a mesh is taken, so the result depends on the names in the folders alone.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Finds the meshes of a data set and the ground truth that belongs to each, in the folder layouts in use.
 #pragma once
 

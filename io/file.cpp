@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A writer creates its file, locks it, and checks that it still has its name; a clean-up locks a file before
 // it removes it. So neither can take the other's. The locks belong to the open file (F_OFD_SETLK): they hold
 // between threads too, and end with the last descriptor.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files and folders: the one place that opens, reads, writes, renames and lists them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Reads what people marked on a mesh. [chen2012]
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The core driver keeps an artefact in memory; its image is taken with H5Fget_file_image, in the library's
 // earliest format: the only one of which it takes a correct image.
 //

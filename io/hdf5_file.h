@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files. An artefact is a byte image, built and parsed in memory: writing it is plain, checkable file
 // output, and its bytes pass a checksum before the HDF5 library sees them. A foreign file is read one data
 // set at a time; the rest of it is never read. Everything is safe to call from several threads.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shared by io/hdf5_*.cpp, the only files of the program that know the HDF5 library (C API, 1.10).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Writes an HDF5 file piece by piece, so that it may be larger than memory.
 #pragma once
 

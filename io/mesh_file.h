@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Triangle meshes from files as they are found in the wild.
 //
 // Polygons become fans of triangles in the order of their vertices; vertices keep the file's numbering,

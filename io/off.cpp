@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Object File Format of Geomview, text form, with the liberties that files take: counts on the header's line
 // or glued to it (ModelNet's "OFF490 518 0"), no header word, colours behind faces. Line by line, since only
 // the line's end tells where optional columns stop.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The header says what the body consists of, so one walk over the elements serves every encoding; a body
 // class reads text or bytes. The walk covers all elements, the last included, so a truncated file is detected
 // wherever it ends. [turk1994]

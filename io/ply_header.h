@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The header of a PLY file: what the elements of its body consist of. [turk1994]
 #pragma once
 

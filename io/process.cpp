@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shell leads a process group, and whatever ends the command ends the group: its exit, the timeout, a
 // signal to the program. The leader is reaped last, so that its number cannot become another group's while
 // signals are sent to it. A process that leaves the group (setsid) is out of reach.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Commands that the program runs for a result: their folder, their output, their time, and their end.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shapes with values at their points, as files for other programs: MeshLab, CloudCompare, ParaView.
 #pragma once
 

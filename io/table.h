@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Tables of numbers and text: CSV files (RFC 4180) and columns for the console.
 #pragma once
 

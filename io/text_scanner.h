@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Walks over a text in memory by lines and words, and names the line where something is wrong.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vec3 and Triangle are plain triples, so a vector of them is an n x 3 array as it lies in memory.
 #include "io/value.h"
 

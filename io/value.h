@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The kinds of values that stages produce, and the layout of each as named arrays: the one definition of the
 // data sets in an artefact (docs/data_dictionary.md).
 #pragma once

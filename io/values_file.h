@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A file with one value per point, as other programs write it.
 #pragma once
 

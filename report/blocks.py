@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What elements of the report are made of. Templates know these types and nothing of the data behind them."""
 
 from dataclasses import dataclass, field

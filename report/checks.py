@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """One function per kind of claim: our figure, its 95 % interval, and whether the claim holds.
 
 A claim about a difference holds or fails by the paper's own test, the rank sum at 0.05. Where the test finds nothing that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the paper's text claims, beside our figures."""
 
 from report import checks, paper

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """scripts/report OUT [--to DIR] [--export FILE.h5 ...] [--compare OUT2]: the report of a results folder. It is installed
 as salbench-report."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Two runs side by side: what they were, how their configurations differ, their means, and the differences per shape."""
 
 from report import statistics

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The checklist: every figure and table of the paper, and what the report adds, with the function that makes it."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Galleries of painted pictures: the paper's examples, before and after matching, difficult shapes, scans."""
 
 from PIL import Image

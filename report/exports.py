@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read when they are needed."""
 
 from dataclasses import dataclass

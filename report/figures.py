@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The paper's diagrams. `..._data` gives the numbers of a diagram, the function beside it draws them."""
 
 import numpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures of the report as files, each painted once and named by what it shows."""
 
 from report.exports import BROKEN

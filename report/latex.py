@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The table of classes as a LaTeX file for \\input, with the package booktabs."""
 
 from jinja2 import Environment

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The page of all metrics of a run: what they are, and the tables of those that the other pages leave out, one at a time."""
 
 from report import statistics, tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Metrics by name: label, unit, direction, and which are conventions of the same measurement."""
 
 from dataclasses import dataclass

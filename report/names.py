@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Names, order and colours of models; names of files and of items."""
 
 import re

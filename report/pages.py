@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Pages from templates, and the folder that they stand in."""
 
 import shutil

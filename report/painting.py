@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Paints saliency maps on pictures: a look-up per pixel, with no rendering."""
 
 import numpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the paper prints, typed into configs/paper/*.csv with its source."""
 
 from pathlib import Path

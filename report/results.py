@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A results folder as the program writes it: its tables, run.yaml, and what of them is missing."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The page of the run itself: what it was over, what it did, what failed, where time and space went."""
 
 import numpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Tables of all shapes: thousands of rows, so that they stand in a script and the page renders some at a time."""
 
 import json

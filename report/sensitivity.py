@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Whether the ranking of the models depends on the convention that the same maps are scored by."""
 
 from collections import Counter

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A page per mesh: its scores and ranks, its pictures, its scans, and the viewer."""
 
 from report import run_page, statistics

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the report needs beyond the program's own statistics, computed from results.csv alone."""
 
 import numpy

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes every time."""
 
 import matplotlib

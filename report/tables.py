@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The report's tables of scores: means, classes, pairwise tests, parameters."""
 
 from report import paper, statistics

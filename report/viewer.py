@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What the viewer of a shape's page reads: points, faces and maps, quantised and deflated, as scripts that a page opened
 from disk may load."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What every element is built from and writes to: results, exports, the paper's figures, and the folder of the report."""
 
 from dataclasses import dataclass, field

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Writes the whole report: pages in their order, each from the workshop."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=bash
 # Sourced by scripts/package and scripts/container: fresh Debian 12 roots below build/debian, made with debootstrap. Their
 # functions need root. The first call fetches the base from Debian's mirror, later ones copy it; packages that were installed

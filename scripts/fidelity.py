@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Compares the tables and maps that scripts/fidelity has made with what was published; see there."""
 
 import sys

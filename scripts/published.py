@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """What was published about scans, and how near a results folder of ours comes to it."""
 
 from pathlib import Path

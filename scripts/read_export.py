@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads what `salbench export` wrote: do the models give more saliency to the points that people picked?
 
 read_export.py FILE.h5

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # layers.sh ROOT: the folders are the layers, and includes go one way. Names every include that does not.
 set -euo pipefail
 cd "$1"

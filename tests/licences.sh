@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # licences.sh ROOT: every source file names its licence in its first three lines. Names each that does not.
 set -euo pipefail
 cd "$1"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // THE table of rows: everything there is to compute for a data set, from what, and how. Its order is that of
 // the paper's pipeline: load, scan, normals, descriptors, models, histogram matching, metrics.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The key of a map has the command line, its version, what it reads and the digests of the files it depends
 // on; not the timeout and the limits, which change no value. Paths of the files are those from where salbench
 // is started, like the folder of the data set; a link in the command's own folder leads to each.

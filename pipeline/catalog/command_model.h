@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Models that are commands of the user: a section under `models` with a key `command`, whose name is none of
 // the built-in ones. The row writes the shape into a scratch folder, runs the command there and reads one
 // value per point; from there on the map is like any other.

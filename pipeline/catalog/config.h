@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run is: read from YAML, checked, with every default filled in.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Files that a model's command needs beside the shape: their content is part of the key of its maps.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Saliency maps made outside of the program, which stand where a model's would be computed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A reference histogram from a file, in place of the mean over the data set.
 #pragma once
 

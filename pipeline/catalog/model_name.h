@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Names that a model may have which is not in the table of models.
 #pragma once
 

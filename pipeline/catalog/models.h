@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The table of models. A new saliency model is its file pair in stages/models and one row here; its section
 // in a configuration and what it reads follow from its signature. HS has a row like the others, and is scored
 // in its own way.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A row of the catalog, made from the function that does its work. What the row reads, in which order,
 // whether it draws random numbers or opens files, and the layout of its result follow from the function's
 // signature:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The files that items are read from. What is parsed is what a key names: the digest in a key is that of the
 // very bytes that the stage was given, whatever the file holds before or afterwards.
 #pragma once

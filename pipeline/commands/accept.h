@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Subcommand `accept`: takes results of a stage's earlier versions for those of its present one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Subcommand `explain`: why each artefact of an item is a hit or not.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Subcommand `gc`: removes from a cache what no run of some configurations needs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Subcommand `graph`: the flow graph that a configuration runs.
 #pragma once
 

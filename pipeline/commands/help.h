@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the help of the program says beside its subcommands: --help and the manual page print the same texts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The manual page and the shell's completion, made from the table of subcommands.
 #pragma once
 

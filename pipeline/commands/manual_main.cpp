@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // salbench_manual page VERSION DATE | completion: prints what the build installs beside the program.
 #include <string_view>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // From the command line to a subcommand and its exit status.
 #pragma once
 

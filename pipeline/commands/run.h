@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Subcommand `run`: computes what is missing and writes the tables.
 #pragma once
 

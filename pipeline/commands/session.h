@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The way from the command line to a plan, and to a run of it, shared by all subcommands.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A subcommand of the program: its name, its parameters and what it does. It knows no command-line library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The subcommands, each in the file of its name. THE table of them is in program.cpp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Subcommand `verify`: reads every artefact of a cache, and computes a sample of them again.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Options as text: parsed from a configuration, and written as the canonical lines that enter a cache key.
 #pragma once
 

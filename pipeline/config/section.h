@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // One mapping of a YAML configuration file, read into option structs. Every error names file, line and key.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Why a job is not simply a hit, down to the component of its key: compared with the nearest artefact in the
 // cache, the one of the same row and item with the fewest components that differ. Changes nothing.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Decides, without computing anything, what there is to do: catalog + items + what the cache has -> jobs.
 //
 // A job is one row of the catalog for one item: a mesh, a scan or the data set. Keys are made of the content

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A share of a data set, so that several machines or processes divide the work without speaking to each
 // other.
 #pragma once

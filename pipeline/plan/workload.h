@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The items of a run: which meshes, which scans of them, and what their files contain.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // run.yaml: what ran, over which data, with which configuration, and what each node of the graph did. What
 // depends on the machine and its load stands here and in timeline.csv, and in no table.
 #pragma once

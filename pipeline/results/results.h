@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Results of a run, item by item, and the tables made of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The tables that compare models: by class, pairwise, and by how their values are distributed.
 #pragma once
 

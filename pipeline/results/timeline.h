@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // timeline.csv: when which node of the graph was at work.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Carries out single jobs: loads what a job reads, calls its row's function, stores the result. The one place
 // where rows are run, for a run, for a check of the cache and for an export.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 //   families --+
 //              +--> gate --> entrance --> mesh --> scan --> scan_normals --> fpfh --> map.LS --> ...
 //   tokens ----+                            |                                            |

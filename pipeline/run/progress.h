@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Progress on standard error: a bar on a terminal, a plain line now and then elsewhere.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Carries a plan out: the reference first, then every item from its mesh file to its scores.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 "use strict";
 // The table of all shapes: sorts and filters thousands of rows in memory, and shows a page of them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 "use strict";
 // Tables that sort and filter. Without this script they stand as they are written, in a sensible order.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 "use strict";
 // Two views of a mesh or its scans, coupled if wanted. Shapes come as scripts (viewer.py), since pages opened from disk may
 // not read files in any other way; each is loaded when it is first shown.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Writes toy meshes, tori with bumps of different kinds: scripts/slurm/toy_meshes.py FOLDER COUNT ROUND ACROSS
 
 Each has ROUND x ACROSS vertices.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Invariants of the program itself: a failed check prints the expression and both values.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shared by the stages that trace rays: the only files of the program that know the Embree library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Exceptions, by who has to act. Everything else that is thrown is a defect of the program.
 #pragma once
 

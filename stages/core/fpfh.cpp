@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The simplified histograms (SPFH) of the requested points and their neighbours are computed once each, and
 // then combined. Differences from the original publication are those of PCL and of the benchmark's authors:
 // absolute values of the three features, and the weights that FpfhWeighting names. Bins that absolute values

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fast point feature histograms: the kernel that the descriptors' stage and some models share. [rusu2009]
 #pragma once
 

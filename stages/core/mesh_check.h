@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Validation of a mesh before anything is computed from it, and counts of its defects.
 #pragma once
 

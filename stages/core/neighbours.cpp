@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // nanoflann keeps the first of equally distant candidates that it meets. To be independent of the tree's
 // layout, a k-search also takes candidates at exactly the k-th distance and lets the index decide.
 #include "stages/core/neighbours.h"

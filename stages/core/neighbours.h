@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Exact nearest-neighbour search over a fixed point set. [blanco2014]
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Options structs list their fields once, and everything that handles options walks that list: the
 // configuration reader, the check of their ranges, the canonical text that enters a cache key, run.yaml and
 // the annotated configuration.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Relation of two oriented points, and the bins of a histogram that it votes for. [rusu2009]
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loops over the points of one shape, so that a large one keeps every core busy.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A picture of a shape, free of colours: what each pixel shows, so that any map over the shape's points can
 // be painted on it later by looking up values.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Random numbers that depend on (seed, stage, item) alone: the same bytes on any machine and thread count.
 // The standard distributions differ between libraries, so the few that are needed are written here.
 #pragma once

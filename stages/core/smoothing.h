@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ground-truth saliency over a mesh, from the vertices that participants picked.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The support radius of descriptors, grown until it holds enough points to describe a neighbourhood.
 #pragma once
 

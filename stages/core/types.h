@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The plain structs that flow between the stages. A "shape" is a mesh or one scan of it: n points, each with
 // a normal, and possibly faces. Coordinates are in the mesh's own, arbitrary length unit.
 #pragma once

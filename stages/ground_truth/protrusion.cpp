@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Explicit diffusion of the positions over edges: a step moves vertex i towards the mean of its neighbours.
 // If the edges have the mean squared length e, that mean lies (e / 4) * Laplacian away. A vertex moves by the
 // fraction step / e of it, so that every part of the mesh diffuses at one speed, however densely it is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bulges of a surface at a given scale.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The ground truth of a mesh, transferred to one scan of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // People asked for points that others would also choose agree on tips, corners and other places that stand
 // out of their surroundings [chen2012]. So the bulges of the surface have tops, each participant draws among
 // them in proportion to a power of the bulge, and lands somewhere near.

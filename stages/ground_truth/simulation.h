@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simulated ground truth, for demonstrations and tests. It says nothing about people.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A piecewise-linear map of values through two binned cumulative densities, not a rank transform: equal to
 // what the benchmark's authors ran, to the last published digit.
 #include "stages/matching/matching.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Histogram matching gives the maps of all models the distribution of values of the human ground truth, so
 // that metrics compare where a map is high and not how its values happen to be spread. [tasse2016]
 #pragma once

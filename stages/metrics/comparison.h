@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A map and a ground truth, with what several metrics need of them computed once, when the first one asks.
 // What a metric gets does not depend on which others were computed before it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Distances and similarities of two fields over a shape, most of them as distributions of saliency.
 //
 // A distribution has p_i = w_i s_i / sum(w s) at point i; its density is d_i = s_i u / sum(w s), per vertex

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points are sorted by radix, which takes a fifth of the time of a comparison sort of 10 000 values: without
 // it, two sorts were most of what all metrics together cost. The upper half of a double's bits decides nearly
 // always.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The distribution of a field's values over a shape: what rank statistics and ROC curves read.
 #pragma once
 

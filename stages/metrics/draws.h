@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Random numbers that several metrics read from their beginning. Each is drawn once, when the first metric
 // asks: what a metric reads does not depend on the others.
 #pragma once

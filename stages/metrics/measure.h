@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How much each point of a shape counts. Published work counts vertices; on a mesh whose vertices are spread
 // unevenly that weighs finely meshed parts more, and the same surface meshed otherwise gets other values.
 #pragma once

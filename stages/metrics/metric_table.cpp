@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rows are metrics per vertex with each pick counted once; the twins, with multiplicity and by area,
 // follow from them. The paper's come first: stored scores and tables have them in this order.
 #include <algorithm>

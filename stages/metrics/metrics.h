@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Agreement of a saliency map with what people marked. `map` is a histogram-matched map with one finite value
 // per point; `picked` are point indices, ascending. [tasse2016]
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Areas under the ROC curve of the picks. Per vertex, negatives are the points that nobody picked. By area
 // they are the whole surface: a pick is a point, which has no area to leave out.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values are counted between thresholds and never sorted: a split is a pass over its draws.
 #include "stages/metrics/sampled_roc.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Areas under the ROC curve whose negatives are random draws, as many as there are picks, averaged over
 // splits. The curve runs from (1, 1) over the rates of values >= each threshold to (0, 0). `picks` are
 // the values at the picked points; without any the area is NaN.

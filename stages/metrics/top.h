@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Scores with the points of highest ground truth as positives, as work without picks does: the upper 20, 10,
 // 5 or 1 %.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Divisions are real ones and sums run over the bins in order: reciprocal estimates and fused products would
 // be faster by little (the divider is the bottleneck) and differ from machine to machine.
 #include "stages/models/chi2_kernel.h"

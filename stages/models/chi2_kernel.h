@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The inner loops of the chi-square search, with the widest instructions that the machine has. The interface
 // has plain pointers only, so that no code compiled for special instructions leaks into the rest of the
 // program.

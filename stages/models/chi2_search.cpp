@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Histograms that resemble each other are put in groups of 16, groups in groups of 16 and so on, each with
 // the box that holds it. A query guesses the distance of its k-th nearest from the query before, which
 // resembles it; what lies in a box farther away than the guess is not looked at. If the k-th nearest lies

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Exact search for the histograms nearest to each in chi-square distance, sum (a - b)^2 / (a + b), in O(n)
 // memory.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // CS, cluster-based point set saliency. A cluster of points is salient if its descriptors are unlike those of
 // its surroundings, and if the clusters that resemble it lie close together. A point takes the mean of the
 // clusters that it resembles.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Supervoxels: the points are gathered in the cells of a fine grid (voxels), and the voxels are clustered by
 // k-means over position and descriptor. k-means starts from the cells of a coarse grid (seeds) and compares a
 // voxel only with the clusters nearby, as SLIC does.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The first half of CS: a point set cut into small compact clusters of similar descriptors.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A group's map is a sum over the picks of its participants, so each pick is smoothed once for all groups.
 #include "stages/models/hs.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HS, human performance: how well participants predict what other participants mark. It is the yardstick for
 // the models. It reads the picks of the participants, which only meshes have.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shtrom, Leifman and Tal 2013, as the benchmark's authors ran it. It departs from the publication in that a
 // point is compared only with the points most similar to it, and in that the high level describes only the
 // most distinct points anew: their descriptors are compared with all others' low-level ones.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // LS, saliency of large point sets. A point is salient if its surroundings differ, at two scales, even from
 // the surroundings that resemble them most, or if it lies near such a point.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Song, Liu, Martin and Rosin 2014 as the benchmark's authors ran it. Fitting their published maps and scores
 // gave: the width of the window is 9, the zero eigenvalue stays in the spectrum (as the round-off of a dense
 // solver left it), and the sums over neighbours are divided by areas. With the zero eigenvalue in the

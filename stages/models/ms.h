@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // MS, mesh saliency by spectral processing: the irregularities of the log-Laplacian spectrum, brought back to
 // the surface.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PS, saliency by principal components. The saliency of a point is how far its descriptor lies along the
 // direction in which the descriptors of the shape vary most.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // RS, random saliency: the baseline without any agreement.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Follows Garland and Heckbert 1997, for pairs that are joined by an edge. Quadrics are weighted by area, and
 // each border edge adds the plane through it at right angles to its face, which keeps the outline of an open
 // mesh.

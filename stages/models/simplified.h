@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mesh simplification by collapsing edges in the order of their quadric error.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Graph Laplacians of meshes and the low end of their spectrum.
 #pragma once
 

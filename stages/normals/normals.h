@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Unit normals of meshes and of scans.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // CGAL builds the graph, finds its minimum spanning tree and passes the orientation on, but leaves parts
 // without a seed as they are. So the components are found here first, and each is given to CGAL by itself
 // with its one seed. CGAL's graph has the edge (i, j), i < j, only if j is among the points nearest to i; the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Consistent orientation of normals by Hoppe's minimum spanning tree.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Normals without orientation: the directions across which the neighbourhoods are thinnest.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The pinhole camera of a picture, placed so that the shape fills it.
 //
 // Eye space: x to the right, y up, z away from the camera, which is at 0; the unit is the shape's radius. It

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A scan as discs, one per point, that cover what its scanner saw and leave no gaps.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Interleaved sampling [keller2001]: each pixel of a tile has directions of its own, and the mean over any 4
 // x 4 pixels has them all. Any hit is a hit, so neither the order in which Embree visits its tree nor the
 // number of threads that built it can change the result.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ambient occlusion: the part of the sky that a place of the surface sees, with the shape in the way.
 #pragma once
 

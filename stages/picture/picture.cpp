@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Each pixel is cut into 3 x 3 cells, so that one of them has its centre; edges are smoothed by all nine.
 // What a pixel shows is what its centre shows, or else the cell nearest to it that shows something.
 #include "stages/picture/picture.h"

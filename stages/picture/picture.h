@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of shapes, without colours: what a pinhole camera sees of a mesh or of a scan, pixel by pixel, and
 // how bright it is. Painting a saliency map is then a look-up.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rays from one point through a grid need no tree: going over the faces takes 10-20 ms where Embree's nearest
 // hits take 100 ms (400 x 400 pixels, 9 rays each), and it is exact in double precision, without gaps between
 // faces, and the same on every machine.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the rays of a picture meet first, found by going over the faces or discs, not over the rays.
 #pragma once
 

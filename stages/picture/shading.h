@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How bright a white surface is under the picture's lamp.
 #pragma once
 

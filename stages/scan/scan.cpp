@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
 // where the ray meets it, is decided in double. The filter receives every candidate and refuses it, so Embree
 // never shortens the ray: the result depends neither on the order in which it visits its tree, which differs

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simulated range images: the points that a depth camera sees of a mesh from the corners of an icosahedron.
 // [tasse2016]
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Correlation of paired samples of one length. Pairs with a NaN are left out; the result is NaN if a sample
 // is constant or fewer than two pairs remain.
 #pragma once

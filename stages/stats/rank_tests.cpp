@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The conventions are those of SciPy (1.11 and later for the signed ranks: older versions take the exact
 // distribution for tied differences too, where it does not hold). One departure: if all values agree, SciPy
 // gives NaN or an error; here p = 1, since nothing speaks against the hypothesis.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Wilcoxon's two tests, two-sided. NaN is an undefined score: it is left out, with its partner in a pair.
 #pragma once
 

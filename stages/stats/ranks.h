@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ranks of a sample, as the rank tests and Spearman's correlation need them.
 #pragma once
 

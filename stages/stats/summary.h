@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Summaries of a sample of scores. NaN is a score that is undefined for its item: left out, and counted.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PCL's triangulation works in float, and its limits are lengths. The points are passed relative to their
 // mean and in units of the median spacing, so that neither the position nor the unit of the mesh matters.
 #include "stages/surface/surface.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Partial meshes: a surface over the points of one scan, for the models that need edges. [tasse2016]
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Artefacts are plain HDF5 files: another program reads them without a line of ours.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Data that cannot be used costs its own item and no other, and says in one line what is wrong where. Data
 // that is merely odd goes on, with a warning.
 #include <cmath>

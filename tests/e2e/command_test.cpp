@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A model that is a command: what it computes, when it is run, and what becomes of one that misbehaves.
 #include <chrono>
 #include <csignal>

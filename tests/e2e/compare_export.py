@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Whether an export says what the artefacts of the cache say, data set by data set: compare_export.py EXPORT CACHE
 
 Values to the bit, types, attributes and filters. Prints how many data sets and scores it compared.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A mesh that is edited while a run is under way, and put back: what is in the cache stays true.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Saliency maps from outside are scored as if the program had computed them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

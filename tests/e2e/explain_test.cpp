@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Why something is computed is said before, by plan and explain, and afterwards, by run.yaml.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What `salbench export` writes: it says what the cache says, and other programs read it.
 #include <algorithm>
 #include <csignal>

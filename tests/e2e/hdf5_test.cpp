@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files of other programs as saliency maps, and a library that has to be called by one thread at a time.
 #include <csignal>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Whatever ends a run, the next one goes on from there and comes to the same results.
 #include <chrono>
 #include <csignal>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded into the program by LD_PRELOAD: kills or stops it at its Nth rename, the moment at which a file
 // comes into being.
 //   SALBENCH_KILL_AT="N before"    the file is whole and has its temporary name

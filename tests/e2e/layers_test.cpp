@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The test `layers` looks at the tree itself; this one sees that it would find a breach.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

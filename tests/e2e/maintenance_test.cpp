@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // verify, gc and accept on the command line.
 #include <fstream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures: `salbench pictures` takes them, `salbench export` hands them on.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A program run beside the test: what it was told, what it said, and how it ended.
 #pragma once
 

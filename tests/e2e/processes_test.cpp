@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Several processes over one cache: they share the work, and what comes of it is what one process makes.
 #include <csignal>
 #include <memory>

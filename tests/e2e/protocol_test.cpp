@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Both protocols, all models and a given reference, end to end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """ps_model.py SHAPE OUT: PS as a command of its own, beside which the built-in one is laid."""
 import sys
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reads the artefacts of a run as anybody would: with h5py and pandas, knowing only the documented layout.
 
 read_artefact.py CACHE RESULTS_CSV: prints "ok: ..." or says what is wrong.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Opens exported shapes as MeshLab, CloudCompare and ParaView do, and compares them with an HDF5 export.
 
 read_shapes.py EXPORT.h5 FOLDER: FOLDER holds ITEM.csv, ITEM.ply and ITEM.vtp of every item of the export. Prints

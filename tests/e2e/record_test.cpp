@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // run.yaml says what was run: on which data, with which folders.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

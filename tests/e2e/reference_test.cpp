@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // --reference: a density, or what stands for one.
 #include <functional>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run leaves behind: the tables, and a cache that makes the next run nothing to do.
 #include "pipeline/results/results.h"
 

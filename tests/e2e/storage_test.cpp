@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Folders that cannot be written to, disks that are full, and files in the cache that rotted.
 #include <fstream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A refusal of the system is neither damage to the cache nor the user's fault, and a defect of the program is
 // called one.
 #include <csignal>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded into the program by LD_PRELOAD: what the system may do when a file or a folder is opened.
 //   SALBENCH_AT_OPEN="ERRNO COUNT PART"   the first COUNT (0: all) openings of a path that holds PART fail
 //   SALBENCH_AT_OPEN="hold FILE PART"     the first one makes FILE and then waits for a signal

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Arguments and configurations: what is wrong is said in one line, and the exit status says who has to act.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded into the program by LD_PRELOAD: says that the HDF5 library is not thread-safe, and ends the program
 // with a line on standard error where two threads are then inside it at once. A pause makes sure that they
 // meet.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A folder with a small data set, a configuration, and the cache and results of the runs over them.
 #pragma once
 

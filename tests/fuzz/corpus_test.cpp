@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The corpora without libFuzzer, under any compiler.
 #include <algorithm>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // HDF5 files, in two ways. libhdf5 1.10.8 itself does not stand any bytes at all: of files with some bytes
 // changed, one in a few thousand ends it with a segmentation fault, a request for petabytes or a leak, in its
 // own decoding of attributes, compact groups and B-trees (H5A__close, H5G__link_release_table, H5C_protect).

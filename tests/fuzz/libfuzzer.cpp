@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A program of libFuzzer's is one function, here the target that the build names.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fills a cache with every artefact that a run of CONFIG over DATA would leave, without the real
 // computations: the program's own engine runs, and only the bodies of the stages are replaced, by made-up
 // values of a few bytes. Keys and names are those of a real cache, so that `salbench plan` and a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // LS on a bumpy sphere with rough normals, one thread.
 #include <benchmark/benchmark.h>
 

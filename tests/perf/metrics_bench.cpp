@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // All metrics of one map beside the paper's, one thread: a mesh of 10 000 vertices and a scan of 5 500
 // points, picked as often as those of the Schelling study are.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The stages on real meshes of four sizes, on one scan of each, and on a subdivided mesh of up to a million
 // vertices:
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // CONTRIBUTING.md, followed: a stage, a model, a metric, a layout and a subcommand that are not in the
 // program are added in one place each, and take part like those that are.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every component of a key, changed alone, is the one that is named.
 #include "pipeline/commands/explain.h"
 

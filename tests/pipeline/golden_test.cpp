@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Outputs may change only with a version: this is what keeps a cache honest from one commit to the next.
 #include <algorithm>
 #include <cstdlib>
@@ -210,7 +211,8 @@ Outputs toy_outputs() {
   Outputs outputs;
   for (const std::string protocol : {"published", "text"}) {
     RecordingStore store;
-    ToyRun toy(data.path(), store, "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\npicture: {size: 64}\n");
+    ToyRun toy(data.path(), store,
+               "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\npicture: {size: 64}\n");
     toy.run();
     for (const Failure& failure : toy.runner.failures())
       ADD_FAILURE() << toy.context.name(failure.job) << ": " << toy.context.row(failure.job).name << ": "

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The graph over a catalog whose rows do nothing: which jobs are settled, when, and by how many at once.
 #include "pipeline/run/graph.h"
 

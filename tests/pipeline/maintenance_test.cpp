@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What looks after a cache, over real runs on a toy data set.
 #include <algorithm>
 #include <fstream>

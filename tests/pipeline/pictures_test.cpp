@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures cost nothing that was not asked for, and no score knows of them.
 #include <set>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a run computes, counted: the engine's promise is that it is exactly what is missing.
 #include "pipeline/run/runner.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A file that is edited while a run is under way: what is stored under a key is of what the key names.
 #include "pipeline/catalog/source.h"
 

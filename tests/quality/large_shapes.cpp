@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the samples of LS and CS cost in fidelity:  quality_large_shapes DATA [SUBDIVISIONS]
 //
 // DATA holds SchellingData/ with Meshes/, and RawData/ of some of them. These are subdivided, and their maps

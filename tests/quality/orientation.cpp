@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How often Hoppe's orientation is right:  quality_orientation DATA_DIR
 //
 // DATA_DIR holds N.off, closed meshes with outward faces; twenty of them, evenly spread, are taken.

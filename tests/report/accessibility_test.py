@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """axe-core, which looks for what keeps people from using a page. It comes from npm into a temporary folder."""
 
 import shutil

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Results folders that lack something: the report says what is missing where it would stand, and still opens."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Headless Chromium on pages from disk, with everything that it logs and asks for."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The report in a browser, from disk: what a reader does with it."""
 
 import base64

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every figure and table of the paper has an element of the report that shows it."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Verdicts on made-up scores whose answer is known."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The plotted numbers of a small fixed results folder equal golden data (golden/*.csv), and figures are the same bytes every
 time. After a wanted change: REPORT_GOLDEN=write python3 -m unittest figures_test, and look at the difference."""
 

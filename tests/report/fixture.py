@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Results folders and exports made up from seeded numbers: small and fixed, or as large as the whole benchmark."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Runs with other metrics than the paper's: names, units and directions are those of run.yaml and of the tables."""
 
 import json

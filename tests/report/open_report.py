@@ -1,4 +1,5 @@
 #!/usr/bin/python3 -B
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Opens every page of reports in headless Chromium, from disk: pages, time, and whatever is wrong with them.
 
 open_report.py REPORT...    exit status 1 if a page logs an error or asks for something outside its folder

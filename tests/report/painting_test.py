@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Painting a map on a picture, and what the viewer is given."""
 
 import base64

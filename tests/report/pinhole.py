@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """A picture of a shape as the stage `picture` describes it, by brute force: small, slow, and for tests alone."""
 
 import numpy

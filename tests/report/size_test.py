@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """The whole benchmark, 400 meshes and 4800 scans with made-up scores: time and size without pictures."""
 
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Statistics on the pages equal those of the program's files, which equal SciPy's, on a run of the real program over meshes
 made here with simulated participants. SALBENCH_PROGRAM names the program."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Numbers of tables on the page equal those of the files that they are from; the LaTeX file is what LaTeX can read."""
 
 import re

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Where the real data lies. Tests that need it skip with a message where it is absent, and never otherwise:
 //   const auto data = real_data(); if (!data) GTEST_SKIP() << kNoRealData;
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // How many jobs a first run has, counted in the catalog: a new model or stage changes no number in a test.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A place where threads meet, for tests that show what runs at the same time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The cache without a disk: for tests that count jobs.
 #pragma once
 

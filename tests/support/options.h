@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The field that check() finds wrong in an options struct; empty where it finds none.
 #pragma once
 

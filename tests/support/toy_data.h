@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A small data set in the Schelling layout on disk, made from analytic shapes, and the pieces of a run over
 // it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PCL's own pair features and histograms, where the definitions coincide.
 #include <algorithm>
 

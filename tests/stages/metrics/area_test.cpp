@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What weighing by area is for: a surface meshed otherwise gets the same values.
 #include <algorithm>
 #include <cmath>

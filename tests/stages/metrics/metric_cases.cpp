@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Random cases and every metric of each, for metrics_reference.py: one JSON object per line.
 //   metric_cases SEED COUNT
 #include <cmath>

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Every metric of random cases against other implementations: metrics_reference.py METRIC_CASES [COUNT]
 
 SciPy has correlations and entropies, scikit-learn exact ROC areas and errors. What neither has is written here from

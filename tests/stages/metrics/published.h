@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The authors' published figures, and the ground truth that they were made with, for the tests that compare
 // with them. `folder` is that of real_data() in tests/support/data.h.
 #pragma once

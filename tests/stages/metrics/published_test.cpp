@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The authors' own maps must score what the authors published for them.
 #include "tests/stages/metrics/published.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The metrics beside the paper's: known answers, degenerate input, and that none depends on its company.
 // Random cases against other implementations are in metrics_reference.py.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // CS against the maps that the benchmark's authors published of it.
 #include <algorithm>
 #include <cmath>

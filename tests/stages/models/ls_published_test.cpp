@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // LS against what the benchmark's authors published of it, with the normals and descriptors of the
 // `published` protocol.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // MS against what the benchmark's authors published of it. Their program is not known: the agreement is
 // close, not exact.
 #include <cmath>

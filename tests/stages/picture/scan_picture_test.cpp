@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of scans; the camera and the light are those of meshes (picture_test.cpp).
 #include <cmath>
 #include <limits>

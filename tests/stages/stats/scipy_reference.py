@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Reference values for scipy_test.cpp.
 
 Reads lines "operation | sample | sample ..." (blank-separated numbers) and writes one line of numbers for each.

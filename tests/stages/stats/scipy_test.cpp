@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Random cases against SciPy (package python3-scipy): both sides compute, and the numbers are compared.
 #include <cmath>
 #include <cstdlib>
