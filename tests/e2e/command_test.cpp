@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
                 "longer than its timeout of 1 s.*: loading"},
-        Hostile{"Floods", "yes noise | head -c 50000000; echo; echo at last >&2; exit 3",
+        Hostile{"Floods", "yes noise | head -c 48000000; echo; echo at last >&2; exit 3",
                 "status 3; .*noise \\| at last"},
         Hostile{"WritesTooFew", "seq 7 > {{out}}; exit 0", "7 values, but the shape has 162 points"},
         Hostile{"WritesNaN", "seq 161 > {{out}}; echo nan >> {{out}}; exit 0", "not a finite number"},

@@ -63,7 +63,7 @@ TEST(RunCommand, SaysHowItEndedAndWhatItPrintedLast) {
 }
 
 TEST(RunCommand, KeepsTheLastLinesOfAFlood) {
-  const std::string failure = failure_of("yes 0123456789 | head -c 30000000; echo; echo last; false");
+  const std::string failure = failure_of("yes 0123456789 | head -c 33000000; echo last; false");
   EXPECT_THAT(failure, EndsWith("0123456789 | last"));
   EXPECT_LT(failure.size(), 5000U);
   EXPECT_LT(failure_of("head -c 30000000 /dev/zero; false").size(), 5000U) << "without a line end";
