@@ -10,6 +10,7 @@
 namespace salbench::chi2_kernel {
 
 inline constexpr std::size_t kLanes = 16;  // histograms, or boxes, in a group
+constexpr std::size_t groups_of(std::size_t n) { return (n + kLanes - 1) / kLanes; }
 
 // Every variant does the same operations in the same order on each pair: the same bytes on every machine.
 enum class Instructions { baseline, avx2, avx512 };

@@ -17,10 +17,12 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
+#include "stages/models/chi2_grouping.h"
 
 namespace salbench {
 namespace {
 
+using chi2_kernel::groups_of;
 using chi2_kernel::kLanes;
 
 constexpr std::size_t kBins = kFpfhBins;
@@ -34,8 +36,6 @@ constexpr float kAlike = 1e-9F;       // of the largest distance: within, histog
 constexpr std::size_t kSpare = 8;     // so few candidates beyond the k-th are put in order, not counted again
 constexpr std::size_t kGrain = 1024;  // queries one after the other; the first of them guesses nothing
 constexpr float kOpened = std::numeric_limits<float>::quiet_NaN();  // in place of a bound: within no limit
-
-std::size_t groups_of(std::size_t n) { return (n + kLanes - 1) / kLanes; }
 
 std::vector<std::size_t> used_bins_of(const Descriptors& descriptors) {
   std::array<bool, kBins> used{};
@@ -62,89 +62,6 @@ float beyond_all(const Descriptors& descriptors) {
   }
   return 2.01F * largest;
 }
-
-// Orders the histograms so that each 16 in a row resemble each other: halves them, on the border of a group,
-// at the median of the bin that varies most. Square roots make variations of high and low bins count alike.
-class Grouping {
- public:
-  Grouping(const Descriptors& descriptors, const std::vector<std::size_t>& bins) : bins_(bins) {
-    roots_.reserve(descriptors.size() * bins.size());
-    for (std::size_t i = 0; i < descriptors.size(); ++i)
-      for (const std::size_t bin : bins) roots_.push_back(std::sqrt(descriptors.values[i * kBins + bin]));
-    order_.resize(descriptors.size());
-    std::iota(order_.begin(), order_.end(), 0);
-  }
-
-  std::vector<std::int32_t> order() && {
-    // Level by level, the ranges of a level at the same time.
-    for (std::vector<Range> ranges{{0, order_.size()}}; !ranges.empty();) {
-      std::vector<std::array<Range, 2>> halves(ranges.size());
-      parallel_ranges(ranges.size(), 1, [&](std::size_t r, std::size_t) { halves[r] = halved(ranges[r]); });
-      ranges.clear();
-      for (const auto& both : halves)
-        std::copy_if(both.begin(), both.end(), std::back_inserter(ranges),
-                     [](const Range& r) { return r.last > 0; });
-    }
-    return std::move(order_);
-  }
-
- private:
-  static constexpr std::size_t kSmall = 1 << 14;  // halved down to groups at once
-
-  struct Range {
-    std::size_t first = 0, last = 0;
-  };
-
-  // The halves that are not in order yet; others are empty.
-  std::array<Range, 2> halved(const Range& range) {
-    const auto [first, last] = range;
-    if (last - first <= kSmall) {
-      split(first, last);
-      return {};
-    }
-    const std::size_t middle = halve(first, last);
-    return {Range{first, middle}, Range{middle, last}};
-  }
-
-  float root(std::int32_t i, std::size_t bin) const {
-    return roots_[static_cast<std::size_t>(i) * bins_.size() + bin];
-  }
-
-  std::size_t most_varying(std::size_t first, std::size_t last) const {
-    std::array<double, kBins> sums{}, squares{};
-    for (std::size_t place = first; place < last; ++place)
-      for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
-        const double value = static_cast<double>(root(order_[place], bin));
-        sums[bin] += value;
-        squares[bin] += value * value;
-      }
-    const auto n = static_cast<double>(last - first);
-    for (std::size_t bin = 0; bin < bins_.size(); ++bin) squares[bin] -= sums[bin] * sums[bin] / n;
-    return static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
-  }
-
-  // Returns the middle.
-  std::size_t halve(std::size_t first, std::size_t last) {
-    const std::size_t bin = most_varying(first, last);
-    const std::size_t middle = first + (groups_of(last - first) + 1) / 2 * kLanes;
-    const auto at = [&](std::size_t place) { return order_.begin() + static_cast<std::ptrdiff_t>(place); };
-    std::nth_element(at(first), at(middle), at(last), [&](std::int32_t a, std::int32_t b) {
-      return std::pair(root(a, bin), a) < std::pair(root(b, bin), b);
-    });
-    return middle;
-  }
-
-  void split(std::size_t first, std::size_t last) {
-    if (last - first <= kLanes) return;
-    const std::size_t middle = halve(first, last);
-    split(first, middle);
-    split(middle, last);
-  }
-
-  const std::vector<std::size_t>& bins_;
-  std::vector<float> roots_;  // n x used bins
-  std::vector<std::int32_t> order_;
-};
 
 // The references, ascending, in the order of all histograms.
 std::vector<std::int32_t> in_order_of(const std::vector<std::int32_t>& all,
@@ -385,7 +302,7 @@ Chi2Search::Chi2Search(const Descriptors& descriptors, std::span<const std::int3
                        chi2_kernel::Instructions instructions)
     : bins_(used_bins_of(descriptors)),
       beyond_all_(beyond_all(descriptors)),
-      queries_(Grouping(descriptors, bins_).order()),
+      queries_(grouped_by_likeness(descriptors, bins_)),
       order_(references.empty() ? queries_ : in_order_of(queries_, references)),
       kernel_(chi2_kernel::kernel(instructions)) {
   rows_.reserve(queries_.size() * bins_.size());

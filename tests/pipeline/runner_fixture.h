@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two meshes and a store in memory, and runs over them that say what they computed.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/results/results.h"
+#include "tests/support/job_counts.h"
+#include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+
+// Does something before what the stage does anyway.
+using Before = std::function<void(const JobInputs&)>;
+inline void do_before(Row& row, const Before& before) {
+  row.run = [before, was = row.run](const JobInputs& in) {
+    before(in);
+    return was(in);
+  };
+}
+
+class RunnerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
+    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
+  }
+
+  // Runs and returns "stage@item" of all that was computed.
+  std::vector<std::string> run(const std::string& yaml = kToyConfig, int threads = 2) {
+    ToyRun toy(data_.path(), store_, yaml);
+    toy.run(threads);
+    for (const Failure& failure : toy.runner.failures())
+      failures_.push_back(toy.context.name(failure.job) + ": " + toy.context.row(failure.job).name + ": " +
+                          failure.cause);
+    results_ = to_csv(results_table(toy.results(), chosen_metrics(toy.config.metrics)));
+    return store_.take_saved();
+  }
+
+  const JobCounts jobs_;  // of a first run over both meshes
+  TemporaryFolder data_;
+  MemoryStore store_;
+  std::vector<std::string> failures_;
+  std::string results_;
+};
+
+}  // namespace salbench

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which metrics are computed, of models and of people, and which table has them.
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/results/statistics.h"
+#include "tests/pipeline/runner_fixture.h"
+
+namespace salbench {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
+  run();
+  const auto computed = run(std::string(kToyConfig) + "metrics: {splits: 7}\n");
+  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores")));
+  for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
+}
+
+TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
+  run();
+  const std::string paper_results = results_;
+  const auto computed = run(std::string(kToyConfig) + "metrics: [kl, auc, auc_judd_area]\n");
+  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores")));
+  for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
+  EXPECT_THAT(results_, HasSubstr("model,auc,kl,auc_judd_area,n_points"));
+  EXPECT_THAT(run(std::string(kToyConfig) + "metrics: {names: [auc_judd_area, kl, auc]}\n"), IsEmpty())
+      << "the order in a file makes no other key";
+  EXPECT_THAT(run(std::string(kToyConfig) + "metrics: [lcc, cc, nss, auc_exact, auc]\n"), IsEmpty())
+      << "the paper's by name are the default";
+  EXPECT_EQ(results_, paper_results);
+}
+
+TEST_F(RunnerTest, EveryMetricIsFiniteOnMeshesAndScansAndForPeople) {
+  ToyRun toy(data_.path(), store_, "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\nmetrics: all\n");
+  toy.run();
+  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  for (const ResultRow& row : toy.results()) {
+    ASSERT_THAT(row.scores.values, SizeIs(metric_table().size()));
+    for (std::size_t m = 0; m < metric_table().size() && row.scores.n_picks > 0; ++m)
+      EXPECT_TRUE(std::isfinite(row.value(m)))
+          << metric_table()[m].name << " of " << row.item << " " << row.view;
+  }
+}
+
+TEST_F(RunnerTest, OnlyScoresByAreaReadTheSurface) {
+  const auto inputs_of = [&](const std::string& metrics) {
+    const ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
+    std::vector<std::string> names;
+    for (const std::size_t input : toy.catalog.rows[toy.row("scores.PS", Shapes::scans)].inputs)
+      names.push_back(toy.catalog.rows[input].name);
+    return names;
+  };
+  EXPECT_THAT(inputs_of("metrics: [nss, kl]\n"), ElementsAre("matched.PS", "scan_ground_truth"));
+  EXPECT_THAT(inputs_of("metrics: [nss, kl_area]\n"),
+              ElementsAre("matched.PS", "scan_ground_truth", "scan", "surface"));
+}
+
+TEST_F(RunnerTest, TheTableByClassHasEachMetricButForThePapers) {
+  run();
+  const auto columns = [&](const std::string& metrics) {
+    ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
+    toy.run();
+    std::vector<ResultRow> rows = toy.results();
+    for (ResultRow& row : rows) row.category = "human";
+    return per_class_table(rows, chosen_metrics(toy.config.metrics)).columns;
+  };
+  EXPECT_THAT(columns(""), ElementsAre("dataset", "class", "model", "n", "auc_mean", "auc_ci95"));
+  EXPECT_THAT(columns("metrics: [kl, nss]\n"),
+              ElementsAre("dataset", "class", "model", "n", "nss_mean", "nss_ci95", "kl_mean", "kl_ci95"));
+}
+
+constexpr const char* kWithPeople = "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\n";
+
+TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
+  const auto computed = run(kWithPeople);
+  EXPECT_THAT(failures_, IsEmpty());
+  std::vector<std::string> of_people;
+  for (const std::string& job : computed)
+    if (job.find(".HS@") != std::string::npos) of_people.push_back(job);
+  EXPECT_THAT(of_people, ElementsAre("curve.HS@1", "curve.HS@2", "scores.HS@1", "scores.HS@2"));
+  EXPECT_THAT(results_, HasSubstr("\nmeshes,1,human,,HS,"));
+  EXPECT_THAT(results_, HasSubstr("\nscans,1,human,0,PS,"));
+  EXPECT_THAT(results_, Not(HasSubstr("\nscans,1,human,0,HS,")));
+  EXPECT_THAT(run(kWithPeople), IsEmpty());
+}
+
+TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
+  ToyRun toy(data_.path(), store_, kWithPeople);
+  toy.run();
+  const auto curves = collect_human_curves(toy.state());
+  ASSERT_THAT(curves, SizeIs(2));
+  const Table table = human_curve_table(curves);
+  EXPECT_THAT(table.columns, ElementsAre("n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"));
+  const std::size_t n_metrics = chosen_metrics({}).size();
+  ASSERT_THAT(table.rows, SizeIs(2 * n_metrics));  // four participants: 1 and 2 against as many
+  const auto& cc_of_two = table.rows[n_metrics + 3];
+  EXPECT_EQ(cc_of_two[0], Cell(std::int64_t{2}));
+  EXPECT_EQ(cc_of_two[1], Cell("cc"));
+  EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));
+  EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]),
+                   (value_of(curves[0][1], "cc") + value_of(curves[1][1], "cc")) / 2);
+}
+
+TEST_F(RunnerTest, AHumanCurveOfAnEarlierRunIsNotLeftBehind) {
+  TemporaryFolder out;
+  const auto run_and_write = [&](const std::string& yaml) {
+    ToyRun toy(data_.path(), store_, yaml);
+    toy.run();
+    write_tables(out.path(), toy.state(), toy.results(), {});
+    return std::filesystem::exists(out / "human_curve.csv");
+  };
+  EXPECT_TRUE(run_and_write(kWithPeople));
+  EXPECT_THAT(read_file(out / "human_curve.csv"), HasSubstr("n,metric,n_meshes,mean,"));
+  EXPECT_FALSE(run_and_write(kToyConfig));
+}
+
+TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
+  for (const char* participant : {"1", "2", "3"})
+    std::filesystem::remove(data_ / "RawData" / ("2_" + std::string(participant) + ".pid"));
+  ToyRun toy(data_.path(), store_, kWithPeople);
+  const auto job = [&](std::size_t family) { return toy.mesh_job("scores.HS", family); };
+  EXPECT_TRUE(job(0).open());
+  EXPECT_EQ(job(1).verdict, Verdict::not_applicable);
+  EXPECT_EQ(job(1).reason, Reason::inapplicable);
+  toy.run();
+  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  const std::string results = to_csv(results_table(toy.results()));
+  EXPECT_THAT(results, HasSubstr("\nmeshes,1,human,,HS,"));
+  EXPECT_THAT(results, HasSubstr("\nmeshes,2,human,,PS,"));
+  EXPECT_THAT(results, Not(HasSubstr("\nmeshes,2,human,,HS,")));
+}
+
+TEST_F(RunnerTest, OfSimulatedPeopleThereMustBeTwoToo) {
+  const auto with = [](int participants) {
+    return fmt::format(
+        "dataset: {{participants: simulated, scans: false}}\nsimulation: {{participants: {}}}\n"
+        "models: {{HS: {{draws: 2}}}}\n",
+        participants);
+  };
+  EXPECT_THAT(run(with(2)), Contains("scores.HS@1"));
+  EXPECT_THAT(run(with(1)), Not(Contains("scores.HS@1")));  // though there are .pid files of four
+  EXPECT_THAT(failures_, IsEmpty());
+}
+
+}  // namespace
+}  // namespace salbench
