@@ -129,20 +129,31 @@ class SimplifiedHistograms {
 
   // With `once`, a pair of requested points is looked at from the lower index, for both.
   void vote(std::int32_t i, std::span<const Neighbour> found, bool once) {
+    std::array<std::int32_t, kPairs> others;
+    std::size_t count = 0;
     for (const Neighbour& neighbour : found) {
-      if (neighbour.distance_squared == 0) continue;
-      const std::int32_t j = neighbour.index;
-      const bool for_both = once && row_of_[static_cast<std::size_t>(j)] != kNone;
-      if (for_both && j < i) continue;
-      const PairBins bins = bins_of(i, j);
-      add(i, bins);
-      if (for_both) add(j, bins.both_ways ? bins : bins_of(j, i));
+      if (neighbour.distance_squared == 0 || (once && neighbour.index < i && is_requested(neighbour.index)))
+        continue;
+      others[count++] = neighbour.index;
+      if (count == kPairs) vote_of_pairs(i, others, once), count = 0;
+    }
+    if (count > 0) vote_of_pairs(i, std::span(others).first(count), once);
+  }
+
+  void vote_of_pairs(std::int32_t i, std::span<const std::int32_t> others, bool once) {
+    std::array<PairBins, kPairs> bins;
+    pair_bins(at(points_, i), at(normals_, i), points_, normals_, others, swap_, bins);
+    for (std::size_t pair = 0; pair < others.size(); ++pair) {
+      add(i, bins[pair]);
+      const std::int32_t j = others[pair];
+      if (!once || !is_requested(j)) continue;
+      add(j, bins[pair].both_ways
+                 ? bins[pair]
+                 : pair_bins(at(points_, j), at(normals_, j), at(points_, i), at(normals_, i), swap_));
     }
   }
 
-  PairBins bins_of(std::int32_t i, std::int32_t j) const {
-    return pair_bins(at(points_, i), at(normals_, i), at(points_, j), at(normals_, j), swap_);
-  }
+  bool is_requested(std::int32_t point) const { return row_of_[static_cast<std::size_t>(point)] != kNone; }
 
   void add(std::int32_t i, const PairBins& bins) {
     float* const row = rows_.data() + row_of_[static_cast<std::size_t>(i)] * kBins;
