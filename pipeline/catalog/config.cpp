@@ -78,7 +78,7 @@ std::string indented(std::string_view lines, std::string_view by) {
   return result;
 }
 
-// Where pictures are not computed, an annotated configuration has their options as a comment.
+// An annotated configuration without pictures has their options as a comment.
 std::string picture_section(const Config& config, bool annotated) {
   const std::string options = "picture:\n" + indented(options_text(config.picture, annotated), "  ");
   if (config.pictures == Pictures::computed) return (annotated ? "\n" : "") + options;

@@ -30,8 +30,7 @@ constexpr double kMaxWeight = 1e12;   // limit of R / distance: below, the dista
 
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
-// The neighbours of each point. Nearest ones that are few are searched once and kept; all others are searched
-// anew each time.
+// The neighbours of each point. What fits into memory is kept, and looked up where it is asked for again.
 class Neighbourhoods {
  public:
   using Found = std::vector<Neighbour>;  // working memory of a search
@@ -40,15 +39,18 @@ class Neighbourhoods {
       : points_(points), tree_(tree), support_(support) {
     CHECK_LE(0, support.neighbours);
     k_ = std::min(static_cast<std::size_t>(support.neighbours), tree.size());
-    if (k_ > kFew) return;
-    nearest_.resize(points.size() * k_);
-    parallel_ranges(k_ > 0 ? points.size() : 0, kGrain, [&](std::size_t first, std::size_t last) {
-      Found found;
-      for (std::size_t i = first; i < last; ++i) {
-        tree.nearest(points[i], k_, found);
-        std::copy(found.begin(), found.end(), nearest_.begin() + static_cast<std::ptrdiff_t>(i * k_));
-      }
-    });
+    if (k_ == 0) {
+      kept_at_.resize(points.size());
+    } else if (points.size() * k_ <= kMostKept) {
+      kept_.resize(points.size() * k_);
+      parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        Found found;
+        for (std::size_t i = first; i < last; ++i) {
+          tree.nearest(points[i], k_, found);
+          std::copy(found.begin(), found.end(), kept_.begin() + static_cast<std::ptrdiff_t>(i * k_));
+        }
+      });
+    }
   }
 
   bool all_points() const { return tree_.size() == points_.size(); }
@@ -57,17 +59,31 @@ class Neighbourhoods {
 
   // By (distance, index), the point itself included; valid until `found` is used again.
   std::span<const Neighbour> of(std::int32_t i, Found& found) const {
-    if (!nearest_.empty()) return std::span(nearest_).subspan(static_cast<std::size_t>(i) * k_, k_);
-    if (k_ > 0)
+    if (k_ > 0) {
+      if (!kept_.empty()) return std::span(kept_).subspan(static_cast<std::size_t>(i) * k_, k_);
       tree_.nearest(at(points_, i), k_, found);
-    else
+    } else if (const auto kept = kept_of(i); !kept.empty()) {
+      found.assign(kept.begin(), kept.end());
+      std::sort(found.begin(), found.end(), closer);
+    } else {
       tree_.within(at(points_, i), support_.radius, found);
+    }
     return found;
   }
   std::span<const Neighbour> unordered(std::int32_t i, Found& found) const {
     if (k_ > 0) return of(i, found);
+    if (const auto kept = kept_of(i); !kept.empty()) return kept;
     tree_.within_unordered(at(points_, i), support_.radius, found);
     return found;
+  }
+  // The same, by one thread alone: what it finds is kept.
+  std::span<const Neighbour> unordered_kept(std::int32_t i, Found& found) {
+    const auto these = unordered(i, found);
+    if (k_ == 0 && these.data() == found.data() && kept_.size() + these.size() <= kMostKept) {
+      kept_at_[static_cast<std::size_t>(i)] = {kept_.size(), these.size()};
+      kept_.insert(kept_.end(), these.begin(), these.end());
+    }
+    return these;
   }
 
   // How many of the neighbours of i are other points; at least 1, because it divides.
@@ -79,21 +95,29 @@ class Neighbourhoods {
   }
 
  private:
-  static constexpr std::size_t kFew = 32;
+  static constexpr std::size_t kMostKept = 1 << 20;  // 16 MB
+
+  struct Kept {
+    std::size_t first = 0, count = 0;
+  };
+  std::span<const Neighbour> kept_of(std::int32_t i) const {
+    const Kept& kept = kept_at_[static_cast<std::size_t>(i)];
+    return std::span(kept_).subspan(kept.first, kept.count);
+  }
 
   std::span<const Vec3> points_;
   const KdTree& tree_;
   Support support_;
   std::size_t k_ = 0;  // 0: a radius
-  std::vector<Neighbour> nearest_;
+  std::vector<Neighbour> kept_;
+  std::vector<Kept> kept_at_;  // of a radius, by point
 };
 
 // The SPFHs of some points.
 class SimplifiedHistograms {
  public:
   SimplifiedHistograms(std::span<const Vec3> points, std::span<const Vec3> normals,
-                       const std::vector<std::int32_t>& requested, const Neighbourhoods& neighbourhoods,
-                       bool swap)
+                       const std::vector<std::int32_t>& requested, Neighbourhoods& neighbourhoods, bool swap)
       : points_(points), normals_(normals), row_of_(points.size(), kNone), swap_(swap) {
     for (std::size_t row = 0; row < requested.size(); ++row)
       row_of_[static_cast<std::size_t>(requested[row])] = row;
@@ -104,7 +128,8 @@ class SimplifiedHistograms {
     parallel_ranges(requested.size(), once ? kOneThread : kGrain, [&](std::size_t first, std::size_t last) {
       Neighbourhoods::Found memory;
       for (std::size_t row = first; row < last; ++row) {
-        const auto found = neighbourhoods.unordered(requested[row], memory);
+        const auto found = once ? neighbourhoods.unordered_kept(requested[row], memory)
+                                : neighbourhoods.unordered(requested[row], memory);
         others[row] = neighbourhoods.others(requested[row], found);
         vote(requested[row], found, once);
       }
@@ -202,14 +227,14 @@ void combine_text(std::int32_t point, double unit, std::span<const Neighbour> fo
 
 // Those whose SPFH counts, ascending: the neighbours of the subset and, unless only neighbours count, itself.
 std::vector<std::int32_t> needed(std::size_t n, std::span<const std::int32_t> subset,
-                                 const Neighbourhoods& neighbourhoods, bool neighbours_only) {
+                                 Neighbourhoods& neighbourhoods, bool neighbours_only) {
   if (subset.size() == n && (neighbourhoods.all_points() || !neighbours_only))
     return {subset.begin(), subset.end()};
   std::vector<bool> taken(n, false);
   Neighbourhoods::Found memory;
   for (const std::int32_t i : subset) {
     if (!neighbours_only) taken[static_cast<std::size_t>(i)] = true;
-    for (const Neighbour& neighbour : neighbourhoods.unordered(i, memory))
+    for (const Neighbour& neighbour : neighbourhoods.unordered_kept(i, memory))
       taken[static_cast<std::size_t>(neighbour.index)] = true;
   }
   std::vector<std::int32_t> points;
@@ -232,7 +257,7 @@ void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) 
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset) {
   check_normals(points, normals);
-  const Neighbourhoods neighbourhoods(points, tree, support);
+  Neighbourhoods neighbourhoods(points, tree, support);
   const bool published = weighting == FpfhWeighting::published;
   const SimplifiedHistograms spfh(points, normals, needed(points.size(), subset, neighbourhoods, published),
                                   neighbourhoods, published);

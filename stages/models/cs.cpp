@@ -29,6 +29,7 @@
 #include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
 #include "stages/core/support.h"
+#include "stages/models/chi_square.h"
 #include "stages/models/cs_clusters.h"
 
 namespace salbench {
@@ -137,13 +138,13 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
   result.weights.resize(entries);
   parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      double* weight = &result.weights[result.offsets[i]];
-      for (const std::int32_t cluster : reach_of(i)) {
-        const auto k = static_cast<std::size_t>(cluster);
-        const double distance_squared = (points[i] - clusters.centres[k]).squaredNorm();
-        const double chi2 = chi_square(descriptors.row(i), clusters.descriptors.row(k));
-        *weight++ = -relative(distance_squared, 2 * variance.distance_squared) -
-                    kDescriptorRate * relative(chi2, variance.chi2);
+      const auto& reach = reach_of(i);
+      const auto weights = std::span(result.weights).subspan(result.offsets[i], reach.size());
+      chi_squares(descriptors.row(i), clusters.descriptors, reach, weights);
+      for (std::size_t c = 0; c < reach.size(); ++c) {
+        const Vec3& centre = clusters.centres[static_cast<std::size_t>(reach[c])];
+        weights[c] = -relative((points[i] - centre).squaredNorm(), 2 * variance.distance_squared) -
+                     kDescriptorRate * relative(weights[c], variance.chi2);
       }
     }
   });
@@ -202,9 +203,10 @@ ScalarField cluster_saliency(const GroupMeans& clusters, const Variances& varian
   const std::size_t count = clusters.size();
   ScalarField unique(count), scattered(count), saliency(count);
   std::vector<double> chi2(count);
+  std::vector<std::int32_t> all(count);
+  std::iota(all.begin(), all.end(), 0);
   for (std::size_t j = 0; j < count; ++j) {
-    for (std::size_t k = 0; k < count; ++k)
-      chi2[k] = chi_square(clusters.descriptors.row(j), clusters.descriptors.row(k));
+    chi_squares(clusters.descriptors.row(j), clusters.descriptors, all, chi2);
     unique[j] = uniqueness(j, clusters, shares, chi2, unit);
     scattered[j] = distribution(clusters, shares, chi2, variance, unit);
   }

@@ -14,6 +14,7 @@
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/support.h"
+#include "stages/models/chi_square.h"
 #include "stages/models/cs_clusters.h"
 #include "stages/normals/normals.h"
 #include "tests/support/options.h"
