@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <queue>
 
 namespace salbench {
@@ -51,25 +53,32 @@ Vec3 area_centroid(const Mesh& mesh) {
 }
 
 Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  edges.reserve(faces.size() * 6);
-  for (const Triangle& face : faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      edges.emplace_back(face[k], face[(k + 1) % 3]);
-      edges.emplace_back(face[(k + 1) % 3], face[k]);
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::erase_if(edges, [](const auto& edge) { return edge.first == edge.second; });  // degenerate faces
+  // Each edge from both ends, once per face; degenerate faces have edges from a point to itself.
+  const auto for_each_edge = [&](auto&& visit) {
+    for (const Triangle& face : faces)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t a = face[k], b = face[(k + 1) % 3];
+        if (a == b) continue;
+        visit(static_cast<std::size_t>(a), b);
+        visit(static_cast<std::size_t>(b), a);
+      }
+  };
+  std::vector<std::size_t> end(n_points + 1, 0);
+  for_each_edge([&](std::size_t from, std::int32_t) { ++end[from + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::int32_t> all(end.back());
+  for_each_edge([&](std::size_t from, std::int32_t to) { all[end[from]++] = to; });
 
   Adjacency adjacency{std::vector<std::int32_t>(n_points + 1, 0), {}};
-  adjacency.neighbours.reserve(edges.size());
-  for (const auto& [from, to] : edges) {
-    ++adjacency.offsets[static_cast<std::size_t>(from) + 1];
-    adjacency.neighbours.push_back(to);
+  adjacency.neighbours.reserve(all.size() / 2);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < n_points; begin = end[i++]) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = all.begin() + static_cast<std::ptrdiff_t>(end[i]);
+    std::sort(first, last);
+    std::unique_copy(first, last, std::back_inserter(adjacency.neighbours));
+    adjacency.offsets[i + 1] = static_cast<std::int32_t>(adjacency.neighbours.size());
   }
-  for (std::size_t i = 0; i < n_points; ++i) adjacency.offsets[i + 1] += adjacency.offsets[i];
   return adjacency;
 }
 

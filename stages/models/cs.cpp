@@ -125,6 +125,7 @@ struct Affinity {
 
 Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptors, const Clusters& of,
                      const GroupMeans& clusters, const Neighbours& in_reach, const Variances& variance) {
+  const std::vector<std::size_t> bins = used_bins(descriptors);
   const auto reach_of = [&](std::size_t i) -> const std::vector<std::int32_t>& {
     return in_reach[static_cast<std::size_t>(of.of_point[i])];
   };
@@ -140,7 +141,7 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
     for (std::size_t i = first; i < last; ++i) {
       const auto& reach = reach_of(i);
       const auto weights = std::span(result.weights).subspan(result.offsets[i], reach.size());
-      chi_squares(descriptors.row(i), clusters.descriptors, reach, weights);
+      chi_squares(descriptors.row(i), clusters.descriptors, reach, bins, weights);
       for (std::size_t c = 0; c < reach.size(); ++c) {
         const Vec3& centre = clusters.centres[static_cast<std::size_t>(reach[c])];
         weights[c] = -relative((points[i] - centre).squaredNorm(), 2 * variance.distance_squared) -
@@ -205,8 +206,9 @@ ScalarField cluster_saliency(const GroupMeans& clusters, const Variances& varian
   std::vector<double> chi2(count);
   std::vector<std::int32_t> all(count);
   std::iota(all.begin(), all.end(), 0);
+  const std::vector<std::size_t> bins = used_bins(clusters.descriptors);
   for (std::size_t j = 0; j < count; ++j) {
-    chi_squares(clusters.descriptors.row(j), clusters.descriptors, all, chi2);
+    chi_squares(clusters.descriptors.row(j), clusters.descriptors, all, bins, chi2);
     unique[j] = uniqueness(j, clusters, shares, chi2, unit);
     scattered[j] = distribution(clusters, shares, chi2, variance, unit);
   }

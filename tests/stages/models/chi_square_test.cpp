@@ -31,15 +31,22 @@ double by_definition(std::span<const float, kFpfhBins> a, std::span<const float,
   return result;
 }
 
-// From tiny to large, and a third of them empty.
+// From tiny to large; every fourth bin is 0 in all, and a third of the others.
 Descriptors scattered_descriptors(std::size_t n) {
   Rng rng(5, "chi_square", "");
   Descriptors descriptors;
   for (std::size_t i = 0; i < n * kFpfhBins; ++i) {
     const double magnitude = std::pow(10.0, 40 * rng.uniform() - 25);
-    descriptors.values.push_back(rng.uniform() < 0.3 ? 0.0F : static_cast<float>(magnitude * rng.uniform()));
+    const bool empty = i % kFpfhBins % 4 == 1 || rng.uniform() < 0.3;
+    descriptors.values.push_back(empty ? 0.0F : static_cast<float>(magnitude * rng.uniform()));
   }
   return descriptors;
+}
+
+TEST(ChiSquares, LookAtTheBinsInUse) {
+  const auto bins = used_bins(scattered_descriptors(40));
+  EXPECT_EQ(bins.size(), kFpfhBins - 8);
+  EXPECT_EQ(bins[1], 2U);
 }
 
 TEST(ChiSquares, AreToTheBitThoseOfTheFormulaHoweverManyThereAre) {
@@ -48,7 +55,7 @@ TEST(ChiSquares, AreToTheBitThoseOfTheFormulaHoweverManyThereAre) {
     std::vector<std::int32_t> rows;
     for (std::size_t i = 0; i < count; ++i) rows.push_back(static_cast<std::int32_t>((7 * i + count) % 40));
     std::vector<double> result(count);
-    chi_squares(descriptors.row(count), descriptors, rows, result);
+    chi_squares(descriptors.row(count), descriptors, rows, used_bins(descriptors), result);
     for (std::size_t i = 0; i < count; ++i) {
       const auto other = descriptors.row(static_cast<std::size_t>(rows[i]));
       EXPECT_EQ(result[i], by_definition(descriptors.row(count), other));
