@@ -121,7 +121,7 @@ class SimplifiedHistograms {
       : points_(points), normals_(normals), row_of_(points.size(), kNone), swap_(swap) {
     for (std::size_t row = 0; row < requested.size(); ++row)
       row_of_[static_cast<std::size_t>(requested[row])] = row;
-    rows_.resize(requested.size() * kBins);
+    std::vector<Votes> votes(requested.size());
     std::vector<double> others(requested.size());
     // Looking at each pair once needs one thread: it writes to both ends.
     const bool once = neighbourhoods.mutual() && requested.size() <= kOneThread;
@@ -131,12 +131,13 @@ class SimplifiedHistograms {
         const auto found = once ? neighbourhoods.unordered_kept(requested[row], memory)
                                 : neighbourhoods.unordered(requested[row], memory);
         others[row] = neighbourhoods.others(requested[row], found);
-        vote(requested[row], found, once);
+        vote(requested[row], found, once, votes);
       }
     });
+    rows_.reserve(requested.size() * kBins);
     for (std::size_t row = 0; row < requested.size(); ++row)
-      for (std::size_t b = 0; b < kBins; ++b)
-        rows_[row * kBins + b] = quotient(rows_[row * kBins + b], others[row]);
+      for (const std::uint32_t count : votes[row])
+        rows_.push_back(static_cast<float>(static_cast<double>(count) / others[row]));
   }
 
   const float* of(std::int32_t point) const {
@@ -147,49 +148,54 @@ class SimplifiedHistograms {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   static constexpr std::size_t kOneThread = 1 << 16;
 
-  // Whole numbers, exact as floats: their order does not matter.
-  static float quotient(float votes, double others) {
-    return static_cast<float>(static_cast<double>(votes) / others);
-  }
+  using Votes = std::array<std::uint32_t, kBins>;
 
   // With `once`, a pair of requested points is looked at from the lower index, for both.
-  void vote(std::int32_t i, std::span<const Neighbour> found, bool once) {
+  void vote(std::int32_t i, std::span<const Neighbour> found, bool once, std::vector<Votes>& votes) const {
+    Votes own{};
     std::array<std::int32_t, kPairs> others;
     std::size_t count = 0;
+    const auto look = [&] {
+      look_at_pairs(i, std::span(others).first(count), once, own, votes);
+      count = 0;
+    };
     for (const Neighbour& neighbour : found) {
       if (neighbour.distance_squared == 0 || (once && neighbour.index < i && is_requested(neighbour.index)))
         continue;
       others[count++] = neighbour.index;
-      if (count == kPairs) vote_of_pairs(i, others, once), count = 0;
+      if (count == kPairs) look();
     }
-    if (count > 0) vote_of_pairs(i, std::span(others).first(count), once);
+    if (count > 0) look();
+    Votes& sum = votes[row_of_[static_cast<std::size_t>(i)]];
+    for (std::size_t b = 0; b < kBins; ++b) sum[b] += own[b];
   }
 
-  void vote_of_pairs(std::int32_t i, std::span<const std::int32_t> others, bool once) {
+  void look_at_pairs(std::int32_t i, std::span<const std::int32_t> others, bool once, Votes& own,
+                     std::vector<Votes>& votes) const {
     std::array<PairBins, kPairs> bins;
     pair_bins(at(points_, i), at(normals_, i), points_, normals_, others, swap_, bins);
     for (std::size_t pair = 0; pair < others.size(); ++pair) {
-      add(i, bins[pair]);
+      add(bins[pair], own);
       const std::int32_t j = others[pair];
       if (!once || !is_requested(j)) continue;
-      add(j, bins[pair].both_ways
-                 ? bins[pair]
-                 : pair_bins(at(points_, j), at(normals_, j), at(points_, i), at(normals_, i), swap_));
+      add(bins[pair].both_ways
+              ? bins[pair]
+              : pair_bins(at(points_, j), at(normals_, j), at(points_, i), at(normals_, i), swap_),
+          votes[row_of_[static_cast<std::size_t>(j)]]);
     }
   }
 
   bool is_requested(std::int32_t point) const { return row_of_[static_cast<std::size_t>(point)] != kNone; }
 
-  void add(std::int32_t i, const PairBins& bins) {
-    float* const row = rows_.data() + row_of_[static_cast<std::size_t>(i)] * kBins;
-    row[bins.theta] += 1;
-    row[kFilledBins + bins.alpha] += 1;
-    row[2 * kFilledBins + bins.phi] += 1;
+  static void add(const PairBins& bins, Votes& votes) {
+    ++votes[bins.theta];
+    ++votes[kFilledBins + bins.alpha];
+    ++votes[2 * kFilledBins + bins.phi];
   }
 
   std::span<const Vec3> points_, normals_;
   std::vector<std::size_t> row_of_;
-  std::vector<float> rows_;  // votes, then shares of votes
+  std::vector<float> rows_;  // shares of votes
   bool swap_;
 };
 
