@@ -17,7 +17,7 @@ double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, do
   CHECK_EQ(points.size(), tree.size());
   CHECK_GT(points.size(), 0U);
   std::atomic<std::size_t> others = 0;
-  parallel_ranges(points.size(), 4096, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     std::size_t some = 0;
     for (std::size_t i = first; i < last; ++i) some += tree.count_within(points[i], radius) - 1;
     others += some;
