@@ -12,6 +12,7 @@
 #include "pipeline/catalog/given_maps.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"
+#include "stages/core/mesh_ops.h"
 #include "stages/core/smoothing.h"
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/matching/matching.h"

@@ -24,9 +24,8 @@ namespace {
 
 constexpr std::size_t kBlocks = 3;
 constexpr std::size_t kBins = kBlocks * kFilledBins;
-constexpr double kBlockTotal = 100;   // of each block in the published weighting
-constexpr std::size_t kGrain = 1024;  // points of a range in a loop that threads share
-constexpr double kMaxWeight = 1e12;   // limit of R / distance: below, the distance is rounding
+constexpr double kBlockTotal = 100;  // of each block in the published weighting
+constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distance is rounding
 
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
@@ -43,7 +42,7 @@ class Neighbourhoods {
       kept_at_.resize(points.size());
     } else if (points.size() * k_ <= kMostKept) {
       kept_.resize(points.size() * k_);
-      parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
         Found found;
         for (std::size_t i = first; i < last; ++i) {
           tree.nearest(points[i], k_, found);
@@ -125,15 +124,16 @@ class SimplifiedHistograms {
     std::vector<double> others(requested.size());
     // Looking at each pair once needs one thread: it writes to both ends.
     const bool once = neighbourhoods.mutual() && requested.size() <= kOneThread;
-    parallel_ranges(requested.size(), once ? kOneThread : kGrain, [&](std::size_t first, std::size_t last) {
-      Neighbourhoods::Found memory;
-      for (std::size_t row = first; row < last; ++row) {
-        const auto found = once ? neighbourhoods.unordered_kept(requested[row], memory)
-                                : neighbourhoods.unordered(requested[row], memory);
-        others[row] = neighbourhoods.others(requested[row], found);
-        vote(requested[row], found, once, votes);
-      }
-    });
+    parallel_ranges(requested.size(), once ? kOneThread : kPointGrain,
+                    [&](std::size_t first, std::size_t last) {
+                      Neighbourhoods::Found memory;
+                      for (std::size_t row = first; row < last; ++row) {
+                        const auto found = once ? neighbourhoods.unordered_kept(requested[row], memory)
+                                                : neighbourhoods.unordered(requested[row], memory);
+                        others[row] = neighbourhoods.others(requested[row], found);
+                        vote(requested[row], found, once, votes);
+                      }
+                    });
     rows_.reserve(requested.size() * kBins);
     for (std::size_t row = 0; row < requested.size(); ++row)
       for (const std::uint32_t count : votes[row])
@@ -270,7 +270,7 @@ Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, co
 
   const double unit = published ? 1 : bounding_radius(points);
   Descriptors result{std::vector<float>(subset.size() * kFpfhBins), support.radius, support.neighbours};
-  parallel_ranges(subset.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(subset.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     Neighbourhoods::Found memory;
     for (std::size_t i = first; i < last; ++i) {
       Filled sum{};

@@ -7,6 +7,9 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <string>
+
+#include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
@@ -30,15 +33,49 @@ double bounding_radius(std::span<const Vec3> points) {
   return std::sqrt(largest);
 }
 
+std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
+  if (points.empty()) throw InputError("the shape has no points");
+  const Vec3 centre = centroid(points);
+  const double radius = bounding_radius(points);
+  if (!std::isfinite(radius))
+    throw InputError("the shape has a coordinate that is not finite, or whose square overflows");
+  if (radius == 0) throw InputError("all points of the shape coincide");
+  std::vector<Vec3> result;
+  result.reserve(points.size());
+  for (const Vec3& p : points) result.push_back((p - centre) / radius);
+  return result;
+}
+
+void check_faces(std::size_t n_points, Surface surface) {
+  for (const Triangle& face : surface)
+    for (const std::int32_t v : face)
+      if (v < 0 || static_cast<std::size_t>(v) >= n_points)
+        throw InputError("a face refers to point " + std::to_string(v) + " (0-based), but the shape has " +
+                         std::to_string(n_points) + " points");
+}
+
+Vec3 face_area_vector(Points points, const Triangle& face) {
+  const Vec3& a = at(points, face[0]);
+  return (at(points, face[1]) - a).cross(at(points, face[2]) - a);
+}
+
 Vec3 face_area_vector(const Mesh& mesh, const Triangle& face) {
-  const Vec3& a = at(mesh.vertices, face[0]);
-  return (at(mesh.vertices, face[1]) - a).cross(at(mesh.vertices, face[2]) - a);
+  return face_area_vector(mesh.vertices, face);
 }
 
 double surface_area(const Mesh& mesh) {
   double doubled = 0;
   for (const Triangle& face : mesh.faces) doubled += face_area_vector(mesh, face).norm();
   return doubled / 2;
+}
+
+ScalarField barycentric_areas(Points points, Surface surface) {
+  ScalarField areas(points.size(), 0.0);
+  for (const Triangle& face : surface) {
+    const double third = face_area_vector(points, face).norm() / 6;
+    for (const std::int32_t i : face) areas[static_cast<std::size_t>(i)] += third;
+  }
+  return areas;
 }
 
 Vec3 area_centroid(const Mesh& mesh) {

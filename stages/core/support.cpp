@@ -20,7 +20,7 @@ std::array<double, 2> mean_neighbour_counts(std::span<const Vec3> points, const 
   CHECK_EQ(points.size(), tree.size());
   CHECK_GT(points.size(), 0U);
   std::array<std::atomic<std::size_t>, 2> others = {0, 0};
-  parallel_ranges(points.size(), 4096, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     std::array<std::size_t, 2> some = {0, 0};
     for (std::size_t i = first; i < last; ++i) {
       const auto within = tree.count_within(points[i], small, large);

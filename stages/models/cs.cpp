@@ -37,7 +37,6 @@ namespace {
 
 constexpr int kRings = 3;                 // a point depends on clusters up to so many steps of adjacency away
 constexpr std::size_t kFallbackNear = 9;  // nearest points, used if none is within the radius
-constexpr std::size_t kGrain = 1024;      // points of a range in a loop that threads share
 constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the affinity of a point to a cluster
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
@@ -51,7 +50,7 @@ void sort_and_deduplicate(std::vector<std::int32_t>& list) {
 Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, double radius,
                              const Clusters& clusters) {
   std::vector<std::vector<std::int32_t>> of_point(points.size());
-  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     std::vector<Neighbour> found;
     for (std::size_t i = first; i < last; ++i) {
       tree.within_unordered(points[i], radius, found);
@@ -137,7 +136,7 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
     entries += reach_of(i).size();
   }
   result.weights.resize(entries);
-  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const auto& reach = reach_of(i);
       const auto weights = std::span(result.weights).subspan(result.offsets[i], reach.size());
@@ -151,7 +150,7 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
   });
   // A common factor cancels below. Relative to the largest weight, they cannot all vanish.
   const double largest = *std::max_element(result.weights.begin(), result.weights.end());
-  parallel_ranges(entries, kGrain * 64, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(entries, kPointGrain * 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) result.weights[e] = std::exp(result.weights[e] - largest);
   });
 
