@@ -34,10 +34,10 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   section.reject_unknown(known);
   std::vector<Model> models;
   for (const ModelRow& row : model_rows())
-    if (!root.has("models") || section.has(row.name))
+    if (root.has("models") ? section.has(row.name) : row.by_default)
       models.push_back(row.bind(section.child(row.name), protocol));
   for (const std::string& name : commands) models.push_back(command_model(name, section));
-  if (models.empty()) root.fail("models", "names no model; leave the key out to run all of them");
+  if (models.empty()) root.fail("models", "names no model; leave the key out to run the paper's");
   return models;
 }
 
