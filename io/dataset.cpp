@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "io/cloud_file.h"
 #include "io/file.h"
-#include "io/mesh_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -121,7 +121,7 @@ constexpr std::array kLayouts = {LayoutRow{name_of(Layout::gs), gs_places, true}
 
 std::optional<Found> find_layout(const fs::path& root, const LayoutRow& layout) {
   for (const Place& place : layout.places(root)) {
-    std::vector<fs::path> meshes = files_in(place.meshes, has_mesh_extension);
+    std::vector<fs::path> meshes = files_in(place.meshes, has_shape_extension);
     if (!meshes.empty()) return Found{&layout, place, std::move(meshes)};
   }
   return {};
@@ -141,8 +141,9 @@ Found find_meshes(const fs::path& root, std::span<const LayoutRow> layouts) {
     if (const auto found = find_layout(root, layout)) return *found;
     searched.push_back(fmt::format("{}: {}", layout.name, where_looked_for(root, layout)));
   }
-  throw InputError(fmt::format("{}: no .off, .obj or .ply meshes found; looked in {}", root.string(),
-                               fmt::join(searched, "; ")));
+  throw InputError(fmt::format(
+      "{}: no .off, .obj or .ply meshes found, and no .ply, .pcd or .xyz point clouds; looked in {}",
+      root.string(), fmt::join(searched, "; ")));
 }
 
 // 1..400, or 0 for a name that is not such a number.
@@ -154,16 +155,15 @@ int benchmark_number(const std::string& name) {
 
 using ItemsByName = std::map<std::string, DatasetItem, NaturalLess>;
 
-ItemsByName items_of(const Found& found) {
+ItemsByName items_of(const Found& found, Twins twins, std::vector<std::string>& notes) {
+  std::vector<NamedFile> files;
+  for (const fs::path& mesh : found.meshes) files.push_back({mesh.stem(), mesh});
   ItemsByName items;
-  for (const fs::path& mesh : found.meshes) {
-    DatasetItem item{.name = mesh.stem(), .category = {}, .mesh = mesh, .saliency = {}, .picks = {}};
+  for (const auto& [name, mesh] : without_twins(files, twins, notes)) {
+    DatasetItem item{.name = name, .category = {}, .mesh = mesh, .saliency = {}, .picks = {}};
     if (const int number = benchmark_number(item.name); number > 0 && found.layout->is_benchmark)
       item.category = kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)];
-    const auto [twin, fresh] = items.try_emplace(item.name, item);
-    if (!fresh)
-      throw InputError(fmt::format("{}: has the same name as {}: keep one of them", mesh.string(),
-                                   twin->second.mesh.string()));
+    items.emplace(name, std::move(item));
   }
   return items;
 }
@@ -226,19 +226,19 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
 
 std::span<const LayoutRow> layout_rows() { return kLayouts; }
 
-Dataset find_dataset(const fs::path& root, Layout layout) {
-  if (layout == Layout::automatic) return find_dataset(root, kLayouts);
+Dataset find_dataset(const fs::path& root, Layout layout, Twins twins) {
+  if (layout == Layout::automatic) return find_dataset(root, kLayouts, twins);
   const auto row = std::find_if(kLayouts.begin(), kLayouts.end(),
                                 [&](const LayoutRow& of) { return of.name == name_of(layout); });
-  return find_dataset(root, {row, 1});
+  return find_dataset(root, {row, 1}, twins);
 }
 
-Dataset find_dataset(const fs::path& root, std::span<const LayoutRow> layouts) {
+Dataset find_dataset(const fs::path& root, std::span<const LayoutRow> layouts, Twins twins) {
   fs::path folder = root.lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "data/" is "data"
   const Found found = find_meshes(folder, layouts);
-  ItemsByName items = items_of(found);
   Dataset dataset;
+  ItemsByName items = items_of(found, twins, dataset.notes);
   dataset.layout = found.layout->name;
   note_missing_numbers(items, dataset.notes);
   const auto truth = std::find_if(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the meshes of a data set and the ground truth that belongs to each, in the folder layouts in use.
+// Finds the meshes and point clouds of a data set and the ground truth that belongs to each, in the folder
+// layouts in use.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/twins.h"
 #include "stages/core/options.h"
 
 namespace salbench {
@@ -49,7 +51,7 @@ std::span<const LayoutRow> layout_rows();
 struct DatasetItem {
   std::string name;                          // the mesh file's name without its extension
   std::string category;                      // class of SHREC'07; empty if it has none
-  std::filesystem::path mesh;                // .off .obj .ply
+  std::filesystem::path mesh;                // .off .obj .ply; of a point cloud .ply .pcd .xyz
   std::filesystem::path saliency;            // .val; empty if there is none
   std::vector<std::filesystem::path> picks;  // .pid by participant's number; may be empty
 };
@@ -61,9 +63,11 @@ struct Dataset {
 };
 
 // Lists folders and reads no file; the result does not depend on the order in which the system lists them.
-// Throws InputError if there are no meshes, naming the folders searched, or if two meshes have the same name.
-Dataset find_dataset(const std::filesystem::path& root, Layout layout);
-Dataset find_dataset(const std::filesystem::path& root, std::span<const LayoutRow> layouts);
+// Throws InputError if there are no shapes, naming the folders searched, or if several files have the same
+// name and `twins` does not tell which of them counts.
+Dataset find_dataset(const std::filesystem::path& root, Layout layout, Twins twins = Twins::refuse);
+Dataset find_dataset(const std::filesystem::path& root, std::span<const LayoutRow> layouts,
+                     Twins twins = Twins::refuse);
 
 // A strict total order that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10".
 bool natural_less(std::string_view a, std::string_view b);

@@ -230,6 +230,12 @@ void make_folder(const fs::path& folder, std::string_view advice) {
         fmt::format("{}: the folder cannot be created: {}; {}", folder.string(), error.message(), advice));
 }
 
+std::string lower_case_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
 std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);

@@ -66,6 +66,8 @@ std::vector<FolderEntry> list_folder(const std::filesystem::path& folder);
 // Creates the folder and those above it. Throws StorageError with `advice` ("choose another with --cache").
 void make_folder(const std::filesystem::path& folder, std::string_view advice);
 
+std::string lower_case_extension(const std::filesystem::path& path);  // ".ply" of "a.PLY"
+
 // Size in bytes; nothing if there is no such file. Throws StorageError if the system refuses.
 std::optional<std::uintmax_t> size_of_file(const std::filesystem::path& path);
 

@@ -2,7 +2,6 @@
 #include "io/mesh_file.h"
 
 #include <array>
-#include <cctype>
 #include <string>
 
 #include <fmt/format.h>
@@ -22,8 +21,7 @@ constexpr std::array kFormats = {Format{".off", parse_off}, Format{".obj", parse
                                  Format{".ply", parse_ply}};
 
 const Format* format_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case_extension(path);
   for (const Format& format : kFormats)
     if (format.extension == extension) return &format;
   return nullptr;

@@ -8,9 +8,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <initializer_list>
 
 #include <fmt/format.h>
 
+#include "io/cloud_file.h"
 #include "io/mesh_file.h"
 #include "io/mesh_parts.h"
 #include "io/ply_header.h"
@@ -38,14 +41,14 @@ std::string plural_of(const Element& element) {
 // One record per line.
 class AsciiBody {
  public:
-  explicit AsciiBody(const TextScanner& after_header) : in_(after_header) {}
+  AsciiBody(const TextScanner& after_header, bool finite) : in_(after_header), finite_(finite) {}
 
   void begin(const Element& element) { in_.begin_records(element.count, plural_of(element)); }
   void next_record() { in_.next_record(); }
   void end_record() {
     if (!in_.peek_word().empty()) in_.fail("the line has more values than the header says");
   }
-  double value(Type) { return in_.number(); }
+  double value(Type) { return finite_ ? in_.number() : in_.number_or_nan(); }
   void skip(Type, std::int64_t n) {
     for (std::int64_t i = 0; i < n; ++i) in_.skip_word();
   }
@@ -56,6 +59,7 @@ class AsciiBody {
 
  private:
   TextScanner in_;
+  bool finite_;  // all numbers that are read
 };
 
 class BinaryBody {
@@ -154,63 +158,99 @@ const Property* corners_of(const Element& face) {
   return corners != nullptr ? corners : face.find("vertex_index");
 }
 
-// Elements other than vertices and faces are passed over, and so are all other properties of these two.
+// Numbers that are read of each record of an element: x, y, z, nx ...; null for what the file does not have.
+struct Numbers {
+  const Element* element = nullptr;
+  std::vector<const Property*> properties = {};
+  std::vector<double> values = {};  // of the latest record
+
+  Numbers(const ply::Header& header, std::string_view name, std::initializer_list<std::string_view> wanted)
+      : element(header.find(name)), values(wanted.size(), 0) {
+    for (const std::string_view number : wanted) {
+      const Property* property = element == nullptr ? nullptr : element->find(number);
+      properties.push_back(property != nullptr && !property->length_type ? property : nullptr);
+    }
+  }
+  bool has(std::size_t first, std::size_t count) const {
+    return std::all_of(properties.begin() + static_cast<long>(first),
+                       properties.begin() + static_cast<long>(first + count),
+                       [](const Property* property) { return property != nullptr; });
+  }
+  Vec3 triple(std::size_t first) const { return {values[first], values[first + 1], values[first + 2]}; }
+  double* place_of(const Property& property) {
+    const auto found = std::find(properties.begin(), properties.end(), &property);
+    return found == properties.end() ? nullptr
+                                     : &values[static_cast<std::size_t>(found - properties.begin())];
+  }
+};
+
+// What is read of a file, record by record.
+struct Wanted {
+  Numbers vertex, camera;
+  const Element* face = nullptr;  // null for point clouds
+  const Property* corners = nullptr;
+  std::function<std::string_view()> end_vertex = {};  // what is wrong with it
+  std::function<void(const std::vector<std::int32_t>& polygon)> end_face = {};
+};
+
+// Other elements are passed over, and so are all other properties of these.
 template <class Body>
-Mesh read_body(Body body, const ply::Header& header, std::size_t file_size) {
-  const Element* vertex = header.find("vertex");
-  const Element* face = header.find("face");
-  const std::array<const Property*, 3> axes = {vertex->find("x"), vertex->find("y"), vertex->find("z")};
-  const Property* corners = face == nullptr ? nullptr : corners_of(*face);
-  Mesh mesh;
-  mesh.vertices.reserve(room_for(vertex->count, file_size));
-  if (face != nullptr) mesh.faces.reserve(room_for(face->count, file_size));
-  Vec3 point = Vec3::Zero();
+void read_body(Body body, const ply::Header& header, Wanted& wanted) {
   std::vector<std::int32_t> polygon;
   for (const Element& element : header.elements) {
     if (element.properties.empty()) continue;  // no bytes, however many are announced
+    Numbers& numbers = &element == wanted.camera.element ? wanted.camera : wanted.vertex;
     body.begin(element);
     for (std::int64_t i = 0; i < element.count; ++i) {
       body.next_record();
       for (const Property& property : element.properties) {
-        const auto axis = std::find(axes.begin(), axes.end(), &property) - axes.begin();
-        if (axis < 3)
-          point[axis] = body.value(property.type);
-        else if (&property == corners)
-          read_polygon(body, property, vertex->count, polygon);
+        if (double* place = numbers.place_of(property))
+          *place = body.value(property.type);
+        else if (&property == wanted.corners)
+          read_polygon(body, property, wanted.vertex.element->count, polygon);
         else
           skip_property(body, property);
       }
       body.end_record();
-      if (&element == vertex) {
-        if (const std::string_view wrong = wrong_with_point(point); !wrong.empty()) body.fail(wrong);
-        mesh.vertices.push_back(point);
-      }
-      if (&element == face) append_fan(mesh.faces, polygon);
+      if (&element == wanted.vertex.element)
+        if (const std::string_view wrong = wanted.end_vertex(); !wrong.empty()) body.fail(wrong);
+      if (&element == wanted.face) wanted.end_face(polygon);
     }
   }
   body.end();
-  return mesh;
+}
+
+void read_encoded(const TextScanner& in, std::size_t file_size, const ply::Header& header, bool finite,
+                  Wanted& wanted) {
+  if (header.encoding == Encoding::ascii) return read_body(AsciiBody(in, finite), header, wanted);
+  const bool swapped = (header.encoding == Encoding::big_endian) != (std::endian::native == std::endian::big);
+  read_body(BinaryBody(in, file_size, swapped), header, wanted);
 }
 
 // Refuses headers that read_body cannot follow.
-void check_header(const TextScanner& in, const ply::Header& header) {
+void check_vertices(const TextScanner& in, const ply::Header& header, std::string_view held) {
   const Element* vertex = header.find("vertex");
-  if (vertex == nullptr) in.fail("the header has no element \"vertex\": the file holds no mesh");
+  if (vertex == nullptr)
+    in.fail(fmt::format("the header has no element \"vertex\": the file holds no {}", held));
   for (const char* axis : {"x", "y", "z"}) {
     const Property* property = vertex->find(axis);
     if (property == nullptr || property->length_type)
       in.fail(fmt::format("the header gives vertices no number \"{}\"", axis));
   }
+}
+
+void check_count(const TextScanner& in, const Element* element) {
+  if (element == nullptr) return;
+  if (const std::string wrong = wrong_with_count(element->count, plural_of(*element)); !wrong.empty())
+    in.fail(wrong);
+}
+
+void check_faces(const TextScanner& in, const ply::Header& header) {
   if (header.find("tristrips") != nullptr)
     in.fail("triangle strips cannot be read: write the mesh with an element \"face\"");
   const Element* face = header.find("face");
   if (face != nullptr && (corners_of(*face) == nullptr || !corners_of(*face)->length_type))
     in.fail("the header gives faces no list \"vertex_indices\"");
-  for (const Element* element : {vertex, face}) {
-    if (element == nullptr) continue;
-    if (const std::string wrong = wrong_with_count(element->count, plural_of(*element)); !wrong.empty())
-      in.fail(wrong);
-  }
 }
 
 }  // namespace
@@ -218,10 +258,51 @@ void check_header(const TextScanner& in, const ply::Header& header) {
 Mesh parse_ply(std::string_view bytes, std::string_view name) {
   TextScanner in(bytes, name);
   const ply::Header header = ply::read_header(in);
-  check_header(in, header);
-  if (header.encoding == Encoding::ascii) return read_body(AsciiBody(in), header, bytes.size());
-  const bool swapped = (header.encoding == Encoding::big_endian) != (std::endian::native == std::endian::big);
-  return read_body(BinaryBody(in, bytes.size(), swapped), header, bytes.size());
+  check_vertices(in, header, "mesh");
+  check_faces(in, header);
+  const Element *vertex = header.find("vertex"), *face = header.find("face");
+  check_count(in, vertex);
+  check_count(in, face);
+  Mesh mesh;
+  mesh.vertices.reserve(room_for(vertex->count, bytes.size()));
+  if (face != nullptr) mesh.faces.reserve(room_for(face->count, bytes.size()));
+  Wanted wanted{.vertex = {header, "vertex", {"x", "y", "z"}},
+                .camera = {header, "camera", {}},
+                .face = face,
+                .corners = face == nullptr ? nullptr : corners_of(*face)};
+  wanted.end_vertex = [&] {
+    mesh.vertices.push_back(wanted.vertex.triple(0));
+    return wrong_with_point(mesh.vertices.back());
+  };
+  wanted.end_face = [&](const std::vector<std::int32_t>& polygon) { append_fan(mesh.faces, polygon); };
+  read_encoded(in, bytes.size(), header, true, wanted);
+  return mesh;
+}
+
+PointCloud parse_ply_cloud(std::string_view bytes, std::string_view name) {
+  TextScanner in(bytes, name);
+  const ply::Header header = ply::read_header(in);
+  check_vertices(in, header, "point cloud");
+  const Element *vertex = header.find("vertex"), *face = header.find("face");
+  check_count(in, vertex);
+  if (face != nullptr && face->count > 0)
+    in.fail("the header announces faces: the file holds a mesh, and a point cloud was expected");
+  PointCloud cloud;
+  cloud.points.reserve(room_for(vertex->count, bytes.size()));
+  Wanted wanted{.vertex = {header, "vertex", {"x", "y", "z", "nx", "ny", "nz"}},
+                .camera = {header, "camera", {"view_px", "view_py", "view_pz", "viewporty"}}};
+  const bool normals = wanted.vertex.has(3, 3);
+  wanted.end_vertex = [&]() -> std::string_view {
+    cloud.points.push_back(wanted.vertex.triple(0));
+    if (normals) cloud.normals.push_back(wanted.vertex.triple(3));
+    return {};
+  };
+  read_encoded(in, bytes.size(), header, false, wanted);
+  const Numbers& camera = wanted.camera;
+  if (camera.has(0, 3) && camera.triple(0).allFinite() &&
+      (!camera.triple(0).isZero(0) || camera.values[3] > 1))
+    cloud.viewpoint = camera.triple(0);
+  return cloud;
 }
 
 }  // namespace salbench

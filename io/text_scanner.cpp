@@ -91,12 +91,16 @@ Number TextScanner::parsed(std::string_view what, std::string_view type) {
     fail(fmt::format("{} does not fit {}", in_quotes(found), type));
   if (error != std::errc() || end != digits.data() + digits.size())
     fail(fmt::format("{} is not {}", in_quotes(found), what));
-  if (!std::isfinite(static_cast<double>(value)))
-    fail(fmt::format("{} is not a finite number", in_quotes(found)));
   return value;
 }
 
-double TextScanner::number() { return parsed<double>("a number", "a double"); }
+double TextScanner::number() {
+  const std::string_view found = peek_word();
+  const double value = number_or_nan();
+  if (!std::isfinite(value)) fail(fmt::format("{} is not a finite number", in_quotes(found)));
+  return value;
+}
+double TextScanner::number_or_nan() { return parsed<double>("a number", "a double"); }
 std::int64_t TextScanner::integer() { return parsed<std::int64_t>("a whole number", "64 bits"); }
 
 void TextScanner::fail(std::string_view what) const {

@@ -30,6 +30,7 @@ class TextScanner {
   std::string_view peek_word();  // the same, staying before it
   void skip_word();              // fails if there is none, as these do:
   double number();               // finite
+  double number_or_nan();        // or an infinity: written where nothing was measured
   std::int64_t integer();
 
   std::string_view line() const { return line_; }  // what is left of the line

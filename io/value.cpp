@@ -245,6 +245,32 @@ Value picture_from(const Arrays& arrays) {
   return picture;
 }
 
+Arrays arrays_of(const PointCloud& cloud) {
+  const std::vector<Vec3> viewpoint =
+      cloud.viewpoint ? std::vector<Vec3>{*cloud.viewpoint} : std::vector<Vec3>{};
+  return {
+      triples("points", cloud.points, "length unit of the file",
+              "positions, n x 3, in the order of the file"),
+      triples("normals", cloud.normals, "1", "unit normals of the file, n x 3; empty if it has none"),
+      triples("viewpoint", viewpoint, "length unit of the file",
+              "where the points were seen from, 1 x 3; empty if unknown"),
+      column("dropped", cloud.dropped, "1", "0-based numbers in the file of the points without a position")};
+}
+Value cloud_from(const Arrays& arrays) {
+  PointCloud cloud{.points = triples_of<Vec3>(arrays, "points"),
+                   .normals = triples_of<Vec3>(arrays, "normals"),
+                   .dropped = values_of<std::int32_t>(arrays, "dropped")};
+  const auto viewpoint = triples_of<Vec3>(arrays, "viewpoint");
+  if (viewpoint.size() > 1) throw InputError("the data set 'viewpoint' is not one position");
+  if (!viewpoint.empty()) cloud.viewpoint = viewpoint[0];
+  const auto in_file = static_cast<std::int64_t>(cloud.size_in_file());
+  for (std::size_t i = 0; i < cloud.dropped.size(); ++i)
+    if (cloud.dropped[i] < 0 || cloud.dropped[i] >= in_file ||
+        (i > 0 && cloud.dropped[i] <= cloud.dropped[i - 1]))
+      throw InputError("the data set 'dropped' does not ascend within the points of the file");
+  return cloud;
+}
+
 struct Kind {
   std::string_view name;
   Value (*read)(const Arrays&);
@@ -263,6 +289,7 @@ constexpr std::array<Kind, std::variant_size_v<Value>> kKinds = {{
     {"scores", scores_from},
     {"human_curve", human_curve_from},
     {"picture", picture_from},
+    {"point_cloud", cloud_from},
 }};
 
 }  // namespace

@@ -8,12 +8,13 @@
 
 #include "io/arrays.h"
 #include "stages/core/picture.h"
+#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
 
 namespace salbench {
 
 using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                           Scores, HumanCurve, Picture>;
+                           Scores, HumanCurve, Picture, PointCloud>;
 
 Arrays arrays_from(const Value& value);
 

@@ -4,9 +4,8 @@
 from dataclasses import dataclass
 from typing import Callable
 
-from report import claims, examples, figures, sensitivity, tables
+from report import claims, examples, figures, sensitivity, statistics, tables
 from report.blocks import attempt
-from report.names import DATASETS
 
 
 @dataclass(frozen=True)
@@ -16,10 +15,16 @@ class Element:
     label: str       # the paper's LaTeX label
     title: str
     build: Callable  # Workshop -> blocks
+    dataset: str = ""  # stands only in reports of runs that have it
+
+
+def elements_of(results):
+    """Those that a report of these results has."""
+    return [element for element in ELEMENTS if not element.dataset or element.dataset in statistics.shown(results)]
 
 
 def distributions(shop):
-    return [block for dataset in DATASETS for block in attempt(figures.cumulative, shop, dataset)]
+    return [block for dataset in statistics.shown(shop.results) for block in attempt(figures.cumulative, shop, dataset)]
 
 
 def performance(shop):
@@ -46,6 +51,13 @@ def scan_panels(shop):
     return [block for metric in shop.results.leading for block in attempt(figures.performance, shop, "scans", metric)]
 
 
+def clouds(shop):
+    blocks = attempt(figures.rankings, shop, "clouds") + attempt(examples.clouds, shop)
+    for metric in shop.results.leading:
+        blocks += attempt(figures.performance, shop, "clouds", metric) + attempt(examples.difficult, shop, "clouds", metric)
+    return blocks
+
+
 def participants(shop):
     return attempt(figures.human_curves, shop) + attempt(tables.participants_worth, shop)
 
@@ -67,4 +79,5 @@ ELEMENTS = (
     Element("sensitivity", "", "", "Where the ranking depends on the convention", sensitivity.tables),
     Element("scan-panels", "", "", "Scan by scan", scan_panels),
     Element("scan-classes", "", "", "Performance per class on scans", classes_of_scans),
+    Element("clouds", "", "", "Performance on point clouds", clouds, dataset="clouds"),
 )

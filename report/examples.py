@@ -6,7 +6,7 @@ from PIL import Image
 from report import statistics, style
 from report.blocks import Gallery, Tile
 from report.gallery import Painter, describe
-from report.names import natural
+from report.names import natural, spoken
 from report.results import Missing
 from report.shape_pages import Scores, models_of
 from report.viewer import label_of
@@ -50,8 +50,9 @@ def pieces(shop, shape, model):
 
 
 def thumbnails(shop):
-    """(item, path of its painted ground truth) of the meshes that have both, in the order of their names."""
-    painters = sorted(scored_pictures(shop, "meshes"), key=lambda painter: natural(painter.shape.name))
+    """(item, path of its painted ground truth) of the meshes and point clouds that have both, in the order of their names."""
+    found = scored_pictures(shop, "meshes") + scored_pictures(shop, "clouds")
+    painters = sorted(found, key=lambda painter: natural(painter.shape.name))
     return [(painter.shape.item, painter.paint("ground truth")) for painter in painters if painter.shape.item in shop.pages]
 
 
@@ -90,7 +91,7 @@ def chosen(shop, dataset, count):
     painters = scored_pictures(shop, dataset)
     named = [painter for painter in painters if painter.shape.item in shop.examples]
     if not painters:
-        raise Missing(HOW.format(dataset, "see README.md."))
+        raise Missing(HOW.format(spoken(dataset), "see README.md."))
     return named[:count] if named else spread(painters, count)
 
 
@@ -104,6 +105,12 @@ def scans(shop):
     gallery = Gallery(f"Saliency maps before histogram matching on simulated range scans, with ({leading_labels(shop)}) of the "
                       "matched map; best model in bold.", rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
     return printed(shop, "examples-scans", gallery)
+
+
+def clouds(shop):
+    gallery = Gallery(f"Saliency maps before histogram matching on point clouds, with ({leading_labels(shop)}) of the matched "
+                      "map; best model in bold.", rows_of_maps(shop, chosen(shop, "clouds", 2)))
+    return printed(shop, "examples-clouds", gallery)
 
 
 def matching(shop):
@@ -121,10 +128,10 @@ def matching(shop):
 def difficult(shop, dataset, metric, count=3):
     """The shapes with the worst mean score: ground truth beside the best model's map."""
     of = shop.results.metric(metric)
-    lowest_scoring = f"{'highest' if of.lower else 'lowest'}-scoring {dataset} by {of.label}"
+    lowest_scoring = f"{'highest' if of.lower else 'lowest'}-scoring {spoken(dataset)} by {of.label}"
     mean = statistics.mean_per_shape(shop.results, dataset, metric)
     if mean.empty:
-        raise Missing(f"No shape of the {dataset} has a {of.label}.")
+        raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
     wide = statistics.scores(shop.results, dataset, metric)
     painters = {(painter.shape.item, painter.shape.view): painter for painter in scored_pictures(shop, dataset)}
     lowest = list(mean.index[:count])

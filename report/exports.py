@@ -21,8 +21,8 @@ def text(value):
 class Picture:
     """What a pinhole camera sees of a shape; row 0 is the top row."""
 
-    primitive: numpy.ndarray        # H x W int32: face of a mesh, point of a scan; -1 nothing
-    weights: numpy.ndarray          # H x W x 3 float32: of the face's corners; of a scan 1, 0, 0
+    primitive: numpy.ndarray        # H x W int32: face of a mesh, point of others; -1 nothing
+    weights: numpy.ndarray          # H x W x 3 float32: of the face's corners; of a point 1, 0, 0
     shade: numpy.ndarray            # H x W uint8: brightness
     view_projection: numpy.ndarray  # 4 x 4 float64: world to clip space, column vectors; None if not recorded
     depth: numpy.ndarray            # H x W float32: along the viewing direction, the w of clip space; None if not recorded
@@ -35,8 +35,24 @@ class Picture:
         return eye[:3] / eye[3], "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
 
 
+@dataclass(frozen=True)
+class Places:
+    """Where the groups of one kind of shapes hold what all have."""
+
+    points: str
+    ground_truth: str
+    faces: str = ""   # empty: the shape has none
+    normals: str = ""
+    eye: str = ""     # from where the points were seen
+
+
+PLACES = {"meshes": Places("mesh/vertices", "ground_truth", faces="mesh/faces"),
+          "scans": Places("scan/points", "scan_ground_truth", normals="scan_normals/normals", eye="scan/camera"),
+          "clouds": Places("cloud/points", "cloud_ground_truth", normals="cloud_normals/normals", eye="cloud/viewpoint")}
+
+
 class Shape:
-    """A mesh or scan of an export: /ITEM or /ITEM_VIEW."""
+    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW."""
 
     def __init__(self, name, group):
         self.name = name
@@ -45,33 +61,34 @@ class Shape:
         self.item = text(group.attrs["item"])
         self.category = text(group.attrs.get("class", ""))
         self.view = str(int(group.attrs["view"])) if self.dataset == "scans" else ""
+        self.places = PLACES[self.dataset]
 
     def _array(self, path):
         try:
-            return self.group[path][:]
+            return self.group[path][:] if path else None
         except BROKEN:
             return None
 
     @property
     def points(self):
         """n x 3 float64, or None."""
-        return self._array("scan/points" if self.view else "mesh/vertices")
+        return self._array(self.places.points)
 
     @property
     def faces(self):
-        """f x 3 int32; None for a scan."""
-        return None if self.view else self._array("mesh/faces")
+        """f x 3 int32; None for scans and point clouds."""
+        return self._array(self.places.faces)
 
     @property
     def ground_truth(self):
         """n float64 in [0, 1], or None where it is not known."""
-        values = self._array("scan_ground_truth/saliency" if self.view else "ground_truth/saliency")
+        values = self._array(f"{self.places.ground_truth}/saliency")
         return None if values is None or len(values) == 0 else unit_range(values)
 
     @property
     def picks(self):
         """Indices of the distinct points that participants picked; empty where nobody did."""
-        found = self._array("scan_ground_truth/picks" if self.view else "ground_truth/picks")
+        found = self._array(f"{self.places.ground_truth}/picks")
         return numpy.unique(found) if found is not None else numpy.zeros(0, dtype=numpy.int32)
 
     def maps(self):
@@ -85,9 +102,16 @@ class Shape:
                     found[model, "before" if kind == "map" else "after"] = unit_range(values)
         return found
 
+    def seen_from(self):
+        """From where the points of a scan or point cloud were seen, or None."""
+        eye = self._array(self.places.eye)
+        return eye.reshape(-1) if eye is not None and eye.size == 3 else None
+
     def shade(self):
-        """Brightness of a scan's points seen from its camera, n in [0, 1]; None if normals are not in the export."""
-        points, normals, camera = self.points, self._array("scan_normals/normals"), self._array("scan/camera")
+        """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from the camera of the
+        picture; None if that or normals are not in the export."""
+        points, normals, camera = self.points, self._array(self.places.normals), self.seen_from()
+        camera = self.eye()[0] if camera is None else camera
         if points is None or normals is None or camera is None or len(normals) != len(points):
             return None
         towards = camera - points
@@ -100,7 +124,7 @@ class Shape:
         picture = self.picture()
         if picture is not None and picture.view_projection is not None:
             return picture.camera()
-        return self._array("scan/camera"), "y"
+        return self.seen_from(), "y"
 
     def picture(self):
         """The picture, or None where the export has none that can be used."""
@@ -143,13 +167,14 @@ class Shapes:
         for name in file:
             try:
                 group = file[name]
-                if isinstance(group, h5py.Group) and "dataset" in group.attrs:
+                if isinstance(group, h5py.Group) and text(group.attrs.get("dataset", "")) in PLACES:
                     shape = Shape(name, group)
                     self.shapes.setdefault(shape_name(shape.item, shape.view), shape)
             except BROKEN:
                 continue  # a link to an artefact that is gone: the page of the shape says that it is missing
 
-    def mesh(self, item):
+    def itself(self, item):
+        """The mesh or point cloud."""
         return self.shapes.get(shape_name(item))
 
     def scans(self, item):
@@ -159,5 +184,5 @@ class Shapes:
 
     @property
     def items(self):
-        """Every mesh of which the mesh or a scan is there."""
+        """Every mesh of which the mesh or a scan is there, and every point cloud."""
         return sorted({shape.item for shape in self.shapes.values()}, key=natural)

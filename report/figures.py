@@ -6,7 +6,7 @@ import pandas
 
 from report import statistics, style
 from report.metrics import family_of
-from report.names import DATASETS
+from report.names import DATASETS, spoken
 from report.results import Missing
 
 
@@ -16,7 +16,7 @@ def cumulative_data(results, dataset):
     table = results.table(name, "bin_left")
     columns = [column for column in table if column != "bin_left" and table[column].notna().any()]
     if not columns:
-        raise Missing(f"{name} holds no distribution: the run left the {dataset} out.")
+        raise Missing(f"{name} holds no distribution: the run left the {spoken(dataset)} out.")
     density = table[columns].to_numpy()
     shares = numpy.vstack([numpy.zeros(len(columns)), density.cumsum(axis=0) / density.sum(axis=0)])
     edges = numpy.append(table["bin_left"].to_numpy(), 1.0)
@@ -36,7 +36,7 @@ def cumulative(shop, dataset):
     axes.legend(loc="lower right")
     medians = ", ".join(f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:])
     return shop.plot(f"distributions-{dataset}", figure, data,
-                     f"Cumulative distributions of saliency on {dataset}; half of the points lie below: {medians}.",
+                     f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below: {medians}.",
                      f"{DATASETS[dataset]}: mean cumulative distribution of the ground truth and of each model's maps "
                      "before histogram matching.")
 
@@ -108,7 +108,7 @@ def performance(shop, dataset, metric):
     draw_ranking(panels["bars"], ranking, shop, of)
     name = f"performance-{dataset}-{metric}"
     block = shop.plot(name, figure, heat,
-                      f"{of.label} on {dataset}, best model first: {sentence(ranking)}. The mean per shape runs from "
+                      f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs from "
                       f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
                       f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
                       "their mean, with 95 % confidence intervals; mean per shape.")
@@ -132,7 +132,7 @@ def rankings(shop, dataset):
         axes.set_title(of.label)
     text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
-    return shop.plot(f"ranking-{dataset}", figure, plotted, f"Models on {dataset}, best first. {text}.",
+    return shop.plot(f"ranking-{dataset}", figure, plotted, f"Models on {spoken(dataset)}, best first. {text}.",
                      f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
 
 

@@ -2,7 +2,7 @@
 """Pictures of the report as files, each painted once and named by what it shows."""
 
 from report.exports import BROKEN
-from report.names import file_name
+from report.names import KIND_NAMES, file_name
 from report.painting import paint, visible, with_dots
 
 QUALITY, SMALL_QUALITY = 88, 78  # of WebP: no visible blocks; about 5 kB at 400 x 400, 3 kB at half of it
@@ -27,7 +27,7 @@ class Painter:
         Ground truth has the picks as dots. small: half the size."""
         if not self.has(what, when):
             return ""
-        name = f"{self.folder}/{self.shape.view or 'mesh'}-{file_name(what)}-{when}{'-small' if small else ''}.webp"
+        name = f"{self.folder}/{self.shape.view or KIND_NAMES[self.shape.dataset].replace(' ', '-')}-{file_name(what)}-{when}{'-small' if small else ''}.webp"
         path = self.shop.out / name
         if path.is_file():
             return name
@@ -53,5 +53,5 @@ class Painter:
 
 
 def describe(shape):
-    return f"scan {shape.view} of mesh {shape.item}" if shape.view else f"mesh {shape.item}"
+    return f"scan {shape.view} of mesh {shape.item}" if shape.view else f"{KIND_NAMES[shape.dataset]} {shape.item}"
 

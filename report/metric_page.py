@@ -3,7 +3,7 @@
 
 from report import statistics, tables
 from report.blocks import Cell, Table, attempt, cell, count
-from report.names import DATASETS
+from report.names import spoken
 from report.results import Missing
 
 
@@ -14,7 +14,8 @@ def others(shop):
 def blocks(shop):
     """(title, blocks) of each section."""
     return [("Means", attempt(means, shop)),
-            *((f"Performance per class on {dataset}", attempt(classes, shop, dataset)) for dataset in DATASETS),
+            *((f"Performance per class on {spoken(dataset)}", attempt(classes, shop, dataset))
+              for dataset in statistics.shown(shop.results)),
             ("Pairwise tests", attempt(pairs, shop)), ("Every metric of the run", [listing(shop)])]
 
 
@@ -45,9 +46,9 @@ def classes(shop, dataset):
             continue
         rows += class_rows(shop, name, table)
     if not rows:
-        raise Missing(f"There are no scores of {dataset} by class.")
+        raise Missing(f"There are no scores of {spoken(dataset)} by class.")
     models = shop.models
-    return Table(f"classes-{dataset}-others", f"Mean per class on {dataset} and half of the 95 % interval, best in bold.",
+    return Table(f"classes-{dataset}-others", f"Mean per class on {spoken(dataset)} and half of the 95 % interval, best in bold.",
                  ["Metric", "Class", "Shapes", *models, "Avg"], rows, [False] * 2 + [True] * (len(models) + 2), filters=[0])
 
 

@@ -3,7 +3,9 @@
 
 import re
 
-DATASETS = {"meshes": "Meshes", "scans": "Scans"}
+DATASETS = {"meshes": "Meshes", "scans": "Scans", "clouds": "Point clouds"}
+
+KIND_NAMES = {"meshes": "mesh", "scans": "scan", "clouds": "point cloud"}
 
 MODELS = {
     "LS": "Saliency of large point sets (Shtrom, Leifman, Tal 2013)",
@@ -29,6 +31,11 @@ def colours(models):
 def dashes(models):
     """model -> line style: models of one's own are dashed, so that a repeated colour still differs."""
     return {model: "-" if model in _COLOURS else "--" for model in models}
+
+
+def spoken(dataset):
+    """The name of a data set within a sentence."""
+    return DATASETS.get(dataset, dataset).lower()
 
 
 def natural(name):

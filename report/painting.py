@@ -18,7 +18,7 @@ def palette(name=MAP):
 
 
 def pixel_values(picture, values, faces):
-    """H x W: the map where something is seen, NaN elsewhere. values: n in [0, 1]; faces: f x 3, None for a scan."""
+    """H x W: the map where something is seen, NaN elsewhere. values: n in [0, 1]; faces: f x 3, None for separate points."""
     seen = picture.primitive >= 0
     primitive = picture.primitive[seen]
     shown = numpy.full(picture.primitive.shape, numpy.nan)

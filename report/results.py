@@ -14,7 +14,7 @@ from report import metrics
 
 NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
 TEXT_COLUMNS = ("dataset", "item", "class", "view", "model", "metric", "model_a", "model_b", "node")
-DATASETS = ("meshes", "scans")
+DATASETS = ("meshes", "scans", "clouds")
 
 
 class Missing(Exception):

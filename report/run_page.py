@@ -105,7 +105,7 @@ def nodes(shop):
     axes.grid(axis="y", visible=False)
     longest = ", ".join(f"{row.stage} {row.seconds:.1f} s" for row in data.iloc[::-1].head(5).itertuples())
     return [shop.plot("stages", figure, data, f"Time per stage, longest first: {longest}.",
-                      "Time that the run spent per stage, over meshes and scans."), listing]
+                      "Time that the run spent per stage, over all shapes."), listing]
 
 
 def timeline(shop):

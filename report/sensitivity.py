@@ -20,7 +20,7 @@ CAPTION = ("{}: mean of each model and its rank under each convention, over the 
 
 def tables(shop):
     """A table per data set: families of conventions by models."""
-    blocks = [block for dataset in DATASETS for block in attempt(table, shop, dataset)]
+    blocks = [block for dataset in statistics.shown(shop.results) for block in attempt(table, shop, dataset)]
     return blocks + [matching(shop)]
 
 

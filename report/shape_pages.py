@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A page per mesh: its scores and ranks, its pictures, its scans, and the viewer."""
+"""A page per mesh or point cloud: its scores and ranks, its pictures, the scans of a mesh, and the viewer."""
 
 from report import run_page, statistics
 from report.blocks import Cell, Gallery, Note, Table, Tile, attempt, cell
 from report.gallery import Painter, describe
-from report.names import file_name, natural
+from report.names import KIND_NAMES, file_name, natural, spoken
 from report.results import DATASETS, Missing
 from report.viewer import label_of, write_scripts
 
@@ -31,14 +31,19 @@ class Scores:
         ranks, counts = self.ranks.get((dataset, metric), ({}, {}))
         return {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
 
+    def dataset_of(self, item):
+        """Of a mesh or point cloud that has scores."""
+        clouds = any(dataset == "clouds" and (item, "") in rows for (dataset, _), rows in self.wide.items())
+        return "clouds" if clouds else "meshes"
+
     def views(self, item):
         found = {key[1] for (dataset, _), rows in self.wide.items() if dataset == "scans" for key in rows if key[0] == item}
         return sorted(found, key=natural)
 
 
 def items(results, shapes):
-    """item -> class of every mesh that has scores or is in an export."""
-    found = {item: shapes.mesh(item).category if shapes.mesh(item) else shapes.scans(item)[0].category
+    """item -> class of every mesh and point cloud that has scores or is in an export."""
+    found = {item: shapes.itself(item).category if shapes.itself(item) else shapes.scans(item)[0].category
              for item in shapes.items}
     try:
         found |= statistics.classes(results)
@@ -68,13 +73,15 @@ def heads_of(scores):
     return [head for of in scores.metrics.values() for head in (of.label, f"Rank by {of.label}")]
 
 
-def score_table(shop, scores, item):
-    models = [model for model in shop.models if any(model in scores.of("meshes", metric, item) for metric in scores.metrics)]
+def score_table(shop, scores, dataset, item):
+    models = [model for model in shop.models if any(model in scores.of(dataset, metric, item) for metric in scores.metrics)]
+    kind = KIND_NAMES[dataset]
     if not models:
-        raise Missing("The mesh has no scores: it has no ground truth, its jobs failed, or the run left meshes out.")
+        left_out = ", its jobs failed, or the run left meshes out" if dataset == "meshes" else " or its jobs failed"
+        raise Missing(f"The {kind} has no scores: it has no ground truth{left_out}.")
     heads = heads_of(scores)
-    rows = [[Cell(model)] + score_cells(scores, "meshes", item, "", model) for model in models]
-    return Table("mesh-scores", "Scores of the mesh, best in bold, and its rank among all meshes under the same model "
+    rows = [[Cell(model)] + score_cells(scores, dataset, item, "", model) for model in models]
+    return Table("mesh-scores", f"Scores of the {kind}, best in bold, and its rank among all {spoken(dataset)} under the same model "
                  "(1: best score).", ["Model"] + heads, rows, [False] + [True] * len(heads))
 
 
@@ -151,20 +158,22 @@ def notes(shop, item, exported):
 
 def write_page(shop, pages, scores, item, category):
     """shapes/ITEM.html with its pictures and the viewer's data."""
-    mesh, views = shop.shapes.mesh(item), shop.shapes.scans(item)
-    shapes = ([mesh] if mesh else []) + views
+    itself, views = shop.shapes.itself(item), shop.shapes.scans(item)
+    dataset = itself.dataset if itself else scores.dataset_of(item)
+    kind = KIND_NAMES[dataset]
+    shapes = ([itself] if itself else []) + views
     painters = {shape.name: Painter(shop, shape) for shape in shapes}
-    titles = {shape.name: f"Scan {shape.view}" if shape.view else "Mesh" for shape in shapes}
+    titles = {shape.name: f"Scan {shape.view}" if shape.view else kind.capitalize() for shape in shapes}
     entries = write_scripts(shop, shapes, titles, {name: painter.maps for name, painter in painters.items()})
-    mesh_blocks = attempt(score_table, shop, scores, item)
-    if mesh:
-        mesh_blocks += attempt(pictures, shop, mesh, painters[mesh.name], scores)
+    own_blocks = attempt(score_table, shop, scores, dataset, item)
+    if itself:
+        own_blocks += attempt(pictures, shop, itself, painters[itself.name], scores)
     scans = [(f"Scan {shape.view}", attempt(pictures, shop, shape, painters[shape.name], scores)) for shape in views
              if painters[shape.name].picture is not None]
-    scan_blocks = attempt(scan_table, shop, scores, item)
+    scan_blocks = attempt(scan_table, shop, scores, item) if dataset == "meshes" else []
     if views and not scans:
         scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
-    pages.write(path_of(item), "shape.html", title=f"Mesh {item}", item=item, category=category, entries=entries,
-                second=label_of(first[0], "after") if first else "", mesh_blocks=mesh_blocks, scan_blocks=scan_blocks,
+    pages.write(path_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category, entries=entries,
+                second=label_of(first[0], "after") if first else "", own_blocks=own_blocks, scan_blocks=scan_blocks,
                 scans=scans, notes=notes(shop, item, bool(shapes)))

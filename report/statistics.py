@@ -18,6 +18,15 @@ def datasets(results):
     return [dataset for dataset in DATASETS if dataset in present]
 
 
+def shown(results):
+    """The data sets that every report speaks of, which are the paper's, and point clouds where they have scores."""
+    try:
+        scored = datasets(results)
+    except Missing:
+        scored = []
+    return [dataset for dataset in DATASETS if dataset != "clouds" or dataset in scored]
+
+
 def models(results):
     """Every model that any table names, in the order of the configuration."""
     found = list(results.record.get("configuration", {}).get("models") or []) if results.record else []

@@ -4,7 +4,7 @@
 from report import paper, statistics
 from report.blocks import Cell, Note, Table, cell, count, p_value
 from report.latex import write_per_class
-from report.names import DATASETS
+from report.names import DATASETS, spoken
 from report.results import Missing
 
 LEVEL = 0.05  # of the paper's tests
@@ -66,7 +66,7 @@ def per_class(shop, dataset, metric):
     write_per_class(path, order, models, by_cell, of, dataset, shop.results.simulated)
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
-    return Table(identifier, f"{label} per class on {dataset}: mean and half of the 95 % interval, best in bold{remark}.",
+    return Table(identifier, f"{label} per class on {spoken(dataset)}: mean and half of the 95 % interval, best in bold{remark}.",
                  ["Class", "Shapes"] + models + [f"Avg-{label}"], rows, [False] + [True] * (len(models) + 2), files=files)
 
 

@@ -7,6 +7,7 @@ import json
 import zlib
 
 import numpy
+from scipy.spatial import cKDTree
 
 from report.names import file_name
 from report.painting import palette
@@ -35,17 +36,23 @@ def spacing(points):
     return float(numpy.median(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))) if len(points) > 1 else 0.0
 
 
+def spacing_in_any_order(points):
+    """Median distance to the fourth nearest other point: what a grid of the same density has as its step, or little more."""
+    at = min(5, len(points))
+    return float(numpy.median(cKDTree(points).query(points, k=[at])[0])) if len(points) > 1 else 0.0
+
+
 def script(shape, maps, title):
     """The script of one shape: a call of salbench.give with a description and one text of binary data, which holds x, y, z
-    (uint16 each), the corners of the faces (int32), the shade of scans, then each map (uint8 each, `levels` is 1). All
+    (uint16 each), the corners of the faces (int32), the shade of separate points, then each map (uint8 each, `levels` is 1). All
     but the shade and the maps are stored as differences of neighbours. None for a shape without points."""
     points = shape.points
     if points is None or len(points) == 0:
         return None
-    levels, steps = (SCAN_LEVELS, SCAN_STEPS) if shape.view else (MESH_LEVELS, MESH_STEPS)
+    levels, steps = (MESH_LEVELS, MESH_STEPS) if shape.dataset == "meshes" else (SCAN_LEVELS, SCAN_STEPS)
     positions, corner, edge = quantised(points, steps)
     faces = shape.faces if shape.faces is not None else numpy.zeros((0, 3), numpy.int32)
-    shade = shape.shade() if shape.view else None
+    shade = None if shape.dataset == "meshes" else shape.shade()
     known = {label: values for label, values in maps.items() if values is not None and len(values) == len(points)}
     parts = [deltas(row).tobytes() for row in positions] + [deltas(faces.astype("<i4")).tobytes()]
     fields = ([] if shade is None else [shade]) + list(known.values())
@@ -54,7 +61,7 @@ def script(shape, maps, title):
     description = {
         "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge, "steps": steps,
         "levels": levels, "shaded": shade is not None, "maps": list(known), "picks": shape.picks.tolist(),
-        "spacing": spacing(points), "camera": None if eye is None else eye.tolist(), "up": up,
+        "spacing": spacing_in_any_order(points) if shape.dataset == "clouds" else spacing(points), "camera": None if eye is None else eye.tolist(), "up": up,
     }
     data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()
     return f"salbench.give({json.dumps(shape.name)}, {json.dumps(description)}, {json.dumps(data)});\n"

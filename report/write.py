@@ -5,8 +5,9 @@ from pathlib import Path
 
 from report import comparison, examples, metric_page, run_page, score_pages, shape_pages, style
 from report.blocks import attempt
-from report.elements import ELEMENTS
+from report.elements import elements_of
 from report.exports import Shapes
+from report.names import spoken
 from report.pages import Pages, copy_static, prepare_folder
 from report.results import DATASETS, Missing, read_results
 from report.workshop import Workshop
@@ -45,7 +46,7 @@ def write_report(options, protocols):
         pages.write("metrics.html", "metrics.html", title="Other metrics", sections=metric_page.blocks(shop),
                     leading=", ".join(of.label for of in results.leading.values()),
                     labels=[results.metric(name).label for name in metric_page.others(shop)])
-    sections = [(element, attempt(element.build, shop)) for element in ELEMENTS]
+    sections = [(element, attempt(element.build, shop)) for element in elements_of(results)]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
     pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))
     return out / "index.html"
@@ -64,7 +65,7 @@ def lead(shop):
     except Missing as reason:
         return str(reason)
     shapes = rows.drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
-    counted = " and ".join(f"{shapes[dataset]} {dataset}" for dataset in DATASETS if dataset in shapes) or "no shape"
+    counted = " and ".join(f"{shapes[dataset]} {spoken(dataset)}" for dataset in DATASETS if dataset in shapes) or "no shape"
     protocol = shop.results.option("protocol")
     return (f"Scores of {counted} with ground truth, under {len(shop.models)} models: {', '.join(shop.models) or 'none'}."
             + (f" Protocol: {protocol}." if protocol else ""))

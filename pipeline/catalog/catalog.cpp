@@ -5,15 +5,11 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
-#include "io/ground_truth_file.h"
-#include "io/mesh_file.h"
 #include "pipeline/catalog/given_maps.h"
-#include "stages/core/errors.h"
-#include "stages/core/mesh_check.h"
+#include "pipeline/catalog/loading.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/smoothing.h"
+#include "stages/core/point_cloud.h"
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/matching/matching.h"
 #include "stages/picture/picture.h"
@@ -23,28 +19,14 @@ namespace {
 
 // --- functions of rows that are more than one stage's ------------------------------------------------------
 
-Mesh load_mesh(const FilesOf<Source::mesh_file>& file) {
-  CheckedMesh checked = check_mesh(parse_mesh(file.data[0].text(), file.item.mesh));
-  for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", file.name, warning);
-  return std::move(checked.mesh);
-}
-
-// Picks alone are enough: the saliency is then made from them, as the study's authors did. [chen2012]
-GroundTruth load_ground_truth(const Mesh& mesh, const FilesOf<Source::truth_files>& files) {
-  std::vector<std::string_view> texts;
-  for (const SourceData& file : files.data) texts.push_back(file.text());
-  GroundTruth truth = parse_ground_truth(files.item, texts, mesh.vertices.size());
-  if (truth.saliency.empty() && truth.picks.empty())
-    throw InputError(
-        fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty .pid files",
-                    files.item.picks.front().string()));
-  if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh, truth.picks);
-  return truth;
-}
-
 GroundTruth made_up_ground_truth(const Mesh& mesh, const SimulationOptions& options,
                                  const RandomSource& random) {
   return simulated_ground_truth(mesh, options, random.seed, random.item);
+}
+
+GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
+                                       const SimulationOptions& options, const RandomSource& random) {
+  return made_up_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
 Scan scan_of(const Mesh& mesh, const View& view, const ScanOptions& options) {
@@ -88,6 +70,13 @@ std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
 
 // A map from outside in place of a computed one. The points are read for their number alone.
 RowOf<ScalarField> add_given_map(Catalog& catalog, const ShapeRows& shape, const Model& model, RowHead head) {
+  if (shape.shapes == Shapes::clouds)
+    return catalog.add(
+        shape.shapes, std::move(head),
+        [maps = model.given](const PointCloud& cloud, const FilesOf<Source::map_file>& file) {
+          return maps->checked(file.data[0], file.name, cloud.points.size(), &cloud);
+        },
+        RowOf<PointCloud>(shape.points.row), kFiles<Source::map_file>);
   return catalog.add(
       shape.shapes, std::move(head),
       [maps = model.given](Points points, const FilesOf<Source::map_file>& file) {
@@ -169,6 +158,15 @@ RowOf<GroundTruth> add_mesh_ground_truth(Catalog& catalog, const Config& config,
                      kFiles<Source::truth_files>);
 }
 
+RowOf<GroundTruth> add_cloud_ground_truth(Catalog& catalog, const Config& config,
+                                          const RowOf<PointCloud>& cloud, const RowOf<Surface>& surface) {
+  if (config.simulated())
+    return catalog.add(Shapes::clouds, {"cloud_ground_truth", 1}, made_up_cloud_ground_truth, cloud, surface,
+                       section("simulation", config.simulation), kRandom);
+  return catalog.add(Shapes::clouds, {"cloud_ground_truth", 1}, load_cloud_ground_truth, cloud, surface,
+                     kFiles<Source::truth_files>);
+}
+
 RowOf<Histogram> add_reference(Catalog& catalog, Shapes shapes, const RowOf<GroundTruth>& truth,
                                const std::optional<Histogram>& given) {
   const auto row = catalog.add(shapes, {"reference", 1}, mean_over<GroundTruth>, truth);
@@ -183,30 +181,51 @@ RowOf<Descriptors> add_fpfh(Catalog& catalog, const ShapeRows& shape, const Sect
   return catalog.add(shape.shapes, {"fpfh", 1}, describe, shape.points, shape.normals, chosen);
 }
 
-void add_pictures(Catalog& catalog, const Config& config, const RowOf<Mesh>& mesh, const RowOf<Scan>& scan,
-                  const RowOf<Normals>& scan_normals) {
+// From its points on, a cloud is described like the vertices of a mesh: with the same normals, both have the
+// same maps. What needs faces takes a partial mesh, as for scans.
+RowOf<PointCloud> add_cloud(Catalog& catalog, const Config& config, const std::optional<Histogram>& given,
+                            ShapeRows& clouds) {
+  const auto cloud = catalog.add(Shapes::clouds, {"cloud", 1}, load_cloud, kFiles<Source::shape_file>);
+  clouds.points = cloud;
+  const RowOf<Normals> normals = catalog.add(Shapes::clouds, {"cloud_normals", 1}, cloud_normals, cloud,
+                                             section("scan_normals", config.scan_normals));
+  clouds.normals = normals;
+  clouds.surface = catalog.add(Shapes::clouds, {"surface", 1}, partial_mesh, cloud, normals,
+                               section("surface", config.surface));
+  clouds.ground_truth = add_cloud_ground_truth(catalog, config, cloud, clouds.surface);
+  clouds.reference = add_reference(catalog, Shapes::clouds, clouds.ground_truth, given);
+  clouds.fpfh = add_fpfh(catalog, clouds, section("fpfh", config.fpfh));
+  return cloud;
+}
+
+template <class Function, class... Inputs>
+void add_picture(Catalog& catalog, const Config& config, Shapes shapes, const Function& picture,
+                 const Inputs&... inputs) {
   RowHead head{"picture", 1};
   head.only_if_cached = config.pictures == Pictures::cached;
-  const auto options = section("picture", config.picture);
-  if (config.dataset.meshes) catalog.add(Shapes::meshes, head, picture_of_mesh, mesh, options, kRandom);
-  if (config.dataset.scans)
-    catalog.add(Shapes::scans, head, picture_of_scan, scan, scan_normals, mesh, options, kRandom);
+  catalog.add(shapes, head, picture, inputs..., section("picture", config.picture), kRandom);
 }
 
 }  // namespace
 
-Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference) {
+Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference,
+                     const DataKinds& kinds) {
   Catalog catalog;
-  ShapeRows meshes{.shapes = Shapes::meshes}, scans{.shapes = Shapes::scans};
+  ShapeRows meshes{.shapes = Shapes::meshes}, scans{.shapes = Shapes::scans},
+      clouds{.shapes = Shapes::clouds};
+  const bool on_meshes = kinds.meshes && config.dataset.meshes,
+             on_scans = kinds.meshes && config.dataset.scans;
 
-  const RowOf<Mesh> mesh = catalog.add(Shapes::meshes, {"mesh", 1}, load_mesh, kFiles<Source::mesh_file>);
-  meshes.points = mesh;
-  meshes.surface = mesh;
-  meshes.ground_truth = add_mesh_ground_truth(catalog, config, mesh);
-  meshes.reference = add_reference(catalog, Shapes::meshes, meshes.ground_truth, given_reference);
-
+  RowOf<Mesh> mesh;
+  if (kinds.meshes) {
+    mesh = catalog.add(Shapes::meshes, {"mesh", 1}, load_mesh, kFiles<Source::shape_file>);
+    meshes.points = mesh;
+    meshes.surface = mesh;
+    meshes.ground_truth = add_mesh_ground_truth(catalog, config, mesh);
+    meshes.reference = add_reference(catalog, Shapes::meshes, meshes.ground_truth, given_reference);
+  }
   RowOf<Scan> scan;
-  if (config.dataset.scans) {
+  if (on_scans) {
     scan = catalog.add(Shapes::scans, {"scan", 1}, scan_of, mesh, kView, section("scan", config.scan));
     scans.points = scan;
     scans.ground_truth = catalog.add(Shapes::scans, {"scan_ground_truth", 1}, scan_ground_truth, scan, mesh,
@@ -214,25 +233,33 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
     scans.reference = add_reference(catalog, Shapes::scans, scans.ground_truth, given_reference);
   }
 
-  if (config.dataset.meshes) {
+  if (on_meshes) {
     meshes.normals =
         catalog.add(Shapes::meshes, {"normals", 1}, mesh_normals, mesh, section("normals", config.normals));
     meshes.fpfh = add_fpfh(catalog, meshes, section("fpfh", config.fpfh));
   }
-  if (config.dataset.scans) {
+  if (on_scans) {
     scans.normals = catalog.add(Shapes::scans, {"scan_normals", 1}, scan_normals, scan,
                                 section("scan_normals", config.scan_normals));
     scans.surface = catalog.add(Shapes::scans, {"surface", 1}, partial_mesh, scan, scans.normals,
                                 section("surface", config.surface));
     scans.fpfh = add_fpfh(catalog, scans, section<FpfhOptions>("scan_fpfh", config.scan_fpfh));
   }
+  RowOf<PointCloud> cloud;
+  if (kinds.clouds) cloud = add_cloud(catalog, config, given_reference, clouds);
 
   for (const Model& model : config.models) {
-    if (model.human && config.dataset.meshes) add_human_performance(catalog, meshes, mesh, config, model);
-    if (model.is_map() && config.dataset.meshes) add_model(catalog, meshes, config, model);
-    if (model.is_map() && config.dataset.scans) add_model(catalog, scans, config, model);
+    if (model.human && on_meshes) add_human_performance(catalog, meshes, mesh, config, model);
+    if (model.is_map() && on_meshes) add_model(catalog, meshes, config, model);
+    if (model.is_map() && on_scans) add_model(catalog, scans, config, model);
+    if (model.is_map() && kinds.clouds) add_model(catalog, clouds, config, model);
   }
-  if (config.pictures != Pictures::none) add_pictures(catalog, config, mesh, scan, scans.normals);
+  if (config.pictures != Pictures::none) {
+    if (on_meshes) add_picture(catalog, config, Shapes::meshes, picture_of_mesh, mesh);
+    if (on_scans) add_picture(catalog, config, Shapes::scans, picture_of_scan, scan, scans.normals, mesh);
+    if (kinds.clouds)
+      add_picture(catalog, config, Shapes::clouds, picture_of_cloud, cloud, clouds.normals, clouds.surface);
+  }
   return catalog;
 }
 

@@ -12,10 +12,18 @@
 
 namespace salbench {
 
-// A reference histogram that is given takes the place of the data set's own mean.
-Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference = {});
+// Kinds of shapes that the files of a data set hold.
+struct DataKinds {
+  bool meshes = true;
+  bool clouds = false;
+};
 
-std::string node_name(const Row& row);  // "fpfh of scans": meshes and scans may have rows of one name
+// A reference histogram that is given takes the place of the data set's own mean. There are rows for what the
+// data set holds and the configuration asks for; point clouds are always evaluated.
+Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference = {},
+                     const DataKinds& kinds = {});
+
+std::string node_name(const Row& row);  // "fpfh of scans": kinds of shapes may have rows of one name
 
 // Configuration path of a row's option, such as "fpfh.radius"; the bare key if no section has it.
 std::string option_path(const Row& row, std::string_view key);

@@ -29,6 +29,7 @@ struct EnumNames<Participants> {
 
 struct DatasetOptions {
   Layout layout = Layout::automatic;
+  Twins twins = Twins::refuse;
   bool meshes = true;
   bool scans = true;
   Participants participants = Participants::measured;
@@ -36,6 +37,7 @@ struct DatasetOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("layout", self.layout, {"how the folder is laid out"});
+    visit("twins", self.twins, {"of several shape files of one name, the extension of the one that counts"});
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
     visit("participants", self.participants, {"ground truth from files, or made up for a demonstration"});

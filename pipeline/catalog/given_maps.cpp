@@ -64,10 +64,12 @@ std::string GivenMaps::place(const std::string& item) const {
                            : fmt::format("{}: data set {}", source.string(), item);
 }
 
-ScalarField GivenMaps::checked(const SourceData& data, const std::string& item, std::size_t n_points) const {
+ScalarField GivenMaps::checked(const SourceData& data, const std::string& item, std::size_t n_points,
+                               const PointCloud* cloud) const {
   const std::string where = place(item);
   const auto* values = std::get_if<ScalarField>(&data.content);
   ScalarField map = values != nullptr ? *values : parse_values(data.text(), where);
+  if (cloud != nullptr && map.size() == cloud->size_in_file()) map = values_left(*cloud, map);
   if (map.size() != n_points)
     throw InputError(fmt::format("{}: {} values, but the shape has {} points", where, map.size(), n_points));
   for (std::size_t i = 0; i < map.size(); ++i) {

@@ -10,6 +10,7 @@
 
 #include "pipeline/catalog/models.h"
 #include "pipeline/catalog/source.h"
+#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -21,8 +22,10 @@ struct GivenMaps {
 
   // Reads the map of one of these items. Throws InputError.
   std::function<SourceData(const std::string& item)> read = {};
-  // The data as a map of n_points finite numbers. Throws InputError.
-  ScalarField checked(const SourceData& data, const std::string& item, std::size_t n_points) const;
+  // The data as a map of n_points finite numbers; of a point cloud they may count all points of its file.
+  // Throws InputError.
+  ScalarField checked(const SourceData& data, const std::string& item, std::size_t n_points,
+                      const PointCloud* cloud = nullptr) const;
 
   std::string place(const std::string& item) const;  // for a message: where the item's map is looked for
 };

@@ -21,12 +21,12 @@ namespace salbench {
 
 struct GivenMaps;  // pipeline/catalog/given_maps.h
 
-// The rows of meshes, or of scans, that a model may read, by the type of the parameter that they stand for.
+// The rows of one kind of shapes that a model may read, by the type of the parameter that they stand for.
 struct ShapeRows {
   Shapes shapes = Shapes::meshes;
   RowOf<Points> points = {};
   RowOf<Normals> normals = {};
-  RowOf<Surface> surface = {};  // of a scan: its partial mesh
+  RowOf<Surface> surface = {};  // of scans and point clouds: the partial mesh
   RowOf<Descriptors> fpfh = {};
   RowOf<GroundTruth> ground_truth = {};
   RowOf<Histogram> reference = {};
@@ -68,7 +68,8 @@ auto argument_for(const ShapeRows& rows, const SectionOf<Options>& section) {
 
 }  // namespace binding
 
-// The options of a model for meshes or for scans, where its struct tells them apart.
+// The options of a model for a kind of shapes, where its struct tells scans apart. Point clouds count as
+// meshes: their points have been chosen by somebody, and are no grid of rays.
 template <class Options>
 Options options_for(const Options& options, Shapes shapes) {
   if constexpr (requires { options.of_scans(); })

@@ -31,20 +31,23 @@
 
 namespace salbench {
 
-enum class Shapes : std::uint8_t { meshes, scans };
+// Kinds of shapes: the meshes of a data set, simulated scans of them, and its point clouds.
+enum class Shapes : std::uint8_t { meshes, scans, clouds };
 template <>
 struct EnumNames<Shapes> {
-  static constexpr std::array<std::string_view, 2> names{"meshes", "scans"};
+  static constexpr std::array<std::string_view, 3> names{"meshes", "scans", "clouds"};
 };
+inline constexpr std::array kAllShapes = {Shapes::meshes, Shapes::scans, Shapes::clouds};
 
-// A row has one job per mesh, one per scan, or one for the data set.
-enum class Scope : std::uint8_t { mesh, scan, set };
+// A row has one job per shape of its kind, or one for the data set.
+enum class Scope : std::uint8_t { mesh, scan, cloud, set };
 template <>
 struct EnumNames<Scope> {
-  static constexpr std::array<std::string_view, 3> names{"mesh", "scan", "set"};
+  static constexpr std::array<std::string_view, 4> names{"mesh", "scan", "cloud", "set"};
 };
+constexpr Scope scope_of(Shapes shapes) { return static_cast<Scope>(shapes); }
 
-enum class Source : std::uint8_t { none, mesh_file, truth_files, map_file };
+enum class Source : std::uint8_t { none, shape_file, truth_files, map_file };
 
 using ValuePtr = std::shared_ptr<const Value>;
 
@@ -62,7 +65,7 @@ struct FilesOf {
   std::span<const SourceData> data;
 };
 
-// The results of another row for every mesh or every scan, in their order. Each is loaded when asked for.
+// The results of another row for every shape of a kind, in their order. Each is loaded when asked for.
 template <class T>
 struct Members {
   std::size_t size = 0;
@@ -90,7 +93,7 @@ struct OptionLines {
 };
 
 struct RowHead {
-  std::string name;          // folder in the cache; the same for meshes and scans where the work is the same
+  std::string name;  // folder in the cache; the same for all kinds of shapes where the work is the same
   std::int32_t version = 1;  // raised when the output changes; tests/pipeline/golden_test.cpp watches
   std::function<bool(const DatasetItem&)> applies = {};  // to an item and its scans; empty: to every one
   std::size_t limit = 0;                                 // jobs at work at the same time; 0: no limit
@@ -109,20 +112,17 @@ struct Row : RowHead {
   ValuePtr given = {};    // in place of a result: known before the run, and not stored
   std::function<Value(const JobInputs&)> run = {};
 
-  Scope scope() const {
-    if (gathers) return Scope::set;
-    return shapes == Shapes::meshes ? Scope::mesh : Scope::scan;
-  }
+  Scope scope() const { return gathers ? Scope::set : scope_of(shapes); }
 };
 
 namespace binding {
 
 template <class Parameter, class T>
-inline constexpr bool kProvides = std::is_same_v<Parameter, T> ||
-                                  (std::is_same_v<Parameter, Points> &&
-                                   (std::is_same_v<T, Mesh> || std::is_same_v<T, Scan>)) ||
-                                  (std::is_same_v<Parameter, Surface> &&
-                                   (std::is_same_v<T, Mesh> || std::is_same_v<T, Faces>));
+inline constexpr bool kProvides =
+    std::is_same_v<Parameter, T> ||
+    (std::is_same_v<Parameter, Points> &&
+     (std::is_same_v<T, Mesh> || std::is_same_v<T, Scan> || std::is_same_v<T, PointCloud>)) ||
+    (std::is_same_v<Parameter, Surface> && (std::is_same_v<T, Mesh> || std::is_same_v<T, Faces>));
 
 }  // namespace binding
 
@@ -205,8 +205,9 @@ decltype(auto) parameter(const RowOf<T>&, const JobInputs& in, std::size_t& valu
     return Parameter{in.members, in.member};
   } else if constexpr (std::is_same_v<Parameter, Points>) {
     const Value& shape = *in.values[value++];
-    const auto* mesh = std::get_if<Mesh>(&shape);
-    return mesh != nullptr ? Points(mesh->vertices) : Points(std::get<Scan>(shape).points);
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) return Points(mesh->vertices);
+    const auto* scan = std::get_if<Scan>(&shape);
+    return scan != nullptr ? Points(scan->points) : Points(std::get<PointCloud>(shape).points);
   } else if constexpr (std::is_same_v<Parameter, Surface>) {
     const Value& shape = *in.values[value++];
     const auto* mesh = std::get_if<Mesh>(&shape);

@@ -28,16 +28,19 @@ SourceData read_now(SourceFile& file) {
 
 }  // namespace
 
-SourceFile source_file(std::string name, const std::filesystem::path& path) {
-  return source_file(std::move(name), path.string(), [path]() -> SourceData {
+SourceFile source_file(std::string name, const std::filesystem::path& path, SourceData* data) {
+  const auto read = [path]() -> SourceData {
     std::string text = read_file(path);
     return {file_digest(text), std::move(text)};
-  });
+  };
+  return source_file(std::move(name), path.string(), read, data);
 }
 
-SourceFile source_file(std::string name, std::string place, std::function<SourceData()> read) {
+SourceFile source_file(std::string name, std::string place, std::function<SourceData()> read,
+                       SourceData* data) {
   SourceFile file{std::move(name), std::move(place), std::move(read)};
-  read_now(file);
+  SourceData now = read_now(file);
+  if (data != nullptr) *data = std::move(now);
   return file;
 }
 

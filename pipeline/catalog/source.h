@@ -33,9 +33,10 @@ struct SourceFile {
 
 using SourceFiles = std::vector<SourceFile>;
 
-// Both read the file once, for its digest.
-SourceFile source_file(std::string name, const std::filesystem::path& path);
-SourceFile source_file(std::string name, std::string place, std::function<SourceData()> read);
+// Both read the file once, for its digest, and hand out what they read where `data` is given.
+SourceFile source_file(std::string name, const std::filesystem::path& path, SourceData* data = nullptr);
+SourceFile source_file(std::string name, std::string place, std::function<SourceData()> read,
+                       SourceData* data = nullptr);
 
 // Reads the files again. Where one holds something else by now, its digest follows it, with a warning that
 // names it; the data of a file that cannot be read are empty.

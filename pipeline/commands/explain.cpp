@@ -18,8 +18,10 @@ namespace {
 
 Item require_item(const Context& context, const std::string& name) {
   if (const auto item = find_item(context, name)) return *item;
-  throw ConfigError(fmt::format(
-      "explain: there is no item '{}'; a mesh is named like its file (52), its scans 52_0 to 52_11", name));
+  throw ConfigError(
+      fmt::format("explain: there is no item '{}'; a shape is named like its file (52), the scans of a mesh "
+                  "52_0 to 52_11",
+                  name));
 }
 
 void require_stage(const Context& context, const std::vector<JobRef>& jobs, const ExplainOptions& options) {

@@ -65,6 +65,7 @@ struct Addition {
     shape.faces = mesh.faces;
   }
   void operator()(const Scan& scan) const { shape.points = scan.points; }
+  void operator()(const PointCloud& cloud) const { shape.points = cloud.points; }
   void operator()(const Normals& normals) const { shape.normals = normals; }
   void operator()(const Faces& faces) const { shape.faces = faces; }
   void operator()(const ScalarField& field) const { shape.fields.push_back({item_label(stage), field}); }
@@ -79,7 +80,9 @@ struct Addition {
   void operator()(const Other&) const {}  // not per point
 };
 
-bool is_points(const Row& row) { return row.kind == "mesh" || row.kind == "scan"; }
+bool is_points(const Row& row) {
+  return row.kind == "mesh" || row.kind == "scan" || row.kind == "point_cloud";
+}
 
 // Rows stand in the order of their inputs: the points come first.
 bool write_shape(Session& session, const Item& item, ShapeFormat format, const StageNames& stages,

@@ -27,8 +27,7 @@ std::string jobs_text(const std::vector<std::size_t>& to_do, std::size_t row) {
   return to_do.empty() ? "" : fmt::format(", {} to do", to_do[row]);
 }
 
-std::vector<std::size_t> open_jobs(const Arguments& arguments) {
-  const Setup setup(arguments);
+std::vector<std::size_t> open_jobs(const Setup& setup) {
   const FolderStore store(setup.cache, Access::read_only);
   std::vector<std::size_t> open;
   for (const std::vector<Job>& jobs : make_plan(setup.context, store).jobs) open.push_back(count_open(jobs));
@@ -38,10 +37,15 @@ std::vector<std::size_t> open_jobs(const Arguments& arguments) {
 ExitStatus print_graph(const Arguments& arguments, const std::string& format) {
   if (format != "text" && format != "dot")
     throw ConfigError(fmt::format("--format {}: must be text or dot", format));
-  const Config config = read_config(Section::from_file(configuration_path(arguments.config)), "");
-  const auto to_do = arguments.data.empty() ? std::vector<std::size_t>{} : open_jobs(arguments);
-  const Catalog catalog = make_catalog(config);
-  fmt::print("{}", format == "dot" ? graph_dot(catalog, to_do) : graph_text(catalog, to_do));
+  const auto print = [&](const Catalog& catalog, const std::vector<std::size_t>& to_do) {
+    fmt::print("{}", format == "dot" ? graph_dot(catalog, to_do) : graph_text(catalog, to_do));
+  };
+  if (arguments.data.empty()) {
+    print(make_catalog(read_config(Section::from_file(configuration_path(arguments.config)), "")), {});
+  } else {
+    const Setup setup(arguments);
+    print(setup.catalog, open_jobs(setup));
+  }
   return kAllDone;
 }
 

@@ -38,7 +38,7 @@ ExitStatus run_pictures(const Arguments& arguments, const std::atomic<bool>& sto
 }  // namespace
 
 Subcommand pictures_subcommand(Arguments& arguments) {
-  return {"pictures", "compute pictures of meshes and scans for reports; export then contains them",
+  return {"pictures", "compute pictures of all shapes for reports; export then contains them",
           run_parameters(arguments),
           [&arguments](const std::atomic<bool>& stop) { return run_pictures(arguments, stop); }};
 }

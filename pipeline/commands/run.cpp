@@ -22,10 +22,9 @@ void finish_shard(const Session& session, const RunRecord& record, const Argumen
   write_shard_record(session.setup.output, record);
   if (!arguments.quiet)
     fmt::print(
-        "shard {}: {} meshes, {} artefacts computed; when all shards are done, the same line without "
+        "shard {}: {}, {} artefacts computed; when all shards are done, the same line without "
         "--shard writes the tables\n",
-        session.setup.context.shard->text(), session.setup.workload.families.size(),
-        session.runner.computed());
+        session.setup.context.shard->text(), shapes_text(session.setup.workload), session.runner.computed());
 }
 
 void print_summary(const Session& session, const std::vector<ResultRow>& rows) {

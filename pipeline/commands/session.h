@@ -27,8 +27,8 @@ struct Setup {
   Setup& operator=(const Setup&) = delete;
 
   Config config;
-  Catalog catalog;
   Workload workload;
+  Catalog catalog;
   Context context;
   std::filesystem::path cache, output;
 };

@@ -25,8 +25,8 @@ ExitStatus print_status(const Arguments& arguments) {
                           static_cast<double>(used.bytes) / 1e6});
   }
   const std::string state = state_of_results(setup.output);
-  fmt::print("{}\ndata set: {} meshes, {} models; cache: {}; results: {}{}\n", aligned(table, 1),
-             setup.workload.families.size(), setup.config.models.size(), setup.cache.string(),
+  fmt::print("{}\ndata set: {}, {} models; cache: {}; results: {}{}\n", aligned(table, 1),
+             shapes_text(setup.workload), setup.config.models.size(), setup.cache.string(),
              setup.output.string(), state.empty() ? "" : fmt::format(" ({})", state));
   return kAllDone;
 }

@@ -78,18 +78,19 @@ std::optional<Job> stopped(const Context& context, const Plan& plan, const JobRe
 }  // namespace
 
 std::string Context::name(const Item& item) const {
-  const std::string& mesh = source(item).name;
-  return item.is_mesh() ? mesh : fmt::format("{}_{}", mesh, item.view);
+  const std::string& shape = source(item).name;
+  return item.is_scan() ? fmt::format("{}_{}", shape, item.view) : shape;
 }
 
 std::string Context::name(const JobRef& job) const {
   return job.item.is_set() ? std::string(name_of(row(job).shapes)) : name(job.item);
 }
 
-std::vector<Item> family_items(const Catalog& catalog, std::size_t family) {
-  std::vector<Item> items = {Item::mesh(family)};
-  if (std::any_of(catalog.rows.begin(), catalog.rows.end(),
-                  [](const Row& row) { return row.shapes == Shapes::scans; }))
+std::vector<Item> family_items(const Context& context, std::size_t family) {
+  const std::vector<Row>& rows = context.catalog.rows;
+  std::vector<Item> items = {context.workload.families[family].shape(family)};
+  if (items.front().is_mesh() &&
+      std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.shapes == Shapes::scans; }))
     for (int view = 0; view < kViews; ++view) items.push_back({family, view});
   return items;
 }
@@ -97,7 +98,7 @@ std::vector<Item> family_items(const Catalog& catalog, std::size_t family) {
 std::vector<Item> all_items(const Context& context) {
   std::vector<Item> all;
   for (std::size_t f = 0; f < context.workload.families.size(); ++f)
-    for (const Item& item : family_items(context.catalog, f)) all.push_back(item);
+    for (const Item& item : family_items(context, f)) all.push_back(item);
   return all;
 }
 
@@ -106,8 +107,10 @@ std::vector<Item> items_of(const Context& context, std::size_t row) {
   if (of.gathers) return {Item::set()};
   std::vector<Item> items;
   for (std::size_t f = 0; f < context.workload.families.size(); ++f) {
-    if (of.shapes == Shapes::meshes) items.push_back(Item::mesh(f));
-    for (int view = 0; of.shapes == Shapes::scans && view < kViews; ++view) items.push_back({f, view});
+    const Family& family = context.workload.families[f];
+    if (of.shapes == family.shapes()) items.push_back(family.shape(f));
+    for (int view = 0; of.shapes == Shapes::scans && !family.is_cloud && view < kViews; ++view)
+      items.push_back({f, view});
   }
   return items;
 }
@@ -120,9 +123,9 @@ std::vector<JobRef> jobs_of(const Catalog& catalog, const Item& item) {
 }
 
 std::optional<Item> find_item(const Context& context, const std::string& name) {
-  for (const Shapes shapes : {Shapes::meshes, Shapes::scans})  // a mesh may be called like a scan
+  for (const bool scans : {false, true})  // a mesh may be called like a scan
     for (const Item& item : all_items(context))
-      if (item.is_mesh() == (shapes == Shapes::meshes) && context.name(item) == name) return item;
+      if (item.is_scan() == scans && context.name(item) == name) return item;
   return {};
 }
 
@@ -141,10 +144,10 @@ SourceFiles& sources_of(const Context& context, const JobRef& job) {
   static SourceFiles none;
   Family& family = context.workload.families[job.item.family];
   switch (context.row(job).source) {
-    case Source::mesh_file:
-      return family.mesh_file;
+    case Source::shape_file:
+      return family.shape_file;
     case Source::map_file:
-      return family.map_files.at(static_cast<std::size_t>(job.item.view + 1));
+      return family.map_files.at(job.item.in_family());
     case Source::truth_files:
       return family.truth_files;
     default:
@@ -189,14 +192,19 @@ Job decide(const Context& context, const Plan& plan, const JobRef& job, const Lo
   return decided;
 }
 
+std::size_t places_of(const Context& context, std::size_t row) {
+  const Row& of = context.catalog.rows[row];
+  if (of.gathers) return 1;
+  return context.workload.families.size() * (of.shapes == Shapes::scans ? kViews : 1);
+}
+
 Plan make_plan(const Context& context, const Index& index) {
   const Lookup lookup = [&](std::string_view stage, const Digest& key) { return index.find(stage, key); };
   Plan plan;
   plan.jobs.resize(context.catalog.rows.size());
   for (std::size_t row = 0; row < plan.jobs.size(); ++row) {
-    const std::vector<Item> items = items_of(context, row);
-    plan.jobs[row].resize(items.size());
-    for (const Item& item : items) {
+    plan.jobs[row].resize(places_of(context, row), verdict_of(Verdict::not_applicable, Reason::none));
+    for (const Item& item : items_of(context, row)) {
       const JobRef job{row, item};
       Job decided = decide(context, plan, job, lookup);
       if (decided.reason == Reason::never_computed &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Decides, without computing anything, what there is to do: catalog + items + what the cache has -> jobs.
 //
-// A job is one row of the catalog for one item: a mesh, a scan or the data set. Keys are made of the content
+// A job is one row of the catalog for one item: a shape or the data set. Keys are made of the content
 // digests of what a row reads. Where an input still has to be computed, the key is not known yet: such a job
 // waits, and may yet turn out to be in the cache when the input comes out as before.
 #pragma once
@@ -78,7 +78,7 @@ struct JobRef {
 };
 
 struct Plan {
-  std::vector<std::vector<Job>> jobs;  // [row][Item::index()]
+  std::vector<std::vector<Job>> jobs;  // [row][Item::index()]; not_applicable for items of other kinds
 
   Job& operator[](const JobRef& job) { return jobs[job.row][job.item.index()]; }
   const Job& operator[](const JobRef& job) const { return jobs[job.row][job.item.index()]; }
@@ -95,13 +95,14 @@ struct Context {
   const Row& row(const JobRef& job) const { return catalog.rows[job.row]; }
   const DatasetItem& source(const Item& item) const { return workload.families[item.family].source; }
   std::string name(const Item& item) const;   // "52", "52_3"
-  std::string name(const JobRef& job) const;  // that of its item; "meshes" or "scans" for a set
+  std::string name(const JobRef& job) const;  // that of its item; "meshes", "scans" or "clouds" for a set
 };
 
-// The mesh of a family, then its scans, where the catalog has rows for them.
-std::vector<Item> family_items(const Catalog& catalog, std::size_t family);
+// The mesh of a family, then its scans where the catalog has rows for them; or its point cloud.
+std::vector<Item> family_items(const Context& context, std::size_t family);
 std::vector<Item> all_items(const Context& context);                    // family by family
 std::vector<Item> items_of(const Context& context, std::size_t row);    // that the row has jobs for, in order
+std::size_t places_of(const Context& context, std::size_t row);         // above Item::index() of all of these
 std::vector<JobRef> jobs_of(const Catalog& catalog, const Item& item);  // in the order of the rows
 std::optional<Item> find_item(const Context& context, const std::string& name);  // "52", "52_3"
 
@@ -122,7 +123,7 @@ Plan make_plan(const Context& context, const Index& index);
 
 std::size_t count_open(const std::vector<Job>& jobs);
 
-// Job counts per row name, for `salbench plan` and `status`; meshes and scans together.
+// Job counts per row name, for `salbench plan` and `status`; all kinds of shapes together.
 struct RowCount {
   std::string stage;
   std::int32_t version = 0;

@@ -2,11 +2,14 @@
 #include "pipeline/plan/workload.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "io/cloud_file.h"
+#include "io/file.h"
 #include "pipeline/catalog/given_maps.h"
 #include "stages/core/errors.h"
 
@@ -55,10 +58,12 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
 
 Family make_family(const DatasetItem& source) {
   Family family{source, {}, {}};
-  std::string extension = source.mesh.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  family.mesh_file.push_back(source_file("mesh file " + extension, source.mesh));
+  const std::string extension = lower_case_extension(source.mesh);
+  SourceData data;
+  SourceFile file = source_file("mesh file " + extension, source.mesh, &data);
+  family.is_cloud = is_point_cloud(data.text(), source.mesh);
+  if (family.is_cloud) file.name = "point cloud file " + extension;
+  family.shape_file.push_back(std::move(file));
   if (!source.saliency.empty()) family.truth_files.push_back(source_file("saliency file", source.saliency));
   for (std::size_t k = 0; k < source.picks.size(); ++k)
     family.truth_files.push_back(source_file(fmt::format("picks {}", k), source.picks[k]));
@@ -74,11 +79,16 @@ SourceFile map_file(const std::shared_ptr<const GivenMaps>& maps, const std::str
   });
 }
 
-// The items of one family: its mesh, then its scans.
+// Names of the items that one family may have, [Item::in_family()].
 std::vector<std::string> names_of(const Family& family) {
   std::vector<std::string> names = {family.source.name};
-  for (int view = 0; view < kViews; ++view) names.push_back(fmt::format("{}_{}", names[0], view));
+  for (int view = 0; view < kViews && !family.is_cloud; ++view)
+    names.push_back(fmt::format("{}_{}", names[0], view));
   return names;
+}
+
+Shapes kind_of_name(const Family& family, std::size_t in_family) {
+  return in_family > 0 ? Shapes::scans : family.shapes();
 }
 
 }  // namespace
@@ -88,7 +98,7 @@ DataIdentity identity_of(const Workload& workload) {
   Hasher hasher;
   for (const Family& family : workload.families) {
     hasher.add(family.source.name);
-    for (const SourceFiles* files : {&family.mesh_file, &family.truth_files})
+    for (const SourceFiles* files : {&family.shape_file, &family.truth_files})
       for (const SourceFile& file : *files) {
         hasher.add(file.name);
         hasher.add(file.digest ? file.digest->hex() : "unreadable");
@@ -97,6 +107,23 @@ DataIdentity identity_of(const Workload& workload) {
   }
   identity.digest = hasher.digest();
   return identity;
+}
+
+std::size_t count_clouds(const Workload& workload) {
+  return static_cast<std::size_t>(std::count_if(workload.families.begin(), workload.families.end(),
+                                                [](const Family& family) { return family.is_cloud; }));
+}
+
+std::string shapes_text(const Workload& workload) {
+  const std::size_t clouds = count_clouds(workload), meshes = workload.families.size() - clouds;
+  if (clouds == 0) return fmt::format("{} meshes", meshes);
+  return fmt::format("{}{} point clouds", meshes > 0 ? fmt::format("{} meshes, ", meshes) : "", clouds);
+}
+
+DataKinds kinds_of(const Workload& workload) {
+  const std::size_t clouds = count_clouds(workload);
+  const bool any_mesh = clouds < workload.families.size(), any_cloud = clouds > 0;
+  return {.meshes = any_mesh, .clouds = any_cloud};
 }
 
 std::vector<std::string> split_list(const std::string& list) {
@@ -130,23 +157,26 @@ Workload make_workload(const Dataset& dataset, const std::string& selection,
 
 void add_given_maps(Workload& workload, const Catalog& catalog, const Model& model) {
   const GivenMaps& maps = *model.given;
-  const bool scored[2] = {catalog.has(Shapes::meshes, "scores." + model.name),
-                          catalog.has(Shapes::scans, "scores." + model.name)};
-  bool any[2] = {false, false};  // of meshes, of scans
+  std::array<bool, EnumNames<Shapes>::names.size()> any{};  // has a map of such shapes that is scored
+  std::string example;                                      // of a name that would be one
   for (const Family& family : workload.families) {
     const auto names = names_of(family);
-    for (std::size_t i = 0; i < names.size(); ++i)
-      any[i > 0] |= scored[i > 0] && maps.items.contains(names[i]);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const Shapes kind = kind_of_name(family, i);
+      if (!catalog.has(kind, "scores." + model.name)) continue;
+      any[static_cast<std::size_t>(kind)] |= maps.items.contains(names[i]);
+      if (&family == &workload.families.front()) example = maps.place(names[i]);
+    }
   }
-  if (!any[0] && !any[1])
+  if (std::none_of(any.begin(), any.end(), [](bool one) { return one; }))
     throw ConfigError(fmt::format("--maps {}: has no map of any item of the run; expected are such as {}",
-                                  maps.source.string(),
-                                  maps.place(names_of(workload.families[0])[scored[1] ? kViews : 0])));
+                                  maps.source.string(), example));
   for (Family& family : workload.families) {
     const auto names = names_of(family);
     for (std::size_t i = 0; i < names.size(); ++i) {
       family.map_files.emplace_back();
-      if (any[i > 0]) family.map_files.back().push_back(map_file(model.given, names[i]));
+      if (any[static_cast<std::size_t>(kind_of_name(family, i))])
+        family.map_files.back().push_back(map_file(model.given, names[i]));
     }
   }
 }

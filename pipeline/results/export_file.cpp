@@ -91,11 +91,10 @@ class Exporter {
 
   void add_item(const Item& item) {
     const std::string name = context_.name(item);
-    Attributes attributes = {
-        {"dataset", std::string(name_of(item.is_mesh() ? Shapes::meshes : Shapes::scans))},
-        {"item", context_.source(item).name},
-        {"class", context_.source(item).category}};
-    if (!item.is_mesh()) attributes.emplace_back("view", std::int64_t{item.view});
+    Attributes attributes = {{"dataset", std::string(name_of(item.shapes()))},
+                             {"item", context_.source(item).name},
+                             {"class", context_.source(item).category}};
+    if (item.is_scan()) attributes.emplace_back("view", std::int64_t{item.view});
     file_->attributes(name, attributes);
     for (const JobRef& job : jobs_of(context_.catalog, item))
       if (context_.row(job).kind == "scores")

@@ -92,8 +92,8 @@ std::string stage_lines(const RunRecord& record) {
       "time\n";
   const std::vector<NodeRecord>& nodes = record.run.runner.records();
   for (std::size_t row = 0; row < nodes.size(); ++row)
-    yaml += node_line(record.run.context.catalog.rows[row], nodes[row], record.run.plan.jobs[row].size(),
-                      record.seconds * record.threads);
+    yaml += node_line(record.run.context.catalog.rows[row], nodes[row],
+                      items_of(record.run.context, row).size(), record.seconds * record.threads);
   return yaml;
 }
 
@@ -141,9 +141,11 @@ std::string run_yaml(const RunRecord& record) {
       yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
                           yaml_quoted(model.given->source.string()), model.given->matched);
   const DataIdentity data = identity_of(context.workload);
-  yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, files: {}, digest: {}}}\n",
-                      yaml_quoted(config.data), context.workload.layout, context.workload.families.size(),
-                      data.files, data.digest.hex());
+  const std::size_t clouds = count_clouds(context.workload);
+  yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}}}\n",
+                      yaml_quoted(config.data), context.workload.layout,
+                      context.workload.families.size() - clouds,
+                      clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex());
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
   yaml += cache_lines(record);

@@ -27,10 +27,10 @@ std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& r
 ResultRow result_row(const Context& context, const Item& item, const std::string& model,
                      const Scores& scores) {
   const DatasetItem& source = context.source(item);
-  return {std::string(name_of(item.is_mesh() ? Shapes::meshes : Shapes::scans)),
+  return {std::string(name_of(item.shapes())),
           source.name,
           source.category,
-          item.is_mesh() ? "" : std::to_string(item.view),
+          item.is_scan() ? std::to_string(item.view) : "",
           model,
           scores};
 }
@@ -43,7 +43,7 @@ std::vector<ResultRow> collect_results(const RunState& run) {
   const Catalog& catalog = run.context.catalog;
   std::vector<ScoresOf> scored;
   for (const Model& model : run.config.models)
-    for (const Shapes shapes : {Shapes::meshes, Shapes::scans})
+    for (const Shapes shapes : kAllShapes)
       if (const std::string name = "scores." + model.name; catalog.has(shapes, name))
         scored.push_back({model.name, catalog.index(shapes, name)});
 
@@ -110,11 +110,16 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
   write("summary.csv", summary_table(rows, metrics));
   write("per_class.csv", per_class_table(rows, metrics));
   write("significance.csv", significance_table(rows, metrics));
-  for (const Shapes shapes : {Shapes::meshes, Shapes::scans})
-    write(fmt::format("mean_histograms_{}.csv", name_of(shapes)), mean_histogram_table(run, shapes));
+  std::error_code not_there;  // tables of an earlier run would pass for some of this
+  for (const Shapes shapes : kAllShapes) {
+    const std::string name = fmt::format("mean_histograms_{}.csv", name_of(shapes));
+    if (shapes == Shapes::clouds && !run.context.catalog.has(shapes, "cloud"))
+      fs::remove(folder / name, not_there);
+    else
+      write(name, mean_histogram_table(run, shapes));
+  }
   const auto curves = collect_human_curves(run);
-  std::error_code not_there;
-  fs::remove(folder / "human_curve.csv", not_there);  // an earlier run's would pass for one of this
+  fs::remove(folder / "human_curve.csv", not_there);
   if (!curves.empty()) write("human_curve.csv", human_curve_table(curves, metrics));
 }
 

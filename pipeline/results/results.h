@@ -17,10 +17,10 @@ inline constexpr const char* kSimulatedNote =
     "people.";
 
 struct ResultRow {
-  std::string dataset;  // "meshes" or "scans"
-  std::string item;     // the mesh
+  std::string dataset;  // "meshes", "scans" or "clouds"
+  std::string item;     // the mesh or point cloud
   std::string category;
-  std::string view;  // of a scan; empty for a mesh
+  std::string view;  // of a scan; empty for others
   std::string model;
   Scores scores;
 
@@ -33,7 +33,7 @@ struct DatasetAndModel {
   bool operator==(const DatasetAndModel&) const = default;
 };
 
-// Those that the rows speak of: meshes before scans, models in the order of their first row.
+// Those that the rows speak of: meshes before scans before clouds, models in the order of their first row.
 std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows);
 
 // What a run knows, and what its results are read from.
@@ -62,8 +62,9 @@ Table summary_table(const std::vector<ResultRow>& rows, const Metrics& metrics =
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
-// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv and, where HS
-// was computed, human_curve.csv. Each begins with the remarks, as comments. Throws StorageError.
+// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv,
+// mean_histograms_clouds.csv where there are point clouds and, where HS was computed, human_curve.csv. Each
+// begins with the remarks, as comments. Throws StorageError.
 void write_tables(const std::filesystem::path& folder, const RunState& run,
                   const std::vector<ResultRow>& rows, const std::vector<std::string>& remarks);
 

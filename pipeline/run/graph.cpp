@@ -88,9 +88,8 @@ class Stream {
   // A job without open inputs waits for the ticket that its family's entrance sends.
   void count_inputs() {
     for (std::size_t row = 0; row < context_.catalog.rows.size(); ++row) {
-      const std::vector<Item> items = items_of(context_, row);
-      std::vector<std::atomic<int>>& missing = missing_.emplace_back(items.size());
-      for (const Item& item : items) {
+      std::vector<std::atomic<int>>& missing = missing_.emplace_back(places_of(context_, row));
+      for (const Item& item : items_of(context_, row)) {
         const JobRef job{row, item};
         missing[item.index()] = bodies_.open(job) ? std::max(1, open_inputs(job)) : kNotOpen;
         if (missing[item.index()] != kNotOpen && !item.is_set()) ++families_[item.family].open_jobs;
@@ -122,8 +121,8 @@ class Stream {
     flow::make_edge(entrance_, tokens_);
   }
 
-  // A limit holds for meshes and scans together: rows of one name with a limit share a node, where the ticket
-  // tells the row.
+  // A limit holds for all kinds of shapes together: rows of one name with a limit share a node, where the
+  // ticket tells the row.
   RowNode* shared_node(std::size_t row) {
     const std::vector<Row>& rows = context_.catalog.rows;
     const std::size_t limit = rows[row].limit;
@@ -152,7 +151,7 @@ class Stream {
     error_.guard([&] { entered = bodies_.enter(family); });
     families_[family].entered = entered;
     if (!entered) return false;
-    for (const Item& item : family_items(context_.catalog, family))
+    for (const Item& item : family_items(context_, family))
       for (const JobRef& job : jobs_of(context_.catalog, item)) start(job);
     return true;
   }
@@ -166,8 +165,8 @@ class Stream {
   void arrive(std::size_t row, const Ticket& ticket, RowNode::output_ports_type& out) {
     const Row& of = context_.catalog.rows[row];
     if (ticket.is_set() && !of.gathers) return;
-    // A node that rows for meshes and for scans share sends on the tickets of both.
-    if (!ticket.is_set() && ticket.is_mesh() != (of.shapes == Shapes::meshes)) return;
+    // A node that rows for several kinds of shapes share sends on the tickets of all.
+    if (!ticket.is_set() && ticket.shapes() != of.shapes) return;
     const JobRef job{row, of.gathers ? Item::set() : ticket};
     if (missing(job) == kNotOpen || --missing(job) > 0 || ended()) return;
     bool settled = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The flow graph: a node per row of the catalog, an edge per input. Tickets for meshes, scans and the data
-// set stream along the edges, and a node settles a job when the last open input of it has arrived.
+// The flow graph: a node per row of the catalog, an edge per input. Tickets for meshes, scans, point clouds
+// and the data set stream along the edges, and a node settles a job when the last open input of it has
+// arrived.
 #pragma once
 
 #include <atomic>

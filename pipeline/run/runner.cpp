@@ -33,10 +33,10 @@ std::vector<bool> rows_without_reference(const Catalog& catalog) {
   return without;
 }
 
-// By the mesh's content: meshes of one name in two data sets are not the same work.
+// By the shape's content: shapes of one name in two data sets are not the same work.
 std::string work_of(const Context& context, std::size_t family) {
-  const auto& digest = context.workload.families[family].mesh_file.front().digest;
-  return "family " + (digest ? digest->hex() : context.name(Item::mesh(family)));
+  const auto& digest = context.workload.families[family].shape_file.front().digest;
+  return "family " + (digest ? digest->hex() : context.workload.families[family].source.name);
 }
 
 }  // namespace
@@ -116,7 +116,7 @@ std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
     return claims[family] != nullptr;
   };
   const auto leave = [&](std::size_t family) {
-    for (const Item& item : family_items(context_.catalog, family)) executor_.forget(item);
+    for (const Item& item : family_items(context_, family)) executor_.forget(item);
     claims[family].reset();
   };
   stream(context_, {.threads = threads, .families = threads + 1}, stop_, {open, enter, settle, leave});

@@ -112,7 +112,7 @@ void count_edges(std::span<const Triangle> faces, MeshReport& report) {
 
 CheckedMesh check_mesh(Mesh mesh) {
   if (mesh.vertices.empty()) throw InputError("the mesh has no vertices");
-  if (mesh.faces.empty()) throw InputError("no faces: this is a point cloud, and salbench needs a mesh");
+  if (mesh.faces.empty()) throw InputError("no faces: this is a point cloud; write it as PLY, PCD or XYZ");
   check_coordinates(mesh);
   check_indices(mesh);
   MeshReport report;

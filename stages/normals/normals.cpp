@@ -85,8 +85,7 @@ OrientationSeed outermost(std::span<const Vec3> points, const Normals& normals,
   return best;
 }
 
-Normals hoppe_mesh_normals(const std::vector<Vec3>& points, const MeshNormalsOptions& options) {
-  if (points.empty()) throw InputError("the mesh has no vertices: normals cannot be computed");
+Normals outward_normals(const std::vector<Vec3>& points, const MeshNormalsOptions& options) {
   const KdTree tree(points);
   const Vec3 centre = centroid(points);
   const auto outwards = [&](std::size_t i) -> Vec3 {
@@ -108,7 +107,10 @@ void check(const MeshNormalsOptions& options) {
 
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options) {
   require_finite(mesh.vertices);
-  if (options.method == MeshNormalsMethod::pca) return hoppe_mesh_normals(mesh.vertices, options);
+  if (options.method == MeshNormalsMethod::pca) {
+    if (mesh.vertices.empty()) throw InputError("the mesh has no vertices: normals cannot be computed");
+    return outward_normals(mesh.vertices, options);
+  }
   Normals normals = area_weighted_normals(mesh);
   fill_from_nearest(mesh.vertices, normals);
   return normals;
@@ -138,6 +140,14 @@ Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
                                options.max_normal_angle_degrees * std::numbers::pi / 180};
   orient_normals(points, tree, graph, nearest_to_camera, normals);
   return normals;
+}
+
+Normals cloud_normals(const PointCloud& cloud, const ScanNormalsOptions& options) {
+  if (!cloud.normals.empty()) return cloud.normals;
+  if (cloud.viewpoint) return scan_normals({cloud.points, *cloud.viewpoint}, options);
+  require_finite(cloud.points);
+  return outward_normals(cloud.points, {.neighbours = options.neighbours,
+                                        .orientation_neighbours = options.orientation_neighbours});
 }
 
 }  // namespace salbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Unit normals of meshes and of scans.
+// Unit normals of meshes, of scans and of point clouds.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "stages/core/options.h"
+#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -98,5 +99,11 @@ struct ScanNormalsOptions {
 //           neighbours. [hoppe1992]
 // The result is empty for an empty scan. Throws InputError for points that are not finite.
 Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options = {});
+
+// n x 3: the cloud's own normals where it has them. Otherwise planes of the nearest points: with a viewpoint
+// as scan_normals, the viewpoint being the camera; without one oriented by Hoppe's tree, whose limits (gap,
+// steepest_degrees) are not used, and outwards at the outermost point of each component, as mesh_normals
+// does. [hoppe1992]
+Normals cloud_normals(const PointCloud& cloud, const ScanNormalsOptions& options = {});
 
 }  // namespace salbench

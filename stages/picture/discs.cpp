@@ -19,6 +19,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+constexpr std::size_t kAround = 6;       // points around a point of an even surface
+constexpr double kPartOfDistance = 0.9;  // to the farthest of them: less leaves more of scattered points open
+constexpr double kMostMedians = 4;       // of the radii: stray points get no large discs
+
 }  // namespace
 
 // The angle between neighbouring rays of the scanner is the median of those between nearest points.
@@ -42,6 +46,25 @@ std::vector<Disc> discs_of(const Scan& scan, const Normals& normals, const Camer
     disc.radius = kRadius * angle * (disc.centre - scanner).norm();
     disc.reach = disc.radius / std::max(-disc.normal.dot(disc.ray), kLeastCosine);
   }
+  return discs;
+}
+
+std::vector<Disc> discs_of(Points in_world, const Normals& normals, const Camera& camera) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : in_world) points.push_back(camera.eye_from_world(p));
+  const KdTree tree(points);
+  std::vector<Disc> discs;
+  std::vector<double> radii;
+  std::vector<Neighbour> nearest;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    tree.nearest(points[i], kAround + 1, nearest);
+    radii.push_back(kPartOfDistance * std::sqrt(nearest.back().distance_squared));
+    const Vec3 normal = camera.eye_from_world_direction(normals[i]);
+    const Vec3 front = normal.dot(points[i]) > 0 ? Vec3(-normal) : normal;
+    discs.push_back({points[i], front, -front});
+  }
+  const double most = kMostMedians * median(radii);
+  for (std::size_t i = 0; i < discs.size(); ++i) discs[i].reach = discs[i].radius = std::min(radii[i], most);
   return discs;
 }
 

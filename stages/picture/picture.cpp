@@ -190,7 +190,7 @@ void add_normals(const FaceSurfaces& surfaces, const ImagePlane& cells, Seen& se
   }
 }
 
-// --- scans ------------------------------------------------------------------------------------------------
+// --- points -----------------------------------------------------------------------------------------------
 
 struct DiscSurfaces final : Surfaces {
   const std::vector<Disc>& discs;
@@ -236,6 +236,24 @@ Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& me
   const std::vector<Disc> discs = discs_of(scan, normals, camera);
   const Seen seen = see_discs(discs, planes.cells);
   require_something_seen(seen, "scan");
+  return Developer{camera, options, planes, seen, DiscSurfaces(discs)}.develop(Occluders(discs),
+                                                                               random.rng("picture"));
+}
+
+Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,
+                         const PictureOptions& options, const RandomSource& random) {
+  CHECK_EQ(cloud.points.size(), normals.size());
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : cloud.points) box.extend(p);
+  const Vec3 up = upward(Mesh{cloud.points, {surface.begin(), surface.end()}}, options);
+  const bool from_outside = cloud.viewpoint && !box.contains(*cloud.viewpoint);
+  const CameraAxes axes =
+      from_outside ? axes_for_scan(up, *cloud.viewpoint - box.center(), options) : axes_for_mesh(up, options);
+  const Camera camera(cloud.points, axes, options, "point cloud");
+  const Planes planes(camera, options);
+  const std::vector<Disc> discs = discs_of(Points(cloud.points), normals, camera);
+  const Seen seen = see_discs(discs, planes.cells);
+  require_something_seen(seen, "point cloud");
   return Developer{camera, options, planes, seen, DiscSurfaces(discs)}.develop(Occluders(discs),
                                                                                random.rng("picture"));
 }

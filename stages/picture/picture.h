@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of shapes, without colours: what a pinhole camera sees of a mesh or of a scan, pixel by pixel, and
-// how bright it is. Painting a saliency map is then a look-up.
+// Pictures of shapes, without colours: what a pinhole camera sees of a mesh, a scan or a point cloud, pixel
+// by pixel, and how bright it is. Painting a saliency map is then a look-up.
 //
 // A picture is lit by one lamp that moves with the camera; a side turned away from it is dimmed and never
 // black, and no face has a back. Creases and hollows are darkened by ambient occlusion.
@@ -12,6 +12,7 @@
 
 #include "stages/core/options.h"
 #include "stages/core/picture.h"
+#include "stages/core/point_cloud.h"
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
 
@@ -73,8 +74,8 @@ struct PictureOptions {
 // What is seen of a mesh; `primitive` counts its faces. All faces count, whichever way they are turned:
 // turning some over changes nothing. Vertices without a face do not count.
 //
-// Both depend on nothing but their arguments: several threads may take pictures at once, and x86-64 machines
-// agree. Both throw InputError if a coordinate is not finite, or so large that its square overflows, if there
+// All depend on nothing but their arguments: several threads may take pictures at once, and x86-64 machines
+// agree. All throw InputError if a coordinate is not finite, or so large that its square overflows, if there
 // is nothing to see, or all of it is in one place.
 Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const RandomSource& random);
 
@@ -83,5 +84,11 @@ Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const R
 // whose centre is nearest is seen. The mesh, of which `scan` is one, tells which way is up.
 Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& mesh,
                         const PictureOptions& options, const RandomSource& random);
+
+// What is seen of a point cloud as discs in the planes of its points; `primitive` counts its points. The
+// camera stands near the viewpoint, where there is one outside of the cloud, and as for a mesh otherwise. The
+// partial mesh, which may be empty, tells which way is up.
+Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,
+                         const PictureOptions& options, const RandomSource& random);
 
 }  // namespace salbench

@@ -39,7 +39,7 @@ void silence_pcl() {
   static_cast<void>(silenced);
 }
 
-Cloud::Ptr cloud_in_spacings(const std::vector<Vec3>& points, const Normals& normals, double spacing) {
+Cloud::Ptr cloud_in_spacings(Points points, const Normals& normals, double spacing) {
   const Vec3 centre = centroid(points);
   auto cloud = pcl::make_shared<Cloud>();
   cloud->reserve(points.size());
@@ -53,8 +53,8 @@ Cloud::Ptr cloud_in_spacings(const std::vector<Vec3>& points, const Normals& nor
 }
 
 // Orients the face towards the normals of its corners, whatever order PCL gave them.
-Triangle oriented(Triangle face, const std::vector<Vec3>& points, const Normals& normals) {
-  const auto at = [&face](const auto& of, std::size_t corner) -> const Vec3& {
+Triangle oriented(Triangle face, Points points, const Normals& normals) {
+  const auto at = [&face](std::span<const Vec3> of, std::size_t corner) -> const Vec3& {
     return of[static_cast<std::size_t>(face[corner])];
   };
   const Vec3 area = (at(points, 1) - at(points, 0)).cross(at(points, 2) - at(points, 0));
@@ -84,10 +84,10 @@ Faces consistently_oriented(const Faces& faces) {
 
 }  // namespace
 
-Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options) {
-  CHECK_EQ(normals.size(), scan.points.size());
-  if (scan.points.size() < 3) return {};
-  const double spacing = median_spacing(scan.points, KdTree(scan.points));
+Faces partial_mesh(Points points, const Normals& normals, const SurfaceOptions& options) {
+  CHECK_EQ(normals.size(), points.size());
+  if (points.size() < 3) return {};
+  const double spacing = median_spacing(points, KdTree(points));
   if (!(spacing > 0)) return {};
 
   silence_pcl();
@@ -100,7 +100,7 @@ Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOption
   triangulation.setMaximumAngle(options.largest_angle * kRadiansPerDegree);
   triangulation.setNormalConsistency(true);
   triangulation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>());
-  triangulation.setInputCloud(cloud_in_spacings(scan.points, normals, spacing));
+  triangulation.setInputCloud(cloud_in_spacings(points, normals, spacing));
   std::vector<pcl::Vertices> polygons;
   triangulation.reconstruct(polygons);
 
@@ -109,7 +109,7 @@ Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOption
   for (const pcl::Vertices& polygon : polygons) {
     const auto& v = polygon.vertices;
     CHECK_EQ(v.size(), 3U);
-    faces.push_back(oriented({v[0], v[1], v[2]}, scan.points, normals));
+    faces.push_back(oriented({v[0], v[1], v[2]}, points, normals));
   }
   return consistently_oriented(faces);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Partial meshes: a surface over the points of one scan, for the models that need edges. [tasse2016]
+// Partial meshes: a surface over the points of a scan or a point cloud, for the models that need edges.
+// [tasse2016]
 #pragma once
 
 #include <cstdint>
@@ -33,11 +34,11 @@ struct SurfaceOptions {
   }
 };
 
-// f x 3 indices of the scan's points, by greedy projection triangulation; counter-clockwise seen from the
+// f x 3 indices of the points, by greedy projection triangulation; counter-clockwise seen from the
 // side that the normals point to. No two faces pass an edge in the same direction. Depth jumps stay open, and
 // there may be holes and points without a face. The result is empty for fewer than three points, and if the
 // median distance to the nearest other point is 0. Takes one unit normal per point; all values are finite.
 // [marton2009]
-Faces partial_mesh(const Scan& scan, const Normals& normals, const SurfaceOptions& options = {});
+Faces partial_mesh(Points points, const Normals& normals, const SurfaceOptions& options = {});
 
 }  // namespace salbench

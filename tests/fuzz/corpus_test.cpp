@@ -34,6 +34,12 @@ void replay(const std::filesystem::path& folder, void (*target)(std::string_view
 TEST(FuzzCorpus, Off) { replay("off", fuzz_off); }
 TEST(FuzzCorpus, Obj) { replay("obj", fuzz_obj); }
 TEST(FuzzCorpus, Ply) { replay("ply", fuzz_ply); }
+TEST(FuzzCorpus, PlyCloud) {
+  replay("ply_cloud", fuzz_ply_cloud);
+  replay("ply", fuzz_ply_cloud);
+}
+TEST(FuzzCorpus, Pcd) { replay("pcd", fuzz_pcd); }
+TEST(FuzzCorpus, Xyz) { replay("xyz", fuzz_xyz); }
 TEST(FuzzCorpus, Val) { replay("val", fuzz_val); }
 TEST(FuzzCorpus, Pid) { replay("pid", fuzz_pid); }
 TEST(FuzzCorpus, Hdf5) { replay("hdf5", fuzz_hdf5); }

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "io/cloud_file.h"
 #include "io/ground_truth_file.h"
 #include "io/mesh_file.h"
 #include "io/shape_file.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"
+#include "stages/core/point_cloud.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/targets.h"
 
@@ -70,6 +72,31 @@ void check_mesh_reader(Mesh (*parse)(std::string_view, std::string_view), std::s
   check_faces_are_counted(*mesh);
 }
 
+void check_cloud_is_checked(const PointCloud& cloud) {
+  try {
+    const CheckedCloud checked = check_cloud(cloud);
+    CHECK_EQ(checked.cloud.size_in_file(), cloud.points.size());
+    CHECK_LE(kFewestPoints, checked.cloud.points.size());
+    for (const Vec3& point : checked.cloud.points) CHECK_EQ(point.allFinite(), true);
+    for (const Vec3& normal : checked.cloud.normals) CHECK_LT(std::abs(normal.norm() - 1), 1e-12);
+    for (const std::string& warning : checked.warnings) check_one_line(warning);
+    const CheckedCloud again = check_cloud({checked.cloud.points, checked.cloud.normals});
+    CHECK_EQ(again.cloud.points == checked.cloud.points, true);
+    CHECK_EQ(again.cloud.normals == checked.cloud.normals, true);
+  } catch (const InputError& error) {
+    check_one_line(error.what());
+  }
+}
+
+void check_cloud_reader(PointCloud (*parse)(std::string_view, std::string_view), std::string_view bytes) {
+  const auto cloud = read_or_refuse([&] { return parse(bytes, kFile); });
+  if (!cloud) return;
+  CHECK_EQ(cloud->normals.empty() || cloud->normals.size() == cloud->points.size(), true);
+  CHECK_EQ(cloud->dropped.empty(), true);
+  if (cloud->viewpoint) CHECK_EQ(cloud->viewpoint->allFinite(), true);
+  check_cloud_is_checked(*cloud);
+}
+
 std::size_t count_words(std::string_view text) {
   std::istringstream words{std::string(text)};
   std::size_t n = 0;
@@ -82,6 +109,10 @@ std::size_t count_words(std::string_view text) {
 void fuzz_off(std::string_view bytes) { check_mesh_reader(parse_off, bytes); }
 void fuzz_obj(std::string_view bytes) { check_mesh_reader(parse_obj, bytes); }
 void fuzz_ply(std::string_view bytes) { check_mesh_reader(parse_ply, bytes); }
+
+void fuzz_ply_cloud(std::string_view bytes) { check_cloud_reader(parse_ply_cloud, bytes); }
+void fuzz_pcd(std::string_view bytes) { check_cloud_reader(parse_pcd, bytes); }
+void fuzz_xyz(std::string_view bytes) { check_cloud_reader(parse_xyz, bytes); }
 
 void fuzz_val(std::string_view bytes) {
   const auto read = [&](std::size_t n_vertices) {

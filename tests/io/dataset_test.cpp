@@ -149,10 +149,21 @@ TEST(Dataset, NotesMeshesThatTheBenchmarkHasAndTheFolderHasNot) {
               ElementsAre("379 of the 400 meshes of SHREC'07 are here, without 261-280, 399"));
 }
 
-TEST(Dataset, RefusesTwoMeshesOfOneName) {
-  const DatasetFolder folder = {"a.off", "a.obj", "b.off"};
+TEST(Dataset, NamesAllShapesThatHaveTwoFiles) {
+  const DatasetFolder folder = {"a.off", "a.ply", "b.off", "c.XYZ", "c.obj", "c.pcd"};
   expect_refusal(folder.path(), Layout::automatic,
-                 AllOf(HasSubstr("a.off: has the same name as"), HasSubstr("a.obj")));
+                 AllOf(HasSubstr("several files of one name: a.off and a.ply, c.XYZ and c.obj and c.pcd;"),
+                       HasSubstr("dataset.twins: off")));
+}
+
+TEST(Dataset, TakesTheKindOfFileThatIsChosenAmongTwins) {
+  const DatasetFolder folder = {"a.off", "a.ply", "b.off", "c.PLY", "c.xyz"};
+  const Dataset dataset = find_dataset(folder.path(), Layout::automatic, Twins::ply);
+  EXPECT_THAT(summary(dataset, folder.path()), ElementsAre("a - a.ply", "b - b.off", "c - c.PLY"));
+  EXPECT_THAT(dataset.notes, ElementsAre("files left out, as there is a .ply file of the same name: 2"));
+  EXPECT_THROW(find_dataset(folder.path(), Layout::automatic, Twins::off), InputError);
+  const DatasetFolder cases = {"a.ply", "a.PLY"};
+  EXPECT_THROW(find_dataset(cases.path(), Layout::automatic, Twins::ply), InputError);
 }
 
 TEST(Dataset, SaysWhatItLookedForAndWhere) {

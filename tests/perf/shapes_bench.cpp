@@ -58,7 +58,7 @@ struct Shape {
     scan = simulate_scan(mesh, 0);
     scan_normals = salbench::scan_normals(*scan);
     scan_descriptors = fpfh(scan->points, scan_normals, ScanFpfhOptions{});
-    surface = partial_mesh(*scan, scan_normals);
+    surface = partial_mesh(scan->points, scan_normals);
   }
 };
 
@@ -136,7 +136,8 @@ void add_of_scan(const std::string& name, const Source& source) {
   add(
       "normals", name, source, [](const Shape& s) { return scan_normals(*s.scan); }, true);
   add(
-      "surface", name, source, [](const Shape& s) { return partial_mesh(*s.scan, s.scan_normals); }, true);
+      "surface", name, source, [](const Shape& s) { return partial_mesh(s.scan->points, s.scan_normals); },
+      true);
   add(
       "FPFH", name, source,
       [](const Shape& s) { return fpfh(s.scan->points, s.scan_normals, ScanFpfhOptions{}); }, true);

@@ -33,12 +33,12 @@ class FingerprintMaker {
 struct GoldenRow {
   std::string protocol, stage;
   std::int32_t version = 0;
-  std::string shape;  // "mesh" or "scan"
+  std::string shape;  // "mesh", "scan" or "cloud"
   std::string array;
   std::string options;  // digest of the stage's options and seed
   Fingerprint fingerprint;
 
-  // What the row is about: a stage comes with all its arrays, for meshes and for scans, in each protocol.
+  // What the row is about: a stage comes with all its arrays, for each kind of shapes, in each protocol.
   std::string subject() const { return protocol + "/" + stage + "/" + shape + "/" + array; }
 };
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/golden_table.h"
+#include "tests/support/cloud_text.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
@@ -146,6 +147,8 @@ class RecordingStore final : public Store {
   std::vector<Record> records_;
 };
 
+constexpr const char* kCloud = "cloud";  // name of the point cloud among the toy data
+
 struct Outputs {
   std::vector<GoldenRow> rows;
   std::vector<std::pair<std::string, std::string>> inputs;
@@ -164,11 +167,14 @@ void collect(const std::string& protocol, const std::vector<RecordingStore::Reco
   std::map<std::string, std::pair<GoldenRow, FingerprintMaker>> by_subject;
   for (const auto& [recipe, item, arrays] : records) {
     const bool is_scan = item == "scans" || item.find('_') != item.npos;
+    const bool is_cloud = item == "clouds" || item == kCloud;
     for (const Array& array : arrays) {
       GoldenRow row{protocol,
                     recipe.stage,
                     recipe.stage_version,
-                    is_scan ? "scan" : "mesh",
+                    std::string(name_of(is_scan    ? Scope::scan
+                                        : is_cloud ? Scope::cloud
+                                                   : Scope::mesh)),
                     array.name,
                     options_digest(recipe),
                     {}};
@@ -193,7 +199,7 @@ void collect_inputs(const std::string& protocol, const ToyRun& toy, Outputs& out
 
 void expect_every_row(const std::string& protocol, const Catalog& catalog, const Outputs& outputs) {
   for (const Row& row : catalog.rows) {
-    const std::string shape = row.shapes == Shapes::meshes ? "mesh" : "scan";
+    const std::string_view shape = name_of(scope_of(row.shapes));
     EXPECT_TRUE(std::any_of(outputs.rows.begin(), outputs.rows.end(),
                             [&](const GoldenRow& golden) {
                               return golden.protocol == protocol && golden.stage == row.name &&
@@ -214,6 +220,9 @@ Outputs toy_outputs() {
   const TemporaryFolder data;
   write_toy_item(data.path(), "1", shapes::bumpy_sphere(4, 0.3));
   write_toy_item(data.path(), "2", shapes::bumpy_sphere(3));
+  const Mesh points = shapes::bumpy_sphere(3, 0.25);  // its normals are computed
+  write_toy_truth(data.path(), kCloud, points);
+  data.write(fmt::format("Meshes/{}.ply", kCloud), ply_cloud_text(points.vertices));
   Outputs outputs;
   for (const std::string protocol : {"published", "text"}) {
     RecordingStore store;

@@ -105,7 +105,7 @@ TEST_F(MaintenanceTest, ResultsOfAnItemWhoseFileCannotBeReadAreKept) {
   const std::size_t all = run(kPs);
   FolderStore cache = store(Access::read_only);
   ToyRun toy(data_.path(), cache, kPs);
-  toy.workload.families[1].mesh_file.front() = source_file("mesh file .off", "/nowhere/2.off");
+  toy.workload.families[1].shape_file.front() = source_file("mesh file .off", "/nowhere/2.off");
   toy.plan = make_plan(toy.context, cache);
   KeepSet needed;
   EXPECT_GT(add_needed(toy.context, toy.plan, needed), 0U);

@@ -44,16 +44,16 @@ TEST(Workload, NamesWhatASelectionDoesNotFind) {
 TEST(Workload, DigestsContentNotPaths) {
   const TemporaryFolder a, b;
   const Workload first = make_workload(numbered(a), ""), second = make_workload(numbered(b), "");
-  EXPECT_EQ(first.families[0].mesh_file[0].digest, second.families[0].mesh_file[0].digest);
-  EXPECT_NE(first.families[0].mesh_file[0].digest, first.families[1].mesh_file[0].digest);
+  EXPECT_EQ(first.families[0].shape_file[0].digest, second.families[0].shape_file[0].digest);
+  EXPECT_NE(first.families[0].shape_file[0].digest, first.families[1].shape_file[0].digest);
 }
 
 TEST(Workload, AnUnreadableFileIsKeptForItsItem) {
   Dataset dataset;
   dataset.items.push_back({"gone", "", "/no/such/mesh.off", "", {}});
   const Workload workload = make_workload(dataset, "");
-  EXPECT_FALSE(workload.families[0].mesh_file[0].digest);
-  EXPECT_THAT(workload.families[0].mesh_file[0].error, HasSubstr("/no/such/mesh.off"));
+  EXPECT_FALSE(workload.families[0].shape_file[0].digest);
+  EXPECT_THAT(workload.families[0].shape_file[0].error, HasSubstr("/no/such/mesh.off"));
 }
 
 }  // namespace

@@ -64,14 +64,14 @@ def metrics_of(results):
 
 
 def results_table(items, models=MODELS, views=12, seed=1, datasets=("meshes", "scans")):
-    """items: (name, class) pairs. Scans have no HS."""
+    """items: (name, class) pairs. Scans and point clouds have no HS."""
     random = numpy.random.default_rng(seed)
     frames = []
     for dataset in datasets:
-        shapes = [(item, name, "") for item, name in items] if dataset == "meshes" else [
+        shapes = [(item, name, "") for item, name in items] if dataset != "scans" else [
             (item, name, str(view)) for item, name in items for view in range(views)]
         for model in models:
-            if dataset == "scans" and model == "HS":
+            if dataset != "meshes" and model == "HS":
                 continue
             frame = pandas.DataFrame(shapes, columns=["item", "class", "view"])
             frame.insert(0, "dataset", dataset)

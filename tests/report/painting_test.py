@@ -42,7 +42,7 @@ class Painting(support.ReportTest):
         self.assertTrue((image[picture.primitive >= 0] == (palette()[255] * (128 / 255)).round()).all())
 
     def test_a_scan_takes_the_values_of_its_points(self):
-        picture = Picture(**pinhole.picture_of_scan(self.points, (1, 0, 0), size=64))
+        picture = Picture(**pinhole.picture_of_points(self.points, (1, 0, 0), size=64))
         values = numpy.linspace(0, 1, len(self.points))
         shown = pixel_values(picture, values, None)
         seen = picture.primitive >= 0

@@ -59,7 +59,7 @@ def picture_of_mesh(points, faces, towards=(1.0, 0.6, 1.2), size=400):
             "coverage": numpy.where(primitive >= 0, 255, 0).astype(numpy.uint8)}
 
 
-def picture_of_scan(points, towards, size=400, half=3):
+def picture_of_points(points, towards, size=400, half=3):
     """Points as squares of 2 half + 1 pixels."""
     view_projection = camera(points, towards, size)[1]
     x, y, distance = pixels(points, view_projection, size)
@@ -82,7 +82,9 @@ def add_pictures(file, size=400):
             picture = picture_of_mesh(group["mesh/vertices"][:], group["mesh/faces"][:], size=size)
         elif "scan" in group:
             points = group["scan/points"][:]
-            picture = picture_of_scan(points, group["scan/camera"][:] - points.mean(axis=0), size=size)
+            picture = picture_of_points(points, group["scan/camera"][:] - points.mean(axis=0), size=size)
+        elif "cloud" in group:
+            picture = picture_of_points(group["cloud/points"][:], (1.0, 0.6, 1.2), size=size)
         else:
             continue
         for key, values in picture.items():

@@ -25,12 +25,12 @@ inline std::string off_text(const Mesh& mesh) {
   return text;
 }
 
-// Writes Meshes/NAME.off, Distributions/NAME.val and RawData/NAME_k.pid below `root`.
-inline void write_toy_item(const std::filesystem::path& root, const std::string& name, const Mesh& mesh) {
+// Writes Distributions/NAME.val and RawData/NAME_k.pid below `root`, and returns what they say.
+inline GroundTruth write_toy_truth(const std::filesystem::path& root, const std::string& name,
+                                   const Mesh& mesh) {
   const GroundTruth truth = simulated_ground_truth(mesh, {.participants = 4, .picks = 5}, 1, name);
   for (const char* folder : {"Meshes", "Distributions", "RawData"})
     std::filesystem::create_directories(root / folder);
-  write_file(root / "Meshes" / (name + ".off"), off_text(mesh));
   std::string values;
   for (const double v : truth.saliency) values += fmt::format("{}\n", v);
   write_file(root / "Distributions" / (name + ".val"), values);
@@ -39,6 +39,13 @@ inline void write_toy_item(const std::filesystem::path& root, const std::string&
     for (const std::int32_t i : truth.picks[k]) picks += fmt::format("{}\n", i);
     write_file(root / "RawData" / fmt::format("{}_{}.pid", name, k), picks);
   }
+  return truth;
+}
+
+// The same, and Meshes/NAME.off.
+inline void write_toy_item(const std::filesystem::path& root, const std::string& name, const Mesh& mesh) {
+  write_toy_truth(root, name, mesh);
+  write_file(root / "Meshes" / (name + ".off"), off_text(mesh));
 }
 
 // Coarse scans keep tests quick; everything else is as in a real run.
@@ -57,8 +64,8 @@ struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
       : config(std::move(the_config)),
-        catalog(make_catalog(config)),
-        workload(make_workload(find_dataset(root, config.dataset.layout), items)),
+        workload(make_workload(find_dataset(root, config.dataset.layout, config.dataset.twins), items)),
+        catalog(make_catalog(config, {}, kinds_of(workload))),
         context{catalog, workload, config.seed},
         store(the_store),
         plan(make_plan(context, store)),
@@ -83,8 +90,8 @@ struct ToyRun {
   std::size_t open() const { return count(Verdict::wait) + count(Verdict::compute); }
 
   Config config;
-  Catalog catalog;
   Workload workload;
+  Catalog catalog;
   Context context;
   Store& store;
   Plan plan;

@@ -58,7 +58,7 @@ TEST(PartialMesh, OfASphereIsItsVisibleCap) {
   const Mesh mesh = shapes::sphere(5);
   for (const int view : {0, 4, 9}) {
     const Scan scan = simulate_scan(mesh, view);
-    const Faces faces = partial_mesh(scan, scan_normals(scan));
+    const Faces faces = partial_mesh(scan.points, scan_normals(scan));
     expect_consistently_oriented(faces, scan.points.size());
     EXPECT_GT(share_covered(scan, faces), 0.98) << "view " << view;
 
@@ -92,7 +92,7 @@ TEST(PartialMesh, LeavesDepthJumpsOpen) {
   mesh.vertices.insert(mesh.vertices.end(), front.vertices.begin(), front.vertices.end());
 
   const Scan scan = simulate_scan(mesh, 1);
-  const Faces faces = partial_mesh(scan, scan_normals(scan));
+  const Faces faces = partial_mesh(scan.points, scan_normals(scan));
   EXPECT_GT(share_covered(scan, faces), 0.98);
   for (const Triangle& face : faces) {
     double low = 1e9, high = -1e9;
@@ -106,7 +106,7 @@ TEST(PartialMesh, LeavesDepthJumpsOpen) {
 
 TEST(PartialMesh, FillsAGridWithTwoFacesACell) {
   const Scan scan{shapes::grid(20).vertices, {0, 0, 5}};
-  const Faces faces = partial_mesh(scan, Normals(scan.points.size(), Vec3::UnitZ()));
+  const Faces faces = partial_mesh(scan.points, Normals(scan.points.size(), Vec3::UnitZ()));
   expect_consistently_oriented(faces, scan.points.size());
   EXPECT_GT(share_covered(scan, faces), 0.95);
   EXPECT_NEAR(surface_area({scan.points, faces}), 1, 0.05);
@@ -117,7 +117,7 @@ TEST(PartialMesh, DependsNeitherOnTheUnitNorOnThePlace) {
   const Normals normals = scan_normals(scan);
   Scan moved = scan;
   for (Vec3& p : moved.points) p = 1e-5 * p + Vec3(3, -8, 1);  // in float, the shape would be gone
-  const Faces faces = partial_mesh(scan, normals), after = partial_mesh(moved, normals);
+  const Faces faces = partial_mesh(scan.points, normals), after = partial_mesh(moved.points, normals);
   EXPECT_NEAR(static_cast<double>(after.size()), static_cast<double>(faces.size()),
               0.01 * static_cast<double>(faces.size()));
   EXPECT_NEAR(surface_area({moved.points, after}) * 1e10, surface_area({scan.points, faces}), 0.01);
@@ -131,22 +131,22 @@ TEST(PartialMesh, EdgesKeepToTheReach) {
   tight.reach = 6;
   tight.longest_edge = 1.5;
   const double step = std::tan(0.125 * std::numbers::pi / 180) * (scan.camera.norm() - 1.2);
-  EXPECT_GT(longest_edge(scan, partial_mesh(scan, normals, wide)), 3 * step);
-  EXPECT_LT(longest_edge(scan, partial_mesh(scan, normals, tight)), 2.5 * step);
+  EXPECT_GT(longest_edge(scan, partial_mesh(scan.points, normals, wide)), 3 * step);
+  EXPECT_LT(longest_edge(scan, partial_mesh(scan.points, normals, tight)), 2.5 * step);
 }
 
 TEST(PartialMesh, TooFewPointsHaveNoFaces) {
   const Normals up(8, Vec3::UnitZ());
   for (const std::size_t n : {0U, 1U, 2U}) {
     const Scan scan{{shapes::random_cloud(n, 1)}, {0, 0, 9}};
-    EXPECT_TRUE(partial_mesh(scan, Normals(n, Vec3::UnitZ())).empty());
+    EXPECT_TRUE(partial_mesh(scan.points, Normals(n, Vec3::UnitZ())).empty());
   }
-  EXPECT_TRUE(partial_mesh({std::vector<Vec3>(8, Vec3(1, 1, 1)), {0, 0, 9}}, up).empty());
+  EXPECT_TRUE(partial_mesh(std::vector<Vec3>(8, Vec3(1, 1, 1)), up).empty());
 }
 
 TEST(PartialMesh, ThreePointsAreAFaceTowardsTheirNormals) {
   const Scan scan{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, {0, 0, 9}};
-  const Faces faces = partial_mesh(scan, Normals(3, Vec3::UnitZ()));
+  const Faces faces = partial_mesh(scan.points, Normals(3, Vec3::UnitZ()));
   ASSERT_EQ(faces.size(), 1U);
   EXPECT_GT(face_area_vector({scan.points, faces}, faces[0]).z(), 0);
 }
@@ -156,7 +156,7 @@ TEST(PartialMesh, DoesNotDependOnOtherThreads) {
   const Normals normals = scan_normals(scan);
   std::vector<Faces> results(3);
   std::vector<std::thread> threads;
-  for (Faces& faces : results) threads.emplace_back([&] { faces = partial_mesh(scan, normals); });
+  for (Faces& faces : results) threads.emplace_back([&] { faces = partial_mesh(scan.points, normals); });
   for (std::thread& thread : threads) thread.join();
   EXPECT_GT(results[0].size(), scan.points.size());
   EXPECT_EQ(results[0], results[1]);
@@ -170,7 +170,7 @@ TEST(PartialMesh, CoversRealScans) {
     const auto path = *data / "SchellingData" / "Meshes" / (std::to_string(number) + ".off");
     if (!std::filesystem::exists(path)) continue;
     const Scan scan = simulate_scan(read_mesh(path), number % kViews);
-    const Faces faces = partial_mesh(scan, scan_normals(scan));
+    const Faces faces = partial_mesh(scan.points, scan_normals(scan));
     EXPECT_GT(share_covered(scan, faces), 0.97) << number;
     expect_consistently_oriented(faces, scan.points.size());
   }

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Point clouds beside meshes and scans, from their files to their scores.
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/smoothing.h"
+#include "stages/normals/normals.h"
+#include "stages/surface/surface.h"
+#include "tests/support/cloud_text.h"
+#include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+using testing::AllOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr const char* kAllModels = "dataset: {scans: false}\n";
+constexpr const char* kPointModels = "dataset: {scans: false}\nmodels: {LS: , CS: , PS: , RS: }\n";
+
+// The mesh "1", and the cloud "2" of its vertices with its normals; both with ground truth.
+struct Twins12 {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  GroundTruth truth;  // of the cloud
+  TemporaryFolder folder;
+
+  Twins12() {
+    write_toy_item(folder.path(), "1", mesh);
+    truth = write_toy_truth(folder.path(), "2", mesh);
+    folder.write("Meshes/2.xyz", xyz_text(mesh.vertices, mesh_normals(mesh)));
+  }
+};
+
+template <class T>
+T result(ToyRun& toy, const std::string& row, Shapes shapes, const Item& item) {
+  return std::get<T>(*toy.runner.result({toy.catalog.index(shapes, row), item}));
+}
+
+ScalarField map_of(ToyRun& toy, const std::string& model, Shapes shapes, const Item& item) {
+  return result<ScalarField>(toy, "map." + model, shapes, item);
+}
+
+TEST(Clouds, WithAMeshsNormalsHaveTheMeshsMapsToTheBit) {
+  const Twins12 data;
+  for (const char* protocol : {"published", "text"}) {
+    MemoryStore store;
+    ToyRun toy(data.folder.path(), store, fmt::format("protocol: {}\nnormals: {{method: faces}}\n{}", protocol, kPointModels));
+    toy.run();
+    ASSERT_THAT(toy.runner.failures(), IsEmpty());
+    for (const char* model : {"LS", "CS", "PS"})
+      EXPECT_EQ(map_of(toy, model, Shapes::clouds, Item::cloud(1)),
+                map_of(toy, model, Shapes::meshes, Item::mesh(0)))
+          << model;
+  }
+}
+
+TEST(Clouds, HaveMapsAndScoresOfEveryModelButHumanPerformance) {
+  const Twins12 data;
+  MemoryStore store;
+  ToyRun toy(data.folder.path(), store, kAllModels);
+  toy.run();
+  ASSERT_THAT(toy.runner.failures(), IsEmpty());
+  for (const char* model : {"LS", "CS", "PS", "MS"}) {
+    const ScalarField map = map_of(toy, model, Shapes::clouds, Item::cloud(1));
+    ASSERT_THAT(map, SizeIs(data.mesh.vertices.size()));
+    EXPECT_TRUE(std::all_of(map.begin(), map.end(), [](double v) { return std::isfinite(v); })) << model;
+    EXPECT_LT(*std::min_element(map.begin(), map.end()), *std::max_element(map.begin(), map.end())) << model;
+  }
+  std::vector<std::string> models;
+  for (const ResultRow& row : toy.results())
+    if (row.dataset == "clouds") {
+      EXPECT_EQ(row.item, "2");
+      EXPECT_EQ(row.view, "");
+      EXPECT_EQ(row.scores.n_points, static_cast<std::int64_t>(data.mesh.vertices.size()));
+      models.push_back(row.model);
+    }
+  EXPECT_THAT(models, ElementsAre("LS", "CS", "PS", "MS", "RS"));
+}
+
+TEST(Clouds, HaveRowsOnlyWhereTheDataSetHoldsSome) {
+  const Config config = toy_config("picture: {size: 40}\n");
+  const auto rows_of = [](const Catalog& catalog, Shapes shapes) {
+    return std::count_if(catalog.rows.begin(), catalog.rows.end(),
+                         [&](const Row& row) { return row.shapes == shapes; });
+  };
+  const Catalog meshes = make_catalog(config),
+                clouds = make_catalog(config, {}, {.meshes = false, .clouds = true}),
+                both = make_catalog(config, {}, {.meshes = true, .clouds = true});
+  EXPECT_EQ(rows_of(meshes, Shapes::clouds), 0);
+  EXPECT_EQ(rows_of(clouds, Shapes::meshes) + rows_of(clouds, Shapes::scans), 0);
+  EXPECT_EQ(rows_of(both, Shapes::clouds), rows_of(clouds, Shapes::clouds));
+  // Nothing of the other rows depends on the clouds beside them.
+  std::vector<std::string> without, beside;
+  for (const Row& row : meshes.rows) without.push_back(node_name(row));
+  for (const Row& row : both.rows)
+    if (row.shapes != Shapes::clouds) beside.push_back(node_name(row));
+  EXPECT_EQ(beside, without);
+}
+
+TEST(Clouds, AreFoundInTheCacheByTheNextRunAndChangeNoKeyOfAMesh) {
+  const Twins12 data;
+  MemoryStore store;
+  {
+    ToyRun alone(data.folder.path(), store, kToyConfig, "1");
+    alone.run();
+    ASSERT_THAT(alone.runner.failures(), IsEmpty());
+  }
+  ToyRun both(data.folder.path(), store);
+  for (std::size_t row = 0; row < both.catalog.rows.size(); ++row) {
+    if (both.catalog.rows[row].shapes == Shapes::clouds) continue;
+    EXPECT_EQ(count_open(both.plan.jobs[row]), 0U) << node_name(both.catalog.rows[row]);
+  }
+  both.run();
+  ToyRun again(data.folder.path(), store);
+  EXPECT_EQ(again.open(), 0U);
+  for (const std::vector<Job>& jobs : again.plan.jobs) EXPECT_EQ(count_open(jobs), 0U);
+}
+
+TEST(Clouds, ComeOutTheSameOnAnyNumberOfThreads) {
+  const Twins12 data;
+  data.folder.write("Meshes/3.ply", ply_cloud_text(shapes::bumpy_sphere(2).vertices));
+  std::vector<Digest> first;
+  for (const int threads : {1, 4}) {
+    MemoryStore store;
+    ToyRun toy(data.folder.path(), store, "scan: {step_degrees: 1}\nmodels: {CS: , MS: , RS: }\n");
+    toy.run(threads);
+    ASSERT_THAT(toy.runner.failures(), IsEmpty());
+    std::vector<Digest> contents;
+    for (const std::vector<Job>& jobs : toy.plan.jobs)
+      for (const Job& job : jobs) contents.push_back(job.content);
+    if (first.empty()) first = contents;
+    EXPECT_TRUE(contents == first) << threads;
+  }
+}
+
+// The cloud "2" without the positions of the points 0 and 100.
+TEST(Clouds, GroundTruthCountsThePointsOfTheFile) {
+  const Twins12 data;
+  std::vector<Vec3> points = data.mesh.vertices;
+  points[0].x() = points[100].y() = std::numeric_limits<double>::quiet_NaN();
+  data.folder.write("Meshes/2.xyz", xyz_text(points, mesh_normals(data.mesh)));
+  for (int k = 0; k < 4; ++k) data.folder.write(fmt::format("RawData/2_{}.pid", k), "1\n101\n300\n");
+  MemoryStore store;
+  ToyRun toy(data.folder.path(), store, kPointModels);
+  toy.run();
+  ASSERT_THAT(toy.runner.failures(), IsEmpty());
+  const auto truth = result<GroundTruth>(toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(1));
+  EXPECT_THAT(truth.picks, AllOf(SizeIs(4), Each(ElementsAre(0, 99, 298))));
+  ASSERT_THAT(truth.saliency, SizeIs(points.size() - 2));
+  EXPECT_EQ(truth.saliency[0], data.truth.saliency[1]);
+  EXPECT_EQ(truth.saliency[98], data.truth.saliency[99]);
+  EXPECT_EQ(truth.saliency[99], data.truth.saliency[101]);
+  EXPECT_EQ(truth.saliency.back(), data.truth.saliency.back());
+}
+
+TEST(Clouds, APickOfAPointWithoutAPositionIsTheItemsFailure) {
+  const Twins12 data;
+  std::vector<Vec3> points = data.mesh.vertices;
+  points[7].x() = std::numeric_limits<double>::quiet_NaN();
+  data.folder.write("Meshes/2.xyz", xyz_text(points));
+  data.folder.write("RawData/2_0.pid", "3\n7\n");
+  MemoryStore store;
+  ToyRun toy(data.folder.path(), store, kPointModels);
+  toy.run();
+  ASSERT_THAT(toy.runner.failures(), SizeIs(1));
+  EXPECT_THAT(toy.runner.failures()[0].cause,
+              HasSubstr("participant 0 picked point 7 (0-based), which has no position"));
+  EXPECT_THAT(map_of(toy, "PS", Shapes::clouds, Item::cloud(1)), SizeIs(points.size() - 1));
+}
+
+TEST(Clouds, PicksAloneAreSmoothedOverThePartialMesh) {
+  const Twins12 data;
+  std::filesystem::remove(data.folder / "Distributions/2.val");
+  MemoryStore store;
+  ToyRun toy(data.folder.path(), store, kPointModels);
+  toy.run();
+  ASSERT_THAT(toy.runner.failures(), IsEmpty());
+  const auto truth = result<GroundTruth>(toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(1));
+  const Faces faces = partial_mesh(data.mesh.vertices, mesh_normals(data.mesh));
+  EXPECT_EQ(truth.saliency, smoothed_picks({data.mesh.vertices, faces}, truth.picks));
+}
+
+TEST(Clouds, MayHaveMadeUpParticipantsAndMetricsByArea) {
+  const Twins12 data;
+  MemoryStore store;
+  ToyRun toy(data.folder.path(), store,
+             "dataset: {scans: false, participants: simulated}\nmodels: {PS: , MS: }\nmetrics: [all]\n");
+  toy.run();
+  ASSERT_THAT(toy.runner.failures(), IsEmpty());
+  EXPECT_TRUE(result<GroundTruth>(toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(1)).simulated);
+  for (const ResultRow& row : toy.results())
+    for (const double value : row.scores.values)
+      EXPECT_TRUE(std::isfinite(value)) << row.dataset << row.model;
+}
+
+TEST(Clouds, ThatCannotBeReadFailAloneAndSayWhy) {
+  const Twins12 data;
+  data.folder.write("Meshes/3.xyz", "1 2 3\n4 5\n");
+  data.folder.write("Meshes/4.ply", ply_cloud_text(std::vector<Vec3>(3, Vec3(1, 2, 3))));
+  data.folder.write("Meshes/5.off", "OFF\n3 0 0\n1 2 3\n1 2 4\n1 3 3\n");
+  MemoryStore store;
+  ToyRun toy(data.folder.path(), store, kPointModels);
+  toy.run();
+  std::vector<std::string> causes;
+  for (const Failure& failure : toy.runner.failures()) causes.push_back(failure.cause);
+  EXPECT_THAT(causes, ElementsAre(HasSubstr("3.xyz:2: a point needs 3 values"),
+                                  "the point cloud has 3 points with a position: it needs at least 9",
+                                  "no faces: this is a point cloud; write it as PLY, PCD or XYZ"));
+  EXPECT_THAT(map_of(toy, "PS", Shapes::clouds, Item::cloud(1)), SizeIs(data.mesh.vertices.size()));
+}
+
+TEST(Clouds, AFileThatBecomesAMeshDuringTheRunIsRefused) {
+  const TemporaryFolder folder;
+  const Mesh mesh = shapes::bumpy_sphere(1);
+  folder.write("1.ply", ply_cloud_text(mesh.vertices));
+  MemoryStore store;
+  ToyRun toy(folder.path(), store, kPointModels);
+  std::string text = ply_cloud_text(mesh.vertices);
+  text.replace(text.find("end_header"), 0, "element face 1\nproperty list uchar int vertex_indices\n");
+  folder.write("1.ply", text + "3 0 1 2\n");
+  toy.run();
+  ASSERT_THAT(toy.runner.failures(), SizeIs(1));
+  EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("1.ply:9: the header announces faces"));
+}
+
+}  // namespace
+}  // namespace salbench

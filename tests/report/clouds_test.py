@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Point clouds in the report: tables and figures of their own, a page per cloud, and the viewer."""
+
+import json
+import re
+import unittest
+
+import h5py
+import numpy
+import pandas
+
+import fixture
+import pinhole
+import support
+from report import exports, viewer
+
+CLOUDS = [("kitten", ""), ("oni", ""), ("ball", "")]
+
+
+def with_clouds(folder, viewpoint=True):
+    """A results folder over meshes, scans and clouds, with an export of a mesh and two clouds."""
+    both = pandas.concat([fixture.results_table(fixture.eight_meshes()),
+                          fixture.results_table(CLOUDS, ("LS", "CS", "PS", "MS", "RS"), datasets=("clouds",))], ignore_index=True)
+    out = folder / "clouds"
+    fixture.write_results(out, fixture.eight_meshes(), results=both, failed=[("ball", "map.MS", "too thin")])
+    fixture.histograms(("LS", "CS", "PS", "MS", "RS"), 5).to_csv(out / "mean_histograms_clouds.csv", index=False)
+    fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:1], views=1, pictures=False)
+    random = numpy.random.default_rng(9)
+    points = fixture.sphere()[0]
+    with h5py.File(out / "shapes.h5", "a") as file:
+        for item, category in CLOUDS[:2]:
+            cloud = file.create_group(item)
+            cloud.attrs.update({"dataset": "clouds", "item": item, "class": category})
+            cloud["cloud/points"] = random.permutation(points)
+            cloud["cloud/viewpoint"] = numpy.array([[0, 0, 6.0]]) if viewpoint else numpy.zeros((0, 3))
+            cloud["cloud_normals/normals"] = points / numpy.linalg.norm(points, axis=1, keepdims=True)
+            fixture.fill(cloud, "cloud_ground_truth", points, ("LS", "CS", "PS", "MS", "RS"), random)
+        pinhole.add_pictures(file, 64)
+    return out
+
+
+class CloudsTest(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = with_clouds(cls.folder)
+        cls.to = cls.folder / "report"
+        with support.without_figures():
+            cls.status, cls.errors = support.make(cls.out, cls.to)
+
+    def test_index_has_a_part_of_their_own(self):
+        self.assertEqual(self.status, 0, self.errors)
+        index = support.page(self.to)
+        self.assertIn("8 meshes and 96 scans and 3 point clouds", index)
+        part = support.section(index, "clouds")
+        self.assertNotIn("Missing.", part)
+        for text in ("figures/ranking-clouds.svg", "figures/performance-clouds-auc.svg", "figures/examples-clouds.pdf",
+                     "AUC on point clouds, best model first"):
+            self.assertIn(text, part)
+        self.assertIn("figures/distributions-clouds.svg", index)
+        datasets = {row[0] for row in support.rows(index, "means")}
+        self.assertEqual(datasets, {"Meshes", "Scans", "Point clouds"})
+
+    def test_a_page_per_cloud_has_scores_ranks_and_pictures_and_no_scans(self):
+        page = support.page(self.to, "shapes/kitten.html")
+        self.assertIn("<h1>Point cloud kitten", page)
+        self.assertIn("Scores of the point cloud, best in bold, and its rank among all point clouds", page)
+        self.assertEqual([row[0] for row in support.rows(page, "mesh-scores")], ["LS", "CS", "PS", "MS", "RS"])
+        self.assertRegex(page, r"of 3\b")
+        self.assertIn("pictures/kitten/point-cloud-LS-after", page)
+        self.assertNotIn("Its scans", page)
+        mesh = support.page(self.to, "shapes/1.html")
+        self.assertIn("<h1>Mesh 1, human", mesh)
+        self.assertIn("Its scans", mesh)
+
+    def test_a_cloud_that_is_in_no_export_has_a_page_that_says_so(self):
+        page = support.page(self.to, "shapes/ball.html")
+        self.assertIn("<h1>Point cloud ball", page)
+        self.assertIn("map.MS failed on ball: too thin", page)
+        self.assertIn("No export given to the report holds this shape", page)
+
+    def test_the_viewer_gets_points_without_faces(self):
+        script = (self.to / "shapes/kitten.js").read_text(encoding="utf-8")
+        description = json.loads(re.match(r'salbench\.give\("kitten", (\{.*?\}), "', script)[1])
+        self.assertEqual(description["faces"], 0)
+        self.assertEqual(description["title"], "Point cloud")
+        self.assertTrue(description["shaded"])
+        self.assertEqual(description["maps"][0], "Ground truth")
+
+    def test_without_clouds_the_report_does_not_speak_of_them(self):
+        with support.without_figures():
+            to = self.report("full", out=support.make_full(self.folder))
+        for name in ("index.html", "scores.html"):
+            self.assertNotIn("cloud", support.page(to, name).lower())
+
+
+class SpacingTest(unittest.TestCase):
+    def test_does_not_depend_on_the_order_of_the_points(self):
+        grid = numpy.stack(numpy.meshgrid(numpy.arange(20.0), numpy.arange(20.0), [0.0]), -1).reshape(-1, 3)
+        self.assertAlmostEqual(viewer.spacing_in_any_order(grid), 1)
+        self.assertAlmostEqual(viewer.spacing_in_any_order(numpy.random.default_rng(1).permutation(grid)), 1)
+        self.assertEqual(viewer.spacing_in_any_order(grid[:1]), 0)
+
+
+class ShadeTest(support.ReportTest):
+    def test_without_a_viewpoint_points_are_lit_from_the_camera_of_the_picture(self):
+        shapes = exports.Shapes([with_clouds(self.folder, viewpoint=False) / "shapes.h5"])
+        shape = shapes.itself("oni")
+        self.assertIsNone(shape.seen_from())
+        self.assertEqual(len(shape.shade()), len(shape.points))
+
+
+if __name__ == "__main__":
+    unittest.main()
