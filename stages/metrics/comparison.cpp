@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/comparison.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -70,6 +71,22 @@ double Comparison::cc(Weighting weighting) const {
     const Measure& over = measure(weighting);
     return correlation(map_, map_moments(weighting), saliency_, moments(saliency_, over), over);
   });
+}
+
+const Comparison::QuantileAreas& Comparison::quantile_areas(std::span<const std::int32_t> picked,
+                                                            const Splits& splits) const {
+  for (const OfPicks& known : quantile_areas_)
+    if (std::ranges::equal(known.picked, picked) && known.splits == splits) return known.areas;
+  const double undefined = std::numeric_limits<double>::quiet_NaN();
+  std::vector<QuantileCurve> curves = {{map_distribution(Weighting::vertex), Thresholds::tenths}};
+  if (!measure(Weighting::area).empty())
+    for (const Thresholds thresholds : {Thresholds::tenths, Thresholds::even})
+      curves.push_back({map_distribution(Weighting::area), thresholds});
+  std::vector<double> areas = quantile_aucs(curves, values_at(map_, picked), uniform_draws_, splits);
+  areas.resize(3, undefined);
+  return quantile_areas_
+      .emplace_back(OfPicks{{picked.begin(), picked.end()}, splits, {areas[2], {areas[0], areas[1]}}})
+      .areas;
 }
 
 double Comparison::spearman(Weighting weighting) const {

@@ -4,12 +4,16 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/draws.h"
 #include "stages/metrics/measure.h"
+#include "stages/metrics/sampled_roc.h"
 #include "stages/metrics/top.h"
 
 namespace salbench {
@@ -31,7 +35,12 @@ class Comparison {
   const ScalarField& normalised_map() const;               // min-max
   const TopScores& top_scores(Weighting weighting) const;  // these need saliency values
   double cc(Weighting weighting) const;
-  UniformDraws& uniform_draws() const { return uniform_draws_; }
+  // Areas under the curves of some picks whose negatives are quantiles, all of them at once.
+  struct QuantileAreas {
+    double even_by_area;
+    std::array<double, 2> tenths;  // [weighting]
+  };
+  const QuantileAreas& quantile_areas(std::span<const std::int32_t> picked, const Splits& splits) const;
   ValueDraws& value_draws() const { return value_draws_; }
   double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
 
@@ -47,10 +56,17 @@ class Comparison {
   };
   Lazy& of(Weighting weighting) const { return lazy_[static_cast<std::size_t>(weighting)]; }
 
+  struct OfPicks {
+    std::vector<std::int32_t> picked;
+    Splits splits;
+    QuantileAreas areas;
+  };
+
   std::span<const double> map_, saliency_, areas_;
   mutable std::optional<Order> map_order_, saliency_order_;
   mutable std::optional<ScalarField> normalised_map_;
   mutable std::array<Lazy, 2> lazy_;
+  mutable std::deque<OfPicks> quantile_areas_;
   mutable UniformDraws uniform_draws_;
   mutable ValueDraws value_draws_;
 };

@@ -17,15 +17,15 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-ScalarField positives(const MetricInput& in) { return values_at(in.map, in.picked); }
+Splits splits_of(const MetricInput& in) { return {in.options.splits, in.options.thresholds}; }
 
 // The paper's protocol numbers the points, and leaves out the first; by area a number means nothing.
 double sampled(const MetricInput& in) {
-  const Splits splits{in.options.splits, in.options.thresholds};
   if (in.weighting == Weighting::area)
-    return sampled_auc(in.comparison.map_distribution(in.weighting), positives(in),
-                       in.comparison.uniform_draws(), splits);
-  return in.map.size() < 2 ? kUndefined : sampled_auc(positives(in), in.comparison.value_draws(), splits);
+    return in.comparison.quantile_areas(in.picked, splits_of(in)).even_by_area;
+  return in.map.size() < 2
+             ? kUndefined
+             : sampled_auc(values_at(in.map, in.picked), in.comparison.value_draws(), splits_of(in));
 }
 
 double exact(const MetricInput& in) { return auc_exact(in.map, in.picked, in.weighting, in.comparison); }
@@ -33,8 +33,8 @@ double exact(const MetricInput& in) { return auc_exact(in.map, in.picked, in.wei
 double judd(const MetricInput& in) { return auc_judd(in.map, in.picked, in.weighting, in.comparison); }
 
 double borji(const MetricInput& in) {
-  return sampled_auc_borji(in.comparison.map_distribution(in.weighting), positives(in),
-                           in.comparison.uniform_draws(), in.options.splits);
+  return in.comparison.quantile_areas(in.picked, splits_of(in))
+      .tenths[static_cast<std::size_t>(in.weighting)];
 }
 
 double height_of_picks(const MetricInput& in) {

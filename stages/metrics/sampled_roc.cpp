@@ -3,10 +3,10 @@
 #include "stages/metrics/sampled_roc.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -61,22 +61,26 @@ double area_under_curve(const std::vector<double>& true_rates, const std::vector
 // most of them have no position within.
 class Reached {
  public:
-  explicit Reached(std::vector<double> from) : from_(std::move(from)) {
+  // Worth its making for so many numbers at a time.
+  Reached(std::vector<double> from, std::size_t numbers)
+      : from_(std::move(from)),
+        cells_(static_cast<double>(std::clamp(std::bit_ceil(numbers), kLeastCells, kMostCells))),
+        in_cell_(static_cast<std::size_t>(cells_)) {
     std::int32_t reached = 0;
-    for (std::size_t cell = 0; cell < kCells; ++cell) {
-      const std::int32_t before = reached = advanced(reached, static_cast<double>(cell) / kCells);
-      const std::int32_t behind = advanced(before, static_cast<double>(cell + 1) / kCells);
+    for (std::size_t cell = 0; cell < in_cell_.size(); ++cell) {
+      const std::int32_t before = reached = advanced(reached, static_cast<double>(cell) / cells_);
+      const std::int32_t behind = advanced(before, static_cast<double>(cell + 1) / cells_);
       in_cell_[cell] = behind == before ? before : -1 - before;
     }
   }
 
   std::size_t operator()(double u) const {
-    const std::int32_t known = in_cell_[static_cast<std::size_t>(u * kCells)];
+    const std::int32_t known = in_cell_[static_cast<std::size_t>(u * cells_)];
     return static_cast<std::size_t>(known >= 0 ? known : advanced(-1 - known, u));
   }
 
  private:
-  static constexpr std::size_t kCells = 128;  // a power of two: u * kCells stays below it
+  static constexpr std::size_t kLeastCells = 64, kMostCells = 1024;
 
   std::int32_t advanced(std::int32_t reached, double u) const {
     while (static_cast<std::size_t>(reached) < from_.size() && from_[static_cast<std::size_t>(reached)] <= u)
@@ -85,7 +89,8 @@ class Reached {
   }
 
   std::vector<double> from_;
-  std::array<std::int32_t, kCells> in_cell_{};  // -1 - the number at its beginning where it has one within
+  double cells_;                       // a power of two: u * cells_ stays below it
+  std::vector<std::int32_t> in_cell_;  // -1 - the number at its beginning where it has one within
 };
 
 // Part of the weight that lies below each threshold.
@@ -93,6 +98,14 @@ std::vector<double> parts_below(const Distribution& map, const std::vector<doubl
   std::vector<double> parts;
   for (const double threshold : thresholds) parts.push_back(map.weight_below(threshold) / map.total());
   return parts;
+}
+
+std::vector<double> tenths_of_range(const Distribution& map) {
+  constexpr int kSteps = 10;
+  const double lowest = map.values.front(), range = map.values.back() - lowest;
+  std::vector<double> thresholds;
+  for (int step = 0; step <= kSteps; ++step) thresholds.push_back(lowest + range * step / kSteps);
+  return thresholds;
 }
 
 // The curve of one set of picks, split by split.
@@ -180,50 +193,154 @@ double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Split
   return curve.mean();
 }
 
-double sampled_auc(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
-                   const Splits& splits) {
-  if (picks.empty() || !(map.total() > 0)) return kUndefined;
-  Curve curve(picks, splits.count);
-  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
+namespace {
+
+// The thresholds of a curve, and how they divide picks and draws.
+struct Rungs {
   std::vector<double> thresholds;
-  std::optional<Reached> reached;
-  double up_to = kUndefined;  // of the thresholds
-  for (; !rest.empty(); rest = rest.subspan(picks.size())) {
-    const auto negatives = rest.first(picks.size());
-    const double largest = std::max(curve.largest(), map.quantile(std::ranges::max(negatives)));
-    if (largest != up_to) {
-      thresholds = even_thresholds(splits.thresholds, up_to = largest);
-      curve.set_thresholds(thresholds);
-      reached.emplace(parts_below(map, thresholds));
-    }
-    if (!(largest > 0)) {
-      std::vector<double> values;
-      for (const double u : negatives) values.push_back(map.quantile(u));
-      curve.end_split(values, thresholds);
-      continue;
-    }
-    for (const double u : negatives) curve.add_negative((*reached)(u));
-    curve.end_split();
-  }
-  return curve.mean();
+  std::vector<double> true_rates;
+  std::vector<double> positions;  // part of the weight below each threshold: where a draw reaches it
+};
+
+Rungs rungs_of(const Distribution& map, const std::vector<double>& thresholds,
+               const std::vector<double>& positives) {
+  return {thresholds, rates_of(positives, thresholds), parts_below(map, thresholds)};
 }
 
-double sampled_auc_borji(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
-                         std::int32_t splits) {
-  if (picks.empty() || !(map.total() > 0)) return kUndefined;
-  constexpr int kSteps = 10;
-  const double lowest = map.values.front(), range = map.values.back() - lowest;
-  std::vector<double> thresholds;
-  for (int step = 0; step <= kSteps; ++step) thresholds.push_back(lowest + range * step / kSteps);
-  Curve curve(picks, splits);
-  curve.set_thresholds(thresholds);
-  const Reached reached(parts_below(map, thresholds));
-  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits) * picks.size());
-  for (; !rest.empty(); rest = rest.subspan(picks.size())) {
-    for (const double u : rest.first(picks.size())) curve.add_negative(reached(u));
-    curve.end_split();
+// The rungs of all curves in one order, so that a draw is looked up once.
+class Ladder {
+ public:
+  Ladder(std::vector<Rungs> rungs, std::size_t draws)
+      : rungs_(std::move(rungs)), positions_(sorted_positions(rungs_)), reached_(positions_, draws) {
+    for (const Rungs& own : rungs_) {
+      auto& places = places_.emplace_back();
+      for (const double position : own.positions)
+        places.push_back(
+            static_cast<std::size_t>(std::ranges::upper_bound(positions_, position) - positions_.begin()));
+    }
   }
-  return curve.mean();
+
+  const Rungs& of(std::size_t curve) const { return rungs_[curve]; }
+  // [threshold]: how many positions a draw has reached that reaches this one, at least.
+  const std::vector<std::size_t>& places(std::size_t curve) const { return places_[curve]; }
+  std::size_t positions() const { return positions_.size(); }
+  std::size_t reached(double draw) const { return reached_(draw); }
+
+ private:
+  static std::vector<double> sorted_positions(const std::vector<Rungs>& rungs) {
+    std::vector<double> all;
+    for (const Rungs& own : rungs) all.insert(all.end(), own.positions.begin(), own.positions.end());
+    std::ranges::sort(all);
+    return all;
+  }
+
+  std::vector<Rungs> rungs_;                      // [curve]
+  std::vector<double> positions_;                 // of all curves, ascending
+  std::vector<std::vector<std::size_t>> places_;  // [curve]
+  Reached reached_;
+};
+
+// Sums of the areas over the splits, of curves over something.
+class QuantileSums {
+ public:
+  QuantileSums(std::span<const QuantileCurve> curves, std::span<const double> picks, const Splits& splits)
+      : curves_(curves), splits_(splits), positives_(picks.begin(), picks.end()), areas_(curves.size(), 0) {
+    std::ranges::sort(positives_);
+    for (const QuantileCurve& curve : curves)
+      lasting_.push_back(curve.thresholds == Thresholds::tenths
+                             ? rungs_of(curve.map, tenths_of_range(curve.map), positives_)
+                             : Rungs{});
+  }
+
+  void add_split(std::span<const double> draws) {
+    const std::vector<double> largest = largest_values(std::ranges::max(draws));
+    const Ladder& ladder = ladder_up_to(largest);
+    count(draws, ladder);
+    for (std::size_t c = 0; c < curves_.size(); ++c) {
+      if (is_even(c) && !(largest[c] > 0))  // the thresholds descend
+        false_rates_ = rates_of(values_of(draws, curves_[c].map), ladder.of(c).thresholds);
+      else
+        set_false_rates(ladder.places(c), draws.size());
+      areas_[c] += area_under_curve(ladder.of(c).true_rates, false_rates_);
+    }
+  }
+  double mean(std::size_t curve) const { return areas_[curve] / splits_.count; }
+
+ private:
+  static constexpr std::size_t kLanes = 4;
+
+  bool is_even(std::size_t curve) const { return curves_[curve].thresholds == Thresholds::even; }
+
+  // [curve]: of the picks' values and the draws'; 0 where the thresholds do not depend on it.
+  std::vector<double> largest_values(double largest_draw) const {
+    std::vector<double> largest(curves_.size(), 0);
+    for (std::size_t c = 0; c < curves_.size(); ++c)
+      if (is_even(c)) largest[c] = std::max(positives_.back(), curves_[c].map.quantile(largest_draw));
+    return largest;
+  }
+
+  // Few points have the largest values, so that splits share their ladders.
+  const Ladder& ladder_up_to(const std::vector<double>& largest) {
+    if (const auto known = ladders_.find(largest); known != ladders_.end()) return known->second;
+    std::vector<Rungs> rungs = lasting_;
+    for (std::size_t c = 0; c < curves_.size(); ++c)
+      if (is_even(c))
+        rungs[c] = rungs_of(curves_[c].map, even_thresholds(splits_.thresholds, largest[c]), positives_);
+    return ladders_.emplace(largest, Ladder(std::move(rungs), positives_.size())).first->second;
+  }
+
+  // In lanes: where most draws reach equally few thresholds, each would wait for the count of the one before.
+  void count(std::span<const double> draws, const Ladder& ladder) {
+    const std::size_t bins = ladder.positions() + 1;
+    at_least_.assign(kLanes * bins, 0);
+    std::size_t i = 0;
+    for (; i + kLanes <= draws.size(); i += kLanes)
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        ++at_least_[lane * bins + ladder.reached(draws[i + lane])];
+    for (; i < draws.size(); ++i) ++at_least_[ladder.reached(draws[i])];
+    for (std::size_t lane = 1; lane < kLanes; ++lane)
+      for (std::size_t k = 0; k < bins; ++k) at_least_[k] += at_least_[lane * bins + k];
+    for (std::size_t k = bins - 1; k-- > 0;) at_least_[k] += at_least_[k + 1];
+  }
+
+  void set_false_rates(const std::vector<std::size_t>& places, std::size_t draws) {
+    false_rates_.clear();
+    for (const std::size_t place : places)
+      false_rates_.push_back(static_cast<double>(at_least_[place]) / static_cast<double>(draws));
+  }
+
+  static std::vector<double> values_of(std::span<const double> draws, const Distribution& map) {
+    std::vector<double> values;
+    for (const double draw : draws) values.push_back(map.quantile(draw));
+    std::ranges::sort(values);
+    return values;
+  }
+
+  std::span<const QuantileCurve> curves_;
+  Splits splits_;
+  std::vector<double> positives_;  // ascending
+  std::vector<double> areas_;      // [curve]
+  std::vector<Rungs> lasting_;     // [curve]: of thresholds that no split changes
+  std::map<std::vector<double>, Ladder> ladders_;
+  Counts at_least_;  // [positions reached]: draws that reach so many or more
+  std::vector<double> false_rates_;
+};
+
+}  // namespace
+
+std::vector<double> quantile_aucs(std::span<const QuantileCurve> curves, std::span<const double> picks,
+                                  UniformDraws& draws, const Splits& splits) {
+  std::vector<double> areas(curves.size(), kUndefined);
+  std::vector<QuantileCurve> defined;
+  for (const QuantileCurve& curve : curves)
+    if (curve.map.total() > 0) defined.push_back(curve);
+  if (picks.empty() || defined.empty()) return areas;
+  QuantileSums sums(defined, picks, splits);
+  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
+  for (; !rest.empty(); rest = rest.subspan(picks.size())) sums.add_split(rest.first(picks.size()));
+  for (std::size_t c = 0, d = 0; c < curves.size(); ++c)
+    if (curves[c].map.total() > 0) areas[c] = sums.mean(d++);
+  return areas;
 }
 
 }  // namespace salbench

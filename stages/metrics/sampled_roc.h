@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/draws.h"
@@ -15,18 +16,28 @@ namespace salbench {
 struct Splits {
   std::int32_t count;       // draws that the area is averaged over
   std::int32_t thresholds;  // evenly spaced from 0 to the largest value among picks and negatives
+
+  bool operator==(const Splits&) const = default;
 };
 
 // Negatives are the values that are drawn. [tasse2016]
 double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Splits& splits);
 
-// Each negative is the quantile of a uniform number in the distribution of the map: so the draws depend
-// neither on the numbering of the points nor, by area, on how the surface is divided into faces.
-double sampled_auc(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
-                   const Splits& splits);
+enum class Thresholds : std::uint8_t {
+  even,   // from 0 to the largest value among picks and negatives [tasse2016]
+  tenths  // at every tenth of the map's range [borji2013]
+};
 
-// The same with thresholds at every tenth of the map's range. [borji2013]
-double sampled_auc_borji(const Distribution& map, std::span<const double> picks, UniformDraws& draws,
-                         std::int32_t splits);
+struct QuantileCurve {
+  const Distribution& map;
+  Thresholds thresholds;
+};
+
+// [curve]. Each negative is the quantile of a uniform number in the distribution of the curve's map: so the
+// draws depend neither on the numbering of the points nor, by area, on how the surface is divided into faces.
+// The curves share the draws, which are counted once for all; no area depends on the other curves. NaN for a
+// distribution over nothing.
+std::vector<double> quantile_aucs(std::span<const QuantileCurve> curves, std::span<const double> picks,
+                                  UniformDraws& draws, const Splits& splits);
 
 }  // namespace salbench

@@ -43,9 +43,9 @@ double suppression(std::span<const double> normalised, const Adjacency& adjacenc
 
 // Sum over the scales of the normalised and suppressed maps, >= 0. Does not depend on place and size of the
 // shape; on its orientation as far as the bounding box does. A scale without contrast adds 0, so that all
-// values are 0 for a shape of constant curvature or without faces. O(n) beyond `faces`. Throws InputError for
-// a shape without points or extent, for a coordinate that is not finite, or whose square overflows, and for a
-// face whose point does not exist. [lee2005]
+// values are 0 for a shape of constant curvature or without faces. Beyond `faces`, time is that of the
+// simplification. Throws InputError for a shape without points or extent, for a coordinate that is not
+// finite, or whose square overflows, and for a face whose point does not exist. [lee2005]
 ScalarField lvj_saliency(Points points, Surface surface, const LvjOptions& options);
 
 }  // namespace salbench

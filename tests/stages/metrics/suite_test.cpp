@@ -193,9 +193,30 @@ TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
   const Distribution& all = comparison.map_distribution(Weighting::vertex);
   double probability = 0;
   for (const std::int32_t i : picked) probability += all.mid[static_cast<std::size_t>(i)] / 500 / 7;
-  EXPECT_NEAR(sampled_auc(all, positives, comparison.uniform_draws(), {3000, 400}), probability, 0.005);
-  EXPECT_NEAR(sampled_auc_borji(all, positives, comparison.uniform_draws(), 3000), probability,
-              0.03);  // ten steps
+  UniformDraws draws(Rng(1, "scores", "x"));
+  const std::vector<QuantileCurve> curves = {{all, Thresholds::even}, {all, Thresholds::tenths}};
+  const std::vector<double> areas = quantile_aucs(curves, positives, draws, {3000, 400});
+  EXPECT_NEAR(areas[0], probability, 0.005);
+  EXPECT_NEAR(areas[1], probability, 0.03);  // ten steps
+}
+
+TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
+  Rng rng(7, "suite", "");
+  for (const double shift : {0.0, -2.0}) {  // below zero, thresholds do not ascend
+    ScalarField map(400), areas;
+    for (double& value : map) value = std::pow(rng.uniform(), 4) + shift;
+    for (std::size_t i = 0; i < map.size(); ++i) areas.push_back(rng.uniform());
+    const ScalarField picks = {map[7], map[9], map[9], map[255]};
+    const Comparison comparison(map, {}, areas, Rng(1, "scores", "x"));
+    const std::vector<QuantileCurve> curves = {
+        {comparison.map_distribution(Weighting::vertex), Thresholds::tenths},
+        {comparison.map_distribution(Weighting::area), Thresholds::even},
+        {comparison.map_distribution(Weighting::area), Thresholds::tenths}};
+    UniformDraws draws(Rng(1, "scores", "x"));
+    const std::vector<double> together = quantile_aucs(curves, picks, draws, {100, 20});
+    for (std::size_t c = 0; c < curves.size(); ++c)
+      EXPECT_EQ(quantile_aucs({&curves[c], 1}, picks, draws, {100, 20}).front(), together[c]);
+  }
 }
 
 TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
