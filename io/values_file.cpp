@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in memory");
 
 constexpr std::string_view kNpy = "\x93NUMPY", kHdf5 = "\x89HDF\r\n\x1a\n";
-// Of a file that holds n values: as long as numbers are ever written, and a header.
+// The largest size of a file of n values: a number is never longer when written out, nor is a header.
 constexpr std::size_t kBytesPerValue = 64, kHeaderBytes = 1U << 20U;
 
 template <class Number>

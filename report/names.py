@@ -19,7 +19,7 @@ MODELS = {
 # Okabe and Ito's colours, which colour-blind readers tell apart. Ground truth is black.
 _COLOURS = {"GS": "#000000", "LS": "#0072B2", "CS": "#D55E00", "PS": "#009E73", "MS": "#CC79A7", "HS": "#E69F00",
             "RS": "#767676"}
-_OWN = ("#56B4E9", "#8B4513", "#F0E442", "#5E3C99")
+_OWN = ("#56B4E9", "#8B4513", "#F0E442", "#5E3C99", "#B2DF8A")
 
 
 def colours(models):

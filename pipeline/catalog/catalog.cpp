@@ -8,6 +8,7 @@
 
 #include "pipeline/catalog/given_maps.h"
 #include "pipeline/catalog/loading.h"
+#include "stages/core/mesh_ops.h"
 #include "stages/core/point_cloud.h"
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/matching/matching.h"

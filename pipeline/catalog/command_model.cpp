@@ -88,7 +88,7 @@ void check_command(const CommandOptions& options, const Section& written) {
                  "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
 }
 
-// What a user of the folder expects to be found there, and would be found nowhere.
+// Files that the command reads but that would not be in the scratch folder where it runs.
 void check_depends(const CommandOptions& options, const Section& written) {
   for (const std::string& file : options.depends) {
     const fs::path path(file);
@@ -123,7 +123,7 @@ CommandOptions read_options(const Section& written) {
 
 // --- the map ----------------------------------------------------------------------------------------------
 
-// What the command reads of a shape. Which of them a job loads follows from `reads`.
+// What the command may read of a shape; `reads` says which parts a job loads.
 struct ShapeParts {
   Points points;
   const Normals* normals = nullptr;

@@ -34,10 +34,10 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   section.reject_unknown(known);
   std::vector<Model> models;
   for (const ModelRow& row : model_rows())
-    if (!root.has("models") || section.has(row.name))
+    if (root.has("models") ? section.has(row.name) : row.by_default)
       models.push_back(row.bind(section.child(row.name), protocol));
   for (const std::string& name : commands) models.push_back(command_model(name, section));
-  if (models.empty()) root.fail("models", "names no model; leave the key out to run all of them");
+  if (models.empty()) root.fail("models", "names no model; leave the key out to run the paper's");
   return models;
 }
 
@@ -78,7 +78,7 @@ std::string indented(std::string_view lines, std::string_view by) {
   return result;
 }
 
-// Where pictures are not computed, an annotated configuration has their options as a comment.
+// An annotated configuration without pictures has their options as a comment.
 std::string picture_section(const Config& config, bool annotated) {
   const std::string options = "picture:\n" + indented(options_text(config.picture, annotated), "  ");
   if (config.pictures == Pictures::computed) return (annotated ? "\n" : "") + options;

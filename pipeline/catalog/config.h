@@ -45,7 +45,7 @@ struct DatasetOptions {
 };
 void check(const DatasetOptions& options);
 
-// What the catalog has of pictures, which no score needs: in this order, each has more than the one before.
+// Which pictures a run makes; no score needs them. In this order, each makes more than the one before.
 enum class Pictures { none, cached, computed };
 
 struct Config {

@@ -2,6 +2,8 @@
 #include "pipeline/catalog/depended_files.h"
 
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,14 +17,18 @@ namespace fs = std::filesystem;
 const std::string& DependedFiles::key_lines() {
   const std::lock_guard lock(mutex_);
   if (!files_.empty()) return lines_;
+  std::vector<File> files;
+  std::string lines;
   for (const std::string& name : names_) try {
       std::error_code none;
-      File& file = files_.emplace_back(File{fs::absolute(name), {}, fs::last_write_time(name, none)});
+      File& file = files.emplace_back(File{fs::absolute(name), {}, fs::last_write_time(name, none)});
       file.digest = file_digest(read_file(file.path));
-      lines_ += fmt::format("{}{}: {}\n", kDependsOption, name, file.digest.hex());
+      lines += fmt::format("{}{}: {}\n", kDependsOption, name, file.digest.hex());
     } catch (const InputError& error) {
       written_.fail("depends", fmt::format("names a file that the command needs: {}", error.what()));
     }
+  files_ = std::move(files);
+  lines_ = std::move(lines);
   return lines_;
 }
 

@@ -13,7 +13,7 @@
 
 namespace salbench {
 
-// What a key has for each such file, as an option: this and the file's name, with its digest.
+// A key has one option for each such file: this and the file's name, and as its value the file's digest.
 inline constexpr std::string_view kDependsOption = "depends on ";
 
 class DependedFiles {

@@ -7,7 +7,7 @@
 
 namespace salbench {
 
-// What is wrong with the name; empty if it can stand in tables, folders and keys beside the built-in models.
+// Why a model cannot have this name; empty if it can. Names stand in tables, folders and keys.
 std::string wrong_with_model_name(std::string_view name);
 
 }  // namespace salbench

@@ -3,11 +3,16 @@
 
 #include <array>
 
+#include "stages/models/cb.h"
 #include "stages/models/cs.h"
+#include "stages/models/lce.h"
 #include "stages/models/ls.h"
+#include "stages/models/lvj.h"
+#include "stages/models/mc.h"
 #include "stages/models/ms.h"
 #include "stages/models/ps.h"
 #include "stages/models/rs.h"
+#include "stages/models/vis.h"
 
 namespace salbench {
 namespace {
@@ -24,6 +29,11 @@ ModelRow human_row(std::string_view name, std::int32_t version) {
           }};
 }
 
+ModelRow only_if_named(ModelRow row) {
+  row.by_default = false;
+  return row;
+}
+
 }  // namespace
 
 std::span<const ModelRow> model_rows() {
@@ -34,6 +44,12 @@ std::span<const ModelRow> model_rows() {
       model_row("MS", 1, ms_saliency),
       human_row("HS", 1),
       model_row("RS", 1, rs_saliency),
+      // Beside the paper's: configs/extended.yaml has them.
+      only_if_named(model_row("MC", 1, mc_saliency)),
+      only_if_named(model_row("LVJ", 1, lvj_saliency)),
+      only_if_named(model_row("LCE", 1, lce_saliency)),
+      only_if_named(model_row("CB", 1, cb_saliency)),
+      only_if_named(model_row("VIS", 1, vis_saliency)),
   };
   return rows;
 }

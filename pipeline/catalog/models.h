@@ -50,6 +50,7 @@ struct ModelRow {
   std::string_view name;
   // Reads the model's section over the defaults of the protocol.
   std::function<Model(const Section& section, Protocol protocol)> bind;
+  bool by_default = true;  // runs if a configuration names no models
 };
 
 namespace binding {

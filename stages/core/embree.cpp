@@ -70,4 +70,22 @@ Scene scene_of(const Geometry& geometry, RTCSceneFlags further) {
   return scene;
 }
 
+bool occluded(const Scene& scene, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near,
+              float far) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  alignas(16) RTCRay ray{};
+  ray.org_x = origin.x();
+  ray.org_y = origin.y();
+  ray.org_z = origin.z();
+  ray.dir_x = direction.x();
+  ray.dir_y = direction.y();
+  ray.dir_z = direction.z();
+  ray.tnear = near;
+  ray.tfar = far;
+  ray.mask = ~0U;
+  rtcOccluded1(scene.get(), &context, &ray);
+  return ray.tfar < 0;
+}
+
 }  // namespace salbench::embree

@@ -27,6 +27,11 @@ Geometry triangles(std::span<const Vec3> points, std::span<const Triangle> faces
 // Flat discs around the points, at right angles to the normals; radii as coordinates.
 Geometry discs(std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const double> radii);
 
+// Whether the scene hits the ray between the two distances. Any hit is a hit, so neither the order in which
+// Embree visits its tree nor the number of threads that built it changes the answer.
+bool occluded(const Scene& scene, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near,
+              float far);
+
 // The geometry as a scene of its own, ready for rays; `further` flags beside ROBUST.
 Scene scene_of(const Geometry& geometry, RTCSceneFlags further = RTC_SCENE_FLAG_NONE);
 

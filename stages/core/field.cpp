@@ -24,6 +24,13 @@ bool is_constant(std::span<const double> field) {
   return std::adjacent_find(field.begin(), field.end(), std::not_equal_to<>()) == field.end();
 }
 
+ScalarField values_at(std::span<const double> field, std::span<const std::int32_t> points) {
+  ScalarField values;
+  values.reserve(points.size());
+  for (const std::int32_t i : points) values.push_back(field[static_cast<std::size_t>(i)]);
+  return values;
+}
+
 BinnedDensity binned_density(std::span<const double> field) {
   CHECK_GT(field.size(), 0U);
   auto [low, high] = [&] {

@@ -15,6 +15,9 @@ ScalarField min_max_normalised(std::span<const double> field);
 
 bool is_constant(std::span<const double> field);  // also true of an empty field
 
+// The values at some points, in the order of the points.
+ScalarField values_at(std::span<const double> field, std::span<const std::int32_t> points);
+
 // Density histogram over the field's own range [min, max]: bin i holds count_i / (n * width_i), the last bin
 // closed on the right. The range of a constant field is [value - 0.5, value + 0.5], as in NumPy.
 struct BinnedDensity {

@@ -24,14 +24,12 @@ namespace {
 
 constexpr std::size_t kBlocks = 3;
 constexpr std::size_t kBins = kBlocks * kFilledBins;
-constexpr double kBlockTotal = 100;   // of each block in the published weighting
-constexpr std::size_t kGrain = 1024;  // points of a range in a loop that threads share
-constexpr double kMaxWeight = 1e12;   // limit of R / distance: below, the distance is rounding
+constexpr double kBlockTotal = 100;  // of each block in the published weighting
+constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distance is rounding
 
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
-// The neighbours of each point. Nearest ones that are few are searched once and kept; all others are searched
-// anew each time.
+// The neighbours of each point. What fits into memory is kept, and looked up where it is asked for again.
 class Neighbourhoods {
  public:
   using Found = std::vector<Neighbour>;  // working memory of a search
@@ -40,15 +38,18 @@ class Neighbourhoods {
       : points_(points), tree_(tree), support_(support) {
     CHECK_LE(0, support.neighbours);
     k_ = std::min(static_cast<std::size_t>(support.neighbours), tree.size());
-    if (k_ > kFew) return;
-    nearest_.resize(points.size() * k_);
-    parallel_ranges(k_ > 0 ? points.size() : 0, kGrain, [&](std::size_t first, std::size_t last) {
-      Found found;
-      for (std::size_t i = first; i < last; ++i) {
-        tree.nearest(points[i], k_, found);
-        std::copy(found.begin(), found.end(), nearest_.begin() + static_cast<std::ptrdiff_t>(i * k_));
-      }
-    });
+    if (k_ == 0) {
+      kept_at_.resize(points.size());
+    } else if (points.size() * k_ <= kMostKept) {
+      kept_.resize(points.size() * k_);
+      parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
+        Found found;
+        for (std::size_t i = first; i < last; ++i) {
+          tree.nearest(points[i], k_, found);
+          std::copy(found.begin(), found.end(), kept_.begin() + static_cast<std::ptrdiff_t>(i * k_));
+        }
+      });
+    }
   }
 
   bool all_points() const { return tree_.size() == points_.size(); }
@@ -57,17 +58,31 @@ class Neighbourhoods {
 
   // By (distance, index), the point itself included; valid until `found` is used again.
   std::span<const Neighbour> of(std::int32_t i, Found& found) const {
-    if (!nearest_.empty()) return std::span(nearest_).subspan(static_cast<std::size_t>(i) * k_, k_);
-    if (k_ > 0)
+    if (k_ > 0) {
+      if (!kept_.empty()) return std::span(kept_).subspan(static_cast<std::size_t>(i) * k_, k_);
       tree_.nearest(at(points_, i), k_, found);
-    else
+    } else if (const auto kept = kept_of(i); !kept.empty()) {
+      found.assign(kept.begin(), kept.end());
+      std::sort(found.begin(), found.end(), closer);
+    } else {
       tree_.within(at(points_, i), support_.radius, found);
+    }
     return found;
   }
   std::span<const Neighbour> unordered(std::int32_t i, Found& found) const {
     if (k_ > 0) return of(i, found);
+    if (const auto kept = kept_of(i); !kept.empty()) return kept;
     tree_.within_unordered(at(points_, i), support_.radius, found);
     return found;
+  }
+  // The same, by one thread alone: what it finds is kept.
+  std::span<const Neighbour> unordered_kept(std::int32_t i, Found& found) {
+    const auto these = unordered(i, found);
+    if (k_ == 0 && these.data() == found.data() && kept_.size() + these.size() <= kMostKept) {
+      kept_at_[static_cast<std::size_t>(i)] = {kept_.size(), these.size()};
+      kept_.insert(kept_.end(), these.begin(), these.end());
+    }
+    return these;
   }
 
   // How many of the neighbours of i are other points; at least 1, because it divides.
@@ -79,39 +94,50 @@ class Neighbourhoods {
   }
 
  private:
-  static constexpr std::size_t kFew = 32;
+  static constexpr std::size_t kMostKept = 1 << 20;  // 16 MB
+
+  struct Kept {
+    std::size_t first = 0, count = 0;
+  };
+  std::span<const Neighbour> kept_of(std::int32_t i) const {
+    const Kept& kept = kept_at_[static_cast<std::size_t>(i)];
+    return std::span(kept_).subspan(kept.first, kept.count);
+  }
 
   std::span<const Vec3> points_;
   const KdTree& tree_;
   Support support_;
   std::size_t k_ = 0;  // 0: a radius
-  std::vector<Neighbour> nearest_;
+  std::vector<Neighbour> kept_;
+  std::vector<Kept> kept_at_;  // of a radius, by point
 };
 
 // The SPFHs of some points.
 class SimplifiedHistograms {
  public:
   SimplifiedHistograms(std::span<const Vec3> points, std::span<const Vec3> normals,
-                       const std::vector<std::int32_t>& requested, const Neighbourhoods& neighbourhoods,
-                       bool swap)
+                       const std::vector<std::int32_t>& requested, Neighbourhoods& neighbourhoods, bool swap)
       : points_(points), normals_(normals), row_of_(points.size(), kNone), swap_(swap) {
     for (std::size_t row = 0; row < requested.size(); ++row)
       row_of_[static_cast<std::size_t>(requested[row])] = row;
-    rows_.resize(requested.size() * kBins);
+    std::vector<Votes> votes(requested.size());
     std::vector<double> others(requested.size());
     // Looking at each pair once needs one thread: it writes to both ends.
     const bool once = neighbourhoods.mutual() && requested.size() <= kOneThread;
-    parallel_ranges(requested.size(), once ? kOneThread : kGrain, [&](std::size_t first, std::size_t last) {
-      Neighbourhoods::Found memory;
-      for (std::size_t row = first; row < last; ++row) {
-        const auto found = neighbourhoods.unordered(requested[row], memory);
-        others[row] = neighbourhoods.others(requested[row], found);
-        vote(requested[row], found, once);
-      }
-    });
+    parallel_ranges(requested.size(), once ? kOneThread : kPointGrain,
+                    [&](std::size_t first, std::size_t last) {
+                      Neighbourhoods::Found memory;
+                      for (std::size_t row = first; row < last; ++row) {
+                        const auto found = once ? neighbourhoods.unordered_kept(requested[row], memory)
+                                                : neighbourhoods.unordered(requested[row], memory);
+                        others[row] = neighbourhoods.others(requested[row], found);
+                        vote(requested[row], found, once, votes);
+                      }
+                    });
+    rows_.reserve(requested.size() * kBins);
     for (std::size_t row = 0; row < requested.size(); ++row)
-      for (std::size_t b = 0; b < kBins; ++b)
-        rows_[row * kBins + b] = quotient(rows_[row * kBins + b], others[row]);
+      for (const std::uint32_t count : votes[row])
+        rows_.push_back(static_cast<float>(static_cast<double>(count) / others[row]));
   }
 
   const float* of(std::int32_t point) const {
@@ -122,38 +148,54 @@ class SimplifiedHistograms {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   static constexpr std::size_t kOneThread = 1 << 16;
 
-  // Whole numbers, exact as floats: their order does not matter.
-  static float quotient(float votes, double others) {
-    return static_cast<float>(static_cast<double>(votes) / others);
-  }
+  using Votes = std::array<std::uint32_t, kBins>;
 
   // With `once`, a pair of requested points is looked at from the lower index, for both.
-  void vote(std::int32_t i, std::span<const Neighbour> found, bool once) {
+  void vote(std::int32_t i, std::span<const Neighbour> found, bool once, std::vector<Votes>& votes) const {
+    Votes own{};
+    std::array<std::int32_t, kPairs> others;
+    std::size_t count = 0;
+    const auto look = [&] {
+      look_at_pairs(i, std::span(others).first(count), once, own, votes);
+      count = 0;
+    };
     for (const Neighbour& neighbour : found) {
-      if (neighbour.distance_squared == 0) continue;
-      const std::int32_t j = neighbour.index;
-      const bool for_both = once && row_of_[static_cast<std::size_t>(j)] != kNone;
-      if (for_both && j < i) continue;
-      const PairBins bins = bins_of(i, j);
-      add(i, bins);
-      if (for_both) add(j, bins.both_ways ? bins : bins_of(j, i));
+      if (neighbour.distance_squared == 0 || (once && neighbour.index < i && is_requested(neighbour.index)))
+        continue;
+      others[count++] = neighbour.index;
+      if (count == kPairs) look();
+    }
+    if (count > 0) look();
+    Votes& sum = votes[row_of_[static_cast<std::size_t>(i)]];
+    for (std::size_t b = 0; b < kBins; ++b) sum[b] += own[b];
+  }
+
+  void look_at_pairs(std::int32_t i, std::span<const std::int32_t> others, bool once, Votes& own,
+                     std::vector<Votes>& votes) const {
+    std::array<PairBins, kPairs> bins;
+    pair_bins(at(points_, i), at(normals_, i), points_, normals_, others, swap_, bins);
+    for (std::size_t pair = 0; pair < others.size(); ++pair) {
+      add(bins[pair], own);
+      const std::int32_t j = others[pair];
+      if (!once || !is_requested(j)) continue;
+      add(bins[pair].both_ways
+              ? bins[pair]
+              : pair_bins(at(points_, j), at(normals_, j), at(points_, i), at(normals_, i), swap_),
+          votes[row_of_[static_cast<std::size_t>(j)]]);
     }
   }
 
-  PairBins bins_of(std::int32_t i, std::int32_t j) const {
-    return pair_bins(at(points_, i), at(normals_, i), at(points_, j), at(normals_, j), swap_);
-  }
+  bool is_requested(std::int32_t point) const { return row_of_[static_cast<std::size_t>(point)] != kNone; }
 
-  void add(std::int32_t i, const PairBins& bins) {
-    float* const row = rows_.data() + row_of_[static_cast<std::size_t>(i)] * kBins;
-    row[bins.theta] += 1;
-    row[kFilledBins + bins.alpha] += 1;
-    row[2 * kFilledBins + bins.phi] += 1;
+  static void add(const PairBins& bins, Votes& votes) {
+    ++votes[bins.theta];
+    ++votes[kFilledBins + bins.alpha];
+    ++votes[2 * kFilledBins + bins.phi];
   }
 
   std::span<const Vec3> points_, normals_;
   std::vector<std::size_t> row_of_;
-  std::vector<float> rows_;  // votes, then shares of votes
+  std::vector<float> rows_;  // shares of votes
   bool swap_;
 };
 
@@ -191,14 +233,14 @@ void combine_text(std::int32_t point, double unit, std::span<const Neighbour> fo
 
 // Those whose SPFH counts, ascending: the neighbours of the subset and, unless only neighbours count, itself.
 std::vector<std::int32_t> needed(std::size_t n, std::span<const std::int32_t> subset,
-                                 const Neighbourhoods& neighbourhoods, bool neighbours_only) {
+                                 Neighbourhoods& neighbourhoods, bool neighbours_only) {
   if (subset.size() == n && (neighbourhoods.all_points() || !neighbours_only))
     return {subset.begin(), subset.end()};
   std::vector<bool> taken(n, false);
   Neighbourhoods::Found memory;
   for (const std::int32_t i : subset) {
     if (!neighbours_only) taken[static_cast<std::size_t>(i)] = true;
-    for (const Neighbour& neighbour : neighbourhoods.unordered(i, memory))
+    for (const Neighbour& neighbour : neighbourhoods.unordered_kept(i, memory))
       taken[static_cast<std::size_t>(neighbour.index)] = true;
   }
   std::vector<std::int32_t> points;
@@ -221,14 +263,14 @@ void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) 
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset) {
   check_normals(points, normals);
-  const Neighbourhoods neighbourhoods(points, tree, support);
+  Neighbourhoods neighbourhoods(points, tree, support);
   const bool published = weighting == FpfhWeighting::published;
   const SimplifiedHistograms spfh(points, normals, needed(points.size(), subset, neighbourhoods, published),
                                   neighbourhoods, published);
 
   const double unit = published ? 1 : bounding_radius(points);
   Descriptors result{std::vector<float>(subset.size() * kFpfhBins), support.radius, support.neighbours};
-  parallel_ranges(subset.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(subset.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     Neighbourhoods::Found memory;
     for (std::size_t i = first; i < last; ++i) {
       Filled sum{};

@@ -3,8 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <queue>
+#include <string>
+
+#include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
@@ -28,15 +33,49 @@ double bounding_radius(std::span<const Vec3> points) {
   return std::sqrt(largest);
 }
 
+std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
+  if (points.empty()) throw InputError("the shape has no points");
+  const Vec3 centre = centroid(points);
+  const double radius = bounding_radius(points);
+  if (!std::isfinite(radius))
+    throw InputError("the shape has a coordinate that is not finite, or whose square overflows");
+  if (radius == 0) throw InputError("all points of the shape coincide");
+  std::vector<Vec3> result;
+  result.reserve(points.size());
+  for (const Vec3& p : points) result.push_back((p - centre) / radius);
+  return result;
+}
+
+void check_faces(std::size_t n_points, Surface surface) {
+  for (const Triangle& face : surface)
+    for (const std::int32_t v : face)
+      if (v < 0 || static_cast<std::size_t>(v) >= n_points)
+        throw InputError("a face refers to point " + std::to_string(v) + " (0-based), but the shape has " +
+                         std::to_string(n_points) + " points");
+}
+
+Vec3 face_area_vector(Points points, const Triangle& face) {
+  const Vec3& a = at(points, face[0]);
+  return (at(points, face[1]) - a).cross(at(points, face[2]) - a);
+}
+
 Vec3 face_area_vector(const Mesh& mesh, const Triangle& face) {
-  const Vec3& a = at(mesh.vertices, face[0]);
-  return (at(mesh.vertices, face[1]) - a).cross(at(mesh.vertices, face[2]) - a);
+  return face_area_vector(mesh.vertices, face);
 }
 
 double surface_area(const Mesh& mesh) {
   double doubled = 0;
   for (const Triangle& face : mesh.faces) doubled += face_area_vector(mesh, face).norm();
   return doubled / 2;
+}
+
+ScalarField barycentric_areas(Points points, Surface surface) {
+  ScalarField areas(points.size(), 0.0);
+  for (const Triangle& face : surface) {
+    const double third = face_area_vector(points, face).norm() / 6;
+    for (const std::int32_t i : face) areas[static_cast<std::size_t>(i)] += third;
+  }
+  return areas;
 }
 
 Vec3 area_centroid(const Mesh& mesh) {
@@ -51,25 +90,32 @@ Vec3 area_centroid(const Mesh& mesh) {
 }
 
 Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  edges.reserve(faces.size() * 6);
-  for (const Triangle& face : faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      edges.emplace_back(face[k], face[(k + 1) % 3]);
-      edges.emplace_back(face[(k + 1) % 3], face[k]);
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::erase_if(edges, [](const auto& edge) { return edge.first == edge.second; });  // degenerate faces
+  // Each edge from both ends, once per face; degenerate faces have edges from a point to itself.
+  const auto for_each_edge = [&](auto&& visit) {
+    for (const Triangle& face : faces)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t a = face[k], b = face[(k + 1) % 3];
+        if (a == b) continue;
+        visit(static_cast<std::size_t>(a), b);
+        visit(static_cast<std::size_t>(b), a);
+      }
+  };
+  std::vector<std::size_t> end(n_points + 1, 0);
+  for_each_edge([&](std::size_t from, std::int32_t) { ++end[from + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::int32_t> all(end.back());
+  for_each_edge([&](std::size_t from, std::int32_t to) { all[end[from]++] = to; });
 
   Adjacency adjacency{std::vector<std::int32_t>(n_points + 1, 0), {}};
-  adjacency.neighbours.reserve(edges.size());
-  for (const auto& [from, to] : edges) {
-    ++adjacency.offsets[static_cast<std::size_t>(from) + 1];
-    adjacency.neighbours.push_back(to);
+  adjacency.neighbours.reserve(all.size() / 2);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < n_points; begin = end[i++]) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = all.begin() + static_cast<std::ptrdiff_t>(end[i]);
+    std::sort(first, last);
+    std::unique_copy(first, last, std::back_inserter(adjacency.neighbours));
+    adjacency.offsets[i + 1] = static_cast<std::int32_t>(adjacency.neighbours.size());
   }
-  for (std::size_t i = 0; i < n_points; ++i) adjacency.offsets[i + 1] += adjacency.offsets[i];
   return adjacency;
 }
 

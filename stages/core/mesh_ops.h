@@ -15,10 +15,24 @@ Vec3 centroid(std::span<const Vec3> points);  // mean of the points; n > 0
 // R of the benchmark: the largest distance of a point to the centroid. [tasse2016]
 double bounding_radius(std::span<const Vec3> points);
 
+// Points relative to the centroid, in units of R. Throws InputError for a shape without points or extent, and
+// for a coordinate that is not finite, or whose square overflows.
+std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points);
+
+// Throws InputError for a face whose point does not exist.
+void check_faces(std::size_t n_points, Surface surface);
+
 // (b - a) x (c - a): twice the area, along the face's normal.
+Vec3 face_area_vector(Points points, const Triangle& face);
 Vec3 face_area_vector(const Mesh& mesh, const Triangle& face);
 
 double surface_area(const Mesh& mesh);
+
+// Barycentric areas: a third of the area of the faces at each point, 0 where there are none. n; they sum to
+// the area of the surface, and sum(area * field) is the integral of the field interpolated linearly over the
+// faces.
+ScalarField barycentric_areas(Points points, Surface surface);
+
 Vec3 area_centroid(const Mesh& mesh);  // area-weighted mean of the face centres; the surface area is > 0
 
 // Neighbours along edges in compressed rows: those of point i, sorted and distinct, are

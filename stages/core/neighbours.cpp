@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// nanoflann keeps the first of equally distant candidates that it meets. To be independent of the tree's
-// layout, a k-search also takes candidates at exactly the k-th distance and lets the index decide.
+// The tree is nanoflann's. The search is our own: it reads copies of the coordinates that lie in the tree's
+// order, a leaf at a time, and is independent of that order, since of equally distant points the index
+// decides.
 #include "stages/core/neighbours.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -35,44 +37,44 @@ struct Adaptor {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>, Adaptor, 3,
                                                  std::uint32_t>;
 
-bool closer(const Neighbour& a, const Neighbour& b) {
-  return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared
-                                                  : a.index < b.index;
-}
-
+constexpr std::size_t kLeaf = 12;  // points at most; decides which points are an even sample
 constexpr std::size_t kMany = 64;
 
-// Raises the limit by more than rounding, even if it is 0.
+// By more than the rounding of a box's distance, even if the limit is 0: what lies exactly there is found.
 double widened(double limit) { return limit * (1 + 1e-12) + std::numeric_limits<double>::min(); }
 
-// The result sets below are those of nanoflann.
+// Points of one leaf.
+struct Leaf {
+  std::size_t count;
+  const std::int32_t* index;
+  std::array<double, kLeaf> distance_squared;
+};
+
+// The result sets below have a limit, beyond which no leaf is looked at, and take the points of a leaf.
 
 // Keeps the k best by (distance, index) in a sorted array.
 class NearestSet {
  public:
-  NearestSet(const Adaptor& adaptor, std::vector<Neighbour>& best, std::size_t k)
-      : adaptor_(adaptor), best_(best), k_(k) {
-    best_.clear();
+  NearestSet(std::vector<Neighbour>& best, std::size_t k) : best_(best), k_(k) { best_.clear(); }
+  double limit() const {
+    return best_.size() == k_ ? best_.back().distance_squared : std::numeric_limits<double>::max();
   }
-  bool full() const { return best_.size() == k_; }
-  std::size_t size() const { return best_.size(); }
-  double worstDist() const {
-    // Slightly above the k-th distance, so that the tree still offers candidates exactly there, despite the
-    // rounding of its own bounds, and the index can decide between them.
-    return full() ? widened(best_.back().distance_squared) : std::numeric_limits<double>::max();
-  }
-  bool addPoint(double distance_squared, std::uint32_t index) {
-    const Neighbour candidate{adaptor_.index_of(index), distance_squared};
-    if (full()) {
-      if (!closer(candidate, best_.back())) return true;
-      best_.pop_back();
-    }
-    best_.insert(std::upper_bound(best_.begin(), best_.end(), candidate, closer), candidate);
-    return true;
+  void take(const Leaf& leaf) {
+    for (std::size_t i = 0; i < leaf.count; ++i)
+      if (leaf.distance_squared[i] <= limit()) insert({leaf.index[i], leaf.distance_squared[i]});
   }
 
  private:
-  const Adaptor& adaptor_;
+  void insert(const Neighbour& candidate) {
+    if (best_.size() < k_)
+      best_.push_back(candidate);
+    else if (!closer(candidate, best_.back()))
+      return;
+    auto place = best_.end() - 1;
+    for (; place != best_.begin() && closer(candidate, place[-1]); --place) *place = place[-1];
+    *place = candidate;
+  }
+
   std::vector<Neighbour>& best_;
   std::size_t k_;
 };
@@ -81,19 +83,17 @@ class NearestSet {
 // candidates, and when there are so many throws away the worse half.
 class ManyNearestSet {
  public:
-  ManyNearestSet(const Adaptor& adaptor, std::vector<Neighbour>& best, std::size_t k)
-      : adaptor_(adaptor), best_(best), k_(k) {
+  ManyNearestSet(std::vector<Neighbour>& best, std::size_t k) : best_(best), k_(k) {
     best_.clear();
     best_.reserve(2 * k);
   }
-  bool full() const { return best_.size() >= k_; }
-  std::size_t size() const { return best_.size(); }
-  double worstDist() const { return widened(limit_); }
-  bool addPoint(double distance_squared, std::uint32_t index) {
-    if (distance_squared > limit_) return true;
-    best_.push_back({adaptor_.index_of(index), distance_squared});
-    if (best_.size() == 2 * k_) keep_the_best();
-    return true;
+  double limit() const { return limit_; }
+  void take(const Leaf& leaf) {
+    for (std::size_t i = 0; i < leaf.count; ++i) {
+      if (leaf.distance_squared[i] > limit_) continue;
+      best_.push_back({leaf.index[i], leaf.distance_squared[i]});
+      if (best_.size() == 2 * k_) keep_the_best();
+    }
   }
   void finish() {
     if (best_.size() > k_) keep_the_best();
@@ -108,46 +108,48 @@ class ManyNearestSet {
     best_.resize(k_);
   }
 
-  const Adaptor& adaptor_;
   std::vector<Neighbour>& best_;
   std::size_t k_;
-  double limit_ = std::numeric_limits<double>::max() / 2;  // of the k-th so far; can be widened
+  double limit_ = std::numeric_limits<double>::max();  // distance of the k-th so far
 };
 
 class WithinSet {
  public:
-  WithinSet(const Adaptor& adaptor, std::vector<Neighbour>& found, double radius_squared)
-      : adaptor_(adaptor), found_(found), radius_squared_(radius_squared) {
-    found_.clear();
+  WithinSet(std::vector<Neighbour>& found, double radius_squared)
+      : found_(found), radius_squared_(radius_squared) {}
+  double limit() const { return radius_squared_; }
+  // Each is written, and the next one over it if it is too far away: nothing is to be guessed.
+  void take(const Leaf& leaf) {
+    if (found_.size() < count_ + kLeaf) found_.resize(2 * (count_ + kLeaf));
+    Neighbour* const end = found_.data() + count_;
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < leaf.count; ++i) {
+      end[taken] = {leaf.index[i], leaf.distance_squared[i]};
+      taken += leaf.distance_squared[i] <= radius_squared_;
+    }
+    count_ += taken;
   }
-  bool full() const { return true; }
-  std::size_t size() const { return found_.size(); }
-  double worstDist() const { return widened(radius_squared_); }
-  bool addPoint(double distance_squared, std::uint32_t index) {
-    if (distance_squared <= radius_squared_) found_.push_back({adaptor_.index_of(index), distance_squared});
-    return true;
-  }
+  void finish() { found_.resize(count_); }
 
  private:
-  const Adaptor& adaptor_;
   std::vector<Neighbour>& found_;
+  std::size_t count_ = 0;
   double radius_squared_;
 };
 
-class WithinCount {
+class WithinCounts {
  public:
-  explicit WithinCount(double radius_squared) : radius_squared_(radius_squared) {}
-  bool full() const { return true; }
-  std::size_t size() const { return count_; }
-  double worstDist() const { return widened(radius_squared_); }
-  bool addPoint(double distance_squared, std::uint32_t) {
-    count_ += distance_squared <= radius_squared_;
-    return true;
+  explicit WithinCounts(std::array<double, 2> radii_squared) : radii_squared_(radii_squared) {}
+  double limit() const { return radii_squared_[1]; }
+  void take(const Leaf& leaf) {
+    for (std::size_t i = 0; i < leaf.count; ++i)
+      for (std::size_t r = 0; r < 2; ++r) counts[r] += leaf.distance_squared[i] <= radii_squared_[r];
   }
 
+  std::array<std::size_t, 2> counts = {0, 0};
+
  private:
-  double radius_squared_;
-  std::size_t count_ = 0;
+  std::array<double, 2> radii_squared_;  // ascending
 };
 
 }  // namespace
@@ -155,12 +157,61 @@ class WithinCount {
 struct KdTree::Impl {
   Adaptor adaptor;
   Tree tree;
+  std::vector<std::int32_t> index;  // of the points, in the tree's order
+  std::vector<double> x, y, z;      // of these, and of one leaf more, which is read and not used
+
   explicit Impl(Adaptor of)
-      : adaptor(std::move(of)), tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
-  std::size_t size() const { return adaptor.kdtree_get_point_count(); }
+      : adaptor(std::move(of)), tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)) {
+    for (const std::uint32_t member : tree.vAcc) {
+      index.push_back(adaptor.index_of(member));
+      const Vec3& point = adaptor.points[static_cast<std::size_t>(index.back())];
+      x.push_back(point.x());
+      y.push_back(point.y());
+      z.push_back(point.z());
+    }
+    for (auto* coordinates : {&x, &y, &z}) coordinates->resize(size() + kLeaf);
+  }
+
+  std::size_t size() const { return index.size(); }
+
   template <class Set>
   void search(Set& set, const Vec3& query) const {
-    if (size() > 0) tree.findNeighbors(set, query.data(), nanoflann::SearchParams());
+    if (size() == 0) return;
+    Vec3 outside;  // squared distances from the box of all points, along the axes
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const auto& side = tree.root_bbox[static_cast<std::size_t>(axis)];
+      const double beyond = std::max({side.low - query[axis], query[axis] - side.high, 0.0});
+      outside[axis] = beyond * beyond;
+    }
+    descend(set, query, *tree.root_node, outside.sum(), outside);
+  }
+
+  // `least` and `outside`: squared distance from the node's box, in all and along the axes.
+  template <class Set>
+  void descend(Set& set, const Vec3& query, const Tree::Node& node, double least, Vec3& outside) const {
+    if (node.child1 == nullptr) return set.take(leaf(node.node_type.lr.left, node.node_type.lr.right, query));
+    const auto& [axis, low, high] = node.node_type.sub;
+    const double to_low = query[axis] - low, to_high = query[axis] - high;
+    const bool in_first = to_low + to_high < 0;
+    descend(set, query, in_first ? *node.child1 : *node.child2, least, outside);
+    const double across = in_first ? to_high * to_high : to_low * to_low;
+    const double least_beyond = least + across - outside[axis];
+    if (least_beyond > widened(set.limit())) return;
+    const double before = std::exchange(outside[axis], across);
+    descend(set, query, in_first ? *node.child2 : *node.child1, least_beyond, outside);
+    outside[axis] = before;
+  }
+
+  Leaf leaf(std::size_t first, std::size_t last, const Vec3& query) const {
+    Leaf leaf;
+    leaf.count = last - first;
+    leaf.index = index.data() + first;
+    for (std::size_t i = 0; i < kLeaf; ++i) {  // beyond the leaf too: a loop of fixed length is faster
+      const double dx = x[first + i] - query.x(), dy = y[first + i] - query.y(),
+                   dz = z[first + i] - query.z();
+      leaf.distance_squared[i] = dx * dx + dy * dy + dz * dz;
+    }
+    return leaf;
   }
 };
 
@@ -176,11 +227,11 @@ std::size_t KdTree::size() const { return impl_->size(); }
 void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const {
   k = std::min(k, size());
   if (k > kMany) {
-    ManyNearestSet set(impl_->adaptor, found, k);
+    ManyNearestSet set(found, k);
     impl_->search(set, query);
     set.finish();
   } else {
-    NearestSet set(impl_->adaptor, found, k);
+    NearestSet set(found, k);
     if (k > 0) impl_->search(set, query);
   }
 }
@@ -198,15 +249,16 @@ void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& fo
   std::sort(found.begin(), found.end(), closer);
 }
 
-std::size_t KdTree::count_within(const Vec3& query, double radius) const {
-  WithinCount set(radius * radius);
+void KdTree::within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
+  WithinSet set(found, radius * radius);
   impl_->search(set, query);
-  return set.size();
+  set.finish();
 }
 
-void KdTree::within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
-  WithinSet set(impl_->adaptor, found, radius * radius);
+std::array<std::size_t, 2> KdTree::count_within(const Vec3& query, double small, double large) const {
+  WithinCounts set({small * small, large * large});
   impl_->search(set, query);
+  return set.counts;
 }
 
 // Points beside each other in the tree's order are near each other in space.
@@ -214,8 +266,7 @@ std::vector<std::int32_t> KdTree::even_sample(std::size_t count) const {
   count = std::min(count, size());
   std::vector<std::int32_t> sample;
   sample.reserve(count);
-  for (std::size_t i = 0; i < count; ++i)
-    sample.push_back(impl_->adaptor.index_of(impl_->tree.vAcc[(2 * i + 1) * size() / (2 * count)]));
+  for (std::size_t i = 0; i < count; ++i) sample.push_back(impl_->index[(2 * i + 1) * size() / (2 * count)]);
   std::sort(sample.begin(), sample.end());
   return sample;
 }

@@ -2,6 +2,7 @@
 // Exact nearest-neighbour search over a fixed point set. [blanco2014]
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -15,6 +16,12 @@ namespace salbench {
 struct Neighbour {
   std::int32_t index;
   double distance_squared;
+};
+
+// The order of what is found; a lambda, which sorting inlines.
+inline constexpr auto closer = [](const Neighbour& a, const Neighbour& b) {
+  return a.distance_squared < b.distance_squared ||
+         (a.distance_squared == b.distance_squared && a.index < b.index);
 };
 
 // The points must outlive the tree. Results are ordered by (distance, index), so ties never depend on the
@@ -35,7 +42,8 @@ class KdTree {
   // All points with distance <= radius.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
   void within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
-  std::size_t count_within(const Vec3& query, double radius) const;
+  // How many there are, for two radii in one search; small <= large.
+  std::array<std::size_t, 2> count_within(const Vec3& query, double small, double large) const;
 
   std::size_t size() const;  // points that can be found
 

@@ -37,16 +37,80 @@ PairBins bins_of(const DarbouxTriple& pair, bool both_ways) {
           bin_of_magnitude(pair.phi, 1), both_ways};
 }
 
-// How many edges a value reaches, and whether it is too near to one to tell.
-struct Reached {
-  std::uint8_t edges = 0;
-  bool doubtful = false;
+// Points and their normals, axis by axis.
+struct Oriented {
+  alignas(64) std::array<double, kPairs> x, y, z, nx, ny, nz;
 
-  void compare(double beyond, double scale) {
-    edges = static_cast<std::uint8_t>(edges + (beyond >= 0));
-    doubtful |= !(std::abs(beyond) > kDoubt * scale);
+  void set(std::size_t lane, const Vec3& point, const Vec3& normal) {
+    x[lane] = point.x(), y[lane] = point.y(), z[lane] = point.z();
+    nx[lane] = normal.x(), ny[lane] = normal.y(), nz[lane] = normal.z();
   }
 };
+
+// How many edges the features reach, and whether one is too near to an edge to tell.
+struct Reached {
+  alignas(64) std::array<std::int64_t, kPairs> theta, alpha, phi, both_ways, doubtful;
+};
+
+[[gnu::always_inline]] inline double dot(double ax, double ay, double az, double bx, double by, double bz) {
+  return ax * bx + ay * by +
+         az * bz;  // in Eigen's order: which point is the source has to be decided as there
+}
+
+// A plain loop over the lanes, which the compiler turns into vectors.
+[[gnu::always_inline]] inline void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap,
+                                        Reached& reached) {
+  const double px = p.x(), py = p.y(), pz = p.z(), npx = n_p.x(), npy = n_p.y(), npz = n_p.z();
+  for (std::size_t lane = 0; lane < kPairs; ++lane) {
+    const double nqx = q.nx[lane], nqy = q.ny[lane], nqz = q.nz[lane];
+    double lx = q.x[lane] - px, ly = q.y[lane] - py, lz = q.z[lane] - pz;
+    const double length = std::sqrt(lx * lx + ly * ly + lz * lz);
+    lx /= length, ly /= length, lz /= length;
+    const double slope_p = std::abs(dot(npx, npy, npz, lx, ly, lz));
+    const double slope_q = std::abs(dot(nqx, nqy, nqz, lx, ly, lz));
+    const bool swapped = swap & (slope_p < slope_q);
+    const double ux = swapped ? nqx : npx, uy = swapped ? nqy : npy, uz = swapped ? nqz : npz;
+    const double ox = swapped ? npx : nqx, oy = swapped ? npy : nqy, oz = swapped ? npz : nqz;
+
+    // v times the sine of the angle between u and the line.
+    const double vx = ly * uz - lz * uy, vy = lz * ux - lx * uz, vz = lx * uy - ly * ux;
+    const double sine = std::sqrt(vx * vx + vy * vy + vz * vz);
+    const double alpha = std::abs(dot(vx, vy, vz, ox, oy, oz)), phi = swapped ? slope_q : slope_p;
+    const double x = dot(ux, uy, uz, ox, oy, oz) * sine;
+    const double y = std::abs(dot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx, ox, oy, oz));
+
+    std::int64_t theta_edges = 0, alpha_edges = 0, phi_edges = 0, certain = sine >= kDoubt;
+    const double doubt = kDoubt * sine;
+    for (std::size_t edge = 0; edge < kEdges.size(); ++edge) {
+      const double by_theta = y * kAngles[edge].cosine - x * kAngles[edge].sine;
+      const double by_alpha = alpha - kEdges[edge] * sine, by_phi = phi - kEdges[edge];
+      theta_edges += by_theta >= 0;
+      alpha_edges += by_alpha >= 0;
+      phi_edges += by_phi >= 0;
+      certain &= std::abs(by_theta) > doubt;
+      certain &= std::abs(by_alpha) > doubt;
+      certain &= std::abs(by_phi) > kDoubt;
+    }
+    reached.theta[lane] = theta_edges;
+    reached.alpha[lane] = alpha_edges;
+    reached.phi[lane] = phi_edges;
+    const bool same_normal = (npx == nqx) & (npy == nqy) & (npz == nqz);
+    reached.both_ways[lane] = swap & ((slope_p != slope_q) | same_normal);
+    reached.doubtful[lane] = 1 - certain;
+  }
+}
+
+using Look = void (*)(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached& reached);
+
+void look_baseline(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached& reached) {
+  look(p, n_p, q, swap, reached);
+}
+[[gnu::target("avx2")]] void look_avx2(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap,
+                                       Reached& reached) {
+  look(p, n_p, q, swap, reached);
+}
+
+const Look kLook = __builtin_cpu_supports("avx2") != 0 ? look_avx2 : look_baseline;
 
 }  // namespace
 
@@ -70,27 +134,30 @@ DarbouxTriple pair_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const
 }
 
 PairBins pair_bins(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_q, bool swap) {
-  Vec3 line = q - p;
-  line /= line.norm();  // as there: which point is the source has to be decided alike
-  const double slope_p = std::abs(n_p.dot(line)), slope_q = std::abs(n_q.dot(line));
-  const bool both_ways = swap && (slope_p != slope_q || n_p == n_q);
-  const bool swapped = swap && slope_p < slope_q;
-  const Vec3& u = swapped ? n_q : n_p;
-  const Vec3& other = swapped ? n_p : n_q;
+  constexpr std::int32_t kFirst = 0;
+  std::array<PairBins, kPairs> bins;
+  pair_bins(p, n_p, {&q, 1}, {&n_q, 1}, {&kFirst, 1}, swap, bins);
+  return bins[0];
+}
 
-  const Vec3 across = line.cross(u);  // v times the sine of the angle between u and the line
-  const double sine = across.norm();
-  const double alpha = std::abs(across.dot(other)), phi = swapped ? slope_q : slope_p;
-  const double x = u.dot(other) * sine, y = std::abs(u.cross(across).dot(other));
-  Reached by_theta, by_alpha, by_phi;
-  for (std::size_t edge = 0; edge < kEdges.size(); ++edge) {
-    by_theta.compare(y * kAngles[edge].cosine - x * kAngles[edge].sine, sine);
-    by_alpha.compare(alpha - kEdges[edge] * sine, sine);
-    by_phi.compare(phi - kEdges[edge], 1);
+void pair_bins(const Vec3& p, const Vec3& n_p, std::span<const Vec3> points, std::span<const Vec3> normals,
+               std::span<const std::int32_t> others, bool swap, std::array<PairBins, kPairs>& bins) {
+  Oriented q;
+  for (std::size_t lane = 0; lane < kPairs; ++lane) {  // lanes that are left over repeat the first
+    const auto other = static_cast<std::size_t>(others[lane < others.size() ? lane : 0]);
+    q.set(lane, points[other], normals[other]);
   }
-  if (by_theta.doubtful || by_alpha.doubtful || by_phi.doubtful || sine < kDoubt)
-    return bins_of(pair_features(p, n_p, q, n_q, swap), both_ways);
-  return {by_theta.edges, by_alpha.edges, by_phi.edges, both_ways};
+  Reached reached;
+  kLook(p, n_p, q, swap, reached);
+  for (std::size_t lane = 0; lane < others.size(); ++lane) {
+    const bool both_ways = reached.both_ways[lane] != 0;
+    const auto other = static_cast<std::size_t>(others[lane]);
+    bins[lane] = reached.doubtful[lane] != 0
+                     ? bins_of(pair_features(p, n_p, points[other], normals[other], swap), both_ways)
+                     : PairBins{static_cast<std::uint8_t>(reached.theta[lane]),
+                                static_cast<std::uint8_t>(reached.alpha[lane]),
+                                static_cast<std::uint8_t>(reached.phi[lane]), both_ways};
+  }
 }
 
 }  // namespace salbench

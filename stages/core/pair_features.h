@@ -2,8 +2,10 @@
 // Relation of two oriented points, and the bins of a histogram that it votes for. [rusu2009]
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "stages/core/types.h"
 
@@ -35,5 +37,11 @@ struct PairBins {
 // The bins of pair_features(), which the sign of most differences gives without angles. p and q do not
 // coincide.
 PairBins pair_bins(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_q, bool swap);
+
+// The same for p and each of up to kPairs points, which are looked at side by side: `others` are their
+// indices.
+inline constexpr std::size_t kPairs = 8;
+void pair_bins(const Vec3& p, const Vec3& n_p, std::span<const Vec3> points, std::span<const Vec3> normals,
+               std::span<const std::int32_t> others, bool swap, std::array<PairBins, kPairs>& bins);
 
 }  // namespace salbench

@@ -7,6 +7,9 @@
 
 namespace salbench {
 
+// Points of a range where one point is little work.
+inline constexpr std::size_t kPointGrain = 1024;
+
 // Calls body(first, last) for the ranges [0, grain), [grain, 2 grain) ... of [0, n): the same ranges whatever
 // the number of threads, in any order, several at a time. Threads help that have nothing else to do; none of
 // them takes up other work before the loop is done, and the loop is done even if the run around it is being

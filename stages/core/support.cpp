@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "stages/core/check.h"
@@ -13,16 +15,21 @@
 
 namespace salbench {
 
-double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, double radius) {
+std::array<double, 2> mean_neighbour_counts(std::span<const Vec3> points, const KdTree& tree, double small,
+                                            double large) {
   CHECK_EQ(points.size(), tree.size());
   CHECK_GT(points.size(), 0U);
-  std::atomic<std::size_t> others = 0;
-  parallel_ranges(points.size(), 4096, [&](std::size_t first, std::size_t last) {
-    std::size_t some = 0;
-    for (std::size_t i = first; i < last; ++i) some += tree.count_within(points[i], radius) - 1;
-    others += some;
+  std::array<std::atomic<std::size_t>, 2> others = {0, 0};
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
+    std::array<std::size_t, 2> some = {0, 0};
+    for (std::size_t i = first; i < last; ++i) {
+      const auto within = tree.count_within(points[i], small, large);
+      for (std::size_t r = 0; r < 2; ++r) some[r] += within[r] - 1;
+    }
+    for (std::size_t r = 0; r < 2; ++r) others[r] += some[r];
   });
-  return static_cast<double>(others.load()) / static_cast<double>(points.size());
+  const auto n = static_cast<double>(points.size());
+  return {static_cast<double>(others[0].load()) / n, static_cast<double>(others[1].load()) / n};
 }
 
 namespace {
@@ -37,8 +44,11 @@ class Growth {
     while (radii_.size() <= step) radii_.push_back(radii_.back() * kFactor);
     return radii_[step];
   }
-  std::int32_t neighbours(std::size_t step) {
-    return static_cast<std::int32_t>(mean_neighbour_count(points_, tree_, radius(step)));
+  // At the step before, where there is one, and at the step.
+  std::pair<std::int32_t, std::int32_t> neighbours(std::size_t step) {
+    const auto [before, at] =
+        mean_neighbour_counts(points_, tree_, radius(step > 0 ? step - 1 : 0), radius(step));
+    return {step > 0 ? static_cast<std::int32_t>(before) : -1, static_cast<std::int32_t>(at)};
   }
 
   // A step that holds about so many neighbours, from a few of the points.
@@ -80,14 +90,9 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   // The count grows with the radius: from a likely step, the first that holds enough is up or down.
   Growth growth(points, tree, first);
   std::size_t step = first > 0 ? growth.likely(enough) : 0;
-  std::int32_t held = growth.neighbours(step);
-  while (held < enough) held = growth.neighbours(++step);
-  while (step > 0) {
-    const std::int32_t before = growth.neighbours(step - 1);
-    if (before < enough) break;
-    held = before;
-    --step;
-  }
+  auto [before, held] = growth.neighbours(step);
+  while (held < enough) std::tie(before, held) = growth.neighbours(++step);
+  while (before >= enough) std::tie(before, held) = growth.neighbours(--step);
   return {growth.radius(step), held};
 }
 

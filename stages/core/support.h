@@ -2,6 +2,7 @@
 // The support radius of descriptors, grown until it holds enough points to describe a neighbourhood.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -12,8 +13,10 @@ namespace salbench {
 
 inline constexpr std::int32_t kMinMeanNeighbours = 6;  // the point itself excluded
 
-// Mean over the points of how many others lie at distance <= radius; n > 0, `tree` is over `points`.
-double mean_neighbour_count(std::span<const Vec3> points, const KdTree& tree, double radius);
+// Mean over the points of how many others lie at distance <= small, and <= large; n > 0, `tree` is over
+// `points`.
+std::array<double, 2> mean_neighbour_counts(std::span<const Vec3> points, const KdTree& tree, double small,
+                                            double large);
 
 // Median distance of a point to its nearest other one; 0 for fewer than two points. `tree` is over `points`.
 double median_spacing(std::span<const Vec3> points, const KdTree& tree);

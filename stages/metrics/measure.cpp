@@ -15,18 +15,6 @@ Measure area_measure(std::span<const double> areas) {
   return {{areas.begin(), areas.end()}, total, total};
 }
 
-ScalarField barycentric_areas(Points points, Surface surface) {
-  ScalarField areas(points.size(), 0.0);
-  for (const Triangle& face : surface) {
-    const Vec3& a = points[static_cast<std::size_t>(face[0])];
-    const Vec3& b = points[static_cast<std::size_t>(face[1])];
-    const Vec3& c = points[static_cast<std::size_t>(face[2])];
-    const double third = (b - a).cross(c - a).norm() / 6;
-    for (const std::int32_t i : face) areas[static_cast<std::size_t>(i)] += third;
-  }
-  return areas;
-}
-
 bool is_constant(std::span<const double> field, const Measure& measure) {
   CHECK_EQ(field.size(), measure.size());
   std::optional<double> first;

@@ -28,11 +28,6 @@ struct Measure {
 Measure vertex_measure(std::size_t n);
 Measure area_measure(std::span<const double> areas);  // n, or none: an empty measure
 
-// Barycentric areas: a third of the area of the faces at each point, 0 where there are none. n; they sum to
-// the area of the surface, and sum(area * field) is the integral of the field interpolated linearly over the
-// faces.
-ScalarField barycentric_areas(Points points, Surface surface);
-
 // Whether the field has one value wherever the weight is positive; also true where no weight is.
 bool is_constant(std::span<const double> field, const Measure& measure);
 

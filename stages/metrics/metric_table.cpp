@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "stages/core/field.h"
 #include "stages/metrics/density.h"
 #include "stages/metrics/metrics.h"
 #include "stages/metrics/roc.h"
@@ -16,12 +17,7 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> positives(const MetricInput& in) {
-  std::vector<double> values;
-  values.reserve(in.picked.size());
-  for (const std::int32_t i : in.picked) values.push_back(in.map[static_cast<std::size_t>(i)]);
-  return values;
-}
+ScalarField positives(const MetricInput& in) { return values_at(in.map, in.picked); }
 
 // The paper's protocol numbers the points, and leaves out the first; by area a number means nothing.
 double sampled(const MetricInput& in) {

@@ -21,13 +21,6 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 const Rng kNoDraws(0, "", "");  // for what draws nothing
 
-std::vector<double> values_at(std::span<const double> map, std::span<const std::int32_t> picked) {
-  std::vector<double> values;
-  values.reserve(picked.size());
-  for (const std::int32_t i : picked) values.push_back(map[static_cast<std::size_t>(i)]);
-  return values;
-}
-
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
     throw InputError("the ground truth has " + std::to_string(truth.saliency.size()) + " values for " +

@@ -18,6 +18,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 #include "stages/models/chi2_grouping.h"
+#include "stages/models/chi_square.h"
 
 namespace salbench {
 namespace {
@@ -37,18 +38,13 @@ constexpr std::size_t kSpare = 8;     // so few candidates beyond the k-th are p
 constexpr std::size_t kGrain = 1024;  // queries one after the other; the first of them guesses nothing
 constexpr float kOpened = std::numeric_limits<float>::quiet_NaN();  // in place of a bound: within no limit
 
-std::vector<std::size_t> used_bins_of(const Descriptors& descriptors) {
-  std::array<bool, kBins> used{};
-  for (std::size_t i = 0; i < descriptors.values.size(); ++i) {
-    const float value = descriptors.values[i];
-    if (!(value >= 0 && value <= kMaxValue))
+// At least one.
+std::vector<std::size_t> bins_of(const Descriptors& descriptors) {
+  for (std::size_t i = 0; i < descriptors.values.size(); ++i)
+    if (const float value = descriptors.values[i]; !(value >= 0 && value <= kMaxValue))
       throw InputError("the descriptor of point " + std::to_string(i / kBins) + " (0-based) has the value " +
                        std::to_string(value) + ", expected a number from 0 to 1e18");
-    if (value > 0) used[i % kBins] = true;
-  }
-  std::vector<std::size_t> bins;
-  for (std::size_t bin = 0; bin < kBins; ++bin)
-    if (used[bin]) bins.push_back(bin);
+  std::vector<std::size_t> bins = used_bins(descriptors);
   if (bins.empty()) bins.push_back(0);
   return bins;
 }
@@ -300,7 +296,7 @@ class Chi2Query {
 
 Chi2Search::Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references,
                        chi2_kernel::Instructions instructions)
-    : bins_(used_bins_of(descriptors)),
+    : bins_(bins_of(descriptors)),
       beyond_all_(beyond_all(descriptors)),
       queries_(grouped_by_likeness(descriptors, bins_)),
       order_(references.empty() ? queries_ : in_order_of(queries_, references)),

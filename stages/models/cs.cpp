@@ -29,6 +29,7 @@
 #include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
 #include "stages/core/support.h"
+#include "stages/models/chi_square.h"
 #include "stages/models/cs_clusters.h"
 
 namespace salbench {
@@ -36,7 +37,6 @@ namespace {
 
 constexpr int kRings = 3;                 // a point depends on clusters up to so many steps of adjacency away
 constexpr std::size_t kFallbackNear = 9;  // nearest points, used if none is within the radius
-constexpr std::size_t kGrain = 1024;      // points of a range in a loop that threads share
 constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the affinity of a point to a cluster
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
@@ -50,7 +50,7 @@ void sort_and_deduplicate(std::vector<std::int32_t>& list) {
 Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, double radius,
                              const Clusters& clusters) {
   std::vector<std::vector<std::int32_t>> of_point(points.size());
-  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     std::vector<Neighbour> found;
     for (std::size_t i = first; i < last; ++i) {
       tree.within_unordered(points[i], radius, found);
@@ -124,6 +124,7 @@ struct Affinity {
 
 Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptors, const Clusters& of,
                      const GroupMeans& clusters, const Neighbours& in_reach, const Variances& variance) {
+  const std::vector<std::size_t> bins = used_bins(descriptors);
   const auto reach_of = [&](std::size_t i) -> const std::vector<std::int32_t>& {
     return in_reach[static_cast<std::size_t>(of.of_point[i])];
   };
@@ -135,21 +136,21 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
     entries += reach_of(i).size();
   }
   result.weights.resize(entries);
-  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      double* weight = &result.weights[result.offsets[i]];
-      for (const std::int32_t cluster : reach_of(i)) {
-        const auto k = static_cast<std::size_t>(cluster);
-        const double distance_squared = (points[i] - clusters.centres[k]).squaredNorm();
-        const double chi2 = chi_square(descriptors.row(i), clusters.descriptors.row(k));
-        *weight++ = -relative(distance_squared, 2 * variance.distance_squared) -
-                    kDescriptorRate * relative(chi2, variance.chi2);
+      const auto& reach = reach_of(i);
+      const auto weights = std::span(result.weights).subspan(result.offsets[i], reach.size());
+      chi_squares(descriptors.row(i), clusters.descriptors, reach, bins, weights);
+      for (std::size_t c = 0; c < reach.size(); ++c) {
+        const Vec3& centre = clusters.centres[static_cast<std::size_t>(reach[c])];
+        weights[c] = -relative((points[i] - centre).squaredNorm(), 2 * variance.distance_squared) -
+                     kDescriptorRate * relative(weights[c], variance.chi2);
       }
     }
   });
   // A common factor cancels below. Relative to the largest weight, they cannot all vanish.
   const double largest = *std::max_element(result.weights.begin(), result.weights.end());
-  parallel_ranges(entries, kGrain * 64, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(entries, kPointGrain * 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) result.weights[e] = std::exp(result.weights[e] - largest);
   });
 
@@ -202,9 +203,11 @@ ScalarField cluster_saliency(const GroupMeans& clusters, const Variances& varian
   const std::size_t count = clusters.size();
   ScalarField unique(count), scattered(count), saliency(count);
   std::vector<double> chi2(count);
+  std::vector<std::int32_t> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<std::size_t> bins = used_bins(clusters.descriptors);
   for (std::size_t j = 0; j < count; ++j) {
-    for (std::size_t k = 0; k < count; ++k)
-      chi2[k] = chi_square(clusters.descriptors.row(j), clusters.descriptors.row(k));
+    chi_squares(clusters.descriptors.row(j), clusters.descriptors, all, bins, chi2);
     unique[j] = uniqueness(j, clusters, shares, chi2, unit);
     scattered[j] = distribution(clusters, shares, chi2, variance, unit);
   }

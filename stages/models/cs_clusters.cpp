@@ -20,6 +20,7 @@
 
 #include "stages/core/check.h"
 #include "stages/core/neighbours.h"
+#include "stages/models/chi_square.h"
 #include "stages/models/cs_cells.h"
 
 namespace salbench {
@@ -127,6 +128,7 @@ class KMeans {
  public:
   KMeans(const Voxels& voxels, Labels labels, std::size_t count, double unit, const CsOptions& options)
       : voxels_(voxels),
+        bins_(used_bins(voxels.means.descriptors)),
         labels_(std::move(labels)),
         clusters_(cluster_means(voxels, labels_, count)),
         largest_(largest_distances(voxels, labels_, clusters_)),
@@ -150,9 +152,11 @@ class KMeans {
     for (std::size_t k = 0; k < clusters_.size(); ++k) {
       if (clusters_.sizes[k] == 0) continue;
       voxels_.tree.within_unordered(clusters_.centres[k], reach_, found_);
-      for (const Neighbour& voxel : found_) {
+      measure(clusters_.descriptors.row(k));
+      for (std::size_t i = 0; i < found_.size(); ++i) {
+        const Neighbour& voxel = found_[i];
         const auto j = static_cast<std::size_t>(voxel.index);
-        const double chi2 = chi_square(voxels_.means.descriptors.row(j), clusters_.descriptors.row(k));
+        const double chi2 = chi2_[i];
         if (labels_[j] == static_cast<std::int32_t>(k)) next.include(voxel.distance_squared, chi2);
         const double cost = relative(voxel.distance_squared, largest_.distance_squared) +
                             descriptor_weight_ * relative(chi2, largest_.chi2);
@@ -165,6 +169,14 @@ class KMeans {
     return next;
   }
 
+  // The distances of the voxels found from a cluster's descriptor.
+  void measure(std::span<const float, kBins> cluster) {
+    rows_.clear();
+    for (const Neighbour& voxel : found_) rows_.push_back(voxel.index);
+    chi2_.resize(rows_.size());
+    chi_squares(cluster, voxels_.means.descriptors, rows_, bins_, chi2_);
+  }
+
   // Returns how far the centres have moved: the sum of the absolute differences along the axes.
   double update_means() {
     const std::vector<Vec3> before = std::move(clusters_.centres);
@@ -174,6 +186,7 @@ class KMeans {
   }
 
   const Voxels& voxels_;
+  std::vector<std::size_t> bins_;
   Labels labels_;
   GroupMeans clusters_;
   Largest largest_;
@@ -181,7 +194,9 @@ class KMeans {
   double rest_;
   double descriptor_weight_;
   std::vector<double> least_cost_;  // by voxel, over all rounds
-  std::vector<Neighbour> found_;
+  std::vector<Neighbour> found_;    // and so on: working memory
+  std::vector<std::int32_t> rows_;
+  std::vector<double> chi2_;
 };
 
 // A voxel joins the nearest other cluster if fewer than a third of its surroundings, itself included, are in
@@ -211,16 +226,6 @@ Clusters numbered(const Labels& voxel_of, const Labels& labels, std::size_t seed
 }
 
 }  // namespace
-
-double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
-  double result = 0;
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    const float sum = a[bin] + b[bin];
-    const float difference = a[bin] - b[bin];
-    if (sum > 0) result += static_cast<double>(difference * difference / sum);
-  }
-  return result;
-}
 
 GroupMeans group_means(std::span<const Vec3> points, const Descriptors& descriptors,
                        std::span<const std::int32_t> group_of, std::size_t count) {

@@ -11,9 +11,6 @@
 
 namespace salbench {
 
-// sum (a - b)^2 / (a + b), bins where both are 0 adding nothing; values >= 0. Not halved.
-double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b);
-
 // Means over groups of points; 0 for a group without points.
 struct GroupMeans {
   std::vector<Vec3> centres;        // m x 3

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "stages/core/check.h"
-#include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
@@ -21,7 +20,6 @@
 namespace salbench {
 namespace {
 
-constexpr std::size_t kGrain = 1024;     // points of a range in a loop that threads share
 constexpr double kHistogramTotal = 300;  // sum of a descriptor in the published weighting: 3 blocks of 100
 
 std::size_t count_of(double share, std::size_t n) {
@@ -38,20 +36,6 @@ std::vector<std::int32_t> largest(const ScalarField& field, std::size_t count) {
   points.resize(count);
   std::sort(points.begin(), points.end());
   return points;
-}
-
-// Points relative to the centroid, in units of R.
-std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
-  if (points.empty()) throw InputError("the shape has no points");
-  const Vec3 centre = centroid(points);
-  const double radius = bounding_radius(points);
-  if (!std::isfinite(radius))
-    throw InputError("the shape has a coordinate that is not finite, or whose square overflows");
-  if (radius == 0) throw InputError("all points of the shape coincide");
-  std::vector<Vec3> result;
-  result.reserve(points.size());
-  for (const Vec3& p : points) result.push_back((p - centre) / radius);
-  return result;
 }
 
 // Empty: all points.
@@ -83,7 +67,7 @@ ScalarField association(std::span<const Vec3> points, const ScalarField& low, co
 
   const double twice_variance = 2 * options.foci_sigma * options.foci_sigma;
   ScalarField result(points.size());
-  parallel_ranges(points.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const auto nearest = static_cast<std::size_t>(tree.nearest(points[i]));
       result[i] = low[static_cast<std::size_t>(foci[nearest])] *

@@ -16,6 +16,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
+#include "stages/models/interpolated.h"
 #include "stages/models/simplified.h"
 #include "stages/models/spectrum.h"
 
@@ -23,7 +24,6 @@ namespace salbench {
 namespace {
 
 constexpr double kZeroEigenvalue = 1e-17;  // of the largest one
-constexpr std::size_t kInterpolated = 3;   // nearest simplified vertices that a vertex takes its value from
 constexpr int kScales = 5;
 constexpr double kSmoothingReach = 2.5;    // standard deviations
 constexpr double kMinAreaFraction = 1e-6;  // least area of a vertex, relative to the mean
@@ -91,33 +91,9 @@ ScalarField ring_means(const Adjacency& adjacency, const ScalarField& values) {
   return means;
 }
 
-// Mean of the values of the nearest points of the tree, weighted by inverse distance; a point on one of them
-// takes its value.
-template <class Value>
-std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree,
-                                const std::vector<Value>& values) {
-  std::vector<Value> result(points.size());
-  std::vector<Neighbour> nearest;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    tree.nearest(points[i], kInterpolated, nearest);
-    if (nearest.front().distance_squared == 0) nearest.resize(1);
-    result[i] = values[index(nearest.front().index)];
-    if (nearest.size() == 1) continue;
-    double weights = 1 / std::sqrt(nearest.front().distance_squared);
-    for (std::size_t k = 1; k < nearest.size(); ++k) {
-      const double weight = 1 / std::sqrt(nearest[k].distance_squared);
-      weights += weight;  // running mean
-      result[i] += weight / weights * (values[index(nearest[k].index)] - result[i]);
-    }
-  }
-  return result;
-}
-
-// A third of the area of the faces around each vertex.
+// Barycentric, but not vanishingly small: they are divided by.
 std::vector<double> vertex_areas(const Mesh& mesh) {
-  std::vector<double> areas(mesh.vertices.size(), 0);
-  for (const Triangle& face : mesh.faces)
-    for (const std::int32_t v : face) areas[index(v)] += face_area_vector(mesh, face).norm() / 6;
+  std::vector<double> areas = barycentric_areas(mesh.vertices, mesh.faces);
   const double smallest = kMinAreaFraction * surface_area(mesh) / static_cast<double>(areas.size());
   for (double& area : areas) area = std::max(area, smallest);
   return areas;
@@ -224,12 +200,7 @@ ScalarField component_saliency(const Mesh& mesh, const MsOptions& options) {
 }
 
 void check_input(Points points, Surface surface) {
-  const auto n = static_cast<std::int32_t>(points.size());
-  for (const Triangle& face : surface)
-    for (const std::int32_t v : face)
-      if (v < 0 || v >= n)
-        throw InputError("a face refers to point " + std::to_string(v) + " (0-based), but the shape has " +
-                         std::to_string(n) + " points");
+  check_faces(points.size(), surface);
   for (const Vec3& p : points)
     if (!p.allFinite()) throw InputError("a point has a coordinate that is not finite");
 }

@@ -163,21 +163,13 @@ EdgeCollapse::EdgeCollapse(const Mesh& mesh)
 
 // Of faces with the same corners the first counts.
 void EdgeCollapse::add_faces(const Mesh& mesh) {
-  std::vector<std::pair<Triangle, std::size_t>> by_corners;
-  by_corners.reserve(mesh.faces.size());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    Triangle corners = mesh.faces[f];
-    std::sort(corners.begin(), corners.end());
-    if (corners[0] != corners[1] && corners[1] != corners[2]) by_corners.emplace_back(corners, f);
-  }
-  std::sort(by_corners.begin(), by_corners.end());
-  std::vector<bool> taken(mesh.faces.size(), false);
-  for (std::size_t i = 0; i < by_corners.size(); ++i)
-    if (i == 0 || by_corners[i].first != by_corners[i - 1].first) taken[by_corners[i].second] = true;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    if (!taken[f]) continue;
-    for (const Index v : mesh.faces[f]) faces_of(v).push_back(static_cast<Index>(faces_.size()));
-    faces_.push_back(mesh.faces[f]);
+  for (const Triangle& corners : mesh.faces) {
+    const auto [a, b, c] = corners;
+    if (a == b || b == c || c == a) continue;
+    const auto& listed = faces_of(a);
+    if (std::any_of(listed.begin(), listed.end(), [&](Index f) { return has(f, b) && has(f, c); })) continue;
+    for (const Index v : corners) faces_of(v).push_back(static_cast<Index>(faces_.size()));
+    faces_.push_back(corners);
   }
   n_faces_ = faces_.size();
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Interleaved sampling [keller2001]: each pixel of a tile has directions of its own, and the mean over any 4
-// x 4 pixels has them all. Any hit is a hit, so neither the order in which Embree visits its tree nor the
-// number of threads that built it can change the result.
+// x 4 pixels has them all.
 #include "stages/picture/occlusion.h"
 
 #include <array>
@@ -36,19 +35,7 @@ Occluders::Occluders(std::span<const Disc> discs) {
 Occluders::~Occluders() = default;
 
 bool Occluders::between(const Vec3f& origin, const Vec3f& direction, float reach) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  alignas(16) RTCRay ray{};
-  ray.org_x = origin.x();
-  ray.org_y = origin.y();
-  ray.org_z = origin.z();
-  ray.dir_x = direction.x();
-  ray.dir_y = direction.y();
-  ray.dir_z = direction.z();
-  ray.tfar = reach;
-  ray.mask = ~0U;
-  rtcOccluded1(scene_->scene.get(), &context, &ray);
-  return ray.tfar < 0;
+  return embree::occluded(scene_->scene, origin, direction, 0, reach);
 }
 
 namespace {

@@ -23,7 +23,9 @@ std::vector<std::string> model_names() {
 
 // Item "1" is enough: every stage and model runs on it and on its scans.
 std::string results_of(const Workspace& toy, const std::string& protocol) {
-  toy.configure("protocol: " + protocol + "\nscan: {step_degrees: 2}\n");
+  std::string yaml = "protocol: " + protocol + "\nscan: {step_degrees: 2}\nmodels:\n";
+  for (const std::string& name : model_names()) yaml += "  " + name + ":\n";
+  toy.configure(yaml);
   const Outcome run = toy.salbench("run", {"--items", "1"});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("protocol " + protocol));

@@ -24,9 +24,13 @@
 #include "io/mesh_file.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/models/cs.h"
+#include "stages/models/lce.h"
 #include "stages/models/ls.h"
+#include "stages/models/lvj.h"
+#include "stages/models/mc.h"
 #include "stages/models/ms.h"
 #include "stages/models/ps.h"
+#include "stages/models/vis.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "stages/surface/surface.h"
@@ -116,6 +120,14 @@ void add_of_mesh(const std::string& name, const Source& source) {
       [](const Shape& s) { return ps_saliency(s.mesh.vertices, s.descriptors, PsOptions{}); });
   add("MS", name, source,
       [](const Shape& s) { return ms_saliency(s.mesh.vertices, s.mesh.faces, MsOptions{}); });
+  add("MC", name, source,
+      [](const Shape& s) { return mc_saliency(s.mesh.vertices, s.mesh.faces, McOptions{}); });
+  add("LVJ", name, source,
+      [](const Shape& s) { return lvj_saliency(s.mesh.vertices, s.mesh.faces, LvjOptions{}); });
+  add("LCE", name, source,
+      [](const Shape& s) { return lce_saliency(s.mesh.vertices, s.mesh.faces, LceOptions{}); });
+  add("VIS", name, source,
+      [](const Shape& s) { return vis_saliency(s.mesh.vertices, s.normals, s.mesh.faces, VisOptions{}); });
 }
 
 void add_of_scan(const std::string& name, const Source& source) {
@@ -140,6 +152,19 @@ void add_of_scan(const std::string& name, const Source& source) {
       [](const Shape& s) { return cs_saliency(s.scan->points, s.scan_normals, CsOptions{}); }, true);
   add(
       "MS", name, source, [](const Shape& s) { return ms_saliency(s.scan->points, s.surface, MsOptions{}); },
+      true);
+  add(
+      "MC", name, source, [](const Shape& s) { return mc_saliency(s.scan->points, s.surface, McOptions{}); },
+      true);
+  add(
+      "LVJ", name, source,
+      [](const Shape& s) { return lvj_saliency(s.scan->points, s.surface, LvjOptions{}); }, true);
+  add(
+      "LCE", name, source,
+      [](const Shape& s) { return lce_saliency(s.scan->points, s.surface, LceOptions{}); }, true);
+  add(
+      "VIS", name, source,
+      [](const Shape& s) { return vis_saliency(s.scan->points, s.scan_normals, s.surface, VisOptions{}); },
       true);
 }
 

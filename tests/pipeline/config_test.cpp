@@ -25,12 +25,23 @@ std::string error_of(const std::string& yaml) {
   return "no error";
 }
 
-TEST(Config, AnEmptyFileIsThePublishedProtocolWithAllModels) {
+std::vector<std::string> models_of(const std::string& yaml) {
+  std::vector<std::string> names;
+  for (const Model& model : config_of(yaml).models) names.push_back(model.name);
+  return names;
+}
+
+TEST(Config, AnEmptyFileIsThePublishedProtocolWithThePapersModels) {
   const Config config = config_of("");
   EXPECT_EQ(config.protocol, Protocol::published);
-  EXPECT_EQ(config.models.size(), model_rows().size());
+  EXPECT_THAT(models_of(""), testing::ElementsAre("LS", "CS", "PS", "MS", "HS", "RS"));
   EXPECT_EQ(config.fpfh.neighbours, 9);
   EXPECT_EQ(config.normals.method, MeshNormalsMethod::faces);
+}
+
+TEST(Config, OtherModelsRunWhereTheyAreNamed) {
+  EXPECT_THAT(models_of("models: {VIS: , MC: {curvature: taubin}, PS: }"),
+              testing::ElementsAre("PS", "MC", "VIS"));
 }
 
 TEST(Config, TheTextProtocolHasThePapersWords) {

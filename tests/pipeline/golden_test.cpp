@@ -209,6 +209,12 @@ void expect_every_row(const std::string& protocol, const Catalog& catalog, const
   }
 }
 
+std::string every_model() {
+  std::string yaml = "models:\n";
+  for (const ModelRow& row : model_rows()) yaml += "  " + std::string(row.name) + ":\n";
+  return yaml;
+}
+
 // Large enough for what works on part of a shape only: the simplification of MS begins at 3000 faces.
 Outputs toy_outputs() {
   const TemporaryFolder data;
@@ -220,8 +226,9 @@ Outputs toy_outputs() {
   Outputs outputs;
   for (const std::string protocol : {"published", "text"}) {
     RecordingStore store;
-    ToyRun toy(data.path(), store,
-               "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\npicture: {size: 64}\n");
+    ToyRun toy(
+        data.path(), store,
+        "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\npicture: {size: 64}\n" + every_model());
     toy.run();
     for (const Failure& failure : toy.runner.failures())
       ADD_FAILURE() << toy.context.name(failure.job) << ": " << toy.context.row(failure.job).name << ": "

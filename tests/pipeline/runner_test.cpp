@@ -71,7 +71,8 @@ std::string every_model(std::string_view changed = "", std::string_view option =
 TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
   const std::map<std::string_view, std::string_view> options = {
       {"LS", "foci_sigma: 0.08"}, {"CS", "clusters: 40"}, {"PS", "absolute: true"},
-      {"MS", "window: 5"},        {"HS", "draws: 3"},
+      {"MS", "window: 5"},        {"HS", "draws: 3"},     {"MC", "curvature: taubin"},
+      {"LVJ", "epsilon: 0.01"},   {"LCE", "radius: 0.5"}, {"VIS", "directions: 16"},
   };
   run(every_model());
   EXPECT_THAT(failures_, IsEmpty());

@@ -17,13 +17,19 @@ double brute_force_mean(const std::vector<Vec3>& points, double radius) {
   double pairs = 0;
   for (const Vec3& p : points)
     for (const Vec3& q : points) pairs += (p - q).squaredNorm() <= radius * radius ? 1 : 0;
-  return pairs / static_cast<double>(points.size()) - 1;
+  const auto n = static_cast<double>(points.size());
+  return (pairs - n) / n;
 }
 
-TEST(MeanNeighbourCount, EqualsBruteForce) {
+TEST(MeanNeighbourCounts, EqualBruteForce) {
   const auto cloud = shapes::random_cloud(300, 11);
-  for (const double radius : {0.0, 0.05, 0.2, 2.0})
-    EXPECT_DOUBLE_EQ(mean_neighbour_count(cloud, KdTree(cloud), radius), brute_force_mean(cloud, radius));
+  const double small = 0.04;
+  for (const double radius : {0.04, 0.05, 0.2, 2.0}) {
+    const auto [within_small, within] = mean_neighbour_counts(cloud, KdTree(cloud), small, radius);
+    EXPECT_DOUBLE_EQ(within_small, brute_force_mean(cloud, small));
+    EXPECT_DOUBLE_EQ(within, brute_force_mean(cloud, radius));
+  }
+  EXPECT_EQ(mean_neighbour_counts(cloud, KdTree(cloud), 0, 0)[1], 0);
 }
 
 TEST(GrownSupportRadius, IsTheFirstPowerThatHoldsSix) {

@@ -2,7 +2,6 @@
 #include "stages/models/cs_clusters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -10,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stages/models/chi_square.h"
 #include "stages/models/cs_cells.h"
 #include "tests/support/shapes.h"
 
@@ -74,14 +74,6 @@ TEST(OccupiedCells, AlignWithTheOriginAndOwnTheirLowerBorder) {
   EXPECT_EQ(cells.find(Vec3(1.25, 0, 0)), 1);
   EXPECT_EQ(cells.find(Vec3(1.5, 0, 0)), OccupiedCells::kEmpty);
   EXPECT_EQ(cells.find(Vec3(0.75, -0.1, 0)), OccupiedCells::kEmpty);
-}
-
-TEST(ChiSquare, IsNotHalvedAndSkipsEmptyBins) {
-  std::array<float, kFpfhBins> a{}, b{};
-  a[3] = 1, b[3] = 3, b[32] = 5;
-  EXPECT_DOUBLE_EQ(chi_square(a, b), 4.0 / 4 + 5);
-  EXPECT_DOUBLE_EQ(chi_square(b, a), 6);
-  EXPECT_EQ(chi_square(a, a), 0);
 }
 
 TEST(GroupMeans, AreMeansAndZeroWithoutPoints) {

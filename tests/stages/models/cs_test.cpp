@@ -14,10 +14,12 @@
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/support.h"
+#include "stages/models/chi_square.h"
 #include "stages/models/cs_clusters.h"
 #include "stages/normals/normals.h"
 #include "tests/support/options.h"
 #include "tests/support/shapes.h"
+#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -251,6 +253,24 @@ TEST(CsSaliency, DoesNotSeeTheSignOfTheNormals) {
   const ScalarField saliency = saliency_of(shape, options_for(100));
   for (Vec3& normal : shape.normals) normal = -normal;
   EXPECT_THAT(saliency_of(shape, options_for(100)), testing::Pointwise(testing::DoubleNear(1e-9), saliency));
+}
+
+// The neighbours of a point are looked for in the sample alone; it is a neighbour of itself either way.
+TEST(CsSample, AsLargeAsTheShapeIsTheShape) {
+  const Shape shape = shape_of(shapes::bumpy_sphere(4));  // 2562 points
+  const ScalarField whole = saliency_of(shape);
+  EXPECT_EQ(saliency_of(shape, {.sample = 2562}), whole);
+  EXPECT_EQ(saliency_of(shape, {.sample = 2563}), whole);
+  EXPECT_NE(saliency_of(shape, {.sample = 2561}), whole);
+}
+
+TEST(CsSample, IsTheSameOnAnyNumberOfThreadsAndInTheUnitInterval) {
+  const Shape shape = shape_of(shapes::bumpy_sphere(4));
+  const ScalarField sampled =
+      same_on_any_number_of_threads([&] { return saliency_of(shape, {.sample = 1000}); });
+  EXPECT_EQ(sampled.size(), shape.points.size());
+  EXPECT_THAT(sampled, Each(AllOf(Ge(0), Le(1))));
+  EXPECT_FALSE(is_constant(sampled));
 }
 
 TEST(CsSaliency, WeighsDistributionAndUniqueness) {

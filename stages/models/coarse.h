@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What bounds the time of a model whose neighbourhoods are a part of the shape: a fine surface is simplified,
+// and its points take values in between.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+class CoarseSurface {
+ public:
+  // Takes the surface as it is if it has at most so many faces. Finite coordinates, valid faces.
+  CoarseSurface(std::vector<Vec3> points, Surface surface, std::size_t most_faces);
+
+  const Mesh& mesh() const { return is_coarse_ ? coarse_ : full_; }
+  // Values at the mesh's vertices, brought to the points of the shape.
+  ScalarField on_all_points(ScalarField values) const;
+
+ private:
+  Mesh full_, coarse_;
+  bool is_coarse_ = false;
+};
+
+}  // namespace salbench

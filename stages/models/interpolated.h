@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values known at some places, brought to the points of a shape.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "stages/core/neighbours.h"
+#include "stages/core/parallel.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+inline constexpr std::size_t kInterpolated = 3;  // nearest places that a point takes its value from
+
+// Mean of the values of the nearest places of the tree, weighted by inverse distance; a point on one of them
+// takes its value. `values` has one per place, at least one.
+template <class Value>
+std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree,
+                                const std::vector<Value>& values) {
+  std::vector<Value> result(points.size());
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
+    std::vector<Neighbour> nearest;
+    for (std::size_t i = first; i < last; ++i) {
+      tree.nearest(points[i], kInterpolated, nearest);
+      if (nearest.front().distance_squared == 0) nearest.resize(1);
+      result[i] = values[static_cast<std::size_t>(nearest.front().index)];
+      if (nearest.size() == 1) continue;
+      double weights = 1 / std::sqrt(nearest.front().distance_squared);
+      for (std::size_t k = 1; k < nearest.size(); ++k) {
+        const double weight = 1 / std::sqrt(nearest[k].distance_squared);
+        weights += weight;  // running mean
+        result[i] += weight / weights * (values[static_cast<std::size_t>(nearest[k].index)] - result[i]);
+      }
+    }
+  });
+  return result;
+}
+
+// A value that is NaN becomes that of the nearest point with one; all become 0 if none has.
+void fill_from_nearest(Points points, ScalarField& values);
+
+}  // namespace salbench

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Limper, Kuijper and Fellner 2016: signed mean curvature after Meyer and others, 256 bins, areas as weights,
+// five levels whose entropies are averaged. Halving the reach from level to level and its largest value,
+// whose disc has 2 % of the surface, are those of a program made from the authors' own. The simplification of
+// larger surfaces is ours. Bins that leave out the outer 1 or 5 % of the curvatures at either end were tried:
+// over the 19 meshes with ground truth at hand the mean NSS falls from .289 to .164 and -.094.
+#include "stages/models/lce.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "stages/core/check.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/parallel.h"
+#include "stages/models/coarse.h"
+#include "stages/models/interpolated.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kSameCurvature =
+    1e-9;  // of the largest one, at least 1 / R: smaller differences are rounding
+
+std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+// Area by bin, of which few are in use at a time.
+class AreaHistogram {
+ public:
+  explicit AreaHistogram(std::size_t bins) : area_(bins, 0), is_used_(bins, 0) {}
+
+  void clear() {
+    for (const std::size_t bin : used_) area_[bin] = is_used_[bin] = 0;
+    used_.clear();
+    total_ = 0;
+  }
+  void add(std::size_t bin, double area) {
+    if (is_used_[bin] == 0) used_.push_back(bin);
+    is_used_[bin] = 1;
+    area_[bin] += area;
+    total_ += area;
+  }
+  // In bits.
+  double entropy() const {
+    double sum = 0;
+    for (const std::size_t bin : used_) {
+      const double part = area_[bin] / total_;
+      if (part > 0) sum -= part * std::log2(part);
+    }
+    return std::max(sum, 0.0);  // a sum of areas may round above its total
+  }
+
+ private:
+  std::vector<double> area_;
+  std::vector<char> is_used_;
+  std::vector<std::size_t> used_;
+  double total_ = 0;
+};
+
+// The bin of each value, the bins equally wide from the lowest value to the highest.
+std::vector<std::int32_t> binned(const ScalarField& values, std::int32_t count) {
+  std::vector<std::int32_t> bins(values.size(), 0);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  if (!(*high - *low > kSameCurvature * std::max({1.0, std::abs(*low), std::abs(*high)}))) return bins;
+  const double per_unit = count / (*high - *low);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    bins[i] = std::min(static_cast<std::int32_t>((values[i] - *low) * per_unit), count - 1);
+  return bins;
+}
+
+}  // namespace
+
+ScalarField local_entropy(const Mesh& mesh, std::span<const std::int32_t> bin, std::span<const double> areas,
+                          std::span<const double> radii) {
+  const std::size_t n = mesh.vertices.size();
+  CHECK_EQ(bin.size(), n);
+  CHECK_EQ(areas.size(), n);
+  ScalarField entropy(n, 0);
+  if (n == 0) return entropy;
+  const auto bins = index(*std::max_element(bin.begin(), bin.end())) + 1;
+  const Adjacency adjacency = edge_adjacency(n, mesh.faces);
+  parallel_ranges(n, kPointGrain, [&](std::size_t first, std::size_t last) {
+    EdgeDistances distances(mesh.vertices, adjacency);
+    AreaHistogram histogram(bins);
+    for (std::size_t i = first; i < last; ++i) {
+      const auto reached = distances.from(static_cast<std::int32_t>(i), radii.front());
+      histogram.clear();
+      std::size_t next = 0;
+      for (std::size_t level = radii.size(); level-- > 0;) {  // from near to far: each has the one before it
+        for (; next < reached.size() && reached[next].distance <= radii[level]; ++next)
+          histogram.add(index(bin[index(reached[next].index)]), areas[index(reached[next].index)]);
+        entropy[i] += histogram.entropy() / static_cast<double>(radii.size());
+      }
+    }
+  });
+  return entropy;
+}
+
+ScalarField lce_saliency(Points points, Surface surface, const LceOptions& options) {
+  check(options);
+  check_faces(points.size(), surface);
+  const CoarseSurface coarse(in_units_of_radius(points), surface, static_cast<std::size_t>(options.faces));
+  const Mesh& mesh = coarse.mesh();
+  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
+  std::vector<double> radii = {options.radius * std::sqrt(surface_area(mesh))};
+  while (radii.size() < index(options.levels)) radii.push_back(radii.back() / 2);
+  const ScalarField curvature = mean_curvature(mesh.vertices, mesh.faces, options.curvature);
+  ScalarField entropy = local_entropy(mesh, binned(curvature, options.bins), areas, radii);
+  for (std::size_t i = 0; i < entropy.size(); ++i)
+    if (!(areas[i] > 0)) entropy[i] = std::numeric_limits<double>::quiet_NaN();
+  fill_from_nearest(mesh.vertices, entropy);
+  return coarse.on_all_points(std::move(entropy));
+}
+
+}  // namespace salbench

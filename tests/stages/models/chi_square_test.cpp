@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/models/chi_square.h"
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/rng.h"
+
+namespace salbench {
+namespace {
+
+TEST(ChiSquare, IsNotHalvedAndSkipsEmptyBins) {
+  std::array<float, kFpfhBins> a{}, b{};
+  a[3] = 1, b[3] = 3, b[32] = 5;
+  EXPECT_DOUBLE_EQ(chi_square(a, b), 4.0 / 4 + 5);
+  EXPECT_DOUBLE_EQ(chi_square(b, a), 6);
+  EXPECT_EQ(chi_square(a, a), 0);
+}
+
+// Bin by bin, as the formula says.
+double by_definition(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
+  double result = 0;
+  for (std::size_t bin = 0; bin < kFpfhBins; ++bin) {
+    const float sum = a[bin] + b[bin], difference = a[bin] - b[bin];
+    if (sum > 0) result += static_cast<double>(difference * difference / sum);
+  }
+  return result;
+}
+
+// From tiny to large; every fourth bin is 0 in all, and a third of the others.
+Descriptors scattered_descriptors(std::size_t n) {
+  Rng rng(5, "chi_square", "");
+  Descriptors descriptors;
+  for (std::size_t i = 0; i < n * kFpfhBins; ++i) {
+    const double magnitude = std::pow(10.0, 40 * rng.uniform() - 25);
+    const bool empty = i % kFpfhBins % 4 == 1 || rng.uniform() < 0.3;
+    descriptors.values.push_back(empty ? 0.0F : static_cast<float>(magnitude * rng.uniform()));
+  }
+  return descriptors;
+}
+
+TEST(ChiSquares, LookAtTheBinsInUse) {
+  const auto bins = used_bins(scattered_descriptors(40));
+  EXPECT_EQ(bins.size(), kFpfhBins - 8);
+  EXPECT_EQ(bins[1], 2U);
+}
+
+TEST(ChiSquares, AreToTheBitThoseOfTheFormulaHoweverManyThereAre) {
+  const Descriptors descriptors = scattered_descriptors(40);
+  for (std::size_t count = 0; count <= 20; ++count) {
+    std::vector<std::int32_t> rows;
+    for (std::size_t i = 0; i < count; ++i) rows.push_back(static_cast<std::int32_t>((7 * i + count) % 40));
+    std::vector<double> result(count);
+    chi_squares(descriptors.row(count), descriptors, rows, used_bins(descriptors), result);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto other = descriptors.row(static_cast<std::size_t>(rows[i]));
+      EXPECT_EQ(result[i], by_definition(descriptors.row(count), other));
+      EXPECT_EQ(result[i], chi_square(descriptors.row(count), other));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace salbench

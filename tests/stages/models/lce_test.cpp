@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/models/lce.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "tests/stages/models/surfaces.h"
+#include "tests/support/options.h"
+#include "tests/support/threads.h"
+
+namespace salbench {
+namespace {
+
+using testing::AllOf;
+using testing::DoubleNear;
+using testing::Each;
+using testing::Ge;
+using testing::Le;
+using testing::Pointwise;
+
+ScalarField lce(const Mesh& mesh, const LceOptions& options = {}) {
+  return lce_saliency(mesh.vertices, mesh.faces, options);
+}
+
+// Every point against every other, with its own shortest paths (Bellman and Ford).
+ScalarField entropy_written_out(const Mesh& mesh, const std::vector<std::int32_t>& bins,
+                                const ScalarField& areas, const std::vector<double>& radii) {
+  const std::size_t n = mesh.vertices.size();
+  ScalarField result(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<double> distance(n, std::numeric_limits<double>::infinity());
+    distance[i] = 0;
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const Triangle& face : mesh.faces)
+        for (const std::int32_t a : face)
+          for (const std::int32_t b : face) {
+            const auto from = static_cast<std::size_t>(a), to = static_cast<std::size_t>(b);
+            const double through = distance[from] + (mesh.vertices[from] - mesh.vertices[to]).norm();
+            if (!(through < distance[to])) continue;
+            distance[to] = through;
+            changed = true;
+          }
+    }
+    for (const double radius : radii) {
+      std::map<std::int32_t, double> area;
+      double total = 0;
+      for (std::size_t j = 0; j < n; ++j) {
+        if (distance[j] > radius) continue;
+        area[bins[j]] += areas[j];
+        total += areas[j];
+      }
+      for (const auto& [bin, part] : area)
+        result[i] -= part / total * std::log2(part / total) / static_cast<double>(radii.size());
+    }
+  }
+  return result;
+}
+
+TEST(LocalEntropy, EqualsTheFormulaWrittenOut) {
+  const Mesh mesh = shapes::bumpy_sphere(2);
+  std::vector<std::int32_t> bins;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) bins.push_back(static_cast<std::int32_t>(i * i % 7));
+  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
+  for (const std::vector<double>& radii : {std::vector<double>{0.9}, {1.1, 0.55, 0.275}})
+    EXPECT_THAT(local_entropy(mesh, bins, areas, radii),
+                Pointwise(DoubleNear(1e-9), entropy_written_out(mesh, bins, areas, radii)));
+}
+
+TEST(LocalEntropy, OfOneBinIsZeroAndOfTwoHalvesIsOneBit) {
+  const Mesh mesh = shapes::tetrahedron();
+  const ScalarField areas(4, 2.0);
+  const std::vector<double> whole = {10};
+  EXPECT_THAT(local_entropy(mesh, std::vector<std::int32_t>{3, 3, 3, 3}, areas, whole), Each(0));
+  EXPECT_THAT(local_entropy(mesh, std::vector<std::int32_t>{0, 1, 1, 0}, areas, whole), Each(1));
+  EXPECT_THAT(local_entropy(mesh, std::vector<std::int32_t>{0, 1, 2, 3}, areas, whole), Each(2));
+}
+
+TEST(LocalEntropy, CountsAreas) {
+  const std::vector<double> whole = {10};
+  const ScalarField areas = {3, 1, 0, 0};
+  EXPECT_THAT(local_entropy(shapes::tetrahedron(), std::vector<std::int32_t>{0, 1, 2, 3}, areas, whole),
+              Each(DoubleNear(-0.75 * std::log2(0.75) - 0.25 * std::log2(0.25), 1e-12)));
+}
+
+TEST(Lce, OfConstantCurvatureIsZero) {
+  EXPECT_THAT(lce(shapes::sphere(0)), Each(0));  // all vertices alike
+  EXPECT_THAT(lce(shapes::cylinder(1, 4, 64, 30)), Each(0));
+  EXPECT_THAT(lce(shapes::grid(30)), Each(DoubleNear(0, 1e-9)));
+}
+
+TEST(Lce, IsHighestAroundABump) {
+  const Mesh mesh = shapes::sphere_with_bump(5, 0.1, 0.1);
+  const ScalarField saliency = lce(mesh);
+  const auto top =
+      static_cast<std::size_t>(std::max_element(saliency.begin(), saliency.end()) - saliency.begin());
+  EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.4));
+  EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(8))));
+}
+
+TEST(Lce, DoesNotDependOnPlaceOrientationOrSize) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  const ScalarField expected = lce(mesh), found = lce(shapes::moved(mesh, 16));
+  // Rounding may move a curvature across the border of a bin.
+  double difference = 0;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    difference += std::abs(found[i] - expected[i]) / static_cast<double>(found.size());
+  EXPECT_LT(difference, 1e-3);
+}
+
+TEST(Lce, ALargeSurfaceIsSimplified) {
+  const Mesh mesh = shapes::sphere_with_bump(5, 0.1, 0.1);
+  const ScalarField coarse = lce(mesh, {.faces = 10000});
+  EXPECT_NE(coarse, lce(mesh));
+  EXPECT_EQ(coarse.size(), mesh.vertices.size());
+}
+
+TEST(Lce, IsTheSameOnAnyNumberOfThreads) {
+  for (const std::int32_t faces : {60000, 3000})
+    same_on_any_number_of_threads([&] { return lce(shapes::bumpy_sphere(4), {.faces = faces}); });
+}
+
+TEST(LceDegenerate, NoFaces) { EXPECT_THAT(lce({shapes::random_cloud(30, 1), {}}), Each(0)); }
+
+TEST(LceDegenerate, PointsWithoutFacesTakeTheNearestValue) {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  mesh.vertices.push_back(1.001 * mesh.vertices[50]);
+  const ScalarField saliency = lce(mesh);
+  EXPECT_EQ(saliency.back(), saliency[50]);
+}
+
+TEST(LceDegenerate, OpenNonManifoldAndWithoutArea) {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  mesh.faces.erase(mesh.faces.begin() + 100, mesh.faces.begin() + 140);
+  mesh.vertices.emplace_back(0.2, 0.1, 0);
+  mesh.faces.push_back({5, 300, static_cast<std::int32_t>(mesh.vertices.size()) - 1});
+  mesh.faces.push_back({7, 7, 8});
+  for (const double value : lce(mesh)) ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST(LceDegenerate, WhatHasNoExtentOrIsNotFinite) {
+  EXPECT_THROW(lce({}), InputError);
+  EXPECT_THROW(lce({{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}}), InputError);
+  EXPECT_THROW(lce({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, -3}}}), InputError);
+  Mesh mesh = shapes::sphere(2);
+  mesh.vertices[3].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(lce(mesh), InputError);
+}
+
+TEST(LceOptionsCheck, NamesTheFieldThatIsWrong) {
+  EXPECT_EQ(wrong_field(LceOptions{}), "");
+  EXPECT_EQ(wrong_field(LceOptions{.bins = 1}), "bins");
+  EXPECT_EQ(wrong_field(LceOptions{.radius = 0}), "radius");
+  EXPECT_EQ(wrong_field(LceOptions{.levels = 0}), "levels");
+  EXPECT_EQ(wrong_field(LceOptions{.faces = 10}), "faces");
+}
+
+}  // namespace
+}  // namespace salbench

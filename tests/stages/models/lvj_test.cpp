@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/models/lvj.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "tests/stages/models/surfaces.h"
+#include "tests/support/options.h"
+#include "tests/support/threads.h"
+
+namespace salbench {
+namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::Pointwise;
+
+ScalarField lvj(const Mesh& mesh, const LvjOptions& options = {}) {
+  return lvj_saliency(mesh.vertices, mesh.faces, options);
+}
+
+double gaussian_mean(const std::vector<Vec3>& points, const ScalarField& values, std::size_t i,
+                     double sigma) {
+  double sum = 0, weights = 0;
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    const double distance = (points[j] - points[i]).norm();
+    if (distance > 2 * sigma) continue;
+    const double weight = std::exp(-distance * distance / (2 * sigma * sigma));
+    sum += weight * values[j];
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+// The paper's formulas with every pair of points.
+ScalarField lvj_written_out(const Mesh& mesh, double epsilon) {
+  const ScalarField curvature = mean_curvature(mesh.vertices, mesh.faces, CurvatureMethod::taubin);
+  const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
+  Vec3 low = mesh.vertices[0], high = low;
+  for (const Vec3& v : mesh.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  ScalarField saliency(mesh.vertices.size(), 0);
+  for (const int scale : {2, 3, 4, 5, 6}) {
+    const double sigma = scale * epsilon * (high - low).norm();
+    ScalarField map;
+    for (std::size_t i = 0; i < curvature.size(); ++i)
+      map.push_back(std::abs(gaussian_mean(mesh.vertices, curvature, i, sigma) -
+                             gaussian_mean(mesh.vertices, curvature, i, 2 * sigma)));
+    const double smallest = *std::min_element(map.begin(), map.end()),
+                 largest = *std::max_element(map.begin(), map.end());
+    std::vector<double> peaks;
+    for (double& value : map) value = (value - smallest) / (largest - smallest);
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      double highest = 0, lowest = 1;  // of the neighbours
+      for (const std::int32_t j : adjacency.of(i)) {
+        highest = std::max(highest, map[static_cast<std::size_t>(j)]);
+        lowest = std::min(lowest, map[static_cast<std::size_t>(j)]);
+      }
+      if (map[i] > highest - 1e-9 && map[i] > lowest + 1e-9) peaks.push_back(map[i]);
+    }
+    std::sort(peaks.begin(), peaks.end());
+    peaks.pop_back();  // the global one
+    double mean = 0;
+    for (const double peak : peaks) mean += peak / static_cast<double>(peaks.size());
+    for (std::size_t i = 0; i < map.size(); ++i) saliency[i] += (1 - mean) * (1 - mean) * map[i];
+  }
+  return saliency;
+}
+
+TEST(Lvj, EqualsTheFormulasWrittenOut) {
+  for (const double epsilon : {0.003, 0.02})
+    for (const Mesh& mesh : {shapes::bumpy_sphere(4), shapes::torus(2, 0.7, 61, 31)})
+      EXPECT_THAT(lvj(mesh, {.epsilon = epsilon}),
+                  Pointwise(DoubleNear(1e-9), lvj_written_out(mesh, epsilon)));
+}
+
+TEST(Lvj, ContrastOfAConstantCurvatureIsNone) {
+  const Mesh sphere = shapes::sphere(4);
+  const ScalarField constant(sphere.vertices.size(), 1.0);
+  for (const ScalarField& contrast : centre_surround(sphere.vertices, constant, 0.02))
+    EXPECT_THAT(contrast, Each(DoubleNear(0, 1e-12)));
+}
+
+TEST(Lvj, ASphereHasNoContrastButThatOfItsFaces) {
+  // Curvature is 1: what differs are the vertices with five faces and those with six.
+  const Mesh sphere = shapes::sphere(5);
+  const ScalarField curvature = mean_curvature(sphere.vertices, sphere.faces, CurvatureMethod::taubin);
+  for (const ScalarField& contrast : centre_surround(sphere.vertices, curvature, 0.003 * 2 * std::sqrt(3)))
+    EXPECT_THAT(contrast, Each(DoubleNear(0, 0.005)));
+}
+
+TEST(Lvj, AllVerticesOfARegularSolidAreAlike) {
+  EXPECT_THAT(lvj(shapes::sphere(0)), Each(0));
+  EXPECT_THAT(lvj(shapes::tetrahedron()), Each(0));
+}
+
+TEST(Lvj, IsHighestAtABump) {
+  const Mesh mesh = shapes::sphere_with_bump(5, 0.05, 0.1);
+  const ScalarField saliency = lvj(mesh);
+  const auto top =
+      static_cast<std::size_t>(std::max_element(saliency.begin(), saliency.end()) - saliency.begin());
+  EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.3));
+}
+
+TEST(Lvj, DoesNotDependOnPlaceOrSize) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  Mesh moved = mesh;
+  for (Vec3& v : moved.vertices) v = 1e-3 * v + Vec3(1, 2, 3);
+  EXPECT_THAT(lvj(moved), Pointwise(DoubleNear(1e-6), lvj(mesh)));
+}
+
+// The diagonal of the bounding box is all that a rotation changes.
+TEST(Lvj, TurnsWithTheShapeUpToTheBoundingBox) {
+  const Mesh mesh = shapes::bumpy_sphere(4);
+  const auto diagonal = [](const Mesh& m) {
+    Vec3 low = m.vertices[0], high = low;
+    for (const Vec3& v : m.vertices) {
+      low = low.cwiseMin(v);
+      high = high.cwiseMax(v);
+    }
+    return (high - low).norm();
+  };
+  const Mesh moved = shapes::moved(mesh, 2);
+  const double same = 0.003 * 2 * diagonal(mesh) / diagonal(moved);
+  EXPECT_THAT(lvj(moved, {.epsilon = same}), Pointwise(DoubleNear(1e-6), lvj(mesh)));
+}
+
+TEST(LvjSuppression, OnePeakCountsAndManyEqualOnesDoNot) {
+  const Mesh grid = shapes::grid(6);
+  const Adjacency adjacency = edge_adjacency(grid.vertices.size(), grid.faces);
+  ScalarField map(grid.vertices.size(), 0);
+  map[8] = 1;
+  EXPECT_EQ(suppression(map, adjacency), 1);
+  map[24] = 0.5;
+  EXPECT_EQ(suppression(map, adjacency), 0.25);
+  map[12] = 1;  // as large as the global one
+  EXPECT_EQ(suppression(map, adjacency), 0.0625);
+  map[25] = 0.5;  // two equal ones side by side
+  EXPECT_DOUBLE_EQ(suppression(map, adjacency), 1.0 / 9);
+}
+
+TEST(Lvj, ALargeSurfaceIsSimplified) {
+  const Mesh mesh = shapes::sphere_with_bump(5, 0.05, 0.1);
+  const ScalarField all = lvj(mesh), coarse = lvj(mesh, {.faces = 10000});
+  EXPECT_NE(all, coarse);
+  const auto top = static_cast<std::size_t>(std::max_element(coarse.begin(), coarse.end()) - coarse.begin());
+  EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.3));
+}
+
+TEST(Lvj, IsTheSameOnAnyNumberOfThreads) {
+  for (const std::int32_t faces : {60000, 3000})
+    same_on_any_number_of_threads([&] { return lvj(shapes::bumpy_sphere(4), {.faces = faces}); });
+}
+
+TEST(LvjDegenerate, NoFaces) { EXPECT_THAT(lvj({shapes::random_cloud(30, 1), {}}), Each(0)); }
+
+TEST(LvjDegenerate, OpenNonManifoldAndIsolated) {
+  Mesh mesh = shapes::bumpy_sphere(3);
+  mesh.faces.erase(mesh.faces.begin() + 100, mesh.faces.begin() + 140);
+  mesh.vertices.emplace_back(0.2, 0.1, 0);
+  mesh.faces.push_back({5, 300, static_cast<std::int32_t>(mesh.vertices.size()) - 1});
+  mesh.faces.push_back({7, 7, 8});
+  mesh.vertices.emplace_back(3, 3, 3);
+  for (const double value : lvj(mesh)) ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST(LvjDegenerate, WhatHasNoExtentOrIsNotFinite) {
+  EXPECT_THROW(lvj({}), InputError);
+  EXPECT_THROW(lvj({{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}}), InputError);
+  EXPECT_THROW(lvj({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}}), InputError);
+  Mesh mesh = shapes::sphere(2);
+  mesh.vertices[3].y() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(lvj(mesh), InputError);
+}
+
+TEST(LvjOptionsCheck, NamesTheFieldThatIsWrong) {
+  EXPECT_EQ(wrong_field(LvjOptions{}), "");
+  EXPECT_EQ(wrong_field(LvjOptions{.epsilon = 0}), "epsilon");
+  EXPECT_EQ(wrong_field(LvjOptions{.faces = 10}), "faces");
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/models/vis.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "tests/stages/models/surfaces.h"
+#include "tests/support/options.h"
+#include "tests/support/threads.h"
+
+namespace salbench {
+namespace {
+
+using testing::DoubleNear;
+using testing::Each;
+using testing::Ge;
+using testing::Le;
+using testing::Pointwise;
+
+// Of a shape around the origin.
+Normals directions_of(const std::vector<Vec3>& points) {
+  Normals normals;
+  for (const Vec3& p : points) normals.push_back(p.normalized());
+  return normals;
+}
+
+Mesh cube(double half) {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.emplace_back(half * ((i & 1) * 2 - 1), half * ((i & 2) - 1), half * ((i & 4) / 2 - 1));
+  mesh.faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+TEST(Vis, OfAConvexShapeIsWhole) {
+  for (const Mesh& mesh : {shapes::sphere(4), cube(1), shapes::tetrahedron()})
+    EXPECT_THAT(vis_saliency(mesh.vertices, directions_of(mesh.vertices), mesh.faces, {}), Each(1));
+}
+
+TEST(Vis, OfASphereWithoutFacesIsWhole) {
+  const Mesh sphere = shapes::sphere(4);
+  EXPECT_THAT(vis_saliency(sphere.vertices, directions_of(sphere.vertices), {}, {}), Each(1));
+}
+
+// At the depth h below the rim of an open cylinder of radius 1, on its axis, the opening takes the part
+// 1 - cos(atan(1 / h)) of the half space.
+TEST(Vis, AtTheBottomOfAWellIsTheOpening) {
+  for (const double depth : {0.5, 1.0, 2.0}) {
+    Mesh well = shapes::cylinder(1, depth, 256, 3);
+    well.vertices.emplace_back(0, 0, 0);
+    Normals normals(well.vertices.size(), Vec3::UnitZ());
+    const ScalarField found = vis_saliency(well.vertices, normals, well.faces, {.directions = 4096});
+    EXPECT_NEAR(found.back(), 1 - std::cos(std::atan(1 / depth)), 0.003) << depth;
+  }
+}
+
+TEST(Vis, ADentIsSeenFromFewerSides) {
+  Mesh mesh = shapes::sphere_with_bump(4, -0.5, 0.2);
+  const ScalarField found = vis_saliency(mesh.vertices, directions_of(mesh.vertices), mesh.faces, {});
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double z = mesh.vertices[i].normalized().z();
+    if (z > 0.999) {
+      EXPECT_LT(found[i], 0.5);
+    }
+    if (z < 0) {
+      EXPECT_EQ(found[i], 1);
+    }
+  }
+}
+
+TEST(Vis, PointsWithoutASurfaceHideEachOtherLikeOne) {
+  const Mesh mesh = shapes::sphere_with_bump(5, -0.5, 0.2);
+  const Normals normals = directions_of(mesh.vertices);
+  const ScalarField surface = vis_saliency(mesh.vertices, normals, mesh.faces, {}),
+                    discs = vis_saliency(mesh.vertices, normals, {}, {});
+  double difference = 0;
+  for (std::size_t i = 0; i < surface.size(); ++i)
+    difference += std::abs(surface[i] - discs[i]) / static_cast<double>(surface.size());
+  EXPECT_LT(difference, 0.01);
+}
+
+TEST(Vis, DoesNotDependOnPlaceOrSize) {
+  const Mesh mesh = shapes::bumpy_sphere(4, 0.6);
+  const Normals normals = directions_of(mesh.vertices);
+  Mesh moved = mesh;
+  for (Vec3& v : moved.vertices) v = 64 * v + Vec3(2, 3, 5);
+  EXPECT_THAT(vis_saliency(moved.vertices, normals, moved.faces, {}),
+              Pointwise(DoubleNear(2.0 / 64), vis_saliency(mesh.vertices, normals, mesh.faces, {})));
+}
+
+TEST(Vis, ALargeShapeTakesTheValuesOfAnEvenSample) {
+  const Mesh mesh = shapes::sphere_with_bump(5, -0.5, 0.4);
+  const Normals normals = directions_of(mesh.vertices);
+  const ScalarField all = vis_saliency(mesh.vertices, normals, mesh.faces, {}),
+                    some = vis_saliency(mesh.vertices, normals, mesh.faces, {.sample = 4000});
+  EXPECT_NE(all, some);
+  double difference = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    difference += std::abs(all[i] - some[i]) / static_cast<double>(all.size());
+  EXPECT_LT(difference, 0.01);
+  EXPECT_THAT(some, Each(testing::AllOf(Ge(0), Le(1))));
+}
+
+TEST(Vis, IsTheSameOnAnyNumberOfThreads) {
+  const Mesh mesh = shapes::bumpy_sphere(4, 0.6);
+  const Normals normals = directions_of(mesh.vertices);
+  for (const VisOptions& options : {VisOptions{}, VisOptions{.sample = 1000}})
+    same_on_any_number_of_threads([&] { return vis_saliency(mesh.vertices, normals, mesh.faces, options); });
+}
+
+TEST(VisDegenerate, WhatHasNoExtentOrIsNotFinite) {
+  const Normals up(3, Vec3::UnitZ());
+  EXPECT_THROW(vis_saliency({}, {}, {}, {}), InputError);
+  EXPECT_THROW(vis_saliency(std::vector<Vec3>(3, Vec3(1, 2, 3)), up, {}, {}), InputError);
+  EXPECT_THROW(vis_saliency(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, up, Faces{{0, 1, 3}}, {}),
+               InputError);
+}
+
+TEST(VisDegenerate, CoincidentPointsWithoutASurfaceHideNothing) {
+  std::vector<Vec3> points(20, Vec3::Zero());
+  points.emplace_back(0, 0, -1);
+  EXPECT_THAT(vis_saliency(points, Normals(21, Vec3::UnitZ()), {}, {.directions = 16}), Each(Le(1)));
+}
+
+TEST(VisOptionsCheck, NamesTheFieldThatIsWrong) {
+  EXPECT_EQ(wrong_field(VisOptions{}), "");
+  EXPECT_EQ(wrong_field(VisOptions{.directions = 0}), "directions");
+  EXPECT_EQ(wrong_field(VisOptions{.sample = 10}), "sample");
+}
+
+}  // namespace
+}  // namespace salbench

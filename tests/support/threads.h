@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The result of a computation on 1, 2 and 4 threads.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+namespace salbench {
+
+// Expects the same bytes each time, and returns them.
+template <class Compute>
+auto same_on_any_number_of_threads(const Compute& compute) {
+  const auto on = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return compute();
+  };
+  const auto one = on(1);
+  for (const std::size_t threads : {2U, 4U}) EXPECT_TRUE(on(threads) == one) << threads << " threads";
+  return one;
+}
+
+}  // namespace salbench
