@@ -95,10 +95,11 @@ Number TextScanner::parsed(std::string_view what, std::string_view type) {
 }
 
 double TextScanner::number() {
-  const std::string_view found = peek_word();
+  const std::string_view here = line_;
   const double value = number_or_nan();
-  if (!std::isfinite(value)) fail(fmt::format("{} is not a finite number", in_quotes(found)));
-  return value;
+  if (std::isfinite(value)) return value;
+  line_ = here;
+  fail(fmt::format("{} is not a finite number", in_quotes(word())));
 }
 double TextScanner::number_or_nan() { return parsed<double>("a number", "a double"); }
 std::int64_t TextScanner::integer() { return parsed<std::int64_t>("a whole number", "64 bits"); }
