@@ -11,6 +11,7 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
+#include "stages/core/seen.h"
 #include "stages/metrics/roc.h"
 #include "stages/metrics/sampled_roc.h"
 
@@ -20,13 +21,6 @@ namespace {
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 const Rng kNoDraws(0, "", "");  // for what draws nothing
-
-std::vector<double> values_at(std::span<const double> map, std::span<const std::int32_t> picked) {
-  std::vector<double> values;
-  values.reserve(picked.size());
-  for (const std::int32_t i : picked) values.push_back(map[static_cast<std::size_t>(i)]);
-  return values;
-}
 
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
@@ -104,6 +98,11 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
   const std::vector<std::int32_t> picked = picked_points(truth), every_pick = picks_with_multiplicity(truth);
   check_fits(matched.size(), truth, picked);
   if (!areas.empty()) CHECK_EQ(areas.size(), matched.size());
+  if (const auto seen = seen_points(truth.saliency)) {
+    if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
+    const ScalarField seen_areas = areas.empty() ? ScalarField{} : values_at(areas, *seen);
+    return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, rng, seen_areas);
+  }
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
   const Comparison comparison(matched, saliency, areas, rng);
   Scores scores;
