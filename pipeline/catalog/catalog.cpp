@@ -2,17 +2,18 @@
 #include "pipeline/catalog/catalog.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "io/ground_truth_file.h"
 #include "io/mesh_file.h"
 #include "pipeline/catalog/given_maps.h"
+#include "pipeline/catalog/given_truth.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"
-#include "stages/core/smoothing.h"
+#include "stages/core/seen.h"
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/matching/matching.h"
 #include "stages/picture/picture.h"
@@ -28,19 +29,6 @@ Mesh load_mesh(const FilesOf<Source::mesh_file>& file) {
   return std::move(checked.mesh);
 }
 
-// Picks alone are enough: the saliency is then made from them, as the study's authors did. [chen2012]
-GroundTruth load_ground_truth(const Mesh& mesh, const FilesOf<Source::truth_files>& files) {
-  std::vector<std::string_view> texts;
-  for (const SourceData& file : files.data) texts.push_back(file.text());
-  GroundTruth truth = parse_ground_truth(files.item, texts, mesh.vertices.size());
-  if (truth.saliency.empty() && truth.picks.empty())
-    throw InputError(
-        fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty .pid files",
-                    files.item.picks.front().string()));
-  if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh, truth.picks);
-  return truth;
-}
-
 GroundTruth made_up_ground_truth(const Mesh& mesh, const SimulationOptions& options,
                                  const RandomSource& random) {
   return simulated_ground_truth(mesh, options, random.seed, random.item);
@@ -50,35 +38,53 @@ Scan scan_of(const Mesh& mesh, const View& view, const ScanOptions& options) {
   return simulate_scan(mesh, view.index, options);
 }
 
-const ScalarField& saliency_of(const GroundTruth& truth) { return truth.saliency; }
-const ScalarField& saliency_of(const ScalarField& map) { return map; }
+// Saliency where it is known.
+ScalarField seen_values(const GroundTruth& truth) {
+  const auto seen = seen_points(truth.saliency);
+  return seen ? values_at(truth.saliency, *seen) : truth.saliency;
+}
+const ScalarField& seen_values(const ScalarField& map) { return map; }
 
 // Serial and in the order of the items: sums of doubles depend on their order.
 template <class T>
 Histogram mean_over(const Members<T>& members) {
   std::vector<Histogram> histograms;
-  for (std::size_t i = 0; i < members.size; ++i)
-    histograms.push_back(normalised_histogram(saliency_of(std::get<T>(*members.value(i)))));
+  for (std::size_t i = 0; i < members.size; ++i) {
+    const ValuePtr member = members.value(i);
+    const auto& values = seen_values(std::get<T>(*member));
+    if (!values.empty()) histograms.push_back(normalised_histogram(values));  // a scan may show nothing known
+  }
   return mean_histogram(histograms);
 }
 
+ScalarField matched_where_seen(const ScalarField& map, const Histogram& reference) {
+  const auto seen = seen_points(map);
+  if (!seen) return matched(map, reference);
+  ScalarField result = map;
+  const ScalarField values = matched(values_at(map, *seen), reference);
+  for (std::size_t i = 0; i < values.size(); ++i) result[static_cast<std::size_t>((*seen)[i])] = values[i];
+  return result;
+}
+
 // A group's map is matched like a model's, and so is the map of the others, which stands for the ground
-// truth.
+// truth. What either group has not seen is not compared.
 GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const MetricsOptions& options,
                          const Rng& rng) {
   const std::vector<Metric> metrics = chosen_metrics(options);
   const ScalarField areas =
       any_by_area(metrics) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{};
-  return {
-      metrics.size(), [=](const ScalarField& map, const GroundTruth& others) {
-        const GroundTruth matched_others{matched(others.saliency, reference), others.picks, others.simulated};
-        return score(metrics, matched(map, reference), matched_others, options, rng, areas);
-      }};
+  return {metrics.size(), [=](const ScalarField& map, const GroundTruth& others) {
+            const ScalarField matched_map = matched_where_seen(map, reference);
+            GroundTruth matched_others{matched_where_seen(others.saliency, reference), others.picks,
+                                       others.simulated};
+            for (std::size_t i = 0; i < matched_map.size(); ++i)
+              if (std::isnan(matched_map[i])) matched_others.saliency[i] = matched_map[i];
+            return score(metrics, matched_map, matched_others, options, rng, areas);
+          }};
 }
 
-std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
-  if (!config.simulated())
-    return [](const DatasetItem& item) { return item.picks.size() >= kMinParticipants; };
+std::function<bool(const DatasetItem&)> participants_of(const Config& config) {
+  if (!config.simulated()) return has_participants;
   const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
   return [enough](const DatasetItem&) { return enough; };
 }
@@ -143,14 +149,14 @@ void add_human_performance(Catalog& catalog, const ShapeRows& shape, const RowOf
   const std::int32_t version =
       model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // grows with either
   catalog.add(
-      Shapes::meshes, {scores, version, has_participants(config)},
+      Shapes::meshes, {scores, version, participants_of(config)},
       [scores](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
                const MetricsOptions& options, const RandomSource& random) {
         return leave_one_out(shape_of, truth, group_scorer(shape_of, reference, options, random.rng(scores)));
       },
       mesh, shape.ground_truth, shape.reference, section("metrics", config.metrics), kRandom);
   catalog.add(
-      Shapes::meshes, {curve, version, has_participants(config)},
+      Shapes::meshes, {curve, version, participants_of(config)},
       [scores, curve](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
                       const HsOptions& options, const MetricsOptions& metrics, const RandomSource& random) {
         return human_curve(shape_of, truth, options,
@@ -164,8 +170,7 @@ RowOf<GroundTruth> add_mesh_ground_truth(Catalog& catalog, const Config& config,
   if (config.simulated())
     return catalog.add(Shapes::meshes, {"ground_truth", 1}, made_up_ground_truth, mesh,
                        section("simulation", config.simulation), kRandom);
-  return catalog.add(Shapes::meshes, {"ground_truth", 1}, load_ground_truth, mesh,
-                     kFiles<Source::truth_files>);
+  return catalog.add(Shapes::meshes, {"ground_truth", 1}, given_truth, mesh, kFiles<Source::truth_files>);
 }
 
 RowOf<Histogram> add_reference(Catalog& catalog, Shapes shapes, const RowOf<GroundTruth>& truth,

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/dataset.h"
 #include "pipeline/catalog/models.h"
+#include "pipeline/config/data_layout.h"
 #include "pipeline/config/section.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/ground_truth/simulation.h"
@@ -28,14 +28,16 @@ struct EnumNames<Participants> {
 };
 
 struct DatasetOptions {
-  Layout layout = Layout::automatic;
+  std::string layout{kAutomaticLayout};
   bool meshes = true;
   bool scans = true;
   Participants participants = Participants::measured;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("layout", self.layout, {"how the folder is laid out"});
+    visit("layout", self.layout,
+          {"how the folder is laid out: automatic, a name in configs/datasets, or a description of your own "
+           "(.yaml)"});
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
     visit("participants", self.participants, {"ground truth from files, or made up for a demonstration"});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/catalog/source.h"
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,6 +41,13 @@ SourceFile source_file(std::string name, std::string place, std::function<Source
   SourceFile file{std::move(name), std::move(place), std::move(read)};
   read_now(file);
   return file;
+}
+
+SourceFile mesh_file_of(const DatasetItem& item) {
+  std::string extension = item.mesh.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return source_file("mesh file " + extension, item.mesh);
 }
 
 std::vector<SourceData> read_again(SourceFiles& files) {

@@ -73,7 +73,7 @@ int thread_count(const Arguments& arguments) {
 Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
     : config(read_configuration(arguments, given, pictures)),
       catalog(make_catalog(config, reference_of(arguments))),
-      workload(make_workload(find_dataset(config.data, config.dataset.layout), arguments.items,
+      workload(make_workload(find_dataset(config.data, layouts_of(config.dataset.layout)), arguments.items,
                              shard_of(arguments))),
       context{.catalog = catalog,
               .workload = workload,

@@ -41,8 +41,8 @@ std::optional<JobRef> input_named(const Context& context, const JobRef& job, con
 // "mesh file .off" -> "mesh file 52.off": keys hold no names of files.
 std::string source_text(const DatasetItem& source, const std::string& name) {
   if (name.starts_with("mesh file ")) return "mesh file " + source.mesh.filename().string();
-  if (name == "saliency file" && !source.saliency.empty())
-    return "saliency file " + source.saliency.filename().string();
+  if (name.starts_with("saliency file") && source.saliency.size() == 1)
+    return "saliency file " + source.saliency[0].filename().string();
   return name;
 }
 

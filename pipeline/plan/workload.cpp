@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/catalog/given_maps.h"
+#include "pipeline/catalog/given_truth.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -54,15 +55,7 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
 }
 
 Family make_family(const DatasetItem& source) {
-  Family family{source, {}, {}};
-  std::string extension = source.mesh.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  family.mesh_file.push_back(source_file("mesh file " + extension, source.mesh));
-  if (!source.saliency.empty()) family.truth_files.push_back(source_file("saliency file", source.saliency));
-  for (std::size_t k = 0; k < source.picks.size(); ++k)
-    family.truth_files.push_back(source_file(fmt::format("picks {}", k), source.picks[k]));
-  return family;
+  return {source, {mesh_file_of(source)}, truth_files_of(source)};
 }
 
 SourceFile map_file(const std::shared_ptr<const GivenMaps>& maps, const std::string& item) {

@@ -142,7 +142,7 @@ std::string run_yaml(const RunRecord& record) {
                           yaml_quoted(model.given->source.string()), model.given->matched);
   const DataIdentity data = identity_of(context.workload);
   yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, files: {}, digest: {}}}\n",
-                      yaml_quoted(config.data), context.workload.layout, context.workload.families.size(),
+                      yaml_quoted(config.data), yaml_scalar(context.workload.layout), context.workload.families.size(),
                       data.files, data.digest.hex());
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);

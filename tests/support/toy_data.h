@@ -58,7 +58,7 @@ struct ToyRun {
          const std::string& items = "")
       : config(std::move(the_config)),
         catalog(make_catalog(config)),
-        workload(make_workload(find_dataset(root, config.dataset.layout), items)),
+        workload(make_workload(find_dataset(root, layouts_of(config.dataset.layout)), items)),
         context{catalog, workload, config.seed},
         store(the_store),
         plan(make_plan(context, store)),
