@@ -41,8 +41,10 @@ bool announces_faces(std::string_view bytes) try {
 
 }  // namespace
 
+bool has_cloud_extension(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+
 bool has_shape_extension(const std::filesystem::path& path) {
-  return has_mesh_extension(path) || format_of(path) != nullptr;
+  return has_mesh_extension(path) || has_cloud_extension(path);
 }
 
 bool is_point_cloud(std::string_view bytes, const std::filesystem::path& path) {

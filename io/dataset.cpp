@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "io/cloud_file.h"
-#include "io/file.h"
+#include "io/mesh_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -35,109 +35,64 @@ struct NaturalLess {
 };
 
 struct Found {
-  const LayoutRow* layout;
-  Place place;
+  const Layout& layout;
+  const Place& place;
   std::vector<fs::path> meshes;
 };
 
-// The files in a folder that `wanted` accepts, without hidden ones, in natural order.
-template <class Wanted>
-std::vector<fs::path> files_in(const fs::path& folder, const Wanted& wanted) {
-  std::vector<fs::path> files;
-  for (FolderEntry& entry : list_folder(folder))
-    if (!entry.is_folder && !entry.path.filename().native().starts_with('.') && wanted(entry.path))
-      files.push_back(std::move(entry.path));
-  std::sort(files.begin(), files.end(),
-            [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
-  return files;
+bool is_digits(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
-
-std::vector<fs::path> files_in(const fs::path& folder, const char* extension) {
-  return files_in(folder, [&](const fs::path& file) { return file.extension() == extension; });
-}
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_digits(std::string_view text) { return std::all_of(text.begin(), text.end(), is_digit); }
 
 bool is_folder(const fs::path& path) {
   std::error_code error;
   return fs::is_directory(path, error);
 }
 
-TruthFolders schelling_truth(const fs::path& base) { return {base / "Distributions", base / "RawData"}; }
-TruthFolders gs_truth(const fs::path& base) { return {base / "Saliency", base / "RawData"}; }
-
-// ROOT itself, or the folders that archives of the study unpack to.
-std::vector<fs::path> schelling_bases(const fs::path& root) {
-  return {root, root / "SchellingData", root / "SchellingData" / "SchellingData"};
+bool is_open(const Place& place, const fs::path& root) {
+  return (place.needs.empty() || is_folder(root / place.needs)) &&
+         (place.root_is.empty() || root.filename() == place.root_is);
 }
 
-std::vector<TruthFolders> truth_below(const fs::path& root) {
-  std::vector<TruthFolders> truth = {gs_truth(root / "GS")};
-  for (const fs::path& base : schelling_bases(root)) truth.push_back(schelling_truth(base));
-  return truth;
+bool is_in(Domain domain, const fs::path& file) {
+  if (domain == Domain::any) return has_shape_extension(file);
+  return domain == Domain::meshes ? has_mesh_extension(file) : has_cloud_extension(file);
 }
 
-fs::path beside(const fs::path& folder, const char* name) {
-  return (folder / ".." / name).lexically_normal();
-}
-
-std::vector<Place> gs_places(const fs::path& root) {
-  std::vector<Place> places;
-  for (const char* meshes : {"off", "Meshes"}) {
-    if (is_folder(root / "GS")) places.push_back({root / meshes, {gs_truth(root / "GS")}});
-    if (is_folder(root / "Saliency")) {
-      places.push_back({root / meshes, {gs_truth(root)}});
-      places.push_back({beside(root, meshes), {gs_truth(root)}});
-    }
-  }
-  return places;
-}
-
-std::vector<Place> schelling_places(const fs::path& root) {
-  std::vector<Place> places;
-  for (const fs::path& base : schelling_bases(root))
-    places.push_back({base / "Meshes", {schelling_truth(base)}});
-  return places;
-}
-
-std::vector<Place> princeton_places(const fs::path& root) {
-  std::vector<Place> places;
-  for (const fs::path& base : {root, root / "data", root / "MeshsegBenchmark-1.0" / "data"})
-    places.push_back({base / "off", truth_below(root)});
-  if (root.filename() == "off") places.push_back({root, truth_below(beside(root, "."))});
-  return places;
-}
-
-std::vector<Place> folder_places(const fs::path& root) {
-  return {{root, {schelling_truth(root), schelling_truth(beside(root, "."))}}};
-}
-
-// In this order, since meshes in Meshes/ with their ground truth in GS/ would pass for the Schelling layout.
-constexpr std::array kLayouts = {LayoutRow{name_of(Layout::gs), gs_places, true},
-                                 LayoutRow{name_of(Layout::schelling), schelling_places, true},
-                                 LayoutRow{name_of(Layout::princeton), princeton_places, true},
-                                 LayoutRow{name_of(Layout::folder), folder_places, false}};
-
-std::optional<Found> find_layout(const fs::path& root, const LayoutRow& layout) {
-  for (const Place& place : layout.places(root)) {
-    std::vector<fs::path> meshes = files_in(place.meshes, has_shape_extension);
-    if (!meshes.empty()) return Found{&layout, place, std::move(meshes)};
+std::optional<Found> find_layout(const fs::path& root, const Layout& layout) {
+  for (const Place& place : layout.places) {
+    if (!is_open(place, root)) continue;
+    std::vector<fs::path> meshes;
+    for (FoundFile& file : files_like(root, place.meshes, {}).fit)
+      if (is_in(layout.domain, file.path)) meshes.push_back(std::move(file.path));
+    if (!meshes.empty()) return Found{layout, place, std::move(meshes)};
   }
   return {};
 }
 
-std::string where_looked_for(const fs::path& root, const LayoutRow& layout) {
-  std::set<std::string> folders;
-  for (const Place& place : layout.places(root)) folders.insert(place.meshes.string());
-  if (folders.empty()) return fmt::format("{} (with neither GS/ nor Saliency/ in it)", root.string());
-  return fmt::format("{}", fmt::join(folders, ", "));
+// "/data/Meshes, /data/off"; of a user's own description with its lines: "/data/off/*.off (own.yaml:3)".
+std::string where_looked_for(const fs::path& root, const Layout& layout) {
+  std::set<std::string> places, needs, names;
+  for (const Place& place : layout.places) {
+    if (is_open(place, root))
+      places.insert(layout.needs_truth
+                        ? fmt::format("{} ({})", place_of(root, place.meshes), place.meshes.where)
+                        : place_of(root, place.meshes));
+    else if (!place.needs.empty())
+      needs.insert(place.needs + "/");
+    else
+      names.insert(place.root_is);
+  }
+  if (!places.empty()) return fmt::format("{}", fmt::join(places, ", "));
+  if (needs.empty()) return fmt::format("{} (is not named {})", root.string(), fmt::join(names, " or "));
+  return fmt::format("{} ({} {} in it)", root.string(), needs.size() == 1 ? "without" : "with neither",
+                     fmt::join(needs, " nor "));
 }
 
-Found find_meshes(const fs::path& root, std::span<const LayoutRow> layouts) {
+Found find_meshes(const fs::path& root, std::span<const Layout> layouts) {
   if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
   std::vector<std::string> searched;
-  for (const LayoutRow& layout : layouts) {
+  for (const Layout& layout : layouts) {
     if (const auto found = find_layout(root, layout)) return *found;
     searched.push_back(fmt::format("{}: {}", layout.name, where_looked_for(root, layout)));
   }
@@ -155,47 +110,97 @@ int benchmark_number(const std::string& name) {
 
 using ItemsByName = std::map<std::string, DatasetItem, NaturalLess>;
 
+std::string category_of(const fs::path& mesh, Classes classes) {
+  if (classes == Classes::folder) return mesh.parent_path().filename();
+  const int number = classes == Classes::shrec07 ? benchmark_number(mesh.stem()) : 0;
+  return number == 0 ? std::string()
+                     : std::string(kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)]);
+}
+
 ItemsByName items_of(const Found& found, Twins twins, std::vector<std::string>& notes) {
+  const auto format = std::make_shared<const TruthFormat>(found.layout.format);
   std::vector<NamedFile> files;
   for (const fs::path& mesh : found.meshes) files.push_back({mesh.stem(), mesh});
   ItemsByName items;
-  for (const auto& [name, mesh] : without_twins(files, twins, notes)) {
-    DatasetItem item{.name = name, .category = {}, .mesh = mesh, .saliency = {}, .picks = {}};
-    if (const int number = benchmark_number(item.name); number > 0 && found.layout->is_benchmark)
-      item.category = kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)];
-    items.emplace(name, std::move(item));
-  }
+  for (const auto& [name, mesh] : without_twins(files, twins, notes))
+    items.emplace(name, DatasetItem{.name = name,
+                                    .category = category_of(mesh, found.layout.classes),
+                                    .mesh = mesh,
+                                    .saliency = {},
+                                    .picks = {},
+                                    .format = format});
   return items;
 }
 
-// "michael3" of "michael3_0.pid"; empty if the file is not named in this way.
-std::string picked_item(const fs::path& file) {
-  const std::string stem = file.stem();
-  const std::size_t bar = stem.rfind('_');
-  if (bar == stem.npos || bar + 1 == stem.size() || !is_digits(stem.substr(bar + 1))) return {};
-  return stem.substr(0, bar);
+using Files = std::vector<fs::path> DatasetItem::*;
+
+// Adds the files of one pattern to their items, and notes those that belong to none.
+class TruthFinder {
+ public:
+  TruthFinder(const fs::path& root, ItemsByName& items, std::vector<std::string>& notes)
+      : root_(root), items_(items), notes_(notes) {}
+
+  // How many files there are of items.
+  std::size_t add(const FilePattern& pattern, Files files) {
+    const FoundFiles found =
+        files_like(root_, pattern, [&](std::string_view name) { return items_.contains(name); });
+    std::size_t added = 0;
+    for (const FoundFile& file : found.fit) {
+      const auto item = items_.find(file.item);
+      if (item == items_.end()) {
+        without_mesh_.emplace(file.item, file.path);
+        continue;
+      }
+      std::vector<fs::path>& of_item = item->second.*files;
+      if (one_file_per_item(pattern) && !of_item.empty())
+        throw InputError(fmt::format("{}: {} has a file already, {}, and {} means one: keep one of them",
+                                     file.path.string(), file.item, of_item[0].string(), pattern.where));
+      of_item.push_back(file.path);
+      ++added;
+    }
+    for (const fs::path& file : found.left_out)
+      notes_.push_back(
+          fmt::format("{}: is not named {} and was left out", file.string(), expected_name(pattern)));
+    return added;
+  }
+
+  void note_files_without_mesh() {
+    for (const auto& [name, file] : without_mesh_)
+      notes_.push_back(fmt::format("{}: ground truth without a mesh ({})", name, file));
+  }
+
+ private:
+  const fs::path& root_;
+  ItemsByName& items_;
+  std::vector<std::string>& notes_;
+  std::map<std::string, std::string, NaturalLess> without_mesh_;  // name -> one of its files
+};
+
+void require_files(const fs::path& root, const FilePattern& pattern, std::size_t found) {
+  if (!pattern.empty() && found == 0)
+    throw InputError(fmt::format("{}: '{}' fits no file of an item; expected are such as {}", pattern.where,
+                                 pattern.text, place_of(root, pattern)));
 }
 
-// Gives each item its files and notes the files that belong to none.
-void add_truth(const TruthFolders& folders, ItemsByName& items, std::vector<std::string>& notes) {
-  std::map<std::string, std::string, NaturalLess> without_mesh;  // name -> one of its files
-  for (const fs::path& file : files_in(folders.saliency, ".val")) {
-    if (const auto item = items.find(file.stem().native()); item != items.end())
-      item->second.saliency = file;
-    else
-      without_mesh.emplace(file.stem(), file);
+void add_truth(const Found& found, const fs::path& root, ItemsByName& items,
+               std::vector<std::string>& notes) {
+  const std::vector<TruthPlace>& places = found.place.truth;
+  const auto there = std::find_if(places.begin(), places.end(), [&](const TruthPlace& place) {
+    return has_folder_for(root, place.saliency) || has_folder_for(root, place.picks);
+  });
+  if (there == places.end()) {
+    if (found.layout.needs_truth && !places.empty())
+      require_files(root, places[0].saliency.empty() ? places[0].picks : places[0].saliency, 0);
+    return;
   }
-  for (const fs::path& file : files_in(folders.picks, ".pid")) {
-    const std::string name = picked_item(file);
-    if (const auto item = items.find(name); item != items.end())
-      item->second.picks.push_back(file);
-    else if (name.empty())
-      notes.push_back(fmt::format("{}: is not named NAME_NUMBER.pid and was left out", file.string()));
-    else
-      without_mesh.emplace(name, file);
+  TruthFinder finder(root, items, notes);
+  for (auto& [name, item] : items) item.by_viewer = has_viewers(there->saliency);
+  for (const auto& [pattern, files] :
+       {std::pair(there->saliency, &DatasetItem::saliency), std::pair(there->picks, &DatasetItem::picks)}) {
+    const std::size_t added = finder.add(pattern, files);
+    if (found.layout.needs_truth) require_files(root, pattern, added);
   }
-  for (const auto& [name, file] : without_mesh)
-    notes.push_back(fmt::format("{}: ground truth without a mesh ({})", name, file));
+  finder.note_files_without_mesh();
 }
 
 // "261-280, 399"
@@ -224,56 +229,17 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
 
 }  // namespace
 
-std::span<const LayoutRow> layout_rows() { return kLayouts; }
-
-Dataset find_dataset(const fs::path& root, Layout layout, Twins twins) {
-  if (layout == Layout::automatic) return find_dataset(root, kLayouts, twins);
-  const auto row = std::find_if(kLayouts.begin(), kLayouts.end(),
-                                [&](const LayoutRow& of) { return of.name == name_of(layout); });
-  return find_dataset(root, {row, 1}, twins);
-}
-
-Dataset find_dataset(const fs::path& root, std::span<const LayoutRow> layouts, Twins twins) {
+Dataset find_dataset(const fs::path& root, std::span<const Layout> layouts, Twins twins) {
   fs::path folder = root.lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "data/" is "data"
   const Found found = find_meshes(folder, layouts);
   Dataset dataset;
   ItemsByName items = items_of(found, twins, dataset.notes);
-  dataset.layout = found.layout->name;
-  note_missing_numbers(items, dataset.notes);
-  const auto truth = std::find_if(
-      found.place.truth.begin(), found.place.truth.end(),
-      [](const TruthFolders& folders) { return is_folder(folders.saliency) || is_folder(folders.picks); });
-  if (truth != found.place.truth.end()) add_truth(*truth, items, dataset.notes);
+  dataset.layout = found.layout.name;
+  if (found.layout.classes == Classes::shrec07) note_missing_numbers(items, dataset.notes);
+  add_truth(found, folder, items, dataset.notes);
   for (auto& [name, item] : items) dataset.items.push_back(std::move(item));
   return dataset;
-}
-
-bool natural_less(std::string_view a, std::string_view b) {
-  const auto digits_at = [](std::string_view text, std::size_t at) {
-    const auto begin = text.begin() + static_cast<std::ptrdiff_t>(at);
-    return std::string_view(begin, std::find_if_not(begin, text.end(), is_digit));
-  };
-  const auto significant = [](std::string_view digits) {
-    digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
-    return digits;
-  };
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      const std::string_view run_a = digits_at(a, i), run_b = digits_at(b, j);
-      const std::string_view x = significant(run_a), y = significant(run_b);
-      if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
-      i += run_a.size();
-      j += run_b.size();
-    } else {
-      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
-      ++i;
-      ++j;
-    }
-  }
-  if (i < a.size() || j < b.size()) return j < b.size();
-  return a < b;  // equal but for leading zeros
 }
 
 }  // namespace salbench

@@ -1,59 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the meshes and point clouds of a data set and the ground truth that belongs to each, in the folder
-// layouts in use.
+// Finds the meshes and point clouds of a data set and the ground truth that belongs to each, in the layouts
+// that descriptions give (configs/datasets/*.yaml; pipeline/config/data_layout.h reads them).
 #pragma once
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/file_pattern.h"
+#include "io/truth_format.h"
 #include "io/twins.h"
 #include "stages/core/options.h"
 
 namespace salbench {
 
-// Layouts: the paths of the files of mesh N below ROOT, the folder that the user names.
-//   gs         GS/{Saliency/N.val, RawData/N_k.pid} with meshes in off/ or Meshes/; or ROOT is GS/
-//   schelling  {Meshes/N.off, Distributions/N.val, RawData/N_k.pid}, also below SchellingData/, once or twice
-//              [chen2012]
-//   princeton  off/N.off in ROOT, data/ or MeshsegBenchmark-1.0/data/; ground truth as in the layouts above
-//              [chen2009]
-//   folder     the meshes in ROOT itself; Distributions/ and RawData/ in it or beside it, or nowhere
-//   automatic  the first of these that fits
-enum class Layout { automatic, schelling, princeton, gs, folder };
-template <>
-struct EnumNames<Layout> {
-  static constexpr std::array<std::string_view, 5> names = {"automatic", "schelling", "princeton", "gs",
-                                                            "folder"};
-};
-
-struct TruthFolders {
-  std::filesystem::path saliency;  // N.val
-  std::filesystem::path picks;     // N_k.pid
+struct TruthPlace {
+  FilePattern saliency;  // values; one file per item, or one per view or viewer
+  FilePattern picks;     // one file per participant, or one per item
 };
 
 struct Place {
-  std::filesystem::path meshes;
-  std::vector<TruthFolders> truth;  // the first that has an existing folder is taken
+  std::string needs;              // folder without which the place is not looked at; empty: none
+  std::string root_is;            // the name that the root itself must have; empty: any
+  FilePattern meshes;             // the name without extension is the item's
+  std::vector<TruthPlace> truth;  // the first that has an existing folder is taken
 };
 
-// The table of layouts, in the order in which `automatic` tries them.
-struct LayoutRow {
-  std::string_view name;
-  std::vector<Place> (*places)(const std::filesystem::path& root);  // the first with a mesh is taken
-  bool is_benchmark = false;  // meshes named 1 to 400 are those of SHREC'07, and have its classes
+// What the category of an item is: nothing, the name of its mesh's folder, or for meshes named 1 to 400 their
+// class in SHREC'07. [giorgi2007]
+enum class Classes { none, folder, shrec07 };
+template <>
+struct EnumNames<Classes> {
+  static constexpr std::array<std::string_view, 3> names = {"none", "folder", "shrec07"};
 };
-std::span<const LayoutRow> layout_rows();
+
+// Which of the files that fit a place's pattern are shapes, by their extension. A .ply file may be either.
+enum class Domain { any, meshes, points };
+template <>
+struct EnumNames<Domain> {
+  static constexpr std::array<std::string_view, 3> names = {"any", "meshes", "points"};
+};
+
+struct Layout {
+  std::string name;
+  std::vector<Place> places;  // below the folder that the user names; the first with a mesh is taken
+  Classes classes = Classes::none;
+  Domain domain = Domain::any;
+  bool needs_truth = true;  // patterns of ground truth that fit no file are an error
+  TruthFormat format = {};
+};
 
 struct DatasetItem {
-  std::string name;                          // the mesh file's name without its extension
-  std::string category;                      // class of SHREC'07; empty if it has none
-  std::filesystem::path mesh;                // .off .obj .ply; of a point cloud .ply .pcd .xyz
-  std::filesystem::path saliency;            // .val; empty if there is none
-  std::vector<std::filesystem::path> picks;  // .pid by participant's number; may be empty
+  std::string name;                                // the mesh file's name without its extension
+  std::string category;                            // its class; empty if it has none
+  std::filesystem::path mesh;                      // .off .obj .ply; of a point cloud .ply .pcd .xyz
+  std::vector<std::filesystem::path> saliency;     // one, or one per view or viewer; empty if there is none
+  std::vector<std::filesystem::path> picks;        // by participant's number; may be empty
+  bool by_viewer = false;                          // the saliency files are of one viewer each
+  std::shared_ptr<const TruthFormat> format = {};  // how these are read; null: as TruthFormat's defaults are
 };
 
 struct Dataset {
@@ -62,14 +70,11 @@ struct Dataset {
   std::vector<std::string> notes;  // one line each: ground truth without a mesh, numbers that are missing
 };
 
-// Lists folders and reads no file; the result does not depend on the order in which the system lists them.
-// Throws InputError if there are no shapes, naming the folders searched, or if several files have the same
-// name and `twins` does not tell which of them counts.
-Dataset find_dataset(const std::filesystem::path& root, Layout layout, Twins twins = Twins::refuse);
-Dataset find_dataset(const std::filesystem::path& root, std::span<const LayoutRow> layouts,
+// Takes the first layout that fits. Lists folders and reads no file; the result does not depend on the order
+// in which the system lists them. Throws InputError if there are no shapes, naming what was looked for, if
+// several files have the same name and `twins` does not tell which of them counts, if an item has two files
+// where one is meant, or if needed ground truth is missing.
+Dataset find_dataset(const std::filesystem::path& root, std::span<const Layout> layouts,
                      Twins twins = Twins::refuse);
-
-// A strict total order that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10".
-bool natural_less(std::string_view a, std::string_view b);
 
 }  // namespace salbench

@@ -114,12 +114,21 @@ Arrays arrays_of(const GroundTruth& truth) {
     picks.insert(picks.end(), participant.begin(), participant.end());
     offsets.push_back(static_cast<std::int64_t>(picks.size()));
   }
-  return {
+  Arrays arrays = {
       column("saliency", truth.saliency, "1", "human saliency per point; empty where not known"),
       column("picks", std::move(picks), "1", "0-based point indices, participant after participant"),
       column("pick_offsets", std::move(offsets), "1", "where each participant's picks begin, and the end"),
       scalar("simulated", static_cast<std::int32_t>(truth.simulated), "1",
              "1: made by the program, says nothing about people")};
+  if (truth.viewers.empty()) return arrays;  // as older programs wrote it
+  std::vector<double> viewers;
+  for (const ScalarField& map : truth.viewers) viewers.insert(viewers.end(), map.begin(), map.end());
+  arrays.push_back({"viewers",
+                    {truth.viewers.size(), truth.viewers[0].size()},
+                    std::move(viewers),
+                    "1",
+                    "saliency per viewer and point; NaN where the viewer did not see the point"});
+  return arrays;
 }
 Value ground_truth_from(const Arrays& arrays) {
   GroundTruth truth{
@@ -131,6 +140,12 @@ Value ground_truth_from(const Arrays& arrays) {
       throw InputError("the data set 'pick_offsets' does not fit 'picks'");
     truth.picks.emplace_back(picks.begin() + offsets[k], picks.begin() + offsets[k + 1]);
   }
+  if (find_array(arrays, "viewers") == nullptr) return truth;
+  const auto& viewers = values_of<double>(arrays, "viewers");
+  const std::size_t n = truth.saliency.size();
+  if (n == 0 || viewers.size() % n != 0) throw InputError("the data set 'viewers' does not fit 'saliency'");
+  for (auto map = viewers.begin(); map != viewers.end(); map += static_cast<std::ptrdiff_t>(n))
+    truth.viewers.emplace_back(map, map + static_cast<std::ptrdiff_t>(n));
   return truth;
 }
 

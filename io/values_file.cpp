@@ -35,6 +35,25 @@ ScalarField numbers_in(std::string_view bytes) {
   return values;
 }
 
+ScalarField read_hdf5(const std::filesystem::path& path, std::string_view name) try {
+  // No child process reads it first: this program has threads by now. The command has just written it.
+  const Hdf5File file(path, false);
+  const std::vector<std::string> sets = file.arrays();
+  const auto named = std::find(sets.begin(), sets.end(), "saliency");
+  if (named == sets.end() && sets.size() != 1)
+    throw InputError(
+        fmt::format("it has {} data sets of numbers, expected one, or one called 'saliency'", sets.size()));
+  const Array array = file.read(named == sets.end() ? sets[0] : *named);
+  return std::visit([](const auto& values) { return ScalarField(values.begin(), values.end()); },
+                    array.values);
+} catch (const InputError& error) {
+  throw InputError(fmt::format("{}: {}", name, error.what()));
+}
+
+}  // namespace
+
+bool is_npy(std::string_view bytes) { return bytes.starts_with(kNpy); }
+
 // Magic, version (2 bytes), length of the header (2 bytes; 4 from version 2 on), the header as a Python
 // dictionary, the values. The order of rows and columns is one for n and for n x 1.
 ScalarField parse_npy(std::string_view bytes, std::string_view name) {
@@ -67,29 +86,12 @@ ScalarField parse_npy(std::string_view bytes, std::string_view name) {
   return values;
 }
 
-ScalarField read_hdf5(const std::filesystem::path& path, std::string_view name) try {
-  // No child process reads it first: this program has threads by now. The command has just written it.
-  const Hdf5File file(path, false);
-  const std::vector<std::string> sets = file.arrays();
-  const auto named = std::find(sets.begin(), sets.end(), "saliency");
-  if (named == sets.end() && sets.size() != 1)
-    throw InputError(
-        fmt::format("it has {} data sets of numbers, expected one, or one called 'saliency'", sets.size()));
-  const Array array = file.read(named == sets.end() ? sets[0] : *named);
-  return std::visit([](const auto& values) { return ScalarField(values.begin(), values.end()); },
-                    array.values);
-} catch (const InputError& error) {
-  throw InputError(fmt::format("{}: {}", name, error.what()));
-}
-
-}  // namespace
-
 ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n) {
   require_regular_file(path);
   if (const auto size = size_of_file(path); size && *size > n * kBytesPerValue + kHeaderBytes)
     throw InputError(fmt::format("{}: {} bytes are too many for {} values", name, *size, n));
   const std::string bytes = read_file(path);
-  ScalarField values = bytes.starts_with(kNpy)    ? parse_npy(bytes, name)
+  ScalarField values = is_npy(bytes)              ? parse_npy(bytes, name)
                        : bytes.starts_with(kHdf5) ? read_hdf5(path, name)
                                                   : parse_values(bytes, name);
   if (values.size() != n)

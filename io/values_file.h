@@ -15,4 +15,8 @@ namespace salbench {
 // messages. Throws InputError: unreadable, another number of values than n, a value that is not finite.
 ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n);
 
+// .npy alone, from memory: any number of values, finite or not. Throws InputError.
+bool is_npy(std::string_view bytes);
+ScalarField parse_npy(std::string_view bytes, std::string_view name);
+
 }  // namespace salbench

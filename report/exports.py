@@ -81,9 +81,11 @@ class Shape:
 
     @property
     def ground_truth(self):
-        """n float64 in [0, 1], or None where it is not known."""
+        """n float64 in [0, 1], or None where it is not known. Points that nobody saw are shown like the lowest."""
         values = self._array(f"{self.places.ground_truth}/saliency")
-        return None if values is None or len(values) == 0 else unit_range(values)
+        if values is None or len(values) == 0 or numpy.isnan(values).all():
+            return None
+        return unit_range(numpy.where(numpy.isnan(values), numpy.nanmin(values), values))
 
     @property
     def picks(self):

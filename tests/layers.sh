@@ -58,6 +58,7 @@ hides CGAL 'CGAL/'
 hides CLI11 'CLI/'
 hides Embree 'embree3/' stages/core/embree.h
 hides HDF5 'hdf5\.|H5' io/hdf5_library.h
+hides matio 'matio'
 hides nanoflann 'nanoflann'
 hides PCL 'pcl/'
 hides Spectra 'Spectra/'

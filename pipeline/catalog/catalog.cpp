@@ -7,9 +7,13 @@
 #include <fmt/format.h>
 
 #include "pipeline/catalog/given_maps.h"
+#include "pipeline/catalog/given_truth.h"
+#include "pipeline/catalog/human.h"
 #include "pipeline/catalog/loading.h"
+#include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/point_cloud.h"
+#include "stages/core/seen.h"
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/matching/matching.h"
 #include "stages/picture/picture.h"
@@ -33,37 +37,23 @@ Scan scan_of(const Mesh& mesh, const View& view, const ScanOptions& options) {
   return simulate_scan(mesh, view.index, options);
 }
 
-const ScalarField& saliency_of(const GroundTruth& truth) { return truth.saliency; }
-const ScalarField& saliency_of(const ScalarField& map) { return map; }
+// Saliency where it is known.
+ScalarField seen_values(const GroundTruth& truth) {
+  const auto seen = seen_points(truth.saliency);
+  return seen ? values_at(truth.saliency, *seen) : truth.saliency;
+}
+const ScalarField& seen_values(const ScalarField& map) { return map; }
 
 // Serial and in the order of the items: sums of doubles depend on their order.
 template <class T>
 Histogram mean_over(const Members<T>& members) {
   std::vector<Histogram> histograms;
-  for (std::size_t i = 0; i < members.size; ++i)
-    histograms.push_back(normalised_histogram(saliency_of(std::get<T>(*members.value(i)))));
+  for (std::size_t i = 0; i < members.size; ++i) {
+    const ValuePtr member = members.value(i);
+    const auto& values = seen_values(std::get<T>(*member));
+    if (!values.empty()) histograms.push_back(normalised_histogram(values));  // a scan may show nothing known
+  }
   return mean_histogram(histograms);
-}
-
-// A group's map is matched like a model's, and so is the map of the others, which stands for the ground
-// truth.
-GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const MetricsOptions& options,
-                         const Rng& rng) {
-  const std::vector<Metric> metrics = chosen_metrics(options);
-  const ScalarField areas =
-      any_by_area(metrics) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{};
-  return {
-      metrics.size(), [=](const ScalarField& map, const GroundTruth& others) {
-        const GroundTruth matched_others{matched(others.saliency, reference), others.picks, others.simulated};
-        return score(metrics, matched(map, reference), matched_others, options, rng, areas);
-      }};
-}
-
-std::function<bool(const DatasetItem&)> has_participants(const Config& config) {
-  if (!config.simulated())
-    return [](const DatasetItem& item) { return item.picks.size() >= kMinParticipants; };
-  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
-  return [enough](const DatasetItem&) { return enough; };
 }
 
 // --- groups of rows ----------------------------------------------------------------------------------------
@@ -126,36 +116,11 @@ void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, c
   catalog.add(shape.shapes, {"mean_histogram." + model.name, 1}, mean_over<ScalarField>, map);
 }
 
-// HS has no map: its scores come from the participants, who saw meshes only.
-void add_human_performance(Catalog& catalog, const ShapeRows& shape, const RowOf<Mesh>& mesh,
-                           const Config& config, const Model& model) {
-  const std::string scores = "scores." + model.name, curve = "curve." + model.name;
-  const std::int32_t version =
-      model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // grows with either
-  catalog.add(
-      Shapes::meshes, {scores, version, has_participants(config)},
-      [scores](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
-               const MetricsOptions& options, const RandomSource& random) {
-        return leave_one_out(shape_of, truth, group_scorer(shape_of, reference, options, random.rng(scores)));
-      },
-      mesh, shape.ground_truth, shape.reference, section("metrics", config.metrics), kRandom);
-  catalog.add(
-      Shapes::meshes, {curve, version, has_participants(config)},
-      [scores, curve](const Mesh& shape_of, const GroundTruth& truth, const Histogram& reference,
-                      const HsOptions& options, const MetricsOptions& metrics, const RandomSource& random) {
-        return human_curve(shape_of, truth, options,
-                           group_scorer(shape_of, reference, metrics, random.rng(scores)), random.rng(curve));
-      },
-      mesh, shape.ground_truth, shape.reference, section("models." + model.name, *model.human),
-      section("metrics", config.metrics), kRandom);
-}
-
 RowOf<GroundTruth> add_mesh_ground_truth(Catalog& catalog, const Config& config, const RowOf<Mesh>& mesh) {
   if (config.simulated())
     return catalog.add(Shapes::meshes, {"ground_truth", 1}, made_up_ground_truth, mesh,
                        section("simulation", config.simulation), kRandom);
-  return catalog.add(Shapes::meshes, {"ground_truth", 1}, load_ground_truth, mesh,
-                     kFiles<Source::truth_files>);
+  return catalog.add(Shapes::meshes, {"ground_truth", 1}, given_truth, mesh, kFiles<Source::truth_files>);
 }
 
 RowOf<GroundTruth> add_cloud_ground_truth(Catalog& catalog, const Config& config,
@@ -163,7 +128,7 @@ RowOf<GroundTruth> add_cloud_ground_truth(Catalog& catalog, const Config& config
   if (config.simulated())
     return catalog.add(Shapes::clouds, {"cloud_ground_truth", 1}, made_up_cloud_ground_truth, cloud, surface,
                        section("simulation", config.simulation), kRandom);
-  return catalog.add(Shapes::clouds, {"cloud_ground_truth", 1}, load_cloud_ground_truth, cloud, surface,
+  return catalog.add(Shapes::clouds, {"cloud_ground_truth", 1}, given_cloud_truth, cloud, surface,
                      kFiles<Source::truth_files>);
 }
 

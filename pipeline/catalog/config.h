@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/dataset.h"
 #include "pipeline/catalog/models.h"
+#include "pipeline/config/data_layout.h"
 #include "pipeline/config/section.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/ground_truth/simulation.h"
@@ -28,7 +28,7 @@ struct EnumNames<Participants> {
 };
 
 struct DatasetOptions {
-  Layout layout = Layout::automatic;
+  std::string layout{kAutomaticLayout};
   Twins twins = Twins::refuse;
   bool meshes = true;
   bool scans = true;
@@ -36,7 +36,9 @@ struct DatasetOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("layout", self.layout, {"how the folder is laid out"});
+    visit("layout", self.layout,
+          {"how the folder is laid out: automatic, a name in configs/datasets, or a description of your own "
+           "(.yaml)"});
     visit("twins", self.twins, {"of several shape files of one name, the extension of the one that counts"});
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});

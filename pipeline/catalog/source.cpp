@@ -44,6 +44,10 @@ SourceFile source_file(std::string name, std::string place, std::function<Source
   return file;
 }
 
+SourceFile mesh_file_of(const DatasetItem& item, SourceData* data) {
+  return source_file("mesh file " + lower_case_extension(item.mesh), item.mesh, data);
+}
+
 std::vector<SourceData> read_again(SourceFiles& files) {
   std::vector<SourceData> data;
   for (SourceFile& file : files) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cache/digest.h"
+#include "io/dataset.h"
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -33,10 +34,12 @@ struct SourceFile {
 
 using SourceFiles = std::vector<SourceFile>;
 
-// Both read the file once, for its digest, and hand out what they read where `data` is given.
+// All three read the file once, for its digest, and hand out what they read where `data` is given.
 SourceFile source_file(std::string name, const std::filesystem::path& path, SourceData* data = nullptr);
 SourceFile source_file(std::string name, std::string place, std::function<SourceData()> read,
                        SourceData* data = nullptr);
+
+SourceFile mesh_file_of(const DatasetItem& item, SourceData* data = nullptr);
 
 // Reads the files again. Where one holds something else by now, its digest follows it, with a warning that
 // names it; the data of a file that cannot be read are empty.

@@ -72,8 +72,9 @@ int thread_count(const Arguments& arguments) {
 
 Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
     : config(read_configuration(arguments, given, pictures)),
-      workload(make_workload(find_dataset(config.data, config.dataset.layout, config.dataset.twins),
-                             arguments.items, shard_of(arguments))),
+      workload(
+          make_workload(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
+                        arguments.items, shard_of(arguments))),
       catalog(make_catalog(config, reference_of(arguments), kinds_of(workload))),
       context{.catalog = catalog,
               .workload = workload,

@@ -64,12 +64,25 @@ std::string expected_of() {
   return "a text";
 }
 
+std::string yaml_quoted(std::string_view text);  // a scalar that reads back as the same text
+
+// As it stands if that is plain: letters, digits and what paths have beside them.
+inline std::string yaml_scalar(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '/' || c == '.';
+  };
+  return !text.empty() && std::all_of(text.begin(), text.end(), plain) ? text : yaml_quoted(text);
+}
+
 template <class Value>
 std::string option_text(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return std::string(name_of(value));
   } else if constexpr (std::is_same_v<Value, Words>) {
     return fmt::format("[{}]", fmt::join(value, ", "));
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return yaml_scalar(value);
   } else {
     return fmt::format("{}", value);  // doubles: the shortest text that reads back as the same bits
   }

@@ -161,6 +161,25 @@ Words Section::words(std::string_view key) const {
   return words;
 }
 
+std::vector<Section> Section::list(std::string_view key) const {
+  const auto it = impl_->entry(key);
+  if (it == impl_->node.end()) return {};
+  const YAML::Node node = it->second;
+  if (node.IsMap()) return {child(key)};
+  if (!node.IsSequence()) fail(key, "must be a list of mappings");
+  std::vector<Section> sections;
+  for (const YAML::Node& element : node) {
+    const std::string path = fmt::format("{}[{}]", impl_->full_key(key), sections.size());
+    check_mapping(element, impl_->file, path);
+    sections.push_back(Section(std::make_shared<Impl>(Impl{element, impl_->file, path})));
+  }
+  return sections;
+}
+
+std::string Section::where(std::string_view key) const {
+  return fmt::format("{}:{}", impl_->file, impl_->line_of(key));
+}
+
 void Section::fail(std::string_view key, std::string_view what) const {
   fail_at(impl_->file, impl_->line_of(key), fmt::format("{} {}", impl_->full_key(key), what));
 }

@@ -26,8 +26,10 @@ class Section {
   Section child(std::string_view key) const;                    // a mapping; `key:` alone is an empty one
   std::optional<std::string> text(std::string_view key) const;  // a scalar as written; nothing if absent
   bool has_mapping(std::string_view key) const;                 // `key:` alone is an empty one
+  std::vector<Section> list(std::string_view key) const;        // of mappings, or a single one
   Words words(std::string_view key) const;                      // a list of scalars, or a single one
 
+  std::string where(std::string_view key) const;                              // "file:line"
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;  // "file:line: path.key what"
   void reject_unknown(const std::vector<std::string_view>& known) const;      // names the nearest known key
 
@@ -62,8 +64,6 @@ class Section {
   explicit Section(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
   std::shared_ptr<const Impl> impl_;
 };
-
-std::string yaml_quoted(std::string_view text);  // a scalar that reads back as the same text
 
 // The candidate with the smallest edit distance to `word`; empty where none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);

@@ -42,8 +42,8 @@ std::optional<JobRef> input_named(const Context& context, const JobRef& job, con
 std::string source_text(const DatasetItem& source, const std::string& name) {
   for (const char* kind : {"mesh file ", "point cloud file "})
     if (name.starts_with(kind)) return kind + source.mesh.filename().string();
-  if (name == "saliency file" && !source.saliency.empty())
-    return "saliency file " + source.saliency.filename().string();
+  if (name.starts_with("saliency file") && source.saliency.size() == 1)
+    return "saliency file " + source.saliency[0].filename().string();
   return name;
 }
 

@@ -11,6 +11,7 @@
 #include "io/cloud_file.h"
 #include "io/file.h"
 #include "pipeline/catalog/given_maps.h"
+#include "pipeline/catalog/given_truth.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -57,16 +58,12 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
 }
 
 Family make_family(const DatasetItem& source) {
-  Family family{source, {}, {}};
-  const std::string extension = lower_case_extension(source.mesh);
   SourceData data;
-  SourceFile file = source_file("mesh file " + extension, source.mesh, &data);
+  SourceFile file = mesh_file_of(source, &data);
+  Family family{source, {}, truth_files_of(source)};
   family.is_cloud = is_point_cloud(data.text(), source.mesh);
-  if (family.is_cloud) file.name = "point cloud file " + extension;
+  if (family.is_cloud) file.name = "point cloud file " + lower_case_extension(source.mesh);
   family.shape_file.push_back(std::move(file));
-  if (!source.saliency.empty()) family.truth_files.push_back(source_file("saliency file", source.saliency));
-  for (std::size_t k = 0; k < source.picks.size(); ++k)
-    family.truth_files.push_back(source_file(fmt::format("picks {}", k), source.picks[k]));
   return family;
 }
 
@@ -122,7 +119,7 @@ std::string shapes_text(const Workload& workload) {
 
 DataKinds kinds_of(const Workload& workload) {
   const std::size_t clouds = count_clouds(workload);
-  const bool any_mesh = clouds < workload.families.size(), any_cloud = clouds > 0;
+  const bool any_mesh = clouds<workload.families.size(), any_cloud = clouds> 0;
   return {.meshes = any_mesh, .clouds = any_cloud};
 }
 

@@ -143,7 +143,7 @@ std::string run_yaml(const RunRecord& record) {
   const DataIdentity data = identity_of(context.workload);
   const std::size_t clouds = count_clouds(context.workload);
   yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}}}\n",
-                      yaml_quoted(config.data), context.workload.layout,
+                      yaml_quoted(config.data), yaml_scalar(context.workload.layout),
                       context.workload.families.size() - clouds,
                       clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex());
   yaml += metric_lines(chosen_metrics(config.metrics));

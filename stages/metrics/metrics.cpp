@@ -11,6 +11,7 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
+#include "stages/core/seen.h"
 #include "stages/metrics/roc.h"
 #include "stages/metrics/sampled_roc.h"
 
@@ -97,6 +98,11 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
   const std::vector<std::int32_t> picked = picked_points(truth), every_pick = picks_with_multiplicity(truth);
   check_fits(matched.size(), truth, picked);
   if (!areas.empty()) CHECK_EQ(areas.size(), matched.size());
+  if (const auto seen = seen_points(truth.saliency)) {
+    if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
+    const ScalarField seen_areas = areas.empty() ? ScalarField{} : values_at(areas, *seen);
+    return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, rng, seen_areas);
+  }
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
   const Comparison comparison(matched, saliency, areas, rng);
   Scores scores;

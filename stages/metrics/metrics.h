@@ -95,7 +95,8 @@ std::int32_t scores_version(std::span<const Metric> metrics);
 bool any_by_area(std::span<const Metric> metrics);  // they read the areas of the points
 
 // The metrics of one map, in their order. What the ground truth has nothing for is NaN: metrics of picks
-// without picks, metrics of saliency without saliency values, and metrics by area without areas. Throws
+// without picks, metrics of saliency without saliency values, and metrics by area without areas. Points
+// whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. Throws
 // InputError where the ground truth is not of this shape: picks out of range, or another number of points.
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
              const MetricsOptions& options, Rng rng, std::span<const double> areas = {});

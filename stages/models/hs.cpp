@@ -14,6 +14,7 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
+#include "stages/core/seen.h"
 #include "stages/core/smoothing.h"
 
 namespace salbench {
@@ -55,8 +56,12 @@ SmoothingOptions undivided() {
   return options;
 }
 
+bool are_viewers(const GroundTruth& truth) {
+  return truth.picks.size() < kMinParticipants && truth.viewers.size() >= kMinParticipants;
+}
+
 void require_participants(const GroundTruth& truth) {
-  if (truth.picks.size() < kMinParticipants)
+  if (truth.picks.size() < kMinParticipants && !are_viewers(truth))
     throw InputError("HS does not apply: it compares participants with each other, and this mesh has " +
                      (truth.picks.empty() ? std::string("no picks")
                                           : std::string("one list of picks (one participant, or pooled)")));
@@ -66,27 +71,39 @@ void require_participants(const GroundTruth& truth) {
 class Participants {
  public:
   Participants(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer)
-      : truth_(truth), scorer_(scorer), smooth_(mesh, truth.picks, undivided()) {
-    counts_.n_points = static_cast<std::int64_t>(mesh.vertices.size());
-    counts_.n_picks = static_cast<std::int64_t>(picked_points(truth).size());
+      : truth_(truth),
+        by_viewer_(are_viewers(truth)),
+        scorer_(scorer),
+        smooth_(mesh, truth.picks, undivided()) {
+    const auto seen = seen_points(truth.saliency);
+    counts_.n_points = static_cast<std::int64_t>(seen ? seen->size() : mesh.vertices.size());
+    counts_.n_picks = static_cast<std::int64_t>(picked_points(seen ? truth_at(truth, *seen) : truth).size());
   }
 
-  std::size_t size() const { return truth_.picks.size(); }
+  std::size_t size() const { return by_viewer_ ? truth_.viewers.size() : truth_.picks.size(); }
   const Scores& counts() const { return counts_; }
 
   void compare(Group group, Group others, MeanOfScores& mean) const {
     GroundTruth predicted;
     predicted.simulated = truth_.simulated;
+    if (by_viewer_) {
+      predicted.saliency = mean_of_seen(truth_.viewers, others);
+      mean.add(scorer_.score(mean_of_seen(truth_.viewers, group), predicted));
+      return;
+    }
     for (const std::size_t k : others) predicted.picks.push_back(truth_.picks[k]);
     if (std::all_of(predicted.picks.begin(), predicted.picks.end(),
                     [](const auto& own) { return own.empty(); }))
       return;
     predicted.saliency = smooth_(others);
+    for (std::size_t i = 0; i < predicted.saliency.size() && !truth_.saliency.empty(); ++i)
+      if (std::isnan(truth_.saliency[i])) predicted.saliency[i] = truth_.saliency[i];
     mean.add(scorer_.score(smooth_(group), predicted));
   }
 
  private:
   const GroundTruth& truth_;
+  bool by_viewer_;
   const GroupScorer& scorer_;
   PickSmoother smooth_;
   Scores counts_;  // of the mesh; no metrics

@@ -30,8 +30,9 @@ struct HsOptions {
 inline constexpr std::size_t kMinParticipants = 2;  // one predicts, one is predicted
 
 // Scores the map of one group of participants against another group, whose map and picks are in `others`.
-// Both maps are smoothed_picks() without the division by participants; the scorer normalises and matches
-// them. Equal arguments must get equal scores.
+// Both maps are smoothed_picks() without the division by participants, or where the ground truth has no
+// participants with picks but viewers with maps, the mean of these where they have seen a point, NaN
+// elsewhere; the scorer normalises and matches them. Equal arguments must get equal scores.
 struct GroupScorer {
   std::size_t n_metrics;  // values of the Scores that it makes
   std::function<Scores(const ScalarField& map, const GroundTruth& others)> score;

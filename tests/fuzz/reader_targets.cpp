@@ -9,6 +9,7 @@
 #include "io/cloud_file.h"
 #include "io/ground_truth_file.h"
 #include "io/mesh_file.h"
+#include "io/number_table.h"
 #include "io/shape_file.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -124,6 +125,23 @@ void fuzz_val(std::string_view bytes) {
   CHECK_EQ(values->size(), n_vertices);
   for (const double value : *values) CHECK_EQ(std::isfinite(value), true);
   CHECK_EQ(read(n_vertices + 1).has_value(), false);
+}
+
+void fuzz_csv(std::string_view bytes) {
+  for (const std::vector<std::string>& columns :
+       {std::vector<std::string>{""}, {"2"}, {"value", "1"}, {"1", "value", "2", "3"}}) {
+    const auto values = read_or_refuse([&] { return parse_columns(bytes, kFile, columns, "-1"); });
+    if (!values) continue;
+    CHECK_EQ(values->size(), columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      CHECK_EQ((*values)[c].size(), (*values)[0].size());
+      for (const double value : (*values)[c])
+        CHECK_EQ(std::isfinite(value) || (c == 0 && std::isnan(value)), true);
+    }
+    const ExpectedRows one_more{(*values)[0].size() + 1, "vertices"};
+    CHECK_EQ(read_or_refuse([&] { return parse_columns(bytes, kFile, columns, "-1", one_more); }).has_value(),
+             false);
+  }
 }
 
 void fuzz_pid(std::string_view bytes) {

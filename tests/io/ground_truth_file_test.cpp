@@ -10,6 +10,7 @@
 
 #include "io/file.h"
 #include "io/mesh_file.h"
+#include "pipeline/config/data_layout.h"
 #include "stages/core/errors.h"
 #include "tests/support/data.h"
 
@@ -59,28 +60,26 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadPick) {
   expect_refused_picks("99999999999999999999\n", 8, "does not fit 64 bits");
 }
 
-TEST(GroundTruthFile, AParticipantWithoutPicksCounts) {
-  DatasetItem item;
-  item.picks = {"1_0.pid", "1_1.pid"};
-  const GroundTruth truth = parse_ground_truth(item, std::array<std::string_view, 2>{"3\n", ""}, 4);
-  EXPECT_THAT(truth.picks, ElementsAre(ElementsAre(3), IsEmpty()));
-  EXPECT_THAT(truth.saliency, IsEmpty());
-  EXPECT_THAT(parse_ground_truth(item, std::array<std::string_view, 2>{"", ""}, 4).picks, IsEmpty())
-      << "nobody picked anything: there are no picks";
+TEST(GroundTruthFile, PicksMayBeNumberedFromOne) {
+  EXPECT_THAT(parse_picks("1\n8\n", "9_0.pid", 8, 1), ElementsAre(0, 7));
+  EXPECT_THAT([] { parse_picks("3\n0\n", "9_0.pid", 8, 1); },
+              ThrowsMessage<InputError>(
+                  "9_0.pid:2: vertex 0 is out of range: the mesh has 8 vertices, numbered from 1"));
+  EXPECT_THAT([] { parse_picks("9\n", "9_0.pid", 8, 1); },
+              ThrowsMessage<InputError>(
+                  "9_0.pid:1: vertex 9 is out of range: the mesh has 8 vertices, numbered from 1"));
 }
 
 TEST(GroundTruthFile, ReadsTheStudysFiles) {
   const auto data = real_data();
   if (!data) GTEST_SKIP() << kNoRealData;
   int with_truth = 0;
-  for (const DatasetItem& item : find_dataset(*data, Layout::automatic).items) {
+  for (const DatasetItem& item : find_dataset(*data, layouts_of("automatic")).items) {
     if (item.saliency.empty()) continue;
     SCOPED_TRACE(item.name);
-    std::vector<std::string> texts = {read_file(item.saliency)};
-    for (const auto& path : item.picks) texts.push_back(read_file(path));
-    const GroundTruth truth =
-        parse_ground_truth(item, std::vector<std::string_view>(texts.begin(), texts.end()),
-                           read_mesh(item.mesh).vertices.size());
+    const std::size_t n = read_mesh(item.mesh).vertices.size();
+    GroundTruth truth{parse_saliency(read_file(item.saliency[0]), item.saliency[0].native(), n), {}};
+    for (const auto& path : item.picks) truth.picks.push_back(parse_picks(read_file(path), path.native(), n));
     ++with_truth;
     EXPECT_GE(truth.picks.size(), 22U);
     // A vertex that somebody picked has at least that person's share of saliency.

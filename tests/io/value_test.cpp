@@ -50,6 +50,29 @@ TEST(Value, GroundTruthKeepsParticipantsWithoutPicks) {
   EXPECT_TRUE(round_trip(GroundTruth{}).picks.empty());
 }
 
+TEST(Value, GroundTruthKeepsViewersAndWhatTheyDidNotSee) {
+  constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+  const GroundTruth truth{{0.5, kUnseen}, {}, false, {{0.5, kUnseen}, {kUnseen, kUnseen}, {0.25, 1}}};
+  const GroundTruth back = round_trip(truth);
+  EXPECT_TRUE(std::isnan(back.saliency[1]));
+  ASSERT_EQ(back.viewers.size(), 3U);
+  EXPECT_EQ(back.viewers[0][0], 0.5);
+  EXPECT_TRUE(std::isnan(back.viewers[1][0]));
+  EXPECT_EQ(back.viewers[2], truth.viewers[2]);
+}
+
+TEST(Value, GroundTruthWithoutViewersHasTheSameDataSetsAsEver) {
+  std::vector<std::string> names;
+  for (const Array& array : arrays_from(GroundTruth{{0.5}, {{0}}})) names.push_back(array.name);
+  EXPECT_THAT(names, testing::ElementsAre("saliency", "picks", "pick_offsets", "simulated"));
+}
+
+TEST(Value, GroundTruthRefusesViewersOfAnotherShape) {
+  Arrays arrays = arrays_from(GroundTruth{{0.5, 1}, {}, false, {{1, 2}}});
+  std::get<std::vector<double>>(arrays.back().values).push_back(3);
+  EXPECT_THROW(value_from("ground_truth", arrays), InputError);
+}
+
 TEST(Value, ScoresKeepUndefinedMetrics) {
   const Scores back = round_trip(Scores{{std::nan(""), 0.5, -1}, 100, 0});
   ASSERT_EQ(back.values.size(), 3U);

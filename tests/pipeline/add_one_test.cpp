@@ -172,21 +172,20 @@ TEST(AddAMetric, ItIsOneRow) {
   EXPECT_THAT(scores.values, testing::ElementsAre(7));
 }
 
-// --- a layout of data sets: its places, and a row of the table --------------------------------------------
+// --- a layout of data sets: a description ------------------------------------------------------------------
 
-std::vector<Place> scanner_places(const std::filesystem::path& root) {
-  return {{root / "ply", {{root / "fixations", root / "clicks"}}}};
-}
-
-TEST(AddALayout, ItIsOneRow) {
+TEST(AddALayout, ItIsOneFile) {
   const TemporaryFolder folder;
-  folder.write("ply/statue.off", off_text(shapes::tetrahedron()));
-  folder.write("fixations/statue.val", "0\n1\n0\n0\n");
-  const LayoutRow layout{"scanner", scanner_places};
-  const Dataset dataset = find_dataset(folder.path(), {&layout, 1});
+  folder.write("data/ply/statue.off", off_text(shapes::tetrahedron()));
+  folder.write("data/fixations/statue.val", "0\n1\n0\n0\n");
+  const auto scanner = folder.write("scanner.yaml",
+                                    "places:\n  - meshes: ply/*.off\n    truth:\n      saliency: "
+                                    "fixations/{item}.val\n");
+  const Config config = toy_config("dataset: {layout: " + scanner.string() + "}");
+  const Dataset dataset = find_dataset(folder / "data", layouts_of(config.dataset.layout));
   EXPECT_EQ(dataset.layout, "scanner");
   ASSERT_THAT(dataset.items, SizeIs(1));
-  EXPECT_EQ(dataset.items[0].saliency, folder / "fixations/statue.val");
+  EXPECT_THAT(dataset.items[0].saliency, testing::ElementsAre(folder / "data/fixations/statue.val"));
 }
 
 // --- a subcommand: a function, and a row of the table ----------------------------------------------------

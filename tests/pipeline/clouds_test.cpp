@@ -2,6 +2,7 @@
 // Point clouds beside meshes and scans, from their files to their scores.
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -53,7 +54,8 @@ TEST(Clouds, WithAMeshsNormalsHaveTheMeshsMapsToTheBit) {
   const Twins12 data;
   for (const char* protocol : {"published", "text"}) {
     MemoryStore store;
-    ToyRun toy(data.folder.path(), store, fmt::format("protocol: {}\nnormals: {{method: faces}}\n{}", protocol, kPointModels));
+    ToyRun toy(data.folder.path(), store,
+               fmt::format("protocol: {}\nnormals: {{method: faces}}\n{}", protocol, kPointModels));
     toy.run();
     ASSERT_THAT(toy.runner.failures(), IsEmpty());
     for (const char* model : {"LS", "CS", "PS"})
@@ -230,6 +232,49 @@ TEST(Clouds, AFileThatBecomesAMeshDuringTheRunIsRefused) {
   toy.run();
   ASSERT_THAT(toy.runner.failures(), SizeIs(1));
   EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("1.ply:9: the header announces faces"));
+}
+
+// A description of clouds with values in a column of CSV, -1 where nothing was seen. Values and picks count
+// the points of the file, of which the first has no position.
+TEST(Clouds, MayBeDescribed) {
+  TemporaryFolder data, elsewhere;
+  const Mesh mesh = shapes::bumpy_sphere(2);
+  data.write("shapes/a.xyz", "nan nan nan\n" + xyz_text(mesh.vertices));
+  data.write("shapes/b.off", off_text(mesh));
+  std::string values = "id,density\n0,5\n1,-1\n";
+  for (std::size_t i = 1; i < mesh.vertices.size(); ++i) values += fmt::format("{},{}\n", i + 1, i % 7);
+  data.write("maps/a.csv", values);
+  data.write("clicks/a_0.pid", "4\n9\n");
+  const auto run = [&](const std::string& per) {
+    const auto own = elsewhere.write("own.yaml", fmt::format(R"(domain: points
+places:
+  - meshes: shapes/*
+    truth: {{saliency: 'maps/{{item}}.csv', picks: 'clicks/{{item}}_{{participant}}.pid'}}
+values: {{column: density, unseen: -1, per: {}}}
+indices: {{base: 1}}
+)",
+                                                             per));
+    MemoryStore store;
+    auto toy = std::make_unique<ToyRun>(
+        data.path(), store,
+        fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", own.string()));
+    toy->run();
+    const auto truth = toy->runner.failures().empty()
+                           ? result<GroundTruth>(*toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(0))
+                           : GroundTruth{};
+    return std::pair(std::move(toy), truth);
+  };
+  const auto [toy, truth] = run("vertex");
+  ASSERT_THAT(toy->workload.families, SizeIs(1));  // b.off is no point cloud
+  ASSERT_THAT(truth.saliency, SizeIs(mesh.vertices.size()));
+  EXPECT_TRUE(std::isnan(truth.saliency[0]));
+  EXPECT_EQ(truth.saliency[8], 1);
+  EXPECT_THAT(truth.picks, ElementsAre(ElementsAre(2, 7)));
+
+  const auto [refused, none] = run("face");
+  ASSERT_THAT(refused->runner.failures(), SizeIs(1));
+  EXPECT_THAT(refused->runner.failures()[0].cause,
+              AllOf(HasSubstr("maps/a.csv: has values per face"), HasSubstr("a.xyz is a point cloud")));
 }
 
 }  // namespace

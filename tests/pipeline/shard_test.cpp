@@ -18,7 +18,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 DatasetItem item_of_size(const TemporaryFolder& folder, const std::string& name, std::size_t bytes) {
-  return {name, "", folder.write(name + ".off", std::string(bytes, 'x')), "", {}};
+  return {name, "", folder.write(name + ".off", std::string(bytes, 'x')), {}, {}};
 }
 
 std::vector<std::string> names(const std::vector<DatasetItem>& items) {
@@ -71,7 +71,7 @@ TEST(Shard, MoreSharesThanItemsLeaveSomeEmpty) {
 
 TEST(Shard, MeshesThatAreNotThereAreSharedOutToo) {
   std::vector<DatasetItem> items;
-  for (const char* name : {"a", "b", "c", "d"}) items.push_back({name, "", "/no/such.off", "", {}});
+  for (const char* name : {"a", "b", "c", "d"}) items.push_back({name, "", "/no/such.off", {}, {}});
   EXPECT_THAT(names(share_of(items, {1, 2})), ElementsAre("a", "c"));
   EXPECT_THAT(names(share_of(items, {2, 2})), ElementsAre("b", "d"));
 }

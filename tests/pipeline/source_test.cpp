@@ -106,7 +106,7 @@ TEST_F(EditedDuringARun, AGivenMapPoisonsNothing) {
     Config config = read_config(Section::from_text(kYaml, "toy.yaml"), "toy");
     config.models.push_back(given_model("OWN", find_given_maps(maps.path(), false)));
     Catalog catalog = make_catalog(config);
-    Workload workload = make_workload(find_dataset(data_.path(), config.dataset.layout), "");
+    Workload workload = make_workload(find_dataset(data_.path(), layouts_of(config.dataset.layout)), "");
     const Context context{catalog, workload, config.seed};
     add_given_maps(workload, catalog, config.models.back());
     Plan plan = make_plan(context, store_);

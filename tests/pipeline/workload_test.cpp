@@ -16,7 +16,7 @@ using testing::HasSubstr;
 Dataset numbered(const TemporaryFolder& folder) {
   Dataset dataset;
   for (const char* name : {"1", "2", "5", "10", "cow"})
-    dataset.items.push_back({name, "", folder.write(std::string(name) + ".off", name), "", {}});
+    dataset.items.push_back({name, "", folder.write(std::string(name) + ".off", name), {}, {}});
   return dataset;
 }
 
@@ -50,7 +50,7 @@ TEST(Workload, DigestsContentNotPaths) {
 
 TEST(Workload, AnUnreadableFileIsKeptForItsItem) {
   Dataset dataset;
-  dataset.items.push_back({"gone", "", "/no/such/mesh.off", "", {}});
+  dataset.items.push_back({"gone", "", "/no/such/mesh.off", {}, {}});
   const Workload workload = make_workload(dataset, "");
   EXPECT_FALSE(workload.families[0].shape_file[0].digest);
   EXPECT_THAT(workload.families[0].shape_file[0].error, HasSubstr("/no/such/mesh.off"));

@@ -64,7 +64,8 @@ struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
       : config(std::move(the_config)),
-        workload(make_workload(find_dataset(root, config.dataset.layout, config.dataset.twins), items)),
+        workload(make_workload(find_dataset(root, layouts_of(config.dataset.layout), config.dataset.twins),
+                               items)),
         catalog(make_catalog(config, {}, kinds_of(workload))),
         context{catalog, workload, config.seed},
         store(the_store),

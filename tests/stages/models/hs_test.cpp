@@ -23,6 +23,7 @@
 namespace salbench {
 namespace {
 
+using testing::_;
 using testing::AllOf;
 using testing::Each;
 using testing::ElementsAre;
@@ -313,6 +314,65 @@ TEST(HumanPerformance, NamesThePickThatIsNoVertex) {
   const GroundTruth truth = truth_of({{0}, {4}});
   EXPECT_THAT([&] { leave_one_out(shapes::tetrahedron(), truth, scorer); },
               ThrowsMessage<InputError>(HasSubstr("participant 1 picked vertex 4 ")));
+}
+
+// --- viewers with maps
+// --------------------------------------------------------------------------------------
+
+// What is compared, as it is: no matching, and nothing of picks.
+GroupScorer recorder_of_maps(std::vector<std::pair<ScalarField, ScalarField>>& compared) {
+  return {1, [&](const ScalarField& map, const GroundTruth& others) {
+            compared.emplace_back(map, others.saliency);
+            return Scores{.values = {map[0]}};
+          }};
+}
+
+GroundTruth truth_of_viewers(std::vector<ScalarField> viewers) {
+  GroundTruth truth;
+  truth.saliency = viewers[0];
+  truth.viewers = std::move(viewers);
+  return truth;
+}
+
+TEST(Viewers, EachIsComparedWithTheMeanOfTheOthersWhereTheySaw) {
+  const Mesh mesh = shapes::tetrahedron();
+  const GroundTruth truth =
+      truth_of_viewers({{1, 0, 4, 0}, {2, kUndefined, 6, 0}, {6, kUndefined, kUndefined, 9}});
+  std::vector<std::pair<ScalarField, ScalarField>> compared;
+  const Scores scores = leave_one_out(mesh, truth, recorder_of_maps(compared));
+  ASSERT_THAT(compared, SizeIs(3));
+  EXPECT_EQ(compared[0].first, truth.viewers[0]);
+  EXPECT_THAT(compared[0].second, ElementsAre(4, IsNan(), 6, 4.5));
+  EXPECT_THAT(compared[1].first, ElementsAre(2, IsNan(), 6, 0));
+  EXPECT_THAT(compared[1].second, ElementsAre(3.5, 0, 4, 4.5));
+  EXPECT_THAT(compared[2].second, ElementsAre(1.5, 0, 5, 0));
+  EXPECT_THAT(scores.values, ElementsAre(3));
+  EXPECT_EQ(scores.n_points, 4);
+  EXPECT_EQ(scores.n_picks, 0);
+}
+
+TEST(Viewers, HaveAHumanCurve) {
+  const Mesh mesh = shapes::tetrahedron();
+  const GroundTruth truth = truth_of_viewers({{1, 0, 4, 0}, {2, 1, 6, 0}, {6, 1, 1, 9}, {0, 1, 2, 3}});
+  std::vector<std::pair<ScalarField, ScalarField>> compared;
+  EXPECT_THAT(human_curve(mesh, truth, {}, recorder_of_maps(compared), draws()), SizeIs(2));
+}
+
+TEST(Viewers, OneAloneHasNoOthers) {
+  std::vector<std::pair<ScalarField, ScalarField>> compared;
+  EXPECT_THROW(
+      leave_one_out(shapes::tetrahedron(), truth_of_viewers({{1, 2, 3, 4}}), recorder_of_maps(compared)),
+      InputError);
+}
+
+TEST(Participants, WhatNobodySawIsNotCompared) {
+  const Mesh mesh = shapes::tetrahedron();
+  GroundTruth truth = truth_of({{0}, {1}});
+  truth.saliency = {1, 1, kUndefined, 0};
+  std::vector<std::pair<ScalarField, ScalarField>> compared;
+  leave_one_out(mesh, truth, recorder_of_maps(compared));
+  ASSERT_THAT(compared, SizeIs(2));
+  for (const auto& [map, others] : compared) EXPECT_THAT(others, ElementsAre(_, _, IsNan(), _));
 }
 
 TEST(HsOptions, RefuseNoDrawsAndNoGroups) {

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/number_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "io/text_scanner.h"
+
+namespace salbench {
+namespace {
+
+constexpr char kBlanks = ' ';
+constexpr std::size_t kMostNamed = 20;  // columns in a message
+
+std::optional<double> number_in(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+') word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (word.empty() || error == std::errc::invalid_argument || end != word.data() + word.size()) return {};
+  return value;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kAround = " \t\r\"";
+  text.remove_prefix(std::min(text.find_first_not_of(kAround), text.size()));
+  return text.substr(0, text.find_last_not_of(kAround) + 1);
+}
+
+char separator_of(std::string_view line) {
+  for (const char separator : {',', ';', '\t'})
+    if (line.find(separator) != line.npos) return separator;
+  return kBlanks;
+}
+
+std::vector<std::string_view> cells_of(std::string_view line, char separator) {
+  std::vector<std::string_view> cells;
+  if (separator == kBlanks) {
+    constexpr std::string_view kAny = " \t\r\v\f";
+    for (std::size_t begin = line.find_first_not_of(kAny); begin != line.npos;) {
+      const std::size_t end = std::min(line.find_first_of(kAny, begin), line.size());
+      cells.push_back(trimmed(line.substr(begin, end - begin)));
+      begin = line.find_first_not_of(kAny, end);
+    }
+    return cells;
+  }
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    cells.push_back(trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return cells;
+}
+
+// Number from 1 of a column without a header; 0 for a name.
+std::size_t column_number(const std::string& column) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(column.data(), column.data() + column.size(), number);
+  return error == std::errc() && end == column.data() + column.size() ? number : 0;
+}
+
+// The cells of a line that the columns name.
+class Columns {
+ public:
+  Columns(const TextScanner& in, const std::vector<std::string>& names, std::vector<std::string_view> first)
+      : names_(names) {
+    has_header_ = std::any_of(first.begin(), first.end(),
+                              [](std::string_view word) { return !word.empty() && !is_number(word); });
+    for (const std::string& name : names) places_.push_back(place_of(in, name, first));
+  }
+
+  bool has_header() const { return has_header_; }
+
+  std::string_view cell(const TextScanner& in, const std::vector<std::string_view>& cells,
+                        std::size_t c) const {
+    if (names_[c].empty() && cells.size() > 1)
+      in.fail(fmt::format("the line has {} columns, and the description names none: add `column:`",
+                          cells.size()));
+    if (places_[c] >= cells.size())
+      in.fail(fmt::format("the line has {} {}, expected column {}", cells.size(),
+                          cells.size() == 1 ? "column" : "columns", described(c)));
+    return cells[places_[c]];
+  }
+
+ private:
+  std::string described(std::size_t c) const {
+    return column_number(names_[c]) > 0 ? names_[c] : in_quotes(names_[c]);
+  }
+
+  std::size_t place_of(const TextScanner& in, const std::string& name,
+                       const std::vector<std::string_view>& header) const {
+    if (name.empty()) return 0;
+    if (const std::size_t number = column_number(name); number > 0) return number - 1;
+    if (!has_header_)
+      in.fail(fmt::format("no column {}: the first line is no header, but numbers", in_quotes(name)));
+    const auto found = std::find(header.begin(), header.end(), name);
+    if (found != header.end()) return static_cast<std::size_t>(found - header.begin());
+    std::string known;
+    for (std::size_t i = 0; i < std::min(header.size(), kMostNamed); ++i)
+      known += (known.empty() ? "" : ", ") + in_quotes(header[i]);
+    if (header.size() > kMostNamed) known += ", ...";
+    in.fail(fmt::format("no column {}: the header has {}", in_quotes(name), known));
+  }
+
+  const std::vector<std::string>& names_;
+  std::vector<std::size_t> places_;
+  bool has_header_ = false;
+};
+
+double value_of(const TextScanner& in, std::string_view cell, std::string_view unseen) {
+  const std::optional<double> value = number_in(cell);
+  if (!value) in.fail(fmt::format("{} is not a number", in_quotes(cell)));
+  if (is_same_number(*value, unseen)) return std::numeric_limits<double>::quiet_NaN();
+  if (!std::isfinite(*value)) in.fail(fmt::format("{} is not a finite number", in_quotes(cell)));
+  return *value;
+}
+
+}  // namespace
+
+bool is_number(std::string_view word) { return number_in(word).has_value(); }
+
+bool is_same_number(double value, std::string_view word) {
+  const std::optional<double> number = number_in(word);
+  return number && (value == *number || (std::isnan(value) && std::isnan(*number)));
+}
+
+std::vector<ScalarField> parse_columns(std::string_view text, std::string_view name,
+                                       const std::vector<std::string>& columns, const std::string& unseen,
+                                       const std::optional<ExpectedRows>& expected) {
+  std::vector<ScalarField> values(columns.size());
+  TextScanner in(text, name);
+  if (in.next_filled_line()) {
+    const char separator = separator_of(in.line());
+    std::vector<std::string_view> cells = cells_of(in.line(), separator);
+    const Columns chosen(in, columns, cells);
+    for (bool more = !chosen.has_header() || in.next_filled_line(); more; more = in.next_filled_line()) {
+      cells = cells_of(in.line(), separator);
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        values[c].push_back(value_of(in, chosen.cell(in, cells, c), c == 0 ? unseen : std::string_view()));
+    }
+  }
+  if (expected && values[0].size() != expected->n)
+    in.fail(fmt::format("the file has {} values, but the mesh has {} {}", values[0].size(), expected->n,
+                        expected->noun));
+  if (values[0].empty()) in.fail("the file has no values");
+  return values;
+}
+
+}  // namespace salbench

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Columns of a text of numbers, a row per line: CSV, or words between blanks.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// The columns named, each by its name in the header or by its number from 1, in the order of `columns`; an
+// empty name is the only column of the text. Commas, semicolons or tabs separate values, whichever the first
+// line has; else blanks do. A first line in which a word is no number is the header. Blank lines are skipped.
+//
+// A value of the first column that is `unseen` ("nan" for one that is none) becomes NaN; all others must be
+// finite. Throws InputError, one line "NAME:LINE: what is wrong": also for another number of rows than
+// expected, or none.
+struct ExpectedRows {
+  std::size_t n;
+  std::string_view noun;  // of the mesh: "vertices"
+};
+std::vector<ScalarField> parse_columns(std::string_view text, std::string_view name,
+                                       const std::vector<std::string>& columns,
+                                       const std::string& unseen = {},
+                                       const std::optional<ExpectedRows>& expected = {});
+
+bool is_number(std::string_view word);                     // also one that is not finite
+bool is_same_number(double value, std::string_view word);  // NaN is the same as "nan"; none as no number
+
+}  // namespace salbench

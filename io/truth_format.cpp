@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/truth_format.h"
+
+#include <algorithm>
+
+#include "io/number_table.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+
+void check(const ValuesFormat& format) {
+  check_ranges(format);
+  if (format.per == ValuePer::point && format.column.empty())
+    throw OptionError("column", "is missing; values per point stand beside coordinates: expected a column");
+  if (format.points.size() != 3) throw OptionError("points", "must be three columns, of x, y and z");
+  if (!format.unseen.empty() && !is_number(format.unseen))
+    throw OptionError("unseen", "is '" + format.unseen + "', not a number or nan");
+}
+
+void check(const IndicesFormat& format) {
+  check_ranges(format);
+  const auto is_place = [](const std::string& text) {
+    return !text.empty() && text.size() < 7 && text[0] != '0' &&
+           std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  };
+  if (!format.cell.empty() && (format.cell.size() != 2 || !std::ranges::all_of(format.cell, is_place)))
+    throw OptionError("cell", "must be a row and a column, from 1, such as [3, 8]");
+}
+
+}  // namespace salbench

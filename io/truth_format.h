@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the ground truth of a data set is written in its files. The defaults are those of the Schelling study:
+// a number per vertex, and 0-based indices. [chen2012]
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stages/core/options.h"
+
+namespace salbench {
+
+// What one value belongs to: a vertex, a face in the order of the mesh file, or a point whose coordinates
+// stand beside the value.
+enum class ValuePer { vertex, face, point };
+template <>
+struct EnumNames<ValuePer> {
+  static constexpr std::array<std::string_view, 3> names = {"vertex", "face", "point"};
+};
+
+inline constexpr std::string_view kEmpty = "\"\"";  // an empty text as options are written
+
+struct ValuesFormat {
+  ValuePer per = ValuePer::vertex;
+  std::string column;                                 // name in the header, or number from 1; empty: the only
+  std::vector<std::string> points = {"1", "2", "3"};  // columns of x, y, z; of values per point
+  double max_distance = 0.02;
+  std::string unseen;
+  std::string variable;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("per", self.per, {"what a value belongs to", "", {}, "vertex"});
+    visit("column", self.column,
+          {"its name in the header, or its number from 1; none: the only one", "", {}, kEmpty});
+    visit("points", self.points, {"columns of x, y and z, of values per point", "", {}, "[1, 2, 3]"});
+    visit("max_distance", self.max_distance,
+          {"a vertex farther from every point was not seen", "R", above(0), "0.02"});
+    visit("unseen", self.unseen,
+          {"value in the file of what was not seen, such as -1 or nan", "", {}, kEmpty});
+    visit("variable", self.variable, {"name in a MAT file", "", {}, kEmpty});
+  }
+};
+
+void check(const ValuesFormat& format);  // throws OptionError
+
+struct IndicesFormat {
+  std::int32_t base = 0;
+  std::string variable;
+  std::vector<std::string> cell;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("base", self.base, {"number of the first vertex", "", between(0, 1), "0"});
+    visit("variable", self.variable, {"name in a MAT file", "", {}, kEmpty});
+    visit("cell", self.cell, {"row and column in a cell array of a MAT file, from 1", "", {}, "[]"});
+  }
+};
+
+void check(const IndicesFormat& format);  // throws OptionError
+
+struct TruthFormat {
+  ValuesFormat values;
+  IndicesFormat indices;
+};
+
+}  // namespace salbench

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Saliency that was measured per face, or at other points than the vertices, carried over to the vertices of
+// a mesh. NaN stands for what was not seen, in the values as in the result.
+#pragma once
+
+#include <span>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// The mean over the faces around each vertex, weighted by their areas; NaN where no face with an area was
+// seen. `values`: f. Throws InputError for another number of values.
+ScalarField vertex_values_of_faces(Points vertices, Surface faces, std::span<const double> values);
+
+// The value of the nearest sample; NaN farther than `max_distance` (length unit of the mesh) from all. Of
+// equally near samples the first counts. `values`: one per sample, of which there is one at least.
+ScalarField vertex_values_of_samples(Points vertices, Points samples, std::span<const double> values,
+                                     double max_distance);
+
+}  // namespace salbench

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/number_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsNan;
+
+ScalarField column(std::string_view text, const std::string& name, const std::string& unseen = {}) {
+  return parse_columns(text, "a.csv", {name}, unseen)[0];
+}
+
+std::string error_of(std::string_view text, const std::string& name,
+                     const std::optional<ExpectedRows>& expected = {}) {
+  try {
+    parse_columns(text, "a.csv", {name}, "", expected);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(NumberTable, ReadsAColumnByNumberOrName) {
+  EXPECT_THAT(column("1,2\n3,4\n", "2"), ElementsAre(2, 4));
+  EXPECT_THAT(column("x,\"saliency\"\r\n1,2\r\n\r\n3,4\r\n", "saliency"), ElementsAre(2, 4));
+  EXPECT_THAT(column("x y\n1 2\n", "1"), ElementsAre(1)) << "a header is no value, whatever names the column";
+  EXPECT_THAT(column("1.5e0\t-2 \n+3\t4", "2"), ElementsAre(-2, 4));
+  EXPECT_THAT(column("1; 2\n3; 4", "2"), ElementsAre(2, 4));
+  EXPECT_THAT(column("\xef\xbb\xbfvalue\n7\n", "value"), ElementsAre(7)) << "a byte order mark";
+}
+
+TEST(NumberTable, ReadsTheOnlyColumnWithoutAName) {
+  EXPECT_THAT(column("1\n2\n", ""), ElementsAre(1, 2));
+  EXPECT_THAT(column("saliency\n1\n2\n", ""), ElementsAre(1, 2));
+}
+
+TEST(NumberTable, ReadsSeveralColumnsInTheOrderAskedFor) {
+  EXPECT_THAT(parse_columns("x y z s\n1 2 3 4\n5 6 7 8", "a", {"s", "x", "2"}),
+              ElementsAre(ElementsAre(4, 8), ElementsAre(1, 5), ElementsAre(2, 6)));
+}
+
+TEST(NumberTable, UnseenIsNaN) {
+  EXPECT_THAT(column("-1\n0\n-1.0\n", "", "-1"), ElementsAre(IsNan(), 0, IsNan()));
+  EXPECT_THAT(column("nan\n0\nNaN\n", "", "nan"), ElementsAre(IsNan(), 0, IsNan()));
+}
+
+TEST(NumberTable, NamesFileLineAndWhatWasExpected) {
+  EXPECT_EQ(error_of("x,s\n1,2\n", "saliency"),
+            "a.csv:1: no column \"saliency\": the header has \"x\", \"s\"");
+  EXPECT_EQ(error_of("1,2\n", "saliency"),
+            "a.csv:1: no column \"saliency\": the first line is no header, but numbers");
+  EXPECT_EQ(error_of("1 2\n3\n", "2"), "a.csv:2: the line has 1 column, expected column 2");
+  EXPECT_EQ(error_of("x,s\n1,2\n3\n", "s"), "a.csv:3: the line has 1 column, expected column \"s\"");
+  EXPECT_EQ(error_of("1,2\n", ""),
+            "a.csv:1: the line has 2 columns, and the description names none: add `column:`");
+  EXPECT_EQ(error_of("1\nx\n", "1"), "a.csv:2: \"x\" is not a number");
+  EXPECT_EQ(error_of("1,\n2,3\n", "2"), "a.csv:1: \"\" is not a number");
+  EXPECT_EQ(error_of("1\n\n2\n", "1", {{3, "faces"}}),
+            "a.csv:3: the file has 2 values, but the mesh has 3 faces");
+  EXPECT_EQ(error_of("s\n", "1"), "a.csv:1: the file has no values");
+  EXPECT_EQ(error_of("inf\n", "1"), "a.csv:1: \"inf\" is not a finite number");
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points that nobody saw take no part in any metric.
+#include "stages/core/seen.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/field.h"
+#include "stages/metrics/metrics.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::IsNan;
+
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+
+MetricsOptions all_metrics() {
+  MetricsOptions options;
+  options.names.clear();
+  for (const Metric& metric : metric_table()) options.names.push_back(metric.name);
+  return options;
+}
+
+struct Example {
+  ScalarField map, areas;
+  GroundTruth truth;
+};
+
+Example random_example(std::size_t n) {
+  Rng rng(1, "example", "");
+  Example example;
+  for (std::size_t i = 0; i < n; ++i) {
+    example.map.push_back(rng.uniform());
+    example.areas.push_back(0.5 + rng.uniform());
+    example.truth.saliency.push_back(rng.uniform());
+  }
+  example.truth.picks = {{3, 4, 50}, {4, 99}, {}};
+  return example;
+}
+
+TEST(UnseenPoints, TakeNoPartInAnyMetric) {
+  const Example whole = random_example(100);
+  Example masked = whole, seen;
+  for (std::size_t i = 0; i < 100; ++i) {
+    if (i % 3 == 0 || i == 50) {
+      masked.truth.saliency[i] = kUnseen;
+      masked.map[i] = 1e9;  // whatever a model says of it
+    } else {
+      seen.map.push_back(whole.map[i]);
+      seen.areas.push_back(whole.areas[i]);
+      seen.truth.saliency.push_back(whole.truth.saliency[i]);
+    }
+  }
+  seen.truth.picks = {{2}, {2}, {}};  // point 4 is the third of those left; 3, 50 and 99 were not seen
+  const MetricsOptions options = all_metrics();
+  const Rng rng(1, "scores", "x");
+  const Scores of_masked = score(masked.map, masked.truth, options, rng, masked.areas);
+  const Scores of_seen = score(seen.map, seen.truth, options, rng, seen.areas);
+  EXPECT_EQ(of_masked.values, of_seen.values);
+  for (const double value : of_masked.values) EXPECT_TRUE(std::isfinite(value));
+  EXPECT_EQ(of_masked.n_points, static_cast<std::int64_t>(seen.map.size()));
+  EXPECT_EQ(of_masked.n_picks, 1);
+}
+
+TEST(UnseenPoints, AreNotZero) {
+  const Example whole = random_example(100);
+  GroundTruth masked = whole.truth, zero = whole.truth;
+  for (std::size_t i = 0; i < 100; i += 2) {
+    masked.saliency[i] = kUnseen;
+    zero.saliency[i] = 0;
+  }
+  const Rng rng(1, "scores", "x");
+  EXPECT_NE(value_of(score(whole.map, masked, {}, rng), "cc"),
+            value_of(score(whole.map, zero, {}, rng), "cc"));
+}
+
+TEST(UnseenPoints, WhereThereIsNothingElseEveryMetricIsUndefined) {
+  const GroundTruth truth{{kUnseen, kUnseen}, {{0}}};
+  const Scores scores = score({1, 2}, truth, all_metrics(), Rng(1, "", ""));
+  EXPECT_THAT(scores.values, Each(IsNan()));
+  EXPECT_EQ(scores.n_points, 0);
+  EXPECT_EQ(scores.n_picks, 0);
+}
+
+TEST(SeenPoints, AreThoseWithAValue) {
+  EXPECT_EQ(seen_points(ScalarField{0, -1, 2}), std::nullopt);
+  EXPECT_EQ(seen_points(ScalarField{}), std::nullopt);
+  EXPECT_THAT(*seen_points(ScalarField{kUnseen, 5, kUnseen, 0}), ElementsAre(1, 3));
+  EXPECT_THAT(values_at(ScalarField{7, 8, 9}, std::vector<std::int32_t>{0, 2}), ElementsAre(7, 9));
+}
+
+TEST(MeanOfSeen, IsOverThoseThatSawThePoint) {
+  const std::vector<ScalarField> maps = {{1, kUnseen, kUnseen}, {100, 100, 100}, {3, 4, kUnseen}};
+  for (const std::vector<std::size_t>& members : {std::vector<std::size_t>{0, 2}, {2, 0}})
+    EXPECT_THAT(mean_of_seen(maps, members), ElementsAre(2, 4, IsNan()));
+}
+
+}  // namespace
+}  // namespace salbench
