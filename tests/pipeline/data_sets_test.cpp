@@ -17,13 +17,11 @@ namespace salbench {
 namespace {
 
 using testing::AllOf;
-using testing::DoubleEq;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsNan;
-using testing::Pointwise;
 using testing::SizeIs;
 using testing::StartsWith;
 using testing::ThrowsMessage;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What runs at the same time, and where.
 #include <chrono>
-#include <functional>
 #include <map>
 #include <thread>
 

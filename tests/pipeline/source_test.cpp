@@ -15,7 +15,6 @@
 namespace salbench {
 namespace {
 
-using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
