@@ -85,12 +85,13 @@ class Neighbourhoods {
     return these;
   }
 
-  // How many of the neighbours of i are other points; at least 1, because it divides.
-  double others(std::int32_t i, std::span<const Neighbour> found) const {
+  double radius() const { return support_.radius; }
+  // How many of the neighbours of i are other points.
+  std::size_t others(std::int32_t i, std::span<const Neighbour> found) const {
     const bool itself =
         tree_.size() == points_.size() ||
         std::any_of(found.begin(), found.end(), [&](const Neighbour& n) { return n.index == i; });
-    return std::max(static_cast<double>(found.size()) - (itself ? 1 : 0), 1.0);
+    return found.size() - (itself ? 1 : 0);
   }
 
  private:
@@ -112,37 +113,43 @@ class Neighbourhoods {
   std::vector<Kept> kept_at_;  // of a radius, by point
 };
 
+// The points that are not among these, which ascend.
+std::vector<std::int32_t> others_than(const std::vector<std::int32_t>& these, std::size_t n) {
+  std::vector<std::int32_t> others;
+  others.reserve(n - these.size());
+  auto next = these.begin();
+  for (std::size_t i = 0; i < n; ++i)
+    if (next != these.end() && *next == static_cast<std::int32_t>(i))
+      ++next;
+    else
+      others.push_back(static_cast<std::int32_t>(i));
+  return others;
+}
+
 // The SPFHs of some points.
 class SimplifiedHistograms {
  public:
   SimplifiedHistograms(std::span<const Vec3> points, std::span<const Vec3> normals,
-                       const std::vector<std::int32_t>& requested, Neighbourhoods& neighbourhoods, bool swap)
+                       const std::vector<std::int32_t>& requested, const Neighbourhoods& neighbourhoods,
+                       bool swap)
       : points_(points), normals_(normals), row_of_(points.size(), kNone), swap_(swap) {
     for (std::size_t row = 0; row < requested.size(); ++row)
       row_of_[static_cast<std::size_t>(requested[row])] = row;
-    std::vector<Votes> votes(requested.size());
-    std::vector<double> others(requested.size());
-    // Looking at each pair once needs one thread: it writes to both ends.
-    const bool once = neighbourhoods.mutual() && requested.size() <= kOneThread;
-    parallel_ranges(requested.size(), once ? kOneThread : kPointGrain,
-                    [&](std::size_t first, std::size_t last) {
-                      Neighbourhoods::Found memory;
-                      for (std::size_t row = first; row < last; ++row) {
-                        const auto found = once ? neighbourhoods.unordered_kept(requested[row], memory)
-                                                : neighbourhoods.unordered(requested[row], memory);
-                        others[row] = neighbourhoods.others(requested[row], found);
-                        vote(requested[row], found, once, votes);
-                      }
-                    });
+    votes_.resize(requested.size());
+    neighbours_.resize(requested.size());
+    if (neighbourhoods.mutual() && requested.size() <= kOneThread)
+      vote_by_pairs(requested, neighbourhoods.radius());
+    else
+      vote_by_points(requested, neighbourhoods);
     rows_.reserve(requested.size() * kBins);
     for (std::size_t row = 0; row < requested.size(); ++row)
-      for (const std::uint32_t count : votes[row])
-        rows_.push_back(static_cast<float>(static_cast<double>(count) / others[row]));
+      for (const std::uint32_t count : votes_[row])
+        rows_.push_back(static_cast<float>(static_cast<double>(count) /
+                                           static_cast<double>(std::max<std::size_t>(neighbours_[row], 1))));
+    votes_ = {};
   }
 
-  const float* of(std::int32_t point) const {
-    return rows_.data() + row_of_[static_cast<std::size_t>(point)] * kBins;
-  }
+  const float* of(std::int32_t point) const { return rows_.data() + row_of(point) * kBins; }
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -150,42 +157,68 @@ class SimplifiedHistograms {
 
   using Votes = std::array<std::uint32_t, kBins>;
 
-  // With `once`, a pair of requested points is looked at from the lower index, for both.
-  void vote(std::int32_t i, std::span<const Neighbour> found, bool once, std::vector<Votes>& votes) const {
+  void vote_by_points(const std::vector<std::int32_t>& requested, const Neighbourhoods& neighbourhoods) {
+    parallel_ranges(requested.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
+      Neighbourhoods::Found memory;
+      for (std::size_t row = first; row < last; ++row) {
+        const auto found = neighbourhoods.unordered(requested[row], memory);
+        neighbours_[row] = neighbourhoods.others(requested[row], found);
+        vote(requested[row], found, false);
+      }
+    });
+  }
+
+  // Each pair of requested points is looked at once, for both: by one thread, because it writes to both.
+  void vote_by_pairs(const std::vector<std::int32_t>& requested, double radius) {
+    KdTree(points_, requested).pairs_within(radius, [&](std::int32_t i, std::span<const Neighbour> found) {
+      neighbours_[row_of(i)] += found.size();
+      for (const Neighbour& neighbour : found) ++neighbours_[row_of(neighbour.index)];
+      vote(i, found, true);
+    });
+    if (requested.size() == points_.size()) return;
+    const KdTree others(points_, others_than(requested, points_.size()));
+    Neighbourhoods::Found found;
+    for (const std::int32_t i : requested) {
+      others.within_unordered(at(points_, i), radius, found);
+      neighbours_[row_of(i)] += found.size();
+      vote(i, found, false);
+    }
+  }
+
+  // For the point itself, or for both ends of each pair.
+  void vote(std::int32_t i, std::span<const Neighbour> found, bool both) {
     Votes own{};
     std::array<std::int32_t, kPairs> others;
     std::size_t count = 0;
     const auto look = [&] {
-      look_at_pairs(i, std::span(others).first(count), once, own, votes);
+      look_at_pairs(i, std::span(others).first(count), both, own);
       count = 0;
     };
     for (const Neighbour& neighbour : found) {
-      if (neighbour.distance_squared == 0 || (once && neighbour.index < i && is_requested(neighbour.index)))
-        continue;
+      if (neighbour.distance_squared == 0) continue;
       others[count++] = neighbour.index;
       if (count == kPairs) look();
     }
     if (count > 0) look();
-    Votes& sum = votes[row_of_[static_cast<std::size_t>(i)]];
+    Votes& sum = votes_[row_of(i)];
     for (std::size_t b = 0; b < kBins; ++b) sum[b] += own[b];
   }
 
-  void look_at_pairs(std::int32_t i, std::span<const std::int32_t> others, bool once, Votes& own,
-                     std::vector<Votes>& votes) const {
+  void look_at_pairs(std::int32_t i, std::span<const std::int32_t> others, bool both, Votes& own) {
     std::array<PairBins, kPairs> bins;
     pair_bins(at(points_, i), at(normals_, i), points_, normals_, others, swap_, bins);
     for (std::size_t pair = 0; pair < others.size(); ++pair) {
       add(bins[pair], own);
+      if (!both) continue;
       const std::int32_t j = others[pair];
-      if (!once || !is_requested(j)) continue;
       add(bins[pair].both_ways
               ? bins[pair]
               : pair_bins(at(points_, j), at(normals_, j), at(points_, i), at(normals_, i), swap_),
-          votes[row_of_[static_cast<std::size_t>(j)]]);
+          votes_[row_of(j)]);
     }
   }
 
-  bool is_requested(std::int32_t point) const { return row_of_[static_cast<std::size_t>(point)] != kNone; }
+  std::size_t row_of(std::int32_t point) const { return row_of_[static_cast<std::size_t>(point)]; }
 
   static void add(const PairBins& bins, Votes& votes) {
     ++votes[bins.theta];
@@ -195,7 +228,9 @@ class SimplifiedHistograms {
 
   std::span<const Vec3> points_, normals_;
   std::vector<std::size_t> row_of_;
-  std::vector<float> rows_;  // shares of votes
+  std::vector<Votes> votes_;
+  std::vector<std::size_t> neighbours_;  // other points that voted
+  std::vector<float> rows_;              // shares of votes
   bool swap_;
 };
 
@@ -219,13 +254,14 @@ void combine_published(std::span<const Neighbour> found, const SimplifiedHistogr
   }
 }
 
-void combine_text(std::int32_t point, double unit, std::span<const Neighbour> found, double others,
+void combine_text(std::int32_t point, double unit, std::span<const Neighbour> found, std::size_t others,
                   const SimplifiedHistograms& spfh, Filled& sum) {
   const float* own = spfh.of(point);
+  const auto count = static_cast<double>(std::max<std::size_t>(others, 1));
   for (std::size_t b = 0; b < kBins; ++b) sum[b] = static_cast<double>(own[b]);
   for (const Neighbour& n : found) {
     if (n.distance_squared == 0) continue;
-    const double weight = std::min(unit / std::sqrt(n.distance_squared), kMaxWeight) / others;
+    const double weight = std::min(unit / std::sqrt(n.distance_squared), kMaxWeight) / count;
     const float* row = spfh.of(n.index);
     for (std::size_t b = 0; b < kBins; ++b) sum[b] += weight * static_cast<double>(row[b]);
   }

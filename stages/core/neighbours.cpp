@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <limits>
 #include <utility>
 
 #include <nanoflann.hpp>
 
 #include "stages/core/check.h"
+#include "stages/core/parallel.h"
 
 namespace salbench {
 namespace {
@@ -39,6 +41,7 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<do
 
 constexpr std::size_t kLeaf = 12;  // points at most; decides which points are an even sample
 constexpr std::size_t kMany = 64;
+constexpr std::size_t kLeafGrain = kPointGrain / kLeaf;
 
 // By more than the rounding of a box's distance, even if the limit is 0: what lies exactly there is found.
 double widened(double limit) { return limit * (1 + 1e-12) + std::numeric_limits<double>::min(); }
@@ -137,21 +140,6 @@ class WithinSet {
   double radius_squared_;
 };
 
-class WithinCounts {
- public:
-  explicit WithinCounts(std::array<double, 2> radii_squared) : radii_squared_(radii_squared) {}
-  double limit() const { return radii_squared_[1]; }
-  void take(const Leaf& leaf) {
-    for (std::size_t i = 0; i < leaf.count; ++i)
-      for (std::size_t r = 0; r < 2; ++r) counts[r] += leaf.distance_squared[i] <= radii_squared_[r];
-  }
-
-  std::array<std::size_t, 2> counts = {0, 0};
-
- private:
-  std::array<double, 2> radii_squared_;  // ascending
-};
-
 }  // namespace
 
 struct KdTree::Impl {
@@ -159,6 +147,12 @@ struct KdTree::Impl {
   Tree tree;
   std::vector<std::int32_t> index;  // of the points, in the tree's order
   std::vector<double> x, y, z;      // of these, and of one leaf more, which is read and not used
+
+  // The points of a leaf, by their places in the tree's order.
+  struct Range {
+    std::size_t first, last;
+  };
+  std::vector<Range> leaves;
 
   explicit Impl(Adaptor of)
       : adaptor(std::move(of)), tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)) {
@@ -170,6 +164,7 @@ struct KdTree::Impl {
       z.push_back(point.z());
     }
     for (auto* coordinates : {&x, &y, &z}) coordinates->resize(size() + kLeaf);
+    if (size() > 0) add_leaves(*tree.root_node, leaves);
   }
 
   std::size_t size() const { return index.size(); }
@@ -201,6 +196,98 @@ struct KdTree::Impl {
     descend(set, query, in_first ? *node.child2 : *node.child1, least_beyond, outside);
     outside[axis] = before;
   }
+
+  struct Box {
+    Vec3 low, high;
+  };
+
+  static void add_leaves(const Tree::Node& node, std::vector<Range>& all) {
+    if (node.child1 == nullptr) {
+      all.push_back({node.node_type.lr.left, node.node_type.lr.right});
+      return;
+    }
+    add_leaves(*node.child1, all);
+    add_leaves(*node.child2, all);
+  }
+
+  Box box_of(const Range& range) const {
+    Box box{point(range.first), point(range.first)};
+    for (std::size_t i = range.first + 1; i < range.last; ++i) {
+      box.low = box.low.cwiseMin(point(i));
+      box.high = box.high.cwiseMax(point(i));
+    }
+    return box;
+  }
+
+  // Adds the leaves that start at `first` or later and come that near to the box. `least` and `outside` as in
+  // descend.
+  void leaves_near(const Box& box, double limit, const Tree::Node& node, double least, Vec3& outside,
+                   std::size_t first, std::vector<Range>& near) const {
+    if (node.child1 == nullptr) {
+      if (node.node_type.lr.left >= first) near.push_back({node.node_type.lr.left, node.node_type.lr.right});
+      return;
+    }
+    const auto& [axis, low, high] = node.node_type.sub;
+    const std::array beyond = {std::max(box.low[axis] - low, 0.0), std::max(high - box.high[axis], 0.0)};
+    const std::array children = {node.child1, node.child2};
+    for (std::size_t child = 0; child < 2; ++child) {
+      const double across = std::max(beyond[child] * beyond[child], outside[axis]);
+      const double least_there = least + across - outside[axis];
+      if (least_there > limit) continue;
+      const double before = std::exchange(outside[axis], across);
+      leaves_near(box, limit, *children[child], least_there, outside, first, near);
+      outside[axis] = before;
+    }
+  }
+
+  // Calls body(i, near) for each point of a leaf, by its place: `near` holds all later points within the
+  // limit, and others. The tree is walked once for the points of the leaf.
+  template <class Body>
+  void for_each_with_later(const Range& own, double limit, std::vector<Range>& near, const Body& body) const {
+    near.clear();
+    Vec3 outside = Vec3::Zero();
+    leaves_near(box_of(own), widened(limit), *tree.root_node, 0, outside, own.first, near);
+    for (std::size_t i = own.first; i < own.last; ++i) {
+      near.front().first = i + 1;  // the points' own leaf
+      body(i, near);
+    }
+  }
+
+  void pairs_within(double radius, const VisitPairs& visit) const {
+    const double limit = radius * radius;
+    std::vector<Range> near;
+    std::vector<Neighbour> found;
+    for (const Range& own : leaves)
+      for_each_with_later(own, limit, near, [&](std::size_t i, const std::vector<Range>& later) {
+        WithinSet set(found, limit);
+        for (const Range& range : later) set.take(leaf(range.first, range.last, point(i)));
+        set.finish();
+        visit(index[i], found);
+      });
+  }
+
+  std::array<std::size_t, 2> count_pairs_within(double small, double large) const {
+    const std::array limits = {small * small, large * large};
+    std::array<std::atomic<std::size_t>, 2> pairs = {0, 0};
+    parallel_ranges(leaves.size(), kLeafGrain, [&](std::size_t first, std::size_t last) {
+      std::array<std::size_t, 2> some = {0, 0};
+      std::vector<Range> near;
+      for (std::size_t own = first; own < last; ++own)
+        for_each_with_later(leaves[own], limits[1], near,
+                            [&](std::size_t i, const std::vector<Range>& later) {
+                              for (const Range& range : later) {
+                                const Leaf there = leaf(range.first, range.last, point(i));
+                                for (std::size_t j = 0; j < there.count; ++j)
+                                  for (std::size_t r = 0; r < 2; ++r)
+                                    some[r] += there.distance_squared[j] <= limits[r];
+                              }
+                            });
+      for (std::size_t r = 0; r < 2; ++r) pairs[r] += some[r];
+    });
+    return {pairs[0], pairs[1]};
+  }
+
+  Vec3 point(std::size_t place) const { return {x[place], y[place], z[place]}; }
 
   Leaf leaf(std::size_t first, std::size_t last, const Vec3& query) const {
     Leaf leaf;
@@ -255,10 +342,12 @@ void KdTree::within_unordered(const Vec3& query, double radius, std::vector<Neig
   set.finish();
 }
 
-std::array<std::size_t, 2> KdTree::count_within(const Vec3& query, double small, double large) const {
-  WithinCounts set({small * small, large * large});
-  impl_->search(set, query);
-  return set.counts;
+void KdTree::pairs_within(double radius, const VisitPairs& visit) const {
+  impl_->pairs_within(radius, visit);
+}
+
+std::array<std::size_t, 2> KdTree::count_pairs_within(double small, double large) const {
+  return impl_->count_pairs_within(small, large);
 }
 
 // Points beside each other in the tree's order are near each other in space.

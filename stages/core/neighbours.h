@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -42,8 +43,13 @@ class KdTree {
   // All points with distance <= radius.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
   void within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
-  // How many there are, for two radii in one search; small <= large.
-  std::array<std::size_t, 2> count_within(const Vec3& query, double small, double large) const;
+
+  // Calls visit(i, found) once for each point i. `found`, valid during the call and in no order, are the
+  // points within the radius around i that come later in an order of the tree: each pair comes once.
+  using VisitPairs = std::function<void(std::int32_t i, std::span<const Neighbour> found)>;
+  void pairs_within(double radius, const VisitPairs& visit) const;
+  // How many pairs there are, for two radii in one search; small <= large.
+  std::array<std::size_t, 2> count_pairs_within(double small, double large) const;
 
   std::size_t size() const;  // points that can be found
 

@@ -2,7 +2,6 @@
 #include "stages/core/support.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/core/parallel.h"
 
 namespace salbench {
 
@@ -19,17 +17,11 @@ std::array<double, 2> mean_neighbour_counts(std::span<const Vec3> points, const 
                                             double large) {
   CHECK_EQ(points.size(), tree.size());
   CHECK_GT(points.size(), 0U);
-  std::array<std::atomic<std::size_t>, 2> others = {0, 0};
-  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
-    std::array<std::size_t, 2> some = {0, 0};
-    for (std::size_t i = first; i < last; ++i) {
-      const auto within = tree.count_within(points[i], small, large);
-      for (std::size_t r = 0; r < 2; ++r) some[r] += within[r] - 1;
-    }
-    for (std::size_t r = 0; r < 2; ++r) others[r] += some[r];
-  });
-  const auto n = static_cast<double>(points.size());
-  return {static_cast<double>(others[0].load()) / n, static_cast<double>(others[1].load()) / n};
+  const auto pairs = tree.count_pairs_within(small, large);
+  const auto mean = [&](std::size_t count) {
+    return static_cast<double>(2 * count) / static_cast<double>(points.size());
+  };
+  return {mean(pairs[0]), mean(pairs[1])};
 }
 
 namespace {

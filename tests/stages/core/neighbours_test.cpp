@@ -103,6 +103,51 @@ TEST(KdTree, WithinTakesTheBoundary) {
   EXPECT_EQ(indices(found), (std::vector<std::int32_t>{1, 0, 2}));
 }
 
+TEST(KdTree, PairsWithinARadiusComeOnceEach) {
+  std::vector<std::vector<Vec3>> clouds = {shapes::random_cloud(700, 5), {}, {}, {}};
+  for (int i = 0; i < 343; ++i)
+    clouds[1].emplace_back(i / 49, i / 7 % 7, i % 7);  // many exactly 1 or 2 apart
+  clouds[2].assign(40, Vec3(1, 2, 3));                 // more than a leaf holds
+  for (const auto& cloud : clouds)
+    for (const double radius : {0.0, 0.3, 1.0, 2.0, 100.0}) {
+      std::vector<std::pair<std::int32_t, std::int32_t>> pairs, expected;
+      for (std::int32_t i = 0; i < static_cast<std::int32_t>(cloud.size()); ++i)
+        for (const Neighbour& n : all_sorted(cloud, cloud[static_cast<std::size_t>(i)]))
+          if (n.index > i && n.distance_squared <= radius * radius) expected.emplace_back(i, n.index);
+      std::vector<std::int32_t> visited;
+      KdTree(cloud).pairs_within(radius, [&](std::int32_t i, std::span<const Neighbour> found) {
+        visited.push_back(i);
+        for (const Neighbour& n : found) {
+          pairs.push_back(std::minmax(i, n.index));
+          EXPECT_EQ(
+              n.distance_squared,
+              (cloud[static_cast<std::size_t>(i)] - cloud[static_cast<std::size_t>(n.index)]).squaredNorm());
+        }
+      });
+      std::sort(pairs.begin(), pairs.end());
+      std::sort(expected.begin(), expected.end());
+      EXPECT_EQ(pairs, expected) << cloud.size() << " points, radius " << radius;
+      EXPECT_EQ(KdTree(cloud).count_pairs_within(radius / 3, radius)[1], expected.size());
+      EXPECT_EQ(KdTree(cloud).count_pairs_within(radius, 3 * radius)[0], expected.size());
+      std::sort(visited.begin(), visited.end());
+      for (std::size_t i = 0; i < visited.size(); ++i) EXPECT_EQ(visited[i], static_cast<std::int32_t>(i));
+      EXPECT_EQ(visited.size(), cloud.size());
+    }
+}
+
+TEST(KdTree, PairsOfSomePointsAreOfTheseAlone) {
+  const std::vector<Vec3> cloud = shapes::random_cloud(300, 6);
+  std::vector<std::int32_t> even;
+  for (std::int32_t i = 0; i < 300; i += 2) even.push_back(i);
+  std::size_t pairs = 0;
+  KdTree(cloud, even).pairs_within(100, [&](std::int32_t i, std::span<const Neighbour> found) {
+    EXPECT_EQ(i % 2, 0);
+    for (const Neighbour& n : found) EXPECT_EQ(n.index % 2, 0);
+    pairs += found.size();
+  });
+  EXPECT_EQ(pairs, 150U * 149 / 2);
+}
+
 TEST(KdTree, AsksForMoreThanThereIs) {
   const std::vector<Vec3> two = {{0, 0, 0}, {1, 0, 0}};
   std::vector<Neighbour> found;
