@@ -6,6 +6,8 @@
 #include <set>
 #include <shared_mutex>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -16,6 +18,7 @@
 #include "io/file.h"
 #include "io/hdf5_file.h"
 #include "stages/core/errors.h"
+#include "stages/core/parallel.h"
 
 namespace salbench {
 namespace {
@@ -69,8 +72,7 @@ struct FolderStore::Impl {
     return found == entries->second.by_key.end() ? nullptr : &found->second;
   }
 
-  void insert(const std::string& stage, const ArtefactName& name) {
-    StageEntries& entries = stages[stage];
+  static void insert(const ArtefactName& name, StageEntries& entries) {
     const auto [known, fresh] = entries.by_key.try_emplace(name.key, name);
     // Two contents under one key: some stage is not deterministic. Every machine takes the smaller digest.
     if (!fresh && name.content < known->second.content) known->second = name;
@@ -86,10 +88,16 @@ struct FolderStore::Impl {
     return size == name.size;
   }
 
+  // Most of the time of a run with nothing to do: several stages at a time.
   void list_all() {
-    for (const std::string& stage : list_stages(folder))
+    std::vector<std::pair<const std::string, StageEntries>*> listed;
+    for (const std::string& stage : list_stages(folder)) listed.push_back(&*stages.try_emplace(stage).first);
+    parallel_ranges(listed.size(), 1, [&](std::size_t i, std::size_t) {
+      auto& [stage, entries] = *listed[i];
       for (const ArtefactFile& file : list_stage(folder, stage).artefacts)
-        if (is_complete(file.path, file.name)) insert(stage, file.name);
+        if (is_complete(file.path, file.name)) insert(file.name, entries);
+    });
+    std::erase_if(stages, [](const auto& stage) { return stage.second.by_key.empty(); });
   }
 
   // A file that is gone (another process collects, or quarantines the same file) needs no warning.
@@ -170,7 +178,7 @@ std::optional<Digest> FolderStore::refresh_and_find(std::string_view stage, cons
   for (const ArtefactName& name : find_artefacts(impl_->folder, stage, key)) {
     if (!impl_->is_complete(impl_->path(stage, name), name)) continue;
     const std::unique_lock lock(impl_->mutex);
-    impl_->insert(std::string(stage), name);
+    Impl::insert(name, impl_->stages[std::string(stage)]);
   }
   return find(stage, key);
 }
@@ -204,7 +212,7 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   file.append(image);
   file.finish(target);
   const std::unique_lock lock(impl_->mutex);
-  impl_->insert(recipe.stage, name);
+  Impl::insert(name, impl_->stages[recipe.stage]);
   return content;
 }
 
