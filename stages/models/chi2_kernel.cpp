@@ -9,7 +9,7 @@
 #include <cstring>
 #include <numeric>
 
-#include <emmintrin.h>
+#include <immintrin.h>
 
 namespace salbench::chi2_kernel {
 namespace {
@@ -75,36 +75,62 @@ template <std::size_t width>
 
 template <std::size_t width>
 [[gnu::always_inline]] inline std::size_t count_values(float limit, const float* values, std::size_t count) {
-  typename Vector<width>::Integers counts = {};
-  for (std::size_t i = 0; i < count; i += width) {
-    typename Vector<width>::Floats lanes;
-    load(values + i, lanes);
-    counts -= lanes <= limit;
-  }
+  // A counter for each part of a group: one alone would be waited for.
+  constexpr std::size_t kParts = kLanes / width;
+  std::array<typename Vector<width>::Integers, kParts> counts = {};
+  for (std::size_t i = 0; i < count; i += kLanes)
+    for (std::size_t part = 0; part < kParts; ++part) {
+      typename Vector<width>::Floats lanes;
+      load(values + i + part * width, lanes);
+      counts[part] -= lanes <= limit;
+    }
   std::size_t sum = 0;
-  for (std::size_t lane = 0; lane < width; ++lane) sum += static_cast<std::size_t>(counts[lane]);
+  for (const auto& part : counts)
+    for (std::size_t lane = 0; lane < width; ++lane) sum += static_cast<std::size_t>(part[lane]);
   return sum;
 }
 
 // Bit i is set if low < values[i] <= high; there are 16 values.
-std::uint32_t mask_between(__m128 low, __m128 high, const float* values) {
+std::uint32_t mask_between(float low, float high, const float* values) {
+  const __m128 lows = _mm_set1_ps(low), highs = _mm_set1_ps(high);
   const auto compared = [&](std::size_t i) {
     const __m128 four = _mm_loadu_ps(values + i);
-    return _mm_castps_si128(_mm_and_ps(_mm_cmpgt_ps(four, low), _mm_cmple_ps(four, high)));
+    return _mm_castps_si128(_mm_and_ps(_mm_cmpgt_ps(four, lows), _mm_cmple_ps(four, highs)));
   };
   const __m128i lower = _mm_packs_epi32(compared(0), compared(4));
   const __m128i upper = _mm_packs_epi32(compared(8), compared(12));
   return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(lower, upper)));
 }
 
-std::size_t places_between(float low, float high, const float* values, std::size_t count,
-                           std::int32_t* places) {
-  const __m128 lows = _mm_set1_ps(low), highs = _mm_set1_ps(high);
+[[gnu::target("avx2")]] std::uint32_t mask_between_avx2(float low, float high, const float* values) {
+  const __m256 lows = _mm256_set1_ps(low), highs = _mm256_set1_ps(high);
+  std::uint32_t mask = 0;
+  for (const int half : {0, 8}) {
+    const __m256 eight = _mm256_loadu_ps(values + half);
+    const __m256 between =
+        _mm256_and_ps(_mm256_cmp_ps(eight, lows, _CMP_GT_OQ), _mm256_cmp_ps(eight, highs, _CMP_LE_OQ));
+    mask |= static_cast<std::uint32_t>(_mm256_movemask_ps(between)) << half;
+  }
+  return mask;
+}
+
+template <auto mask_between>
+[[gnu::always_inline]] inline std::size_t find_between(float low, float high, const float* values,
+                                                       std::size_t count, std::int32_t* places) {
   std::size_t found = 0;
-  for (std::size_t i = 0; i < count; i += 16)
-    for (std::uint32_t mask = mask_between(lows, highs, values + i); mask != 0; mask &= mask - 1)
+  for (std::size_t i = 0; i < count; i += kLanes)
+    for (std::uint32_t mask = mask_between(low, high, values + i); mask != 0; mask &= mask - 1)
       places[found++] = static_cast<std::int32_t>(i) + std::countr_zero(mask);
   return found;
+}
+
+std::size_t places_baseline(float low, float high, const float* values, std::size_t count,
+                            std::int32_t* places) {
+  return find_between<mask_between>(low, high, values, count, places);
+}
+[[gnu::target("avx2")]] std::size_t places_avx2(float low, float high, const float* values, std::size_t count,
+                                                std::int32_t* places) {
+  return find_between<mask_between_avx2>(low, high, values, count, places);
 }
 
 // log(1 + d) = 2 artanh(t), t = d / (2 + d) <= 1/2: its series to the precision of floats.
@@ -196,9 +222,9 @@ float weight_of(Weight weight, float distance) {
 
 const Kernel& kernel(Instructions instructions) {
   static constexpr std::array kernels = {
-      Kernel{distances_baseline, bounds_baseline, count_baseline, places_between, weighted_sum_baseline},
-      Kernel{distances_avx2, bounds_avx2, count_avx2, places_between, weighted_sum_avx2},
-      Kernel{distances_avx512, bounds_avx512, count_avx512, places_between, weighted_sum_avx512}};
+      Kernel{distances_baseline, bounds_baseline, count_baseline, places_baseline, weighted_sum_baseline},
+      Kernel{distances_avx2, bounds_avx2, count_avx2, places_avx2, weighted_sum_avx2},
+      Kernel{distances_avx512, bounds_avx512, count_avx512, places_avx2, weighted_sum_avx512}};
   return kernels[static_cast<std::size_t>(instructions)];
 }
 
