@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -68,12 +69,10 @@ Camera camera_of_view(int view, const ScanOptions& options) {
   return camera;
 }
 
-// Number of rays on each side of the central one.
-int half_grid(const std::vector<Vec3>& local_vertices, const Mesh& mesh, const ScanOptions& options) {
+// Number of rays on each side of the central one, for corners of faces.
+int half_grid(std::span<const Vec3> local_corners, const ScanOptions& options) {
   double radius = 0;
-  for (const Triangle& face : mesh.faces)
-    for (const std::int32_t v : face)
-      radius = std::max(radius, local_vertices[static_cast<std::size_t>(v)].norm());
+  for (const Vec3& corner : local_corners) radius = std::max(radius, corner.norm());
   const double half_field = radius < options.distance
                                 ? std::min(std::asin(radius / options.distance), kMaxHalfField)
                                 : kMaxHalfField;
@@ -87,20 +86,17 @@ struct Window {
 };
 
 // The part of the grid that the mesh is seen in: of the whole one, many rays pass it by.
-Window window_of(const std::vector<Vec3>& local_vertices, const Mesh& mesh, const Camera& camera,
-                 const ScanOptions& options) {
-  const int half = half_grid(local_vertices, mesh, options);
+Window window_of(std::span<const Vec3> local_corners, const Camera& camera, const ScanOptions& options) {
+  const int half = half_grid(local_corners, options);
   const Window whole{-half, half, -half, half};
   const double step = std::tan(options.step_degrees * kRadiansPerDegree);
   Eigen::AlignedBox2d seen;
-  for (const Triangle& face : mesh.faces)
-    for (const std::int32_t v : face) {
-      const Vec3 from_camera = local_vertices[static_cast<std::size_t>(v)] - camera.position;
-      const double depth = from_camera.dot(camera.forward);
-      if (!(depth > 1e-3 * options.distance)) return whole;  // beside the camera, or behind it
-      seen.extend(Eigen::Vector2d(from_camera.dot(camera.right), from_camera.dot(camera.up)) /
-                  (depth * step));
-    }
+  for (const Vec3& corner : local_corners) {
+    const Vec3 from_camera = corner - camera.position;
+    const double depth = from_camera.dot(camera.forward);
+    if (!(depth > 1e-3 * options.distance)) return whole;  // beside the camera, or behind it
+    seen.extend(Eigen::Vector2d(from_camera.dot(camera.right), from_camera.dot(camera.up)) / (depth * step));
+  }
   // One ray more on each side: Embree sees a little beyond edges.
   const auto first = [&](double edge) {
     return std::max<double>(-half, std::floor(edge - options.phase) - 1);
@@ -116,11 +112,17 @@ struct Traced {
   Mesh mesh;
   LocalFrame frame;
   std::vector<Vec3> local_vertices;
+  std::vector<Vec3> local_corners;  // the vertices that are corners of faces, once each
   embree::Scene scene;
 
   explicit Traced(const Mesh& of) : mesh(of), frame(local_frame(of)) {
     local_vertices.reserve(mesh.vertices.size());
     for (const Vec3& p : mesh.vertices) local_vertices.push_back(frame.local_from_mesh(p));
+    std::vector<bool> is_corner(mesh.vertices.size(), false);
+    for (const Triangle& face : mesh.faces)
+      for (const std::int32_t v : face) is_corner[static_cast<std::size_t>(v)] = true;
+    for (std::size_t v = 0; v < is_corner.size(); ++v)
+      if (is_corner[v]) local_corners.push_back(local_vertices[v]);
     scene = embree::scene_of(embree::triangles(local_vertices, mesh.faces),
                              RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   }
@@ -144,7 +146,7 @@ struct NearestHit : RTCIntersectContext {
 
   double depth = std::numeric_limits<double>::infinity();  // of the hit, along the direction
   std::uint32_t face = RTC_INVALID_GEOMETRY_ID;
-  Vec3 point_in_mesh = Vec3::Zero();
+  Vec3 weights = Vec3::Zero();  // of the face's corners
 
   // Embree found the face in float. Weights that are negative in double come from that rounding: clamping
   // keeps the point on the face. A face seen exactly edge-on is left to its neighbours.
@@ -152,22 +154,27 @@ struct NearestHit : RTCIntersectContext {
     const Triangle& corners = mesh.faces[candidate];
     std::array<Vec3, 3> v;
     for (std::size_t k = 0; k < 3; ++k) v[k] = local_vertices[static_cast<std::size_t>(corners[k])] - origin;
-    Vec3 weights(direction.dot(v[1].cross(v[2])), direction.dot(v[2].cross(v[0])),
-                 direction.dot(v[0].cross(v[1])));
-    if (weights.sum() < 0) weights = -weights;
-    weights = weights.cwiseMax(0.0);
-    const double sum = weights.sum();
+    Vec3 shares(direction.dot(v[1].cross(v[2])), direction.dot(v[2].cross(v[0])),
+                direction.dot(v[0].cross(v[1])));
+    if (shares.sum() < 0) shares = -shares;
+    shares = shares.cwiseMax(0.0);
+    const double sum = shares.sum();
     if (!(sum > 0)) return;
-    weights /= sum;
+    shares /= sum;
 
-    const double candidate_depth = direction.dot(weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2]);
+    const double candidate_depth = direction.dot(shares[0] * v[0] + shares[1] * v[1] + shares[2] * v[2]);
     if (candidate_depth > depth || (candidate_depth == depth && candidate > face)) return;
     depth = candidate_depth;
     face = candidate;
-    point_in_mesh.setZero();
+    weights = shares;
+  }
+
+  Vec3 point_in_mesh() const {
+    Vec3 point = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k)
-      point_in_mesh +=
-          weights[static_cast<Eigen::Index>(k)] * mesh.vertices[static_cast<std::size_t>(corners[k])];
+      point += weights[static_cast<Eigen::Index>(k)] *
+               mesh.vertices[static_cast<std::size_t>(mesh.faces[face][k])];
+    return point;
   }
 };
 
@@ -199,7 +206,7 @@ Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
   const Traced& from = traced(mesh);
   const Camera camera = camera_of_view(view, options);
   const double step = std::tan(options.step_degrees * kRadiansPerDegree);
-  const Window window = window_of(from.local_vertices, mesh, camera, options);
+  const Window window = window_of(from.local_corners, camera, options);
 
   Scan scan{{}, from.frame.mesh_from_local(camera.position)};
   for (int row = window.top; row >= window.bottom; --row) {
@@ -210,7 +217,7 @@ Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
       nearest.filter = offer_and_refuse;
       alignas(16) RTCRayHit ray = float_ray(nearest.origin, nearest.direction);
       rtcIntersect1(from.scene.get(), &nearest, &ray);
-      if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh);
+      if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh());
     }
   }
   if (scan.points.empty()) throw InputError(fmt::format("view {}: no ray meets the mesh", view));
