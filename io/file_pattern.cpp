@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
+#include "io/text_scanner.h"
 
 namespace salbench {
 namespace {
@@ -63,7 +64,6 @@ std::vector<std::string_view> names_of(std::string_view path) {
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_digits(std::string_view text) { return std::all_of(text.begin(), text.end(), is_digit); }
 
 bool is_literal(const Pieces& pieces) { return pieces.size() == 1 && pieces[0].kind == Kind::text; }
 

@@ -20,6 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/descriptor.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 
@@ -55,20 +56,6 @@ class Registered {
 
  private:
   std::atomic<pid_t>* slot_ = nullptr;
-};
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
 };
 
 [[noreturn]] void fail_for_lack(const char* of) {

@@ -109,6 +109,8 @@ void TextScanner::fail(std::string_view what) const {
   throw InputError(fmt::format("{}:{}: {}", name_, line_number_, what));
 }
 
+bool is_digits(std::string_view word) { return word.find_first_not_of("0123456789") == word.npos; }
+
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;

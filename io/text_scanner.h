@@ -57,6 +57,8 @@ class TextScanner {
   char line_end_;
 };
 
+bool is_digits(std::string_view word);  // 0 to 9, or nothing
+
 std::string_view without_byte_order_mark(std::string_view text);
 
 // "the file ends after 5 of 10 vertices: ..."
