@@ -95,7 +95,7 @@ class Columns {
     if (name.empty()) return 0;
     if (const std::size_t number = column_number(name); number > 0) return number - 1;
     if (!has_header_)
-      in.fail(fmt::format("no column {}: the first line is no header, but numbers", in_quotes(name)));
+      in.fail(fmt::format("no column {}: the first line has numbers, not names of columns", in_quotes(name)));
     const auto found = std::find(header.begin(), header.end(), name);
     if (found != header.end()) return static_cast<std::size_t>(found - header.begin());
     std::string known;
@@ -120,6 +120,11 @@ double value_of(const TextScanner& in, std::string_view cell, std::string_view u
 
 }  // namespace
 
+std::string wrong_count(std::size_t n_values, const Elements& expected) {
+  return fmt::format("the file has {} values, but the {} has {} {}", n_values, expected.shape, expected.n,
+                     expected.plural);
+}
+
 bool is_number(std::string_view word) { return number_in(word).has_value(); }
 
 bool is_same_number(double value, std::string_view word) {
@@ -129,7 +134,7 @@ bool is_same_number(double value, std::string_view word) {
 
 std::vector<ScalarField> parse_columns(std::string_view text, std::string_view name,
                                        const std::vector<std::string>& columns, const std::string& unseen,
-                                       const std::optional<ExpectedRows>& expected) {
+                                       const std::optional<Elements>& expected) {
   std::vector<ScalarField> values(columns.size());
   TextScanner in(text, name);
   if (in.next_filled_line()) {
@@ -142,9 +147,7 @@ std::vector<ScalarField> parse_columns(std::string_view text, std::string_view n
         values[c].push_back(value_of(in, chosen.cell(in, cells, c), c == 0 ? unseen : std::string_view()));
     }
   }
-  if (expected && values[0].size() != expected->n)
-    in.fail(fmt::format("the file has {} values, but the mesh has {} {}", values[0].size(), expected->n,
-                        expected->noun));
+  if (expected && values[0].size() != expected->n) in.fail(wrong_count(values[0].size(), *expected));
   if (values[0].empty()) in.fail("the file has no values");
   return values;
 }
