@@ -163,7 +163,7 @@ class TruthFinder {
 
   void note_files_without_mesh() {
     for (const auto& [name, file] : without_mesh_)
-      notes_.push_back(fmt::format("{}: ground truth without a mesh ({})", name, file));
+      notes_.push_back(fmt::format("{}: ground truth without a mesh or point cloud ({})", name, file));
   }
 
  private:

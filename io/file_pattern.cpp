@@ -145,7 +145,7 @@ std::vector<OpenFolder> folders_like(const fs::path& root, std::string_view patt
   return folders;
 }
 
-// What a name ends with after its last placeholder.
+// The text after the last placeholder of a name; may be empty.
 std::string_view ending(const Pieces& pieces) {
   return pieces.back().kind == Kind::text ? pieces.back().text : std::string_view();
 }
@@ -159,7 +159,7 @@ std::string wrong_with(std::string_view text) {
     for (const Piece& piece : pieces) {
       placeholders += piece.kind != Kind::text ? 1U : 0U;
       if (piece.kind == Kind::text && piece.text.find_first_of("{}") != piece.text.npos)
-        return "has braces around something else than item, participant, view or viewer";
+        return "has braces around something other than item, participant, view or viewer";
     }
     if (placeholders > kMostPerName)
       return fmt::format("has more than {} placeholders in one name", kMostPerName);
@@ -178,7 +178,7 @@ std::string wrong_with_mesh_pattern(std::string_view text) {
 
 std::string wrong_with_truth_pattern(std::string_view text, const std::vector<std::string_view>& parts) {
   if (const std::string wrong = wrong_with(text); !wrong.empty()) return wrong;
-  if (!contains(text, "{item}")) return "must have {item} where the name of the item stands";
+  if (!contains(text, "{item}")) return "must have {item} in place of the name of the item";
   std::size_t found = 0;
   for (const Placeholder& p : kPlaceholders) {
     if (p.kind != Kind::number && p.kind != Kind::part) continue;

@@ -107,7 +107,7 @@ std::size_t index_in(const std::string& text) {
 }
 
 const matvar_t& cell_of(matvar_t& variable, const std::vector<std::string>& cell) {
-  if (variable.class_type != MAT_C_CELL) throw InputError("it is no cell array, expected one");
+  if (variable.class_type != MAT_C_CELL) throw InputError("it is not a cell array: leave out `cell:`");
   const std::size_t row = index_in(cell[0]), column = index_in(cell[1]);
   if (variable.rank != 2 || row < 1 || column < 1 || row > variable.dims[0] || column > variable.dims[1])
     throw InputError(fmt::format("it has {} x {} cells, expected cell {}, {}", variable.dims[0],

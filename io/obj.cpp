@@ -26,7 +26,7 @@ class ObjParser {
         read_face();
     }
     check_forward_references();
-    if (mesh_.vertices.empty()) in_.fail("the file ends without a vertex (v): it is no OBJ file");
+    if (mesh_.vertices.empty()) in_.fail("the file ends without a vertex (v): expected an OBJ file");
     return std::move(mesh_);
   }
 

@@ -90,7 +90,7 @@ double number_at(const char* bytes, const Field& field) {
   }
 }
 
-// Where a field's values lie in a body: the first point's, and the bytes from one point to the next.
+// Location of a field in a body: its value for the first point, and the bytes from one point to the next.
 struct Column {
   const char* first = nullptr;
   std::int64_t step = 0;

@@ -315,9 +315,9 @@ TEST_F(BadData, AWrongColumnIsNamedWithThoseThatThereAre) {
   run(description(std::string(kMaps) + "values: {column: saliency}\n"));
   EXPECT_THAT(
       failures(),
-      ElementsAre(
-          place("maps/cat.csv") + ":1: no column \"saliency\": the header has \"id\", \"density\"",
-          place("maps/dog.csv") + ":1: no column \"saliency\": the first line is no header, but numbers"));
+      ElementsAre(place("maps/cat.csv") + ":1: no column \"saliency\": the header has \"id\", \"density\"",
+                  place("maps/dog.csv") +
+                      ":1: no column \"saliency\": the first line has numbers, not names of columns"));
   run(description(std::string(kMaps) + "values: {column: 2}\n"));
   EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(failures(),
