@@ -226,6 +226,12 @@ std::string lower_case_extension(const fs::path& path) {
   return extension;
 }
 
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) fail(path, "removed", error.value());
+}
+
 std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);

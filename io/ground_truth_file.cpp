@@ -81,6 +81,9 @@ std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view na
 TruthValues parse_truth_values(std::string_view bytes, std::string_view name, const ValuesFormat& format,
                                const Elements& elements) {
   if (format.per == ValuePer::point) {
+    if (is_npy(bytes) || is_mat(bytes))
+      throw InputError(
+          fmt::format("{}: values per point stand in columns beside x, y and z: write them as text", name));
     std::vector<std::string> columns = {format.column};
     columns.insert(columns.end(), format.points.begin(), format.points.end());
     return with_points(parse_columns(bytes, name, columns, format.unseen));

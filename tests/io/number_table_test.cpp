@@ -65,6 +65,9 @@ TEST(NumberTable, NamesFileLineAndWhatWasExpected) {
             "a.csv:3: the file has 2 values, but the mesh has 3 faces");
   EXPECT_EQ(error_of("s\n", "1"), "a.csv:1: the file has no values");
   EXPECT_EQ(error_of("inf\n", "1"), "a.csv:1: \"inf\" is not a finite number");
+  EXPECT_EQ(error_of("1\n1e999\n", "1"), "a.csv:2: \"1e999\" does not fit a double");
+  EXPECT_EQ(error_of("1\n1e-999\n", "1"), "a.csv:2: \"1e-999\" does not fit a double");
+  EXPECT_EQ(error_of("1\n+-1\n", "1"), "a.csv:2: \"+-1\" is not a number");
 }
 
 }  // namespace

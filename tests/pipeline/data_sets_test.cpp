@@ -17,6 +17,7 @@ namespace salbench {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -393,6 +394,9 @@ TEST_F(BadData, NumpyFilesAreReadToo) {
   run(description(std::string(kMaps) + "values: {unseen: -1}\n"));
   EXPECT_THAT(failures(), IsEmpty());
   EXPECT_THAT(truth(0).saliency, ElementsAre(1, IsNan(), 3, 4));
+  run(description(std::string(kMaps) + "values: {per: point, points: [x, y, z], column: s}\n"));
+  EXPECT_THAT(failures(), Contains(HasSubstr("cat.csv: values per point stand in columns beside x, y and z: "
+                                             "write them as text")));
 }
 
 }  // namespace
