@@ -158,7 +158,7 @@ std::string wrong_with(std::string_view text) {
     std::size_t placeholders = 0;
     for (const Piece& piece : pieces) {
       placeholders += piece.kind != Kind::text ? 1U : 0U;
-      if (piece.kind == Kind::text && piece.text.find_first_of("{}") != piece.text.npos)
+      if (piece.kind == Kind::text && piece.text.find_first_of("{}") != std::string_view::npos)
         return "has braces around something other than item, participant, view or viewer";
     }
     if (placeholders > kMostPerName)
@@ -167,7 +167,9 @@ std::string wrong_with(std::string_view text) {
   return {};
 }
 
-bool contains(std::string_view text, std::string_view part) { return text.find(part) != text.npos; }
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
 
 }  // namespace
 

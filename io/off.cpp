@@ -21,7 +21,7 @@ struct Counts {
 };
 
 bool is_count(std::string_view word) {
-  return !word.empty() && word.find_first_not_of("+-0123456789") == word.npos;
+  return !word.empty() && word.find_first_not_of("+-0123456789") == std::string_view::npos;
 }
 
 // Skips the header word, if there is one.
@@ -32,7 +32,7 @@ void skip_header_word(TextScanner& in) {
   // nOFF have other dimensions.
   constexpr std::array<std::string_view, 8> kPrefixes = {"", "C", "N", "CN", "ST", "STC", "STN", "STCN"};
   const std::size_t at = std::min(word.find("OFF"), word.find("off"));
-  if (at == word.npos)
+  if (at == std::string_view::npos)
     in.fail(
         fmt::format("{} is not an OFF header: the file is damaged, or has another format", in_quotes(word)));
   const std::string_view glued = word.substr(at + 3);

@@ -34,7 +34,7 @@ std::string described(const Format& format) {
   std::string lines = key_text(format);
   if (lines.empty()) return {};
   lines.pop_back();
-  for (std::size_t end = lines.find('\n'); end != lines.npos; end = lines.find('\n', end))
+  for (std::size_t end = lines.find('\n'); end != std::string::npos; end = lines.find('\n', end))
     lines.replace(end, 1, ", ");
   return fmt::format(" ({})", lines);
 }
