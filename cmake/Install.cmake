@@ -43,9 +43,9 @@ set(CPACK_PACKAGE_CONTACT "The salbench maintainers <maintainers@salbench.invali
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "benchmark of 3D saliency models")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "How well does a program predict which points of a shape people find important?
-salbench takes meshes, and simulated range scans of them, through normals,
-descriptors, saliency models, histogram matching and metrics, scores models
-against the published ones, and keeps every intermediate in a cache.
+salbench takes meshes, simulated range scans of them and point clouds through
+normals, descriptors, saliency models, histogram matching and metrics, scores
+models against the published ones, and keeps every intermediate in a cache.
 .
 The recommended packages are those of the report: figures and tables as pages
 that open from disk.")

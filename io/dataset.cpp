@@ -14,6 +14,7 @@
 
 #include "io/cloud_file.h"
 #include "io/mesh_file.h"
+#include "io/text_scanner.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -39,10 +40,6 @@ struct Found {
   const Place& place;
   std::vector<fs::path> meshes;
 };
-
-bool is_digits(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
 
 bool is_folder(const fs::path& path) {
   std::error_code error;
@@ -166,7 +163,7 @@ class TruthFinder {
 
   void note_files_without_mesh() {
     for (const auto& [name, file] : without_mesh_)
-      notes_.push_back(fmt::format("{}: ground truth without a mesh ({})", name, file));
+      notes_.push_back(fmt::format("{}: ground truth without a mesh or point cloud ({})", name, file));
   }
 
  private:

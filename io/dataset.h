@@ -30,8 +30,8 @@ struct Place {
   std::vector<TruthPlace> truth;  // the first that has an existing folder is taken
 };
 
-// What the category of an item is: nothing, the name of its mesh's folder, or for meshes named 1 to 400 their
-// class in SHREC'07. [giorgi2007]
+// Category of an item: none, the name of its mesh's folder, or the class in SHREC'07 of a mesh named 1 to
+// 400. [giorgi2007]
 enum class Classes { none, folder, shrec07 };
 template <>
 struct EnumNames<Classes> {
@@ -67,7 +67,7 @@ struct DatasetItem {
 struct Dataset {
   std::string layout;              // name of the layout found
   std::vector<DatasetItem> items;  // in natural order: 2 before 10
-  std::vector<std::string> notes;  // one line each: ground truth without a mesh, numbers that are missing
+  std::vector<std::string> notes;  // one line each: ground truth without a shape, numbers that are missing
 };
 
 // Takes the first layout that fits. Lists folders and reads no file; the result does not depend on the order

@@ -18,6 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "io/descriptor.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -27,23 +28,12 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kUnfinished = ".salbench-part";
 
-class Descriptor {
- public:
-  Descriptor(const fs::path& path, int flags) {
-    do fd_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
-    while (fd_ < 0 && errno == EINTR);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-  int release() { return std::exchange(fd_, -1); }
-
- private:
-  int fd_ = -1;
-};
+int open_file(const fs::path& path, int flags) {
+  int fd = -1;
+  do fd = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  while (fd < 0 && errno == EINTR);
+  return fd;
+}
 
 [[noreturn]] void fail(const fs::path& path, std::string_view what, int error) {
   throw StorageError(fmt::format("{}: cannot be {}: {}", path.string(), what, system_reason(error)));
@@ -105,7 +95,7 @@ fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.
 // Makes a rename in the folder durable. Failure is ignored: not every file system can do this, and the file
 // is complete without.
 void sync_folder(const fs::path& folder) {
-  const Descriptor fd(folder, O_RDONLY | O_DIRECTORY);
+  const Descriptor fd(open_file(folder, O_RDONLY | O_DIRECTORY));
   if (fd.get() >= 0) ::fsync(fd.get());
 }
 
@@ -132,11 +122,11 @@ std::string system_reason(int error) {
 }
 
 void require_regular_file(const fs::path& path) {
-  check_regular(Descriptor(path, O_RDONLY | O_NONBLOCK).get(), path);
+  check_regular(Descriptor(open_file(path, O_RDONLY | O_NONBLOCK)).get(), path);
 }
 
 std::string read_file(const fs::path& path) {
-  const Descriptor file(path, O_RDONLY | O_NONBLOCK);
+  const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
   std::string bytes(check_regular(file.get(), path), '\0');
   if (const int error = read_all(file.get(), bytes); error != 0) fail_input(path, error);
   return bytes;
@@ -145,7 +135,7 @@ std::string read_file(const fs::path& path) {
 std::optional<Bytes> read_bytes(const fs::path& path) {
   // ESTALE on a network file system means that the file was replaced: a second attempt opens the new one.
   for (bool first = true;; first = false) {
-    const Descriptor file(path, O_RDONLY | O_NONBLOCK);
+    const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
     struct stat status {};
     int error = file.get() < 0 || ::fstat(file.get(), &status) != 0 ? errno : 0;
     Bytes bytes(error == 0 && S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : 0);
@@ -159,7 +149,7 @@ std::optional<Bytes> read_bytes(const fs::path& path) {
 UnfinishedFile::UnfinishedFile(const fs::path& folder) {
   for (;;) {
     path_ = folder / unfinished_name();
-    Descriptor file(path_, O_RDWR | O_CREAT | O_EXCL);
+    Descriptor file(open_file(path_, O_RDWR | O_CREAT | O_EXCL));
     if (file.get() < 0 && errno == EEXIST) continue;
     if (file.get() < 0) fail(folder, "written to", errno);
     struct stat status {};
@@ -202,7 +192,7 @@ void write_file(const fs::path& path, std::string_view text) {
 void visit_abandoned(const fs::path& folder, const std::function<void(const fs::path&)>& visit) {
   for (const FolderEntry& entry : list_folder(folder)) {
     if (entry.is_folder || !entry.path.filename().string().ends_with(kUnfinished)) continue;
-    const Descriptor file(entry.path, O_RDWR | O_NONBLOCK | O_NOFOLLOW);
+    const Descriptor file(open_file(entry.path, O_RDWR | O_NONBLOCK | O_NOFOLLOW));
     if (file.get() >= 0 && lock(file.get()) == 0) visit(entry.path);  // held until it is removed
   }
 }
@@ -234,6 +224,12 @@ std::string lower_case_extension(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) fail(path, "removed", error.value());
 }
 
 std::optional<std::uintmax_t> size_of_file(const fs::path& path) {

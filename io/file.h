@@ -68,6 +68,9 @@ void make_folder(const std::filesystem::path& folder, std::string_view advice);
 
 std::string lower_case_extension(const std::filesystem::path& path);  // ".ply" of "a.PLY"
 
+// Removes a file, if there is one. Throws StorageError.
+void remove_file(const std::filesystem::path& path);
+
 // Size in bytes; nothing if there is no such file. Throws StorageError if the system refuses.
 std::optional<std::uintmax_t> size_of_file(const std::filesystem::path& path);
 

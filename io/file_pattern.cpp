@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
+#include "io/text_scanner.h"
 
 namespace salbench {
 namespace {
@@ -63,7 +64,6 @@ std::vector<std::string_view> names_of(std::string_view path) {
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_digits(std::string_view text) { return std::all_of(text.begin(), text.end(), is_digit); }
 
 bool is_literal(const Pieces& pieces) { return pieces.size() == 1 && pieces[0].kind == Kind::text; }
 
@@ -145,7 +145,7 @@ std::vector<OpenFolder> folders_like(const fs::path& root, std::string_view patt
   return folders;
 }
 
-// What a name ends with after its last placeholder.
+// The text after the last placeholder of a name; may be empty.
 std::string_view ending(const Pieces& pieces) {
   return pieces.back().kind == Kind::text ? pieces.back().text : std::string_view();
 }
@@ -158,8 +158,8 @@ std::string wrong_with(std::string_view text) {
     std::size_t placeholders = 0;
     for (const Piece& piece : pieces) {
       placeholders += piece.kind != Kind::text ? 1U : 0U;
-      if (piece.kind == Kind::text && piece.text.find_first_of("{}") != piece.text.npos)
-        return "has braces around something else than item, participant, view or viewer";
+      if (piece.kind == Kind::text && piece.text.find_first_of("{}") != std::string_view::npos)
+        return "has braces around something other than item, participant, view or viewer";
     }
     if (placeholders > kMostPerName)
       return fmt::format("has more than {} placeholders in one name", kMostPerName);
@@ -167,7 +167,9 @@ std::string wrong_with(std::string_view text) {
   return {};
 }
 
-bool contains(std::string_view text, std::string_view part) { return text.find(part) != text.npos; }
+bool contains(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
 
 }  // namespace
 
@@ -178,7 +180,7 @@ std::string wrong_with_mesh_pattern(std::string_view text) {
 
 std::string wrong_with_truth_pattern(std::string_view text, const std::vector<std::string_view>& parts) {
   if (const std::string wrong = wrong_with(text); !wrong.empty()) return wrong;
-  if (!contains(text, "{item}")) return "must have {item} where the name of the item stands";
+  if (!contains(text, "{item}")) return "must have {item} in place of the name of the item";
   std::size_t found = 0;
   for (const Placeholder& p : kPlaceholders) {
     if (p.kind != Kind::number && p.kind != Kind::part) continue;

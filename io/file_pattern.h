@@ -24,8 +24,8 @@ struct FilePattern {
   bool empty() const { return text.empty(); }
 };
 
-// What is wrong with a pattern for a mesh (no placeholder), or for a file that belongs to an item and, if
-// `part` is not empty, to "{participant}" or "{view}" of it; empty if nothing is.
+// Describes what is wrong with a pattern; empty if it is valid. A mesh's has no placeholder but *. One of
+// ground truth has {item}, and may have one of `parts`, such as "{participant}".
 std::string wrong_with_mesh_pattern(std::string_view text);
 std::string wrong_with_truth_pattern(std::string_view text, const std::vector<std::string_view>& parts);
 

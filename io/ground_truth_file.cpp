@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "io/mat_file.h"
-#include "io/number_table.h"
 #include "io/text_scanner.h"
 #include "io/values_file.h"
 #include "stages/core/errors.h"
@@ -47,6 +46,10 @@ void mask_unseen(ScalarField& values, std::string_view name, const std::string& 
   }
 }
 
+std::string numbering(const Elements& elements, std::int32_t base) {
+  return fmt::format("the {} has {} {}, numbered from {}", elements.shape, elements.n, elements.plural, base);
+}
+
 }  // namespace
 
 ScalarField parse_values(std::string_view text, std::string_view name) {
@@ -54,58 +57,56 @@ ScalarField parse_values(std::string_view text, std::string_view name) {
   return all_values(in);
 }
 
-ScalarField parse_saliency(std::string_view text, std::string_view name, std::size_t n_vertices) {
+ScalarField parse_saliency(std::string_view text, std::string_view name, const Elements& elements) {
   TextScanner in(text, name);
   ScalarField values = all_values(in);
-  if (values.size() != n_vertices)
-    in.fail(fmt::format("the file has {} values, but the mesh has {} vertices", values.size(), n_vertices));
+  if (values.size() != elements.n) in.fail(wrong_count(values.size(), elements));
   return values;
 }
 
-std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, std::size_t n_vertices,
+std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, const Elements& elements,
                                       std::int32_t base) {
   TextScanner in(text, name);
   std::vector<std::int32_t> picks;
   while (in.next_filled_line()) {
-    const std::int64_t vertex = in.integer();
-    if (vertex < base || vertex - base >= static_cast<std::int64_t>(n_vertices))
-      in.fail(fmt::format("vertex {} is out of range: the mesh has {} vertices, numbered from {}", vertex,
-                          n_vertices, base));
-    picks.push_back(static_cast<std::int32_t>(vertex - base));
+    const std::int64_t index = in.integer();
+    if (index < base || index - base >= static_cast<std::int64_t>(elements.n))
+      in.fail(fmt::format("{} {} is out of range: {}", elements.one, index, numbering(elements, base)));
+    picks.push_back(static_cast<std::int32_t>(index - base));
     expect_end_of_line(in);
   }
   return picks;
 }
 
 TruthValues parse_truth_values(std::string_view bytes, std::string_view name, const ValuesFormat& format,
-                               std::size_t n) {
-  const std::string_view noun = format.per == ValuePer::face ? "faces" : "vertices";
+                               const Elements& elements) {
   if (format.per == ValuePer::point) {
+    if (is_npy(bytes) || is_mat(bytes))
+      throw InputError(
+          fmt::format("{}: values per point stand in columns beside x, y and z: write them as text", name));
     std::vector<std::string> columns = {format.column};
     columns.insert(columns.end(), format.points.begin(), format.points.end());
     return with_points(parse_columns(bytes, name, columns, format.unseen));
   }
   if (!is_npy(bytes) && !is_mat(bytes))
-    return {parse_columns(bytes, name, {format.column}, format.unseen, {{n, noun}})[0], {}};
+    return {parse_columns(bytes, name, {format.column}, format.unseen, elements)[0], {}};
   ScalarField values = is_npy(bytes) ? parse_npy(bytes, name) : parse_mat(bytes, name, format.variable);
   mask_unseen(values, name, format.unseen);
-  if (values.size() != n)
-    throw InputError(
-        fmt::format("{}: the file has {} values, but the mesh has {} {}", name, values.size(), n, noun));
+  if (values.size() != elements.n)
+    throw InputError(fmt::format("{}: {}", name, wrong_count(values.size(), elements)));
   return {std::move(values), {}};
 }
 
 std::vector<std::int32_t> parse_truth_picks(std::string_view bytes, std::string_view name,
-                                            const IndicesFormat& format, std::size_t n_vertices) {
-  if (!is_mat(bytes)) return parse_picks(bytes, name, n_vertices, format.base);
+                                            const IndicesFormat& format, const Elements& elements) {
+  if (!is_mat(bytes)) return parse_picks(bytes, name, elements, format.base);
   std::vector<std::int32_t> picks;
-  for (const double vertex : parse_mat(bytes, name, format.variable, format.cell)) {
-    if (!(vertex >= format.base && vertex - format.base < static_cast<double>(n_vertices)) ||
-        vertex != std::floor(vertex))
-      throw InputError(
-          fmt::format("{}: {}: pick {} (from 1) is {}: the mesh has {} vertices, numbered from {}", name,
-                      format.variable, picks.size() + 1, vertex, n_vertices, format.base));
-    picks.push_back(static_cast<std::int32_t>(vertex) - format.base);
+  for (const double index : parse_mat(bytes, name, format.variable, format.cell)) {
+    if (!(index >= format.base && index - format.base < static_cast<double>(elements.n)) ||
+        index != std::floor(index))
+      throw InputError(fmt::format("{}: {}: pick {} (from 1) is {}: {}", name, format.variable,
+                                   picks.size() + 1, index, numbering(elements, format.base)));
+    picks.push_back(static_cast<std::int32_t>(index) - format.base);
   }
   return picks;
 }

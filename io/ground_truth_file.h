@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/number_table.h"
 #include "io/truth_format.h"
 #include "stages/core/types.h"
 
@@ -15,26 +16,25 @@ namespace salbench {
 
 ScalarField parse_values(std::string_view text, std::string_view name);  // finite numbers, one per line
 
-// The same, exactly n_vertices of them (.val).
-ScalarField parse_saliency(std::string_view text, std::string_view name, std::size_t n_vertices);
+// The same, exactly as many as the shape has elements (.val).
+ScalarField parse_saliency(std::string_view text, std::string_view name, const Elements& elements);
 
-// Vertex indices, one per line (.pid), the first vertex being number `base` in the file; 0-based here, in the
-// file's order. A participant who marked nothing is real data.
-std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, std::size_t n_vertices,
+// Indices, one per line (.pid), the first vertex or point being number `base` in the file; 0-based here, in
+// the file's order. A participant who marked nothing is real data.
+std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, const Elements& elements,
                                       std::int32_t base = 0);
 
-// Values as a description says that they are written; the content tells text, .npy and MAT
-// from each other.
+// Values as a description says that they are written; the content tells text, .npy and MAT from each other.
 struct TruthValues {
   ScalarField values;        // one per vertex, face or point; NaN where not seen
   std::vector<Vec3> points;  // of values per point: where they are
 };
-// `n`: how many there must be; of values per point there may be any number but 0.
+// As many as there are elements; of values per point any number but 0.
 TruthValues parse_truth_values(std::string_view bytes, std::string_view name, const ValuesFormat& format,
-                               std::size_t n);
+                               const Elements& elements);
 
 // Picks as a description says that they are written, in text or MAT.
 std::vector<std::int32_t> parse_truth_picks(std::string_view bytes, std::string_view name,
-                                            const IndicesFormat& format, std::size_t n_vertices);
+                                            const IndicesFormat& format, const Elements& elements);
 
 }  // namespace salbench

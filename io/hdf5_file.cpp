@@ -7,13 +7,10 @@
 #include "io/hdf5_file.h"
 
 #include <algorithm>
-#include <cerrno>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include "io/child_process.h"
 #include "io/hdf5_library.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
@@ -25,6 +22,7 @@ using namespace hdf5;
 
 constexpr std::uint64_t kMaxInflation = 1032;  // the most that deflate can do
 constexpr int kMaxRank = 8;
+constexpr ChildLimits kLimits = {.processor_time = std::chrono::seconds(600)};
 
 [[noreturn]] void refuse(std::string_view what) { throw std::runtime_error(std::string(what)); }
 
@@ -224,7 +222,7 @@ struct Hdf5File::Open {
     return names;
   }
 
-  [[noreturn]] static void read_all_and_exit(const std::filesystem::path& path);
+  static void read_all(const std::filesystem::path& path);
   static void survive_reading(const std::filesystem::path& path);
 
   std::string name;
@@ -232,37 +230,23 @@ struct Hdf5File::Open {
   hsize_t bytes = 0;
 };
 
-// Dies by a signal if the library crashes, and after so many seconds at the latest.
-void Hdf5File::Open::read_all_and_exit(const std::filesystem::path& path) {
-  constexpr rlim_t kSeconds = 600;
-  const rlimit limit{kSeconds, kSeconds}, no_core{0, 0};
-  ::setrlimit(RLIMIT_CPU, &limit);
-  ::setrlimit(RLIMIT_CORE, &no_core);
-  try {
-    const auto lock = library();
-    const Open open(path);
-    for (const std::string& name : open.arrays()) try {
-        read_array(opened_set(open.file, name), name, open.bytes);
-      } catch (const std::exception&) {  // reported when the parent reads it
-      }
-  } catch (const std::exception&) {
-  }
-  ::_exit(0);
+void Hdf5File::Open::read_all(const std::filesystem::path& path) try {
+  const auto lock = library();
+  const Open open(path);
+  for (const std::string& name : open.arrays()) try {
+      read_array(opened_set(open.file, name), name, open.bytes);
+    } catch (const std::exception&) {  // reported when the parent reads it
+    }
+} catch (const std::exception&) {  // likewise
 }
 
 // Damaged bytes make the library crash before it can refuse them (1.10.8: within some thousand random
 // changes), so a child process reads everything first.
 void Hdf5File::Open::survive_reading(const std::filesystem::path& path) {
-  const pid_t child = ::fork();
-  if (child < 0)
-    throw StorageError(fmt::format("{}: no process to read it: {}", path.string(), system_reason(errno)));
-  if (child == 0) read_all_and_exit(path);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)  // a sanitizer ends it with a status
-    throw InputError(
-        fmt::format("{}: damaged: the HDF5 library crashes reading it; write the file again", path.string()));
+  const ChildResult result = run_in_child(kLimits, [&](const Send&) { read_all(path); });
+  if (!result.failure.empty())
+    throw InputError(fmt::format("{}: damaged: the HDF5 library that reads it {}; write the file again",
+                                 path.string(), result.failure));
 }
 
 Hdf5File::Hdf5File(const std::filesystem::path& path, bool in_child_first) {

@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // libmatio opens paths only, and trusts what it reads. It gets the bytes as a file in memory, in a child
-// process with limits, which sends the numbers or a message back through a pipe. The child of a program with
-// threads may use malloc and stdio with glibc, and the library needs nothing else.
+// process with limits, which sends the numbers or a message. The library needs nothing but malloc and stdio,
+// which the child of a program with threads may use.
 #include "io/mat_file.h"
 
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <memory>
-#include <mutex>
-#include <utility>
+#include <span>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <matio.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/child_process.h"
+#include "io/descriptor.h"
 #include "io/file.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
@@ -30,8 +26,8 @@ namespace salbench {
 namespace {
 
 constexpr std::size_t kHeader = 128, kVersion = 124;
-constexpr rlim_t kSeconds = 60, kMemory = 1U << 30U;  // of the child, beyond what the program has
-constexpr char kNumbers = 'n', kMessage = 'm';        // first byte of what the child sends
+constexpr ChildLimits kLimits = {.processor_time = std::chrono::seconds(60), .memory = 1U << 30U};
+constexpr char kNumbers = 'n', kMessage = 'm';  // first byte of what the child sends
 
 // --- in the child -----------------------------------------------------------------------------------------
 
@@ -111,7 +107,7 @@ std::size_t index_in(const std::string& text) {
 }
 
 const matvar_t& cell_of(matvar_t& variable, const std::vector<std::string>& cell) {
-  if (variable.class_type != MAT_C_CELL) throw InputError("it is no cell array, expected one");
+  if (variable.class_type != MAT_C_CELL) throw InputError("it is not a cell array: leave out `cell:`");
   const std::size_t row = index_in(cell[0]), column = index_in(cell[1]);
   if (variable.rank != 2 || row < 1 || column < 1 || row > variable.dims[0] || column > variable.dims[1])
     throw InputError(fmt::format("it has {} x {} cells, expected cell {}, {}", variable.dims[0],
@@ -140,72 +136,25 @@ ScalarField read_numbers(const std::string& path, const std::string& name,
   }
 }
 
-void write_all(int to, const void* data, std::size_t size) {
-  const char* at = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = ::write(to, at, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) ::_exit(1);
-    at += written;
-    size -= static_cast<std::size_t>(written);
-  }
-}
-
-// Pages that the program has reserved.
-rlim_t present_memory() {
-  rlim_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
-}
-
-[[noreturn]] void read_and_send(int from, int to, rlim_t memory, const std::string& variable,
-                                const std::vector<std::string>& cell) {
-  const rlimit time{kSeconds, kSeconds}, space{memory + kMemory, memory + kMemory}, no_core{0, 0};
-  ::setrlimit(RLIMIT_CPU, &time);
-  ::setrlimit(RLIMIT_AS, &space);
-  ::setrlimit(RLIMIT_CORE, &no_core);
+void read_and_send(const std::string& path, const std::string& variable, const std::vector<std::string>& cell,
+                   const Send& send) {
+  const auto send_as = [&](const char& kind, const void* data, std::size_t size) {
+    send(std::as_bytes(std::span(&kind, 1)));
+    send({static_cast<const std::byte*>(data), size});
+  };
   try {
-    const ScalarField numbers = read_numbers(fmt::format("/proc/self/fd/{}", from), variable, cell);
-    write_all(to, &kNumbers, 1);
-    write_all(to, numbers.data(), numbers.size() * sizeof(double));
+    const ScalarField numbers = read_numbers(path, variable, cell);
+    send_as(kNumbers, numbers.data(), numbers.size() * sizeof(double));
   } catch (const InputError& error) {
     const std::string message = error.what();
-    write_all(to, &kMessage, 1);
-    write_all(to, message.data(), message.size());
-  } catch (const std::exception&) {
-    ::_exit(1);
+    send_as(kMessage, message.data(), message.size());
   }
-  ::_exit(0);
 }
 
 // --- in the program ---------------------------------------------------------------------------------------
 
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {
-    if (fd < 0) throw StorageError(fmt::format("no memory to read a MAT file: {}", system_reason(errno)));
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-  void close() {
-    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
-std::string read_to_end(int from) {
-  std::string all;
-  std::array<char, 65536> part{};
-  for (;;) {
-    const ssize_t got = ::read(from, part.data(), part.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return all;
-    all.append(part.data(), static_cast<std::size_t>(got));
-  }
+[[noreturn]] void fail_for_lack_of_memory(std::string_view name) {
+  throw StorageError(fmt::format("{}: no memory to read it: {}", name, system_reason(errno)));
 }
 
 void fill(const Descriptor& file, std::string_view bytes, std::string_view name) {
@@ -213,34 +162,18 @@ void fill(const Descriptor& file, std::string_view bytes, std::string_view name)
     const ssize_t written =
         ::pwrite(file.get(), bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0)
-      throw StorageError(fmt::format("{}: no memory to read it: {}", name, system_reason(errno)));
+    if (written <= 0) fail_for_lack_of_memory(name);
     done += static_cast<std::size_t>(written);
   }
 }
 
-// What the child sends; nothing if it does not end well.
-std::string sent_by_child(std::string_view bytes, std::string_view name, const std::string& variable,
+ChildResult read_in_child(std::string_view bytes, std::string_view name, const std::string& variable,
                           const std::vector<std::string>& cell) {
-  static std::mutex one_at_a_time;  // else a child keeps another's pipe open
-  const std::lock_guard lock(one_at_a_time);
   const Descriptor file(::memfd_create("mat", MFD_CLOEXEC));
+  if (file.get() < 0) fail_for_lack_of_memory(name);
   fill(file, bytes, name);
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw StorageError(fmt::format("{}: no pipe to read it: {}", name, system_reason(errno)));
-  const Descriptor from(ends[0]);
-  Descriptor to(ends[1]);
-  const rlim_t memory = present_memory();
-  const pid_t child = ::fork();
-  if (child < 0) throw StorageError(fmt::format("{}: no process to read it: {}", name, system_reason(errno)));
-  if (child == 0) read_and_send(file.get(), to.get(), memory, variable, cell);
-  to.close();
-  std::string sent = read_to_end(from.get());
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? sent : std::string();
+  const std::string path = fmt::format("/proc/self/fd/{}", file.get());
+  return run_in_child(kLimits, [&](const Send& send) { read_and_send(path, variable, cell, send); });
 }
 
 void require_version_5(std::string_view bytes, std::string_view name) {
@@ -265,9 +198,10 @@ ScalarField parse_mat(std::string_view bytes, std::string_view name, const std::
   require_version_5(bytes, name);
   if (variable.empty())
     throw InputError(fmt::format("{}: a MAT file, and the description names no `variable:` in it", name));
-  const std::string sent = sent_by_child(bytes, name, variable, cell);
-  if (sent.empty())
-    throw InputError(fmt::format("{}: damaged: the library crashes reading it; save it again", name));
+  const auto [sent, failure] = read_in_child(bytes, name, variable, cell);
+  if (!failure.empty() || sent.empty())
+    throw InputError(fmt::format("{}: damaged: the library that reads it {}; save it again", name,
+                                 failure.empty() ? "ended the process" : failure));
   if (sent[0] == kMessage) throw InputError(fmt::format("{}: {}", name, sent.substr(1)));
   ScalarField numbers((sent.size() - 1) / sizeof(double));
   if (!numbers.empty()) std::memcpy(numbers.data(), sent.data() + 1, numbers.size() * sizeof(double));

@@ -16,12 +16,18 @@ namespace {
 constexpr char kBlanks = ' ';
 constexpr std::size_t kMostNamed = 20;  // columns in a message
 
-std::optional<double> number_in(std::string_view word) {
-  if (word.size() > 1 && word[0] == '+') word.remove_prefix(1);
+struct Number {
   double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || error == std::errc::invalid_argument || end != word.data() + word.size()) return {};
-  return value;
+  bool fits = true;  // a double; if not, there is no value
+};
+
+std::optional<Number> number_in(std::string_view word) {
+  word = without_plus(word);
+  Number number;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number.value);
+  if (error == std::errc::invalid_argument || end != word.data() + word.size()) return {};
+  number.fits = error != std::errc::result_out_of_range;
+  return number;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -32,7 +38,7 @@ std::string_view trimmed(std::string_view text) {
 
 char separator_of(std::string_view line) {
   for (const char separator : {',', ';', '\t'})
-    if (line.find(separator) != line.npos) return separator;
+    if (line.find(separator) != std::string_view::npos) return separator;
   return kBlanks;
 }
 
@@ -40,7 +46,7 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
   if (separator == kBlanks) {
     constexpr std::string_view kAny = " \t\r\v\f";
-    for (std::size_t begin = line.find_first_not_of(kAny); begin != line.npos;) {
+    for (std::size_t begin = line.find_first_not_of(kAny); begin != std::string_view::npos;) {
       const std::size_t end = std::min(line.find_first_of(kAny, begin), line.size());
       cells.push_back(trimmed(line.substr(begin, end - begin)));
       begin = line.find_first_not_of(kAny, end);
@@ -95,7 +101,7 @@ class Columns {
     if (name.empty()) return 0;
     if (const std::size_t number = column_number(name); number > 0) return number - 1;
     if (!has_header_)
-      in.fail(fmt::format("no column {}: the first line is no header, but numbers", in_quotes(name)));
+      in.fail(fmt::format("no column {}: the first line has numbers, not names of columns", in_quotes(name)));
     const auto found = std::find(header.begin(), header.end(), name);
     if (found != header.end()) return static_cast<std::size_t>(found - header.begin());
     std::string known;
@@ -111,25 +117,32 @@ class Columns {
 };
 
 double value_of(const TextScanner& in, std::string_view cell, std::string_view unseen) {
-  const std::optional<double> value = number_in(cell);
-  if (!value) in.fail(fmt::format("{} is not a number", in_quotes(cell)));
-  if (is_same_number(*value, unseen)) return std::numeric_limits<double>::quiet_NaN();
-  if (!std::isfinite(*value)) in.fail(fmt::format("{} is not a finite number", in_quotes(cell)));
-  return *value;
+  const std::optional<Number> number = number_in(cell);
+  if (!number) in.fail(fmt::format("{} is not a number", in_quotes(cell)));
+  if (!number->fits) in.fail(fmt::format("{} does not fit a double", in_quotes(cell)));
+  if (is_same_number(number->value, unseen)) return std::numeric_limits<double>::quiet_NaN();
+  if (!std::isfinite(number->value)) in.fail(fmt::format("{} is not a finite number", in_quotes(cell)));
+  return number->value;
 }
 
 }  // namespace
 
+std::string wrong_count(std::size_t n_values, const Elements& expected) {
+  return fmt::format("the file has {} values, but the {} has {} {}", n_values, expected.shape, expected.n,
+                     expected.plural);
+}
+
 bool is_number(std::string_view word) { return number_in(word).has_value(); }
 
 bool is_same_number(double value, std::string_view word) {
-  const std::optional<double> number = number_in(word);
-  return number && (value == *number || (std::isnan(value) && std::isnan(*number)));
+  const std::optional<Number> number = number_in(word);
+  return number && number->fits &&
+         (value == number->value || (std::isnan(value) && std::isnan(number->value)));
 }
 
 std::vector<ScalarField> parse_columns(std::string_view text, std::string_view name,
                                        const std::vector<std::string>& columns, const std::string& unseen,
-                                       const std::optional<ExpectedRows>& expected) {
+                                       const std::optional<Elements>& expected) {
   std::vector<ScalarField> values(columns.size());
   TextScanner in(text, name);
   if (in.next_filled_line()) {
@@ -142,9 +155,7 @@ std::vector<ScalarField> parse_columns(std::string_view text, std::string_view n
         values[c].push_back(value_of(in, chosen.cell(in, cells, c), c == 0 ? unseen : std::string_view()));
     }
   }
-  if (expected && values[0].size() != expected->n)
-    in.fail(fmt::format("the file has {} values, but the mesh has {} {}", values[0].size(), expected->n,
-                        expected->noun));
+  if (expected && values[0].size() != expected->n) in.fail(wrong_count(values[0].size(), *expected));
   if (values[0].empty()) in.fail("the file has no values");
   return values;
 }

@@ -11,6 +11,12 @@
 
 namespace salbench {
 
+// What a file has values of, as many as the shape has, and how messages call it.
+struct Elements {
+  std::size_t n;
+  std::string_view shape = "mesh", one = "vertex", plural = "vertices";
+};
+
 // The columns named, each by its name in the header or by its number from 1, in the order of `columns`; an
 // empty name is the only column of the text. Commas, semicolons or tabs separate values, whichever the first
 // line has; else blanks do. A first line in which a word is no number is the header. Blank lines are skipped.
@@ -18,14 +24,13 @@ namespace salbench {
 // A value of the first column that is `unseen` ("nan" for one that is none) becomes NaN; all others must be
 // finite. Throws InputError, one line "NAME:LINE: what is wrong": also for another number of rows than
 // expected, or none.
-struct ExpectedRows {
-  std::size_t n;
-  std::string_view noun;  // of the mesh: "vertices"
-};
 std::vector<ScalarField> parse_columns(std::string_view text, std::string_view name,
                                        const std::vector<std::string>& columns,
                                        const std::string& unseen = {},
-                                       const std::optional<ExpectedRows>& expected = {});
+                                       const std::optional<Elements>& expected = {});
+
+// "the file has 3 values, but the mesh has 4 vertices"
+std::string wrong_count(std::size_t n_values, const Elements& expected);
 
 bool is_number(std::string_view word);                     // also one that is not finite
 bool is_same_number(double value, std::string_view word);  // NaN is the same as "nan"; none as no number

@@ -26,7 +26,7 @@ class ObjParser {
         read_face();
     }
     check_forward_references();
-    if (mesh_.vertices.empty()) in_.fail("the file ends without a vertex (v): it is no OBJ file");
+    if (mesh_.vertices.empty()) in_.fail("the file ends without a vertex (v): expected an OBJ file");
     return std::move(mesh_);
   }
 
@@ -50,7 +50,7 @@ class ObjParser {
 
   static bool ends_in_backslash(std::string_view line) {
     const std::size_t last = line.find_last_not_of(" \t\r");
-    return last != line.npos && line[last] == '\\';
+    return last != std::string_view::npos && line[last] == '\\';
   }
 
   void read_vertex() {
@@ -71,7 +71,7 @@ class ObjParser {
     std::int64_t index = 0;
     const auto [end, error] = std::from_chars(corner.data(), corner.data() + corner.size(), index);
     const std::string_view rest = corner.substr(static_cast<std::size_t>(end - corner.data()));
-    if (error != std::errc() || rest.find_first_not_of("/-0123456789") != rest.npos ||
+    if (error != std::errc() || rest.find_first_not_of("/-0123456789") != std::string_view::npos ||
         !(rest.empty() || rest[0] == '/'))
       in_.fail(fmt::format("{} is not a corner of a face: v, v/vt, v//vn or v/vt/vn", in_quotes(corner)));
     if (index == 0 || index < -n_vertices() || index > kMaxVertices)

@@ -21,7 +21,7 @@ struct Counts {
 };
 
 bool is_count(std::string_view word) {
-  return !word.empty() && word.find_first_not_of("+-0123456789") == word.npos;
+  return !word.empty() && word.find_first_not_of("+-0123456789") == std::string_view::npos;
 }
 
 // Skips the header word, if there is one.
@@ -32,8 +32,9 @@ void skip_header_word(TextScanner& in) {
   // nOFF have other dimensions.
   constexpr std::array<std::string_view, 8> kPrefixes = {"", "C", "N", "CN", "ST", "STC", "STN", "STCN"};
   const std::size_t at = std::min(word.find("OFF"), word.find("off"));
-  if (at == word.npos)
-    in.fail(fmt::format("{} is no OFF header: this is no OFF file, or a damaged one", in_quotes(word)));
+  if (at == std::string_view::npos)
+    in.fail(
+        fmt::format("{} is not an OFF header: the file is damaged, or has another format", in_quotes(word)));
   const std::string_view glued = word.substr(at + 3);
   if (std::find(kPrefixes.begin(), kPrefixes.end(), word.substr(0, at)) == kPrefixes.end() ||
       !(glued.empty() || is_count(glued)))
@@ -51,7 +52,7 @@ std::int64_t read_count(TextScanner& in, std::string_view plural) {
 }
 
 Counts read_counts(TextScanner& in) {
-  if (!in.next_filled_line()) in.fail("the file has no text but comments: it is no OFF file");
+  if (!in.next_filled_line()) in.fail("the file has no text but comments: expected an OFF file");
   skip_header_word(in);
   if (in.peek_word().empty() && !in.next_filled_line())
     in.fail("the file ends before the counts: copy it again");

@@ -90,7 +90,7 @@ double number_at(const char* bytes, const Field& field) {
   }
 }
 
-// Where a field's values lie in a body: the first point's, and the bytes from one point to the next.
+// Location of a field in a body: its value for the first point, and the bytes from one point to the next.
 struct Column {
   const char* first = nullptr;
   std::int64_t step = 0;
@@ -124,7 +124,7 @@ void require_points(std::string_view bytes, const Header& header, std::string_vi
 
 // Zeros and line ends may fill the file up.
 void require_end(std::string_view rest, std::string_view name) {
-  if (rest.find_first_not_of(std::string_view("\0 \r\n", 4)) != rest.npos)
+  if (rest.find_first_not_of(std::string_view("\0 \r\n", 4)) != std::string_view::npos)
     throw InputError(fmt::format(
         "{}: there are {} bytes after the last point: the header is wrong, or the file went through a "
         "conversion of line ends",

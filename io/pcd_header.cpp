@@ -39,9 +39,9 @@ class HeaderParser {
       else if (keyword == "DATA")
         return finished();
       else if (keyword != "VERSION")
-        in_.fail(fmt::format("{} is no word of a PCD header", in_quotes(keyword)));
+        in_.fail(fmt::format("{} is not a keyword of a PCD header", in_quotes(keyword)));
     }
-    in_.fail("the file ends within the header: it is no PCD file, or cut short");
+    in_.fail("the file ends within the header: it is cut short, or not a PCD file");
   }
 
  private:
@@ -71,7 +71,7 @@ class HeaderParser {
   void read_type(Field& field) {
     const std::string_view word = in_.word();
     if (word != "I" && word != "U" && word != "F")
-      in_.fail(fmt::format("{} is no PCD type: I, U or F", in_quotes(word)));
+      in_.fail(fmt::format("{} is not a PCD type: expected I, U or F", in_quotes(word)));
     field.type = word[0];
   }
 
@@ -104,7 +104,7 @@ class HeaderParser {
                              field.size));
     for (const char* axis : {"x", "y", "z"})
       if (const Field* field = header_.find(axis); field == nullptr || field->count != 1)
-        in_.fail(fmt::format("the header gives points no number \"{}\"", axis));
+        in_.fail(fmt::format("the header has no field \"{}\" of one number per point", axis));
     return std::move(header_);
   }
 
@@ -113,7 +113,8 @@ class HeaderParser {
     if (word == "ascii") return Data::ascii;
     if (word == "binary") return Data::binary;
     if (word == "binary_compressed") return Data::binary_compressed;
-    in_.fail(fmt::format("{} is no PCD format: ascii, binary or binary_compressed", in_quotes(word)));
+    in_.fail(
+        fmt::format("{} is not a PCD format: expected ascii, binary or binary_compressed", in_quotes(word)));
   }
 
   TextScanner& in_;

@@ -128,7 +128,7 @@ std::int64_t list_length(Body& body, Type type) {
   const double length = body.value(type);
   constexpr double kMaxLength = 4294967295.0;  // of the widest integer type
   if (!(length >= 0 && length <= kMaxLength) || length != std::floor(length))
-    body.fail(fmt::format("{} is no length of a list", length));
+    body.fail(fmt::format("{} is not the length of a list", length));
   return static_cast<std::int64_t>(length);
 }
 
@@ -145,7 +145,7 @@ void read_polygon(Body& body, const Property& corners, std::int64_t n_vertices,
   polygon.clear();
   for (std::int64_t i = 0; i < size; ++i) {
     const double index = body.value(corners.type);
-    if (index != std::floor(index)) body.fail(fmt::format("{} is no vertex index", index));
+    if (index != std::floor(index)) body.fail(fmt::format("{} is not a vertex index", index));
     if (index < 0 || index >= static_cast<double>(n_vertices))
       body.fail(fmt::format("vertex index {} is out of range: there are {} vertices, numbered from 0", index,
                             n_vertices));

@@ -28,7 +28,7 @@ Type read_type(TextScanner& in) {
   const std::string_view word = in.word();
   for (const auto& [name, synonym, type] : kTypes)
     if (word == name || word == synonym) return type;
-  in.fail(fmt::format("{} is no PLY type", in_quotes(word)));
+  in.fail(fmt::format("{} is not a PLY type: expected one such as uchar, int or float", in_quotes(word)));
 }
 
 Encoding read_encoding(TextScanner& in) {
@@ -36,8 +36,8 @@ Encoding read_encoding(TextScanner& in) {
   if (word == "ascii") return Encoding::ascii;
   if (word == "binary_little_endian") return Encoding::little_endian;
   if (word == "binary_big_endian") return Encoding::big_endian;
-  in.fail(
-      fmt::format("{} is no PLY format: ascii, binary_little_endian or binary_big_endian", in_quotes(word)));
+  in.fail(fmt::format("{} is not a PLY format: expected ascii, binary_little_endian or binary_big_endian",
+                      in_quotes(word)));
 }
 
 std::string read_name(TextScanner& in) {
@@ -75,7 +75,7 @@ const Element* Header::find(std::string_view element) const { return find_named(
 
 Header read_header(TextScanner& in) {
   if (!in.next_line() || in.word() != "ply")
-    in.fail("the file does not begin with \"ply\": it is no PLY file");
+    in.fail("the file does not begin with \"ply\": expected a PLY file");
   std::optional<Encoding> encoding;
   std::vector<Element> elements;
   while (in.next_line()) {
@@ -91,7 +91,7 @@ Header read_header(TextScanner& in) {
       if (!encoding) in.fail("the header names no format");
       return {*encoding, std::move(elements)};
     } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-      in.fail(fmt::format("{} is no word of a PLY header", in_quotes(keyword)));
+      in.fail(fmt::format("{} is not a keyword of a PLY header", in_quotes(keyword)));
     }
   }
   in.fail("the file ends within the header: it is cut short, copy it again");

@@ -20,6 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/descriptor.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 
@@ -29,8 +30,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kKeptOutput = 4096, kKeptLines = 20;  // the end of what a command prints
-constexpr std::chrono::seconds kGrace(2);                   // from SIGTERM to SIGKILL
+constexpr std::size_t kKeptOutput = 4096, kKeptLines = 20;     // the end of what a command prints
+constexpr std::chrono::seconds kGrace(2);                      // from SIGTERM to SIGKILL
+constexpr std::chrono::duration<double> kLongestTimeout(1e9);  // decades; ten times that overflow the clock
 constexpr std::chrono::milliseconds kLook(100);  // how often a wait looks at the clock and the flag
 
 // Globals, since a signal handler has nothing else. A command without a slot is ended by the wait for it.
@@ -55,20 +57,6 @@ class Registered {
 
  private:
   std::atomic<pid_t>* slot_ = nullptr;
-};
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
 };
 
 [[noreturn]] void fail_for_lack(const char* of) {
@@ -210,7 +198,8 @@ ScratchFolder::~ScratchFolder() {
 
 void run_command(const std::string& command, const fs::path& folder, std::chrono::duration<double> timeout) {
   if (ending) throw CommandInterrupted("the program ends");
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::min(timeout, kLongestTimeout));
   Command running(command, folder);
   const Registered registered(running.group());
   const bool in_time = running.wait(deadline, true);

@@ -32,7 +32,7 @@ std::string csv_text(const Cell& cell) {
 }
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return text;
   std::string escaped = "\"";
   for (const char c : text) escaped.append(c == '"' ? 2 : 1, c);
   return escaped + '"';

@@ -11,19 +11,13 @@ namespace {
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-// from_chars takes no plus sign, which files do contain.
-std::string_view without_plus(std::string_view word) {
-  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
-  return plus ? word.substr(1) : word;
-}
-
 }  // namespace
 
 TextScanner::TextScanner(std::string_view text, std::string_view name, char comment)
     : text_(without_byte_order_mark(text)),
       name_(name),
       comment_(comment),
-      line_end_(text.find('\n') == text.npos ? '\r' : '\n') {}
+      line_end_(text.find('\n') == std::string_view::npos ? '\r' : '\n') {}
 
 bool TextScanner::next_line() {
   if (text_.empty()) {
@@ -107,6 +101,15 @@ std::int64_t TextScanner::integer() { return parsed<std::int64_t>("a whole numbe
 void TextScanner::fail(std::string_view what) const {
   if (line_number_ == 0) throw InputError(fmt::format("{}: {}", name_, what));  // nothing there to point at
   throw InputError(fmt::format("{}:{}: {}", name_, line_number_, what));
+}
+
+std::string_view without_plus(std::string_view word) {
+  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  return plus ? word.substr(1) : word;
+}
+
+bool is_digits(std::string_view word) {
+  return word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 std::string_view without_byte_order_mark(std::string_view text) {

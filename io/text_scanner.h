@@ -57,6 +57,11 @@ class TextScanner {
   char line_end_;
 };
 
+// A number as std::from_chars takes it: without the plus sign that files do contain.
+std::string_view without_plus(std::string_view word);
+
+bool is_digits(std::string_view word);  // 0 to 9, or nothing
+
 std::string_view without_byte_order_mark(std::string_view text);
 
 // "the file ends after 5 of 10 vertices: ..."

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "io/number_table.h"
+#include "io/text_scanner.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -20,8 +21,7 @@ void check(const ValuesFormat& format) {
 void check(const IndicesFormat& format) {
   check_ranges(format);
   const auto is_place = [](const std::string& text) {
-    return !text.empty() && text.size() < 7 && text[0] != '0' &&
-           std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return !text.empty() && text.size() < 7 && text[0] != '0' && is_digits(text);
   };
   if (!format.cell.empty() && (format.cell.size() != 2 || !std::ranges::all_of(format.cell, is_place)))
     throw OptionError("cell", "must be a row and a column, from 1, such as [3, 8]");

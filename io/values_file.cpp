@@ -69,16 +69,16 @@ ScalarField parse_npy(std::string_view bytes, std::string_view name) {
   const std::size_t begin = long_header ? 12 : 10;
   if (bytes.size() - begin < length) refuse("it is cut short");
   const std::string_view header = bytes.substr(begin, length), body = bytes.substr(begin + length);
-  const bool is_double = header.find("'<f8'") != header.npos;
-  if (!is_double && header.find("'<f4'") == header.npos)
+  const bool is_double = header.find("'<f8'") != std::string_view::npos;
+  if (!is_double && header.find("'<f4'") == std::string_view::npos)
     refuse("its type is neither float32 nor float64, little-endian");
   const std::size_t key = header.find("'shape': (");
   const std::size_t close = header.find(')', std::min(key, header.size()));
-  if (key == header.npos || close == header.npos) refuse("its header names no shape");
+  if (key == std::string_view::npos || close == std::string_view::npos) refuse("its header names no shape");
   const std::string_view shape = header.substr(key + 10, close - key - 10);  // "642,", "642, 1"
   const std::size_t comma = std::min(shape.find(','), shape.size());
   const std::string_view columns = shape.substr(std::min(comma + 1, shape.size()));
-  if (columns.find_first_not_of(' ') != columns.npos && columns != " 1")
+  if (columns.find_first_not_of(' ') != std::string_view::npos && columns != " 1")
     refuse(fmt::format("its shape is ({}), expected one value per point", shape));
   ScalarField values = is_double ? numbers_in<double>(body) : numbers_in<float>(body);
   if (std::to_string(values.size()) != shape.substr(0, comma))

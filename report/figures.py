@@ -86,7 +86,7 @@ def performance(shop, dataset, metric):
     heat = heat_data(shop.results, dataset, metric)
     ranking = ranking_data(shop.results, dataset, metric)
     if heat.empty:
-        raise Missing(f"No shape of the {dataset} has a {of.label}.")
+        raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
     models = list(heat.columns[3:])
     figure = style.new_figure(11, 4.6)
     panels = figure.subplot_mosaic([["map", "bars"], ["line", "bars"]], width_ratios=[1.75, 1], height_ratios=[1.1, 1])

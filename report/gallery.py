@@ -27,7 +27,8 @@ class Painter:
         Ground truth has the picks as dots. small: half the size."""
         if not self.has(what, when):
             return ""
-        name = f"{self.folder}/{self.shape.view or KIND_NAMES[self.shape.dataset].replace(' ', '-')}-{file_name(what)}-{when}{'-small' if small else ''}.webp"
+        of = self.shape.view or KIND_NAMES[self.shape.dataset].replace(" ", "-")
+        name = f"{self.folder}/{of}-{file_name(what)}-{when}{'-small' if small else ''}.webp"
         path = self.shop.out / name
         if path.is_file():
             return name

@@ -38,7 +38,8 @@ def page_data(shop, tables):
 def all_scores(shop):
     columns = shop.results.table("results.csv", "dataset", "item", "class", "view", "model")
     return page_data(shop, {(dataset, metric): statistics.scores(shop.results, dataset, metric)
-                            for dataset in statistics.datasets(shop.results) for metric in shop.results.metrics if metric in columns})
+                            for dataset in statistics.datasets(shop.results) for metric in shop.results.metrics
+                            if metric in columns})
 
 
 def write_scripts(shop, script, table):

@@ -9,7 +9,7 @@ from scipy import stats
 from report import statistics
 from report.blocks import Cell, Note, Table, attempt, cell, count
 from report.metrics import PAPER, family_label, family_of
-from report.names import DATASETS
+from report.names import DATASETS, spoken
 from report.results import Missing, write_csv
 
 CAPTION = ("{}: mean of each model and its rank under each convention, over the shapes that every convention of a family scores "
@@ -91,8 +91,8 @@ def conventions(shop, dataset):
 def table(shop, dataset):
     rows = conventions(shop, dataset)
     if not rows:
-        raise Missing(f"No metric of the {dataset} was computed by several conventions: metrics: all in the configuration "
-                      "computes every one.")
+        raise Missing(f"No metric of the {spoken(dataset)} was computed by several conventions: metrics: all in the "
+                      "configuration computes every one.")
     models = [model for model in shop.models if any(model in row[5] for row in rows)]
     lines, data, references = [], [], {}
     for family, run, of, shapes, tau, means, ranks in rows:
@@ -126,8 +126,8 @@ def sentence(dataset, rows):
         first[row[0]] += 1
     changed = [row for row in others if row[4] == row[4] and row[4] < 1 - 1e-12]
     if not changed:
-        return f"On {dataset} none of {len(others)} other conventions changes the ranking of the models."
+        return f"On {spoken(dataset)} none of {len(others)} other conventions changes the ranking of the models."
     least = min(changed, key=lambda row: row[4])
     tau = f"{least[4]:.2f}".replace("-", "−")
-    return (f"On {dataset} {len(changed)} of {len(others)} other conventions change the ranking of the models; furthest from the "
-            f"first of its family is {least[2].label}, with a tau of {tau}.")
+    return (f"On {spoken(dataset)} {len(changed)} of {len(others)} other conventions change the ranking of the models; "
+            f"furthest from the first of its family is {least[2].label}, with a tau of {tau}.")

@@ -174,6 +174,6 @@ def write_page(shop, pages, scores, item, category):
     if views and not scans:
         scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
-    pages.write(path_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category, entries=entries,
-                second=label_of(first[0], "after") if first else "", own_blocks=own_blocks, scan_blocks=scan_blocks,
-                scans=scans, notes=notes(shop, item, bool(shapes)))
+    pages.write(path_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
+                entries=entries, second=label_of(first[0], "after") if first else "", own_blocks=own_blocks,
+                scan_blocks=scan_blocks, scans=scans, notes=notes(shop, item, bool(shapes)))

@@ -33,8 +33,8 @@ def means_table(shop, identifier, caption, table):
         known = paper.mean_auc(row["model"]) if printed else None
         rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(row["model"]),
                      Cell(shop.results.metric(row["metric"]).label), count(row["n"]),
-                     cell(row["mean"], bold=row["mean"] == best[row["dataset"], row["metric"]]), cell(row["ci95_low"]), cell(row["ci95_high"]),
-                     cell(row["sd"]), cell(known, 2), signed(row["mean"] - known) if known else cell(None)])
+                     cell(row["mean"], bold=row["mean"] == best[row["dataset"], row["metric"]]),
+                     cell(row["ci95_low"]), cell(row["ci95_high"]), cell(row["sd"]), cell(known, 2), signed(row["mean"] - known) if known else cell(None)])
     return Table(identifier, caption,
                  ["Data set", "Model", "Metric", "Shapes", "Mean", "95 % low", "95 % high", "SD", "Paper", "Difference"],
                  rows, [False] * 3 + [True] * 7, filters=[0, 1, 2])

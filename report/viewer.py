@@ -58,10 +58,11 @@ def script(shape, maps, title):
     fields = ([] if shade is None else [shade]) + list(known.values())
     parts += [(values * levels).round().astype(numpy.uint8).tobytes() for values in fields]
     eye, up = shape.eye()
+    step = spacing_in_any_order(points) if shape.dataset == "clouds" else spacing(points)
     description = {
         "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge, "steps": steps,
         "levels": levels, "shaded": shade is not None, "maps": list(known), "picks": shape.picks.tolist(),
-        "spacing": spacing_in_any_order(points) if shape.dataset == "clouds" else spacing(points), "camera": None if eye is None else eye.tolist(), "up": up,
+        "spacing": step, "camera": None if eye is None else eye.tolist(), "up": up,
     }
     data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()
     return f"salbench.give({json.dumps(shape.name)}, {json.dumps(description)}, {json.dumps(data)});\n"

@@ -34,7 +34,7 @@ std::string described(const Format& format) {
   std::string lines = key_text(format);
   if (lines.empty()) return {};
   lines.pop_back();
-  for (std::size_t end = lines.find('\n'); end != lines.npos; end = lines.find('\n', end))
+  for (std::size_t end = lines.find('\n'); end != std::string::npos; end = lines.find('\n', end))
     lines.replace(end, 1, ", ");
   return fmt::format(" ({})", lines);
 }
@@ -50,13 +50,20 @@ bool are_in_file_order(const DatasetItem& item) {
   return format_of(item).values.per == ValuePer::face && !item.saliency.empty();
 }
 
-// What the files are about: points, of which a cloud may have left out some that its file has.
+// The points that the files describe. A cloud may have left out some that its file has.
 struct Target {
   Points points;
   const PointCloud* cloud = nullptr;  // none: a mesh
   Mesh as_written = {};               // with the faces of the mesh's file, where values are per face
 
-  std::size_t size_in_file() const { return cloud != nullptr ? cloud->size_in_file() : points.size(); }
+  Elements in_file() const {
+    if (cloud != nullptr) return {cloud->size_in_file(), "point cloud", "point", "points"};
+    return {points.size()};
+  }
+  Elements described_by(const ValuesFormat& format) const {
+    if (format.per == ValuePer::face) return {as_written.faces.size(), "mesh", "face", "faces"};
+    return in_file();
+  }
   ScalarField left(ScalarField values) const {
     return cloud != nullptr ? values_left(*cloud, values) : std::move(values);
   }
@@ -66,12 +73,11 @@ struct Target {
 ScalarField on_points(const Target& target, const ValuesFormat& format, std::string_view bytes,
                       std::string_view name) {
   if (key_text(format).empty() && !is_npy(bytes) && !is_mat(bytes))
-    return target.left(parse_saliency(bytes, name, target.size_in_file()));
+    return target.left(parse_saliency(bytes, name, target.in_file()));
   const Mesh& written = target.as_written;
-  const bool per_face = format.per == ValuePer::face;
-  TruthValues truth =
-      parse_truth_values(bytes, name, format, per_face ? written.faces.size() : target.size_in_file());
-  if (per_face) return vertex_values_of_faces(written.vertices, written.faces, truth.values);
+  TruthValues truth = parse_truth_values(bytes, name, format, target.described_by(format));
+  if (format.per == ValuePer::face)
+    return vertex_values_of_faces(written.vertices, written.faces, truth.values);
   if (format.per == ValuePer::vertex) return target.left(std::move(truth.values));
   return vertex_values_of_samples(target.points, truth.points, truth.values,
                                   format.max_distance * bounding_radius(target.points));
@@ -105,7 +111,7 @@ GroundTruth read_truth(Target target, const FilesOf<Source::truth_files>& files)
   add_saliency(truth, item, std::move(maps));
   for (const auto& path : item.picks)
     truth.picks.push_back(
-        parse_truth_picks((file++)->text(), path.string(), format.indices, target.size_in_file()));
+        parse_truth_picks((file++)->text(), path.string(), format.indices, target.in_file()));
   if (std::all_of(truth.picks.begin(), truth.picks.end(), [](const auto& picks) { return picks.empty(); }))
     truth.picks.clear();
   if (truth.saliency.empty() && truth.picks.empty())

@@ -87,7 +87,8 @@ ExitStatus print_explanation(const Arguments& arguments, const ExplainOptions& o
 Subcommand explain_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<ExplainOptions>();
   return {"explain", "tell of each artefact of an item whether it is cached, and if not what differs",
-          run_parameters(arguments, {{"ITEM", &options->item, "a mesh (52) or a scan of it (52_3)", true},
+          run_parameters(arguments, {{"ITEM", &options->item,
+                                      "a mesh or point cloud (52), or a scan of a mesh (52_3)", true},
                                      {"STAGE", &options->stage, "this stage only"}}),
           [&arguments, options](const std::atomic<bool>&) { return print_explanation(arguments, *options); }};
 }

@@ -8,7 +8,7 @@
 namespace salbench {
 
 inline constexpr const char* kDescription =
-    "Benchmark of 3D saliency models on meshes and simulated range scans.";
+    "Benchmark of 3D saliency models on meshes, simulated range scans and point clouds.";
 
 struct Example {
   const char* line;

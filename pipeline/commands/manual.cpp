@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* kAbout =
     R"(How well does a program predict which points of a shape people find important?
-\fBsalbench\fR takes meshes, and simulated range scans of them, through normals, descriptors (FPFH), saliency models,
-histogram matching and metrics. Every intermediate is kept in a cache: a rerun computes what is missing and nothing else.
+\fBsalbench\fR takes meshes, simulated range scans of them and point clouds through normals, descriptors (FPFH),
+saliency models, histogram matching and metrics. Every intermediate is kept in a cache: a rerun computes what is missing and nothing else.
 .PP
 \fBsalbench\-report\fR turns a results folder into pages with figures and tables; \fBsalbench\-report \-\-help\fR names its
 options. It needs the packages that are recommended beside salbench.

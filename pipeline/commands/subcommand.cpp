@@ -47,7 +47,7 @@ Parameters run_parameters(Arguments& arguments, const Parameters& further) {
         "folder of the results (default: output in CONFIG, or salbench-out/NAME)"},
        {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
         1024},
-       {"--items", &arguments.items, "only these meshes and their scans, such as 1-20,52,125"},
+       {"--items", &arguments.items, "only these shapes and their scans, such as 1-20,52,125"},
        {"--reference", &arguments.reference,
         "match to this histogram (CSV with a column GS of 100 bins), not to the data set's own mean"},
        {"--quiet", &arguments.quiet, "neither progress nor tables; warnings and errors only"}},
@@ -57,7 +57,7 @@ Parameters run_parameters(Arguments& arguments, const Parameters& further) {
 Parameters cache_parameters(Arguments& arguments, const Parameters& further) {
   return joined({data_parameter(arguments),
                  cache_parameter(arguments),
-                 {"--items", &arguments.items, "as of the run: only these meshes and their scans"},
+                 {"--items", &arguments.items, "as of the run: only these shapes and their scans"},
                  {"--reference", &arguments.reference, "as of the run: match to this histogram"},
                  {"--quiet", &arguments.quiet, "name what is wrong, and nothing else"}},
                 further);

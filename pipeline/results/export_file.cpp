@@ -68,7 +68,7 @@ class Exporter {
     for (const Item& item : all_items(context_))
       if (!names.insert(context_.name(item)).second)
         throw ConfigError(fmt::format(
-            "two things of the export would be called '{}': rename the mesh, or leave it out with --items",
+            "two things of the export would be called '{}': rename the shape, or leave it out with --items",
             context_.name(item)));
   }
 

@@ -110,16 +110,16 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
   write("summary.csv", summary_table(rows, metrics));
   write("per_class.csv", per_class_table(rows, metrics));
   write("significance.csv", significance_table(rows, metrics));
-  std::error_code not_there;  // tables of an earlier run would pass for some of this
+  // Tables of an earlier run would pass for some of this.
   for (const Shapes shapes : kAllShapes) {
     const std::string name = fmt::format("mean_histograms_{}.csv", name_of(shapes));
     if (shapes == Shapes::clouds && !run.context.catalog.has(shapes, "cloud"))
-      fs::remove(folder / name, not_there);
+      remove_file(folder / name);
     else
       write(name, mean_histogram_table(run, shapes));
   }
   const auto curves = collect_human_curves(run);
-  fs::remove(folder / "human_curve.csv", not_there);
+  remove_file(folder / "human_curve.csv");
   if (!curves.empty()) write("human_curve.csv", human_curve_table(curves, metrics));
 }
 

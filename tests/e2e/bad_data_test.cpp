@@ -136,7 +136,8 @@ TEST(BadData, AnItemWithoutItsMeshIsNoted) {
   fs::remove(toy.data() / kMesh);
   const Outcome run = toy.salbench("run");
   EXPECT_EQ(run.status, 0);
-  EXPECT_THAT(lines_with(run.err, "warning: 2: ground truth without a mesh ("), SizeIs(1)) << run.err;
+  EXPECT_THAT(lines_with(run.err, "warning: 2: ground truth without a mesh or point cloud ("), SizeIs(1))
+      << run.err;
   EXPECT_THAT(scored_items(toy), ElementsAre("1", "1"));
 }
 

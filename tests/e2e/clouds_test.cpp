@@ -76,6 +76,14 @@ TEST(CloudsCommand, ARunWithoutCloudsLeavesNoTableOfThem) {
   EXPECT_THAT(lines_with(toy.results(), "clouds"), IsEmpty());
 }
 
+TEST(CloudsCommand, ATableOfAnEarlierRunThatCannotBeRemovedIsAnError) {
+  const CloudWorkspace toy;
+  fs::create_directories(toy.out() / "mean_histograms_clouds.csv/folder");
+  const Outcome run = toy.salbench("run", {"--items", "1"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(run.err, HasSubstr("mean_histograms_clouds.csv: cannot be removed: "));
+}
+
 TEST(CloudsCommand, ShardsAndTheRunAfterThemAgreeWithOneRun) {
   const CloudWorkspace whole, parts;
   ASSERT_EQ(whole.salbench("run").status, 0);

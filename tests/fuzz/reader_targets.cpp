@@ -117,7 +117,7 @@ void fuzz_xyz(std::string_view bytes) { check_cloud_reader(parse_xyz, bytes); }
 
 void fuzz_val(std::string_view bytes) {
   const auto read = [&](std::size_t n_vertices) {
-    return read_or_refuse([&] { return parse_saliency(bytes, kFile, n_vertices); });
+    return read_or_refuse([&] { return parse_saliency(bytes, kFile, {n_vertices}); });
   };
   const std::size_t n_vertices = count_words(bytes);  // one value a line, and no more words
   const auto values = read(n_vertices);
@@ -138,7 +138,7 @@ void fuzz_csv(std::string_view bytes) {
       for (const double value : (*values)[c])
         CHECK_EQ(std::isfinite(value) || (c == 0 && std::isnan(value)), true);
     }
-    const ExpectedRows one_more{(*values)[0].size() + 1, "vertices"};
+    const Elements one_more{(*values)[0].size() + 1};
     CHECK_EQ(read_or_refuse([&] { return parse_columns(bytes, kFile, columns, "-1", one_more); }).has_value(),
              false);
   }
@@ -146,7 +146,7 @@ void fuzz_csv(std::string_view bytes) {
 
 void fuzz_pid(std::string_view bytes) {
   const auto read = [&](std::size_t n_vertices) {
-    return read_or_refuse([&] { return parse_picks(bytes, kFile, n_vertices); });
+    return read_or_refuse([&] { return parse_picks(bytes, kFile, {n_vertices}); });
   };
   constexpr std::size_t kVertices = 20'000;
   const auto picks = read(kVertices);

@@ -193,22 +193,23 @@ TEST(Pcd, NamesTheLineOfTheHeaderThatIsWrong) {
     file.replace(file.find(line), line.size(), by);
     expect_refusal(file, "a.pcd", why);
   };
-  refused("VERSION 0.7", "ply", "a.pcd:2: \"ply\" is no word of a PCD header");
-  refused("FIELDS x y z", "FIELDS x y w", "the header gives points no number \"z\"");
+  refused("VERSION 0.7", "ply", "a.pcd:2: \"ply\" is not a keyword of a PCD header");
+  refused("FIELDS x y z", "FIELDS x y w", "the header has no field \"z\" of one number per point");
   refused("FIELDS x y z\n", "", "a.pcd:3: the line stands before FIELDS");
   refused("SIZE 8 8 8", "SIZE 8 3 8", "a.pcd:4: a value of 3 bytes");
   refused("SIZE 8 8 8", "SIZE 8 8", "a.pcd:4: the line ends where a whole number is expected");
   refused("SIZE 8 8 8", "SIZE 8 8 8 8", "a.pcd:4: the line has more values than the 3 fields");
   refused("SIZE 8 8 8", "SIZE 8 2 8", "field \"y\": floating point of 2 bytes");
-  refused("TYPE F F F", "TYPE F D F", "a.pcd:5: \"D\" is no PCD type: I, U or F");
+  refused("TYPE F F F", "TYPE F D F", "a.pcd:5: \"D\" is not a PCD type: expected I, U or F");
   refused("COUNT 1 1 1", "COUNT 1 0 1", "a.pcd:6: 0 is not between 1 and 100000");
-  refused("COUNT 1 1 1", "COUNT 1 2 1", "the header gives points no number \"y\"");
+  refused("COUNT 1 1 1", "COUNT 1 2 1", "the header has no field \"y\" of one number per point");
   refused("WIDTH 2", "WIDTH -2", "a.pcd:7: -2 is not between 0 and 2147483647");
   refused("WIDTH 2", "WIDTH 5", "the header announces 2 points, and 5 x 1");
   refused("HEIGHT 1", "HEIGHT 2147483648", "a.pcd:8: 2147483648 is not between");
   refused("POINTS 2", "POINTS 99999999999999999999", "does not fit 64 bits");
   refused("VIEWPOINT 0 0", "VIEWPOINT 0 nan", "a.pcd:9: \"nan\" is not a finite number");
-  refused("DATA ascii", "DATA text", "\"text\" is no PCD format: ascii, binary or binary_compressed");
+  refused("DATA ascii", "DATA text",
+          "\"text\" is not a PCD format: expected ascii, binary or binary_compressed");
   expect_refusal("VERSION 0.7\nFIELDS x y z\n", "a.pcd", "the file ends within the header");
   expect_refusal(pcd_header(0, 1, "ascii"), "a.pcd", "the header announces no points");
 }

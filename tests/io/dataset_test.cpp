@@ -18,6 +18,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::ThrowsMessage;
 
 class DatasetFolder : public TemporaryFolder {
@@ -159,6 +160,24 @@ TEST(Dataset, NamesAllShapesThatHaveTwoFiles) {
   expect_refusal(folder.path(), "automatic",
                  AllOf(HasSubstr("several files of one name: a.off and a.ply, c.XYZ and c.obj and c.pcd;"),
                        HasSubstr("dataset.twins: off")));
+}
+
+TEST(Dataset, NoExtensionIsAdvisedThatTellsNoTwinsApart) {
+  const DatasetFolder folder = {"a.ply", "a.PLY"};
+  expect_refusal(folder.path(), "automatic",
+                 AllOf(HasSubstr("a.PLY and a.ply; an item has one file: rename or remove the others"),
+                       Not(HasSubstr("twins"))));
+}
+
+TEST(Dataset, TwinsInSeveralFoldersAreNamedWithThem) {
+  const DatasetFolder folder = {"cat/1.off", "dog/1.off"};
+  const Section own =
+      Section::from_text("ground_truth: optional\nplaces: [{meshes: '*/*.off'}]\n", "own.yaml");
+  const Layout layout = read_layout(own, "own");
+  EXPECT_THAT(
+      [&] { find_dataset(folder.path(), std::span(&layout, 1)); },
+      ThrowsMessage<InputError>(HasSubstr((folder / "cat/1.off").string() + " and " +
+                                          (folder / "dog/1.off").string() + "; an item has one file")));
 }
 
 TEST(Dataset, TakesTheKindOfFileThatIsChosenAmongTwins) {

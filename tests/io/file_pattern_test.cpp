@@ -88,8 +88,8 @@ TEST(FilePattern, SaysWhatIsWrong) {
   const std::vector<std::string_view> views = {"{view}", "{viewer}"};
   EXPECT_EQ(wrong_with_truth_pattern("a/{item}_{view}.txt", views), "");
   EXPECT_THAT(wrong_with_truth_pattern("a/*.txt", views), HasSubstr("must have {item}"));
-  EXPECT_THAT(wrong_with_truth_pattern("a/{itm}.txt", views), HasSubstr("braces around something else"));
-  EXPECT_THAT(wrong_with_truth_pattern("a/{item}}.txt", views), HasSubstr("braces around something else"));
+  EXPECT_THAT(wrong_with_truth_pattern("a/{itm}.txt", views), HasSubstr("braces around something other"));
+  EXPECT_THAT(wrong_with_truth_pattern("a/{item}}.txt", views), HasSubstr("braces around something other"));
   EXPECT_THAT(wrong_with_truth_pattern("{item}_{participant}.pid", views),
               HasSubstr("cannot have {participant} here"));
   EXPECT_THAT(wrong_with_truth_pattern("{item}_{view}_{viewer}", views), HasSubstr("both"));

@@ -23,17 +23,17 @@ using testing::IsEmpty;
 using testing::ThrowsMessage;
 
 void expect_refused_saliency(std::string_view text, std::size_t n, std::string_view why) {
-  EXPECT_THAT([&] { parse_saliency(text, "9.val", n); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
+  EXPECT_THAT([&] { parse_saliency(text, "9.val", {n}); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
 }
 
 void expect_refused_picks(std::string_view text, std::size_t n, std::string_view why) {
-  EXPECT_THAT([&] { parse_picks(text, "9_0.pid", n); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
+  EXPECT_THAT([&] { parse_picks(text, "9_0.pid", {n}); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
 }
 
 TEST(GroundTruthFile, ReadsOneValueALine) {
   for (const char* text :
        {"0.5\n0\n1e-3\n", "0.5\r\n0\r\n1e-3\r\n", " 0.5 \n\n0\t\n1e-3\n\n\n", "0.5\n0\n1e-3"})
-    EXPECT_THAT(parse_saliency(text, "9.val", 3), ElementsAre(0.5, 0, 1e-3)) << text;
+    EXPECT_THAT(parse_saliency(text, "9.val", {3}), ElementsAre(0.5, 0, 1e-3)) << text;
 }
 
 TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
@@ -47,8 +47,8 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
 }
 
 TEST(GroundTruthFile, KeepsTheOrderAndRepetitionsOfPicks) {
-  EXPECT_THAT(parse_picks("7\r\n0\r\n7\r\n", "9_0.pid", 8), ElementsAre(7, 0, 7));
-  EXPECT_THAT(parse_picks("", "9_0.pid", 8), IsEmpty());
+  EXPECT_THAT(parse_picks("7\r\n0\r\n7\r\n", "9_0.pid", {8}), ElementsAre(7, 0, 7));
+  EXPECT_THAT(parse_picks("", "9_0.pid", {8}), IsEmpty());
 }
 
 TEST(GroundTruthFile, NamesFileAndLineOfABadPick) {
@@ -61,11 +61,11 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadPick) {
 }
 
 TEST(GroundTruthFile, PicksMayBeNumberedFromOne) {
-  EXPECT_THAT(parse_picks("1\n8\n", "9_0.pid", 8, 1), ElementsAre(0, 7));
-  EXPECT_THAT([] { parse_picks("3\n0\n", "9_0.pid", 8, 1); },
+  EXPECT_THAT(parse_picks("1\n8\n", "9_0.pid", {8}, 1), ElementsAre(0, 7));
+  EXPECT_THAT([] { parse_picks("3\n0\n", "9_0.pid", {8}, 1); },
               ThrowsMessage<InputError>(
                   "9_0.pid:2: vertex 0 is out of range: the mesh has 8 vertices, numbered from 1"));
-  EXPECT_THAT([] { parse_picks("9\n", "9_0.pid", 8, 1); },
+  EXPECT_THAT([] { parse_picks("9\n", "9_0.pid", {8}, 1); },
               ThrowsMessage<InputError>(
                   "9_0.pid:1: vertex 9 is out of range: the mesh has 8 vertices, numbered from 1"));
 }
@@ -78,8 +78,9 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
     if (item.saliency.empty()) continue;
     SCOPED_TRACE(item.name);
     const std::size_t n = read_mesh(item.mesh).vertices.size();
-    GroundTruth truth{parse_saliency(read_file(item.saliency[0]), item.saliency[0].native(), n), {}};
-    for (const auto& path : item.picks) truth.picks.push_back(parse_picks(read_file(path), path.native(), n));
+    GroundTruth truth{parse_saliency(read_file(item.saliency[0]), item.saliency[0].native(), {n}), {}};
+    for (const auto& path : item.picks)
+      truth.picks.push_back(parse_picks(read_file(path), path.native(), {n}));
     ++with_truth;
     EXPECT_GE(truth.picks.size(), 22U);
     // A vertex that somebody picked has at least that person's share of saliency.

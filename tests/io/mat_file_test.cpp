@@ -73,7 +73,7 @@ TEST_F(MatFile, SaysWhatWasExpected) {
   EXPECT_EQ(error_of(bytes(), "cells", {"3", "8"}),
             "a.mat: variable \"cells\": it has 2 x 2 cells, expected cell 3, 8");
   EXPECT_EQ(error_of(bytes(), "values", {"1", "1"}),
-            "a.mat: variable \"values\": it is no cell array, expected one");
+            "a.mat: variable \"values\": it is not a cell array: leave out `cell:`");
   EXPECT_EQ(error_of(bytes(), "text"), "a.mat: variable \"text\": it holds no numbers");
   EXPECT_THAT(error_of("1\n2\n", "a"), HasSubstr("expected a file of MATLAB, version 5"));
   std::string newer = bytes();

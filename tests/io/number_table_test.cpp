@@ -17,7 +17,7 @@ ScalarField column(std::string_view text, const std::string& name, const std::st
 }
 
 std::string error_of(std::string_view text, const std::string& name,
-                     const std::optional<ExpectedRows>& expected = {}) {
+                     const std::optional<Elements>& expected = {}) {
   try {
     parse_columns(text, "a.csv", {name}, "", expected);
   } catch (const InputError& error) {
@@ -54,17 +54,20 @@ TEST(NumberTable, NamesFileLineAndWhatWasExpected) {
   EXPECT_EQ(error_of("x,s\n1,2\n", "saliency"),
             "a.csv:1: no column \"saliency\": the header has \"x\", \"s\"");
   EXPECT_EQ(error_of("1,2\n", "saliency"),
-            "a.csv:1: no column \"saliency\": the first line is no header, but numbers");
+            "a.csv:1: no column \"saliency\": the first line has numbers, not names of columns");
   EXPECT_EQ(error_of("1 2\n3\n", "2"), "a.csv:2: the line has 1 column, expected column 2");
   EXPECT_EQ(error_of("x,s\n1,2\n3\n", "s"), "a.csv:3: the line has 1 column, expected column \"s\"");
   EXPECT_EQ(error_of("1,2\n", ""),
             "a.csv:1: the line has 2 columns, and the description names none: add `column:`");
   EXPECT_EQ(error_of("1\nx\n", "1"), "a.csv:2: \"x\" is not a number");
   EXPECT_EQ(error_of("1,\n2,3\n", "2"), "a.csv:1: \"\" is not a number");
-  EXPECT_EQ(error_of("1\n\n2\n", "1", {{3, "faces"}}),
+  EXPECT_EQ(error_of("1\n\n2\n", "1", {{3, "mesh", "face", "faces"}}),
             "a.csv:3: the file has 2 values, but the mesh has 3 faces");
   EXPECT_EQ(error_of("s\n", "1"), "a.csv:1: the file has no values");
   EXPECT_EQ(error_of("inf\n", "1"), "a.csv:1: \"inf\" is not a finite number");
+  EXPECT_EQ(error_of("1\n1e999\n", "1"), "a.csv:2: \"1e999\" does not fit a double");
+  EXPECT_EQ(error_of("1\n1e-999\n", "1"), "a.csv:2: \"1e-999\" does not fit a double");
+  EXPECT_EQ(error_of("1\n+-1\n", "1"), "a.csv:2: \"+-1\" is not a number");
 }
 
 }  // namespace

@@ -78,7 +78,8 @@ TEST(Obj, NamesFileAndLineOfWhatIsWrong) {
 
 TEST(Obj, RefusesWhatHasNoVertices) {
   expect_refusal("", "without a vertex");
-  expect_refusal("PK\x03\x04 an archive\n", "x.obj:1: the file ends without a vertex (v): it is no OBJ file");
+  expect_refusal("PK\x03\x04 an archive\n",
+                 "x.obj:1: the file ends without a vertex (v): expected an OBJ file");
 }
 
 TEST(Obj, CutShortAtAnyLengthIsReadOrRefused) {

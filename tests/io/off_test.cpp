@@ -112,11 +112,11 @@ TEST(Off, RefusesHeadersThatCannotBe) {
   expect_refusal("OFF BINARY\n", "binary OFF cannot be read");
   expect_refusal("4OFF\n", "\"4OFF\" is an unknown kind of OFF");
   expect_refusal("nOFF\n3\n", "\"nOFF\" is an unknown kind of OFF");
-  expect_refusal("solid cube\n", "\"solid\" is no OFF header");
+  expect_refusal("solid cube\n", "\"solid\" is not an OFF header");
   expect_refusal(std::string_view("\x7f"
                                   "ELF\x02\x01\0\0",
                                   8),
-                 "\"?ELF????\" is no OFF header");
+                 "\"?ELF????\" is not an OFF header");
 }
 
 TEST(Off, AbsurdCountsNeedNoMemory) {

@@ -136,9 +136,9 @@ TEST(Ply, RefusesHeadersThatCannotBe) {
   expect_refusal("", "x.ply: the file does not begin with \"ply\"");
   expect_refusal("PLY2\n", "x.ply:1: the file does not begin with \"ply\"");
   expect_refusal("ply\nformat ascii 1.0\n", "ends within the header");
-  expect_refusal(triangle_with("ascii", "binary"), "x.ply:2: \"binary\" is no PLY format");
+  expect_refusal(triangle_with("ascii", "binary"), "x.ply:2: \"binary\" is not a PLY format");
   expect_refusal(triangle_with("format ascii 1.0\n", ""), "names no format");
-  expect_refusal(triangle_with("float y", "half y"), "x.ply:5: \"half\" is no PLY type");
+  expect_refusal(triangle_with("float y", "half y"), "x.ply:5: \"half\" is not a PLY type");
   expect_refusal(triangle_with("float y", "float"), "x.ply:5: the line ends where a name is expected");
   expect_refusal(triangle_with("float y", "float t"), "gives vertices no number \"y\"");
   expect_refusal(triangle_with("float y", "list uchar float y"), "gives vertices no number \"y\"");
@@ -151,7 +151,7 @@ TEST(Ply, RefusesHeadersThatCannotBe) {
   expect_refusal(triangle_with("vertex_index", "corners"), "gives faces no list \"vertex_indices\"");
   expect_refusal(triangle_with("list uchar int vertex_index", "int vertex_index"), "gives faces no list");
   expect_refusal(triangle_with("element face 1", "elements face 1"),
-                 "\"elements\" is no word of a PLY header");
+                 "\"elements\" is not a keyword of a PLY header");
   expect_refusal(triangle_with("element face 1", "element tristrips 1"), "triangle strips cannot be read");
 }
 
@@ -163,10 +163,10 @@ TEST(Ply, NamesFileAndLineOfWhatIsWrongInText) {
   expect_refusal(triangle_with("3 0 1 2", "3 0 1 3"),
                  "x.ply:13: vertex index 3 is out of range: there are 3");
   expect_refusal(triangle_with("3 0 1 2", "3 0 -1 2"), "x.ply:13: vertex index -1 is out of range");
-  expect_refusal(triangle_with("3 0 1 2", "3 0 0.5 2"), "x.ply:13: 0.5 is no vertex index");
+  expect_refusal(triangle_with("3 0 1 2", "3 0 0.5 2"), "x.ply:13: 0.5 is not a vertex index");
   expect_refusal(triangle_with("3 0 1 2", "2 0 1"), "x.ply:13: a face with 2 vertices");
-  expect_refusal(triangle_with("3 0 1 2", "-3 0 1 2"), "x.ply:13: -3 is no length of a list");
-  expect_refusal(triangle_with("3 0 1 2", "1e300 0 1 2"), "x.ply:13: 1e+300 is no length of a list");
+  expect_refusal(triangle_with("3 0 1 2", "-3 0 1 2"), "x.ply:13: -3 is not the length of a list");
+  expect_refusal(triangle_with("3 0 1 2", "1e300 0 1 2"), "x.ply:13: 1e+300 is not the length of a list");
   expect_refusal(triangle_with("3 0 1 2", "3 0 1"), "the file ends after 0 of 1 faces");
   expect_refusal(triangle_with("3 0 1 2", "3 0 1 2\n3 0 1 2"), "x.ply:14: there is more text");
 }
@@ -183,7 +183,7 @@ TEST(Ply, NamesElementAndByteOfWhatIsWrongInBinary) {
                                                           std::to_string(file.size() - 5) +
                                                           ": vertex index 4 is out of range");
   expect_refusal(with(last_corner + 13, std::uint8_t{2}), "a face with 2 vertices");
-  expect_refusal(with(5, std::int8_t{-1}), "-1 is no length of a list");
+  expect_refusal(with(5, std::int8_t{-1}), "-1 is not the length of a list");
   const std::size_t first_y = file.find("end_header\n") + 11 + 13 + 1;
   expect_refusal(with(file.size() - first_y, std::nan("")), "x.ply: vertex 1 (counted from 1)");
   expect_refusal(with(file.size() - first_y, HUGE_VAL), "a coordinate is not a finite number");
@@ -194,7 +194,7 @@ TEST(Ply, QuotesTheNameOfAnElementThatItDoesNotKnow) {
   expect_refusal(
       "ply\nformat binary_little_endian 1.0\nelement vertex 0\nproperty char x\nproperty char y\n"
       "property char z\nelement a\ab 1\nproperty list char char s\nend_header\n\xff",
-      "x.ply: element \"a?b\" 1 (counted from 1), before byte 153: -1 is no length of a list");
+      "x.ply: element \"a?b\" 1 (counted from 1), before byte 153: -1 is not the length of a list");
 }
 
 TEST(Ply, AbsurdCountsNeedNeitherMemoryNorTime) {

@@ -51,6 +51,8 @@ TEST(RunCommand, RunsInItsFolderWithNothingToRead) {
   EXPECT_EQ(fs::path(read_file(folder.path() / "here")), folder.path().string() + "\n");
 }
 
+TEST(RunCommand, ATimeoutBeyondTheClockIsNone) { EXPECT_EQ(failure_of("exit 0", 1e300), ""); }
+
 TEST(RunCommand, SaysHowItEndedAndWhatItPrintedLast) {
   EXPECT_EQ(failure_of("exit 0"), "");
   EXPECT_EQ(failure_of("exit 3"), "the command ended with status 3; it printed nothing");

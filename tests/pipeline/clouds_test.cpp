@@ -179,6 +179,24 @@ TEST(Clouds, APickOfAPointWithoutAPositionIsTheItemsFailure) {
   EXPECT_THAT(map_of(toy, "PS", Shapes::clouds, Item::cloud(1)), SizeIs(points.size() - 1));
 }
 
+TEST(Clouds, GroundTruthThatDoesNotFitIsToldInPoints) {
+  const Twins12 data;
+  const std::size_t n = data.mesh.vertices.size();
+  MemoryStore store;
+  const auto cause = [&] {
+    ToyRun toy(data.folder.path(), store, kPointModels);
+    toy.run();
+    return toy.runner.failures().empty() ? "no failure" : toy.runner.failures()[0].cause;
+  };
+  data.folder.write("RawData/2_0.pid", fmt::format("3\n{}\n", n));
+  EXPECT_THAT(cause(), HasSubstr(fmt::format("2_0.pid:2: point {0} is out of range: the point cloud has {0} "
+                                             "points, numbered from 0",
+                                             n)));
+  data.folder.write("Distributions/2.val", "1\n");
+  EXPECT_THAT(cause(),
+              HasSubstr(fmt::format("2.val:1: the file has 1 values, but the point cloud has {} points", n)));
+}
+
 TEST(Clouds, PicksAloneAreSmoothedOverThePartialMesh) {
   const Twins12 data;
   std::filesystem::remove(data.folder / "Distributions/2.val");

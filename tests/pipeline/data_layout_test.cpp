@@ -89,11 +89,11 @@ TEST(DataLayout, NamesFileLineAndWhatWasExpected) {
       "empty name in it");
   EXPECT_EQ(
       error_of_place("meshes: off/*\n    truth:\n      saliency: maps/{itm}.csv"),
-      "own.yaml:4: places[0].truth.saliency 'maps/{itm}.csv' has braces around something else than item, "
+      "own.yaml:4: places[0].truth.saliency 'maps/{itm}.csv' has braces around something other than item, "
       "participant, view or viewer");
   EXPECT_EQ(
       error_of_place("meshes: off/*\n    truth:\n      picks: maps/*.pid"),
-      "own.yaml:4: places[0].truth.picks 'maps/*.pid' must have {item} where the name of the item stands");
+      "own.yaml:4: places[0].truth.picks 'maps/*.pid' must have {item} in place of the name of the item");
   EXPECT_EQ(error_of_place("meshes: off/*\n    truth: {}"),
             "own.yaml:3: places[0].truth names neither saliency nor picks");
   EXPECT_EQ(error_of("places: [{meshes: '*'}]\nvalues:\n  per: edge\n"),

@@ -17,6 +17,7 @@ namespace salbench {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -315,9 +316,9 @@ TEST_F(BadData, AWrongColumnIsNamedWithThoseThatThereAre) {
   run(description(std::string(kMaps) + "values: {column: saliency}\n"));
   EXPECT_THAT(
       failures(),
-      ElementsAre(
-          place("maps/cat.csv") + ":1: no column \"saliency\": the header has \"id\", \"density\"",
-          place("maps/dog.csv") + ":1: no column \"saliency\": the first line is no header, but numbers"));
+      ElementsAre(place("maps/cat.csv") + ":1: no column \"saliency\": the header has \"id\", \"density\"",
+                  place("maps/dog.csv") +
+                      ":1: no column \"saliency\": the first line has numbers, not names of columns"));
   run(description(std::string(kMaps) + "values: {column: 2}\n"));
   EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(failures(),
@@ -393,6 +394,9 @@ TEST_F(BadData, NumpyFilesAreReadToo) {
   run(description(std::string(kMaps) + "values: {unseen: -1}\n"));
   EXPECT_THAT(failures(), IsEmpty());
   EXPECT_THAT(truth(0).saliency, ElementsAre(1, IsNan(), 3, 4));
+  run(description(std::string(kMaps) + "values: {per: point, points: [x, y, z], column: s}\n"));
+  EXPECT_THAT(failures(), Contains(HasSubstr("cat.csv: values per point stand in columns beside x, y and z: "
+                                             "write them as text")));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ std::vector<Picked> largest_with_picks(const fs::path& data) {
     if (!fs::exists(file)) continue;
     picked.mesh = read_mesh(entry.path());
     for (int k = 0; fs::exists(file); file = data / "RawData" / fmt::format("{}_{}.pid", picked.name, ++k)) {
-      const auto own = parse_picks(read_file(file), file.string(), picked.mesh.vertices.size());
+      const auto own = parse_picks(read_file(file), file.string(), {picked.mesh.vertices.size()});
       picked.picks.insert(picked.picks.end(), own.begin(), own.end());
     }
     std::sort(picked.picks.begin(), picked.picks.end());

@@ -5,15 +5,13 @@ import shutil
 import subprocess
 import unittest
 
-import browser as chromium
 import support
 
 AXE = "axe-core@4.10.2"
 GRAVE = ("serious", "critical")
 
 
-@chromium.needs_browser
-class Accessibility(support.ReportTest):
+class Accessibility(support.BrowserTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -26,12 +24,8 @@ class Accessibility(support.ReportTest):
         except (OSError, subprocess.SubprocessError):
             raise unittest.SkipTest("npm cannot reach its registry") from None
         cls.axe = (cls.folder / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")
-        cls.to = cls.folder / "report"
         with support.without_drawing():
-            status, errors = support.make(support.make_full(cls.folder, meshes=1), cls.to)
-        assert status == 0, errors
-        cls.browser = chromium.start()
-        cls.addClassCleanup(cls.browser.quit)
+            cls.start_with_report("report", meshes=1)
 
     def findings(self, path):
         self.browser.get((self.to / path).as_uri())

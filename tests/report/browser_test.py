@@ -16,16 +16,11 @@ if chromium.AVAILABLE:
     from selenium.webdriver.support.ui import Select, WebDriverWait
 
 
-@chromium.needs_browser
-class Browser(support.ReportTest):
+class Browser(support.BrowserTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.to = cls.folder / "a report & more"  # an address that has to be escaped
-        status, errors = support.make(support.make_full(cls.folder, meshes=2), cls.to)
-        assert status == 0, errors
-        cls.browser = chromium.start()
-        cls.addClassCleanup(cls.browser.quit)
+        cls.start_with_report("a report & more", meshes=2)  # an address that has to be escaped
 
     def open(self, path):
         self.browser.get((self.to / path).as_uri())

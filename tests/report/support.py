@@ -10,6 +10,7 @@ import unittest
 import unittest.mock
 from pathlib import Path
 
+import browser
 import fixture
 from report import cli
 
@@ -104,3 +105,17 @@ def make_full(folder, meshes=6):
     fixture.write_timeline(out)
     fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:meshes], views=3, size=64)
     return out
+
+
+@browser.needs_browser
+class BrowserTest(ReportTest):
+    """A browser per class, and a report of everything to look at in it."""
+
+    @classmethod
+    def start_with_report(cls, name, meshes):
+        """Makes the report in `cls.to`, a folder of that name, and starts `cls.browser`."""
+        cls.to = cls.folder / name
+        status, errors = make(make_full(cls.folder, meshes=meshes), cls.to)
+        assert status == 0, errors
+        cls.browser = browser.start()
+        cls.addClassCleanup(cls.browser.quit)
