@@ -65,23 +65,42 @@ Order ascending_order(std::span<const double> field) {
   return order;
 }
 
-Distribution distribution(std::span<const double> field, const Order& order, const Measure& measure) {
+namespace {
+
+// The mid-ranks; each(k, value, weight up to it) of the points in their order.
+template <class Each>
+ScalarField ranked(std::span<const double> field, const Order& order, const Measure& measure,
+                   const Each& each) {
   const std::size_t n = field.size();
   CHECK_EQ(order.size(), n);
   CHECK_EQ(measure.size(), n);
-  Distribution result{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
+  ScalarField mid(n);
   double weight = 0;
   for (std::size_t first = 0, end = 0; first < n; first = end) {
     const double value = field[order[first]], below = weight;
     for (; end < n && field[order[end]] == value; ++end) {
       weight += measure.weight[order[end]];
-      result.values[end] = value;
-      result.reached[end] = weight;
+      each(end, value, weight);
     }
-    const double mid = below + (weight - below) / 2;
-    for (std::size_t k = first; k < end; ++k) result.mid[order[k]] = mid;
+    const double middle = below + (weight - below) / 2;
+    for (std::size_t k = first; k < end; ++k) mid[order[k]] = middle;
   }
-  return result;
+  return mid;
+}
+
+}  // namespace
+
+ScalarField mid_ranks(std::span<const double> field, const Order& order, const Measure& measure) {
+  return ranked(field, order, measure, [](std::size_t, double, double) {});
+}
+
+Distribution distribution(std::span<const double> field, const Order& order, const Measure& measure) {
+  std::vector<double> values(field.size()), reached(field.size());
+  ScalarField mid = ranked(field, order, measure, [&](std::size_t k, double value, double weight) {
+    values[k] = value;
+    reached[k] = weight;
+  });
+  return {std::move(mid), std::move(values), std::move(reached)};
 }
 
 double Distribution::weight_below(double value) const {

@@ -3,10 +3,12 @@
 #include "stages/metrics/sampled_roc.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -64,31 +66,37 @@ class Reached {
   // Worth its making for so many numbers at a time.
   Reached(std::vector<double> from, std::size_t numbers)
       : from_(std::move(from)),
-        cells_(static_cast<double>(std::clamp(std::bit_ceil(numbers), kLeastCells, kMostCells))),
+        cells_(static_cast<double>(std::clamp(std::bit_ceil(4 * numbers), kLeastCells, kMostCells))),
         in_cell_(static_cast<std::size_t>(cells_)) {
-    std::int32_t reached = 0;
-    for (std::size_t cell = 0; cell < in_cell_.size(); ++cell) {
-      const std::int32_t before = reached = advanced(reached, static_cast<double>(cell) / cells_);
-      const std::int32_t behind = advanced(before, static_cast<double>(cell + 1) / cells_);
-      in_cell_[cell] = behind == before ? before : -1 - before;
+    std::size_t filled = 0;
+    for (std::size_t reached = 0; reached < from_.size(); ++reached) {
+      // A position on a border has been reached by all of the cell that begins there.
+      const auto cell = static_cast<std::size_t>(std::ceil(from_[reached] * cells_));
+      fill(filled, cell, static_cast<std::int32_t>(reached));
+      if (cell > filled && from_[reached] * cells_ < static_cast<double>(cell))
+        in_cell_[cell - 1] = -1 - static_cast<std::int32_t>(reached);
+      filled = cell;
     }
+    fill(filled, in_cell_.size(), static_cast<std::int32_t>(from_.size()));
+    from_.push_back(std::numeric_limits<double>::infinity());
   }
 
   std::size_t operator()(double u) const {
     const std::int32_t known = in_cell_[static_cast<std::size_t>(u * cells_)];
-    return static_cast<std::size_t>(known >= 0 ? known : advanced(-1 - known, u));
+    if (known >= 0) return static_cast<std::size_t>(known);
+    auto reached = static_cast<std::size_t>(-1 - known);
+    while (from_[reached] <= u) ++reached;
+    return reached;
   }
 
  private:
   static constexpr std::size_t kLeastCells = 64, kMostCells = 1024;
 
-  std::int32_t advanced(std::int32_t reached, double u) const {
-    while (static_cast<std::size_t>(reached) < from_.size() && from_[static_cast<std::size_t>(reached)] <= u)
-      ++reached;
-    return reached;
+  void fill(std::size_t first, std::size_t end, std::int32_t reached) {
+    for (std::size_t cell = first; cell < end; ++cell) in_cell_[cell] = reached;
   }
 
-  std::vector<double> from_;
+  std::vector<double> from_;           // and infinity
   double cells_;                       // a power of two: u * cells_ stays below it
   std::vector<std::int32_t> in_cell_;  // -1 - the number at its beginning where it has one within
 };
@@ -123,7 +131,11 @@ class Curve {
     false_rates_.resize(thresholds.size());
     counts_.assign(thresholds.size() + 1, 0);
   }
-  void add_negative(std::size_t thresholds_reached) { ++counts_[thresholds_reached]; }
+  template <class Reached>
+  void add_negatives(std::span<const double> negatives, const Reached& thresholds_reached) {
+    std::uint32_t* const counts = counts_.data();
+    for (const double value : negatives) ++counts[thresholds_reached(value)];
+  }
   void end_split() {
     rates(counts_, positives_.size(), false_rates_);
     sum_ += area_under_curve(true_rates_, false_rates_);
@@ -142,6 +154,27 @@ class Curve {
   Counts counts_;
   double sum_ = 0;
 };
+
+struct Extremes {
+  double smallest, largest;
+};
+
+// In lanes, since each comparison waits for the one before.
+Extremes extremes_of(std::span<const double> values) {
+  constexpr std::size_t kLanes = 4;
+  std::array<double, kLanes> smallest, largest;
+  smallest.fill(values.front());
+  largest.fill(values.front());
+  const auto take = [&](std::size_t lane, double value) {
+    smallest[lane] = value < smallest[lane] ? value : smallest[lane];
+    largest[lane] = value > largest[lane] ? value : largest[lane];
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= values.size(); i += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) take(lane, values[i + lane]);
+  for (; i < values.size(); ++i) take(0, values[i]);
+  return {*std::ranges::min_element(smallest), *std::ranges::max_element(largest)};
+}
 
 // How many even thresholds up to `largest` > 0 a value from 0 to `largest` reaches.
 class EvenReached {
@@ -173,21 +206,22 @@ double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Split
   Curve curve(picks, splits.count);
   std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
   std::vector<double> thresholds;
+  std::optional<EvenReached> reached;
   double up_to = kUndefined;  // of the thresholds
   for (; !rest.empty(); rest = rest.subspan(picks.size())) {
     const auto negatives = rest.first(picks.size());
-    const auto [smallest, largest_negative] = std::ranges::minmax(negatives);
-    const double largest = std::max(curve.largest(), largest_negative);
+    const Extremes extremes = extremes_of(negatives);
+    const double largest = std::max(curve.largest(), extremes.largest);
     if (largest != up_to) {
       thresholds = even_thresholds(splits.thresholds, up_to = largest);
       curve.set_thresholds(thresholds);
+      reached.emplace(thresholds, largest);
     }
-    if (!(largest > 0) || smallest < 0) {  // no map that was matched, but a constant one may be
+    if (!(largest > 0) || extremes.smallest < 0) {  // no map that was matched, but a constant one may be
       curve.end_split({negatives.begin(), negatives.end()}, thresholds);
       continue;
     }
-    const EvenReached reached(thresholds, largest);
-    for (const double value : negatives) curve.add_negative(reached(value));
+    curve.add_negatives(negatives, *reached);
     curve.end_split();
   }
   return curve.mean();
@@ -293,14 +327,15 @@ class QuantileSums {
   void count(std::span<const double> draws, const Ladder& ladder) {
     const std::size_t bins = ladder.positions() + 1;
     at_least_.assign(kLanes * bins, 0);
+    std::uint32_t* const counts = at_least_.data();
     std::size_t i = 0;
     for (; i + kLanes <= draws.size(); i += kLanes)
       for (std::size_t lane = 0; lane < kLanes; ++lane)
-        ++at_least_[lane * bins + ladder.reached(draws[i + lane])];
-    for (; i < draws.size(); ++i) ++at_least_[ladder.reached(draws[i])];
+        ++counts[lane * bins + ladder.reached(draws[i + lane])];
+    for (; i < draws.size(); ++i) ++counts[ladder.reached(draws[i])];
     for (std::size_t lane = 1; lane < kLanes; ++lane)
-      for (std::size_t k = 0; k < bins; ++k) at_least_[k] += at_least_[lane * bins + k];
-    for (std::size_t k = bins - 1; k-- > 0;) at_least_[k] += at_least_[k + 1];
+      for (std::size_t k = 0; k < bins; ++k) counts[k] += counts[lane * bins + k];
+    for (std::size_t k = bins - 1; k-- > 0;) counts[k] += counts[k + 1];
   }
 
   void set_false_rates(const std::vector<std::size_t>& places, std::size_t draws) {
@@ -329,14 +364,14 @@ class QuantileSums {
 }  // namespace
 
 std::vector<double> quantile_aucs(std::span<const QuantileCurve> curves, std::span<const double> picks,
-                                  UniformDraws& draws, const Splits& splits) {
+                                  Draws& draws, const Splits& splits) {
   std::vector<double> areas(curves.size(), kUndefined);
   std::vector<QuantileCurve> defined;
   for (const QuantileCurve& curve : curves)
     if (curve.map.total() > 0) defined.push_back(curve);
   if (picks.empty() || defined.empty()) return areas;
   QuantileSums sums(defined, picks, splits);
-  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
+  std::span<const double> rest = draws.uniform(static_cast<std::size_t>(splits.count) * picks.size());
   for (; !rest.empty(); rest = rest.subspan(picks.size())) sums.add_split(rest.first(picks.size()));
   for (std::size_t c = 0, d = 0; c < curves.size(); ++c)
     if (curves[c].map.total() > 0) areas[c] = sums.mean(d++);
