@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "stages/core/check.h"
@@ -31,8 +32,7 @@ std::size_t digit(std::uint64_t entry, unsigned which) {
 }
 
 // Sorts what shares a key.
-void sort_within_keys(std::span<const double> field, const std::vector<std::uint64_t>& entries,
-                      Order& order) {
+void sort_within_keys(std::span<const double> field, std::span<const std::uint64_t> entries, Order& order) {
   const auto smaller = [&](std::uint32_t a, std::uint32_t b) { return field[a] < field[b]; };
   for (std::size_t first = 0, end = 0; first < entries.size(); first = end) {
     while (end < entries.size() && entries[end] >> kIndexBits == entries[first] >> kIndexBits) ++end;
@@ -46,7 +46,9 @@ void sort_within_keys(std::span<const double> field, const std::vector<std::uint
 
 Order ascending_order(std::span<const double> field) {
   const std::size_t n = field.size();
-  std::vector<std::uint64_t> entries(n), sorted(n);  // key above index
+  // Key above index; all is written before it is read.
+  auto entries = std::make_unique_for_overwrite<std::uint64_t[]>(n);
+  auto sorted = std::make_unique_for_overwrite<std::uint64_t[]>(n);
   std::array<std::array<std::uint32_t, kBuckets>, kDigits> counts{};
   for (std::size_t i = 0; i < n; ++i) {
     entries[i] = key_of(field[i]) << kIndexBits | i;
@@ -56,12 +58,13 @@ Order ascending_order(std::span<const double> field) {
     if (counts[d][digit(entries[0], d)] == n) continue;  // all alike
     std::uint32_t start = 0;
     for (std::uint32_t& bucket : counts[d]) start += std::exchange(bucket, start);
-    for (const std::uint64_t entry : entries) sorted[counts[d][digit(entry, d)]++] = entry;
+    for (const std::uint64_t entry : std::span(entries.get(), n))
+      sorted[counts[d][digit(entry, d)]++] = entry;
     entries.swap(sorted);
   }
   Order order(n);
   for (std::size_t k = 0; k < n; ++k) order[k] = static_cast<std::uint32_t>(entries[k]);
-  sort_within_keys(field, entries, order);
+  sort_within_keys(field, {entries.get(), n}, order);
   return order;
 }
 
