@@ -11,6 +11,7 @@
 #include "stages/core/errors.h"
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/metrics.h"
+#include "stages/metrics/reached.h"
 #include "stages/metrics/sampled_roc.h"
 
 namespace salbench {
@@ -197,6 +198,23 @@ TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
   const std::vector<double> areas = quantile_aucs(curves, positives, draws, {3000, 400});
   EXPECT_NEAR(areas[0], probability, 0.005);
   EXPECT_NEAR(areas[1], probability, 0.03);  // ten steps
+}
+
+TEST(Reached, CountsAsASearchDoes) {
+  Rng rng(8, "suite", "");
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    ScalarField positions(rng.below(50));
+    for (double& position : positions) {  // on borders of cells, equal, close together, at the ends
+      const double cell = static_cast<double>(rng.below(65)) / 64;
+      position = std::min(1.0, rng.below(2) == 0 ? cell : cell + rng.uniform() / 1000);
+    }
+    std::ranges::sort(positions);
+    const Reached reached(positions, rng.below(600));
+    for (int k = 0; k < 500; ++k) {
+      const double u = rng.below(4) == 0 ? static_cast<double>(rng.below(64)) / 64 : rng.uniform();
+      ASSERT_EQ(reached(u), std::ranges::upper_bound(positions, u) - positions.begin());
+    }
+  }
 }
 
 TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
