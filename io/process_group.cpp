@@ -45,12 +45,12 @@ void take_off_list(pid_t group) {
 }
 
 // What a command reads and writes; -1: it has nothing to read.
-struct Descriptors {
+struct StandardFiles {
   int input, output, errors;
 };
 
 // Only calls that are safe after a fork in a program with threads.
-[[noreturn]] void become(const char* command, const char* folder, const Descriptors& its, pid_t parent) {
+[[noreturn]] void become(const char* command, const char* folder, const StandardFiles& its, pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // even if the program is killed
   if (::getppid() != parent) ::_exit(127);
@@ -133,8 +133,8 @@ ProcessGroup::ProcessGroup(const std::string& command, const std::filesystem::pa
     ::fcntl(answers_->reading(), F_SETFL, O_NONBLOCK);
   }
   ::fcntl(output_.reading(), F_SETFL, O_NONBLOCK);
-  const Descriptors its{lines_ ? lines_->reading() : -1, answers_ ? answers_->writing() : output_.writing(),
-                        output_.writing()};
+  const StandardFiles its{lines_ ? lines_->reading() : -1, answers_ ? answers_->writing() : output_.writing(),
+                          output_.writing()};
   const pid_t parent = ::getpid();
   group_ = ::fork();
   if (group_ == 0) become(command.c_str(), folder.c_str(), its, parent);
