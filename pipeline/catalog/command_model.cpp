@@ -6,18 +6,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "io/file.h"
-#include "io/hdf5_file.h"
-#include "io/process.h"
-#include "io/shape_file.h"
-#include "io/values_file.h"
 #include "pipeline/catalog/depended_files.h"
 #include "pipeline/catalog/model_name.h"
+#include "pipeline/catalog/shape_command.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -26,23 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kReadable = {"mesh", "points", "normals", "faces", "fpfh"};
-constexpr const char* kMeshFile = "shape.ply";
-constexpr const char* kShapeFile = "shape.h5";
-
-struct Placeholder {
-  std::string_view text, file;
-};
-constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", kMeshFile},
-                                                       {"{shape}", kShapeFile},
-                                                       {"{out}", "out.val"},
-                                                       {"{out.npy}", "out.npy"},
-                                                       {"{out.h5}", "out.h5"}}};
-
 bool contains(const Words& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
-
-// --- the configuration ------------------------------------------------------------------------------------
 
 std::string yaml_list(const Words& words) {
   std::string list;
@@ -76,14 +60,27 @@ void check_reads(const CommandOptions& options, const Section& written) {
 void check_command(const CommandOptions& options, const Section& written) {
   const auto has = [&](std::string_view text) { return options.command.find(text) != std::string::npos; };
   if (options.command.find('\0') != std::string::npos) written.fail("command", "holds a zero byte");
-  if (has("{list}"))
-    written.fail("command",
-                 "has {list}: one command for many shapes is not supported; use {mesh} or {shape}");
+  const bool list = has(kListOfMeshes), list_of_hdf5 = has(kListOfShapes);
+  const bool fpfh = contains(options.reads, "fpfh");
+  if (list || list_of_hdf5) {
+    if (std::any_of(kPlaceholders.begin(), kPlaceholders.end(),
+                    [&](const Placeholder& placeholder) { return has(placeholder.text); }))
+      written.fail(
+          "command",
+          "has {list}, whose lines name the files of each shape: it must not have {mesh}, {shape} or "
+          "{out} as well");
+    if (list && (list_of_hdf5 || fpfh))
+      written.fail("command",
+                   fpfh ? "must have {list.h5}, with HDF5 files, in place of {list}, since it reads "
+                          "fpfh, which a PLY file has no place for"
+                        : "has both {list} and {list.h5}");
+    return;
+  }
   if (!has("{out}") && !has("{out.npy}") && !has("{out.h5}"))
     written.fail("command", "must have {out} where the file is named that it writes its values to");
   if (!has("{mesh}") && !has("{shape}"))
-    written.fail("command", "must have {mesh} or {shape}, the file it reads");
-  if (contains(options.reads, "fpfh") && !has("{shape}"))
+    written.fail("command", "must have {mesh} or {shape}, the file it reads, or {list} for many shapes");
+  if (fpfh && !has("{shape}"))
     written.fail("command",
                  "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
 }
@@ -121,78 +118,10 @@ CommandOptions read_options(const Section& written) {
   return options;
 }
 
-// --- the map ----------------------------------------------------------------------------------------------
-
-// What the command may read of a shape; `reads` says which parts a job loads.
-struct ShapeParts {
-  Points points;
-  const Normals* normals = nullptr;
-  Surface faces = {};
-  const Descriptors* fpfh = nullptr;
-};
-
-Array rows_of(const char* name, std::span<const Vec3> rows, const char* description) {
-  std::vector<double> values;
-  values.reserve(3 * rows.size());
-  for (const Vec3& row : rows) values.insert(values.end(), {row.x(), row.y(), row.z()});
-  return {name, {rows.size(), 3}, std::move(values), "1", description};
-}
-
-void write_hdf5(const fs::path& path, const ShapeParts& shape) {
-  Hdf5Content content{{rows_of("points", shape.points, "coordinates, in the mesh's unit")}, {}};
-  if (shape.normals != nullptr) content.arrays.push_back(rows_of("normals", *shape.normals, "unit normals"));
-  if (!shape.faces.empty()) {
-    std::vector<std::int32_t> corners;
-    for (const Triangle& face : shape.faces) corners.insert(corners.end(), face.begin(), face.end());
-    content.arrays.push_back(
-        {"faces", {shape.faces.size(), 3}, std::move(corners), "1", "0-based points of each triangle"});
-  }
-  if (shape.fpfh != nullptr)
-    content.arrays.push_back(
-        {"fpfh", {shape.fpfh->size(), kFpfhBins}, shape.fpfh->values, "1", "descriptors"});
-  const Bytes image = hdf5_image(content);
-  write_file(path, {reinterpret_cast<const char*>(image.data()), image.size()});
-}
-
-std::string in_folder(std::string command, const fs::path& folder) {
-  for (const Placeholder& placeholder : kPlaceholders) {
-    const std::string file = shell_quoted((folder / placeholder.file).string());
-    for (std::size_t at = 0; (at = command.find(placeholder.text, at)) != std::string::npos;
-         at += file.size())
-      command.replace(at, placeholder.text.size(), file);
-  }
-  return command;
-}
-
-// Also under the name that numpy.save makes of one without ".npy". Throws InputError.
-fs::path written_file(const fs::path& folder) {
-  for (const char* name : {"out.val", "out.npy", "out.h5", "out.val.npy"}) {
-    std::error_code missing;
-    if (fs::exists(folder / name, missing)) return folder / name;
-  }
-  throw InputError("the command ended without a file {out}; it must write one value per point there");
-}
-
-ScalarField map_by_command(const CommandOptions& options, DependedFiles& depends, const ShapeParts& shape) {
-  const ScratchFolder scratch;
-  depends.link_into(scratch.path());
-  if (options.command.find("{mesh}") != std::string::npos)
-    write_file(scratch.path() / kMeshFile,
-               shape_text({.points = shape.points,
-                           .normals = shape.normals == nullptr ? Points() : Points(*shape.normals),
-                           .faces = shape.faces},
-                          ShapeFormat::ply));
-  if (options.command.find("{shape}") != std::string::npos) write_hdf5(scratch.path() / kShapeFile, shape);
-  run_command(in_folder(options.command, scratch.path()), scratch.path(),
-              std::chrono::duration<double>(options.timeout));
-  depends.check_unchanged();
-  const fs::path written = written_file(scratch.path());
-  return read_point_values(written, "the command's " + written.filename().string(), shape.points.size());
-}
-
 // Rows are made of functions elsewhere; what this one reads is known from the configuration only.
 RowOf<ScalarField> add_command(Catalog& catalog, const ShapeRows& rows, RowHead head, const std::string& name,
-                               const CommandOptions& options, const std::shared_ptr<DependedFiles>& depends) {
+                               const CommandOptions& options, const std::shared_ptr<DependedFiles>& depends,
+                               const std::shared_ptr<ShapeCommand>& command) {
   const auto reads = [&](std::string_view part) {
     return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
   };
@@ -213,7 +142,7 @@ RowOf<ScalarField> add_command(Catalog& catalog, const ShapeRows& rows, RowHead 
     if (normals) shape.normals = &binding::parameter<Normals>(RowOf<Normals>(), in, next);
     if (faces) shape.faces = binding::parameter<Surface>(RowOf<Surface>(), in, next);
     if (fpfh) shape.fpfh = &binding::parameter<Descriptors>(RowOf<Descriptors>(), in, next);
-    return map_by_command(options, *depends, shape);
+    return command->map(shape);
   };
   catalog.rows.push_back(std::move(row));
   return RowOf<ScalarField>(catalog.rows.size() - 1);
@@ -237,12 +166,14 @@ Model command_model(const std::string& name, const Section& models) {
   const Section written = models.child(name);
   const CommandOptions options = read_options(written);
   const auto depends = std::make_shared<DependedFiles>(options.depends, written);
+  const auto command = std::make_shared<ShapeCommand>(
+      options.command, std::chrono::duration<double>(options.timeout), depends);
   return {.name = name,
           .version = options.version,
           .options = command_text(options, false),
           .annotated_options = command_text(options, true),
           .add_map = [=](Catalog& catalog, const ShapeRows& rows, RowHead head) {
-            return add_command(catalog, rows, std::move(head), name, options, depends);
+            return add_command(catalog, rows, std::move(head), name, options, depends, command);
           }};
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models that are commands of the user: a section under `models` with a key `command`, whose name is none of
-// the built-in ones. The row writes the shape into a scratch folder, runs the command there and reads one
-// value per point; from there on the map is like any other.
+// the built-in ones. The row writes the shape into a scratch folder, runs the command there, or has one that
+// is at work already read the file's name, and reads one value per point; from there on the map is like any
+// other.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 namespace salbench {
 
 struct CommandOptions {
-  std::string command = {};  // {mesh}, {shape} and {out} stand for files
+  std::string command = {};  // {mesh}, {shape} and {out} stand for files, {list} for a list of them
   Words reads = {"mesh"};    // points, normals, faces, fpfh; mesh: the first three
   std::int32_t version = 1;  // raised by the user when the command's output changes otherwise
   double timeout = 600;      // s
@@ -25,7 +26,7 @@ struct CommandOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("command", self.command,
-          {"run by sh; {mesh} is a PLY file, {shape} HDF5, {out} what it must write"});
+          {"run by sh; {mesh} is a PLY file, {shape} HDF5, {out} what it must write; {list} many shapes"});
     visit("reads", self.reads, {"what it is given: mesh, or some of points, normals, faces, fpfh"});
     visit("version", self.version,
           {"to be raised when the output changes for other reasons", {}, at_least(1)});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/core/rng.h"
 
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -30,20 +29,6 @@ Rng::Rng(std::uint64_t seed, std::string_view stage, std::string_view item) {
   state = split_mix(state) ^ absorb(absorb(0xcbf29ce484222325ULL, stage), item);
   for (auto& word : state_) word = split_mix(state);
 }
-
-std::uint64_t Rng::next() {
-  const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
-  const std::uint64_t shifted = state_[1] << 17U;
-  state_[2] ^= state_[0];
-  state_[3] ^= state_[1];
-  state_[1] ^= state_[2];
-  state_[0] ^= state_[3];
-  state_[2] ^= shifted;
-  state_[3] = std::rotl(state_[3], 45);
-  return result;
-}
-
-double Rng::uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
 
 std::uint64_t Rng::below(std::uint64_t bound) {
   CHECK_GT(bound, 0U);

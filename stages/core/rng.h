@@ -3,6 +3,7 @@
 // The standard distributions differ between libraries, so the few that are needed are written here.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -14,8 +15,18 @@ class Rng {
  public:
   Rng(std::uint64_t seed, std::string_view stage, std::string_view item);
 
-  std::uint64_t next();                      // uniform over 64 bits
-  double uniform();                          // uniform over [0, 1), 53 bits
+  std::uint64_t next() {  // uniform over 64 bits; here, since some draw millions
+    const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
+    const std::uint64_t shifted = state_[1] << 17U;
+    state_[2] ^= state_[0];
+    state_[3] ^= state_[1];
+    state_[1] ^= state_[2];
+    state_[0] ^= state_[3];
+    state_[2] ^= shifted;
+    state_[3] = std::rotl(state_[3], 45);
+    return result;
+  }
+  double uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }  // over [0, 1), 53 bits
   std::uint64_t below(std::uint64_t bound);  // uniform over 0..bound-1, unbiased; bound > 0
   double normal();                           // mean 0, standard deviation 1
 

@@ -2,10 +2,8 @@
 #include "stages/metrics/comparison.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "stages/core/check.h"
 #include "stages/core/field.h"
 
 namespace salbench {
@@ -19,58 +17,64 @@ const T& once(std::optional<T>& value, const Make& make) {
 
 }  // namespace
 
-double correlation(std::span<const double> a, const Moments& of_a, std::span<const double> b,
-                   const Moments& of_b, const Measure& measure) {
-  CHECK_EQ(a.size(), b.size());
-  if (measure.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (of_a.constant || of_b.constant) return 0;
-  double products = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    products += measure.weight[i] * (a[i] - of_a.mean) * (b[i] - of_b.mean);
-  return products / (std::sqrt(of_a.squares) * std::sqrt(of_b.squares));
-}
-
-Comparison::Comparison(std::span<const double> map, std::span<const double> saliency,
-                       std::span<const double> areas, const Rng& rng)
-    : map_(map), saliency_(saliency), areas_(areas), uniform_draws_(rng), value_draws_(map, rng) {}
-
 const Measure& Comparison::measure(Weighting weighting) const {
   return once(of(weighting).measure, [&] {
-    return weighting == Weighting::vertex ? vertex_measure(map_.size()) : area_measure(areas_);
+    return weighting == Weighting::vertex ? vertex_measure(compared_.map.size())
+                                          : area_measure(compared_.areas);
   });
 }
 
 const Distribution& Comparison::map_distribution(Weighting weighting) const {
   return once(of(weighting).map, [&] {
-    return distribution(map_, once(map_order_, [&] { return ascending_order(map_); }), measure(weighting));
+    return distribution(compared_.map, once(map_order_, [&] { return ascending_order(compared_.map); }),
+                        measure(weighting));
   });
 }
 
 const Order& Comparison::saliency_order() const {
-  return once(saliency_order_, [&] { return ascending_order(saliency_); });
+  return once(saliency_order_, [&] { return ascending_order(compared_.saliency); });
+}
+
+const PairMoments& Comparison::with_saliency(Weighting weighting) const {
+  return once(of(weighting).with_saliency,
+              [&] { return pair_moments(compared_.map, compared_.saliency, measure(weighting)); });
 }
 
 const Moments& Comparison::map_moments(Weighting weighting) const {
-  return once(of(weighting).map_moments, [&] { return moments(map_, measure(weighting)); });
+  if (!compared_.saliency.empty()) return with_saliency(weighting).a;
+  return once(of(weighting).map_moments, [&] { return moments(compared_.map, measure(weighting)); });
 }
 
 const ScalarField& Comparison::normalised_map() const {
-  return once(normalised_map_, [&] { return min_max_normalised(map_); });
+  return once(normalised_map_, [&] { return min_max_normalised(compared_.map); });
 }
 
-const TopScores& Comparison::top_scores(Weighting weighting) const {
-  return once(of(weighting).top, [&] {
-    return salbench::top_scores(
-        {map_, map_distribution(weighting), map_moments(weighting), saliency_, saliency_order()},
+const Density& Comparison::map_density(Weighting weighting) const {
+  return once(of(weighting).map_density, [&] { return density_of_map(compared_.map, measure(weighting)); });
+}
+
+const DensityScores& Comparison::density_scores(Weighting weighting) const {
+  return once(of(weighting).density_scores, [&] {
+    return salbench::density_scores(
+        {compared_.map, compared_.raw_saliency, normalised_map(), compared_.saliency, map_density(weighting)},
         measure(weighting));
   });
 }
 
-double Comparison::cc(Weighting weighting) const {
-  return once(of(weighting).cc, [&] {
-    const Measure& over = measure(weighting);
-    return correlation(map_, map_moments(weighting), saliency_, moments(saliency_, over), over);
+const TopScores& Comparison::top_scores(Weighting weighting) const {
+  return once(of(weighting).top, [&] {
+    return salbench::top_scores({compared_.map, map_distribution(weighting), map_moments(weighting),
+                                 compared_.saliency, saliency_order()},
+                                measure(weighting));
   });
+}
+
+double Comparison::cc(Weighting weighting) const { return correlation(with_saliency(weighting)); }
+
+double Comparison::spearman(Weighting weighting) const {
+  const Measure& over = measure(weighting);
+  const ScalarField of_saliency = mid_ranks(compared_.saliency, saliency_order(), over);
+  return correlation(pair_moments(map_distribution(weighting).mid, of_saliency, over));
 }
 
 const Comparison::QuantileAreas& Comparison::quantile_areas(std::span<const std::int32_t> picked,
@@ -82,18 +86,11 @@ const Comparison::QuantileAreas& Comparison::quantile_areas(std::span<const std:
   if (!measure(Weighting::area).empty())
     for (const Thresholds thresholds : {Thresholds::tenths, Thresholds::even})
       curves.push_back({map_distribution(Weighting::area), thresholds});
-  std::vector<double> areas = quantile_aucs(curves, values_at(map_, picked), uniform_draws_, splits);
+  std::vector<double> areas = quantile_aucs(curves, values_at(compared_.map, picked), draws_, splits);
   areas.resize(3, undefined);
   return quantile_areas_
       .emplace_back(OfPicks{{picked.begin(), picked.end()}, splits, {areas[2], {areas[0], areas[1]}}})
       .areas;
-}
-
-double Comparison::spearman(Weighting weighting) const {
-  const Measure& over = measure(weighting);
-  const ScalarField& of_map = map_distribution(weighting).mid;
-  const ScalarField of_saliency = distribution(saliency_, saliency_order(), over).mid;
-  return correlation(of_map, moments(of_map, over), of_saliency, moments(of_saliency, over), over);
 }
 
 }  // namespace salbench

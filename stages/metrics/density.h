@@ -7,31 +7,49 @@
 // where a value is negative, and where the ground truth is zero everywhere.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "stages/metrics/measure.h"
 
 namespace salbench {
 
-// Kullback-Leibler divergence of the map from the ground truth, in nats: sum (w/u) g ln(eps + g / (p + eps)),
-// g and p the densities, eps = 2.2204e-16. Per vertex these are the maps scaled to the sum 1. [bylinskii2019]
-double kl(std::span<const double> map, std::span<const double> saliency, const Measure& measure);
+// Density of a field where it has this value: scale * value + offset. NaN if there is no such distribution.
+struct Density {
+  double scale = std::numeric_limits<double>::quiet_NaN();
+  double offset = 0;
 
-// The same of smoothed fields, s + 1e-12 in place of s and no eps: sum (w/u) g ln(g / p). [kummerer2018]
-double kl_smoothed(std::span<const double> map, std::span<const double> saliency, const Measure& measure);
+  bool defined() const { return !std::isnan(scale); }
+  double of(double value) const { return scale * value + offset; }
+};
+Density density_of_map(std::span<const double> map, const Measure& measure);
 
-// Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
-double sim(std::span<const double> map, std::span<const double> saliency, const Measure& measure);
+struct DensityInput {
+  std::span<const double> map, saliency;                        // n; the ground truth as people marked it
+  std::span<const double> normalised_map, normalised_saliency;  // min-max
+  Density map_density;
+};
 
-// Mean of the squared, or the absolute, difference of the values. NaN over nothing.
-double mse(std::span<const double> map, std::span<const double> saliency, const Measure& measure);
-double mae(std::span<const double> map, std::span<const double> saliency, const Measure& measure);
+struct DensityScores {
+  // Kullback-Leibler divergence of the map from the ground truth, in nats: sum (w/u) g ln(eps + g / (p +
+  // eps)), g and p the densities, eps = 2.2204e-16. Per vertex these are the maps scaled to the sum 1.
+  // [bylinskii2019]
+  double kl;
+  // The same of smoothed fields, s + 1e-12 in place of s and no eps: sum (w/u) g ln(g / p). [kummerer2018]
+  double kl_smoothed;
+  // Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
+  double sim, sim_of_normalised;
+  // Mean of the squared, or the absolute, difference of the normalised values, which may be negative.
+  double mse, mae;
+};
+DensityScores density_scores(const DensityInput& in, const Measure& measure);
 
 // Information gain over the uniform distribution, in bits per pick: mean over the picks of
 // log2(eps + p) - log2(eps + u/W), W the total weight. 0 for a constant map, NaN without picks.
 // [kummerer2015]
-double information_gain(std::span<const double> map, std::span<const std::int32_t> picked,
-                        const Measure& measure);
+double information_gain(std::span<const double> map, const Density& density,
+                        std::span<const std::int32_t> picked, const Measure& measure);
 
 }  // namespace salbench

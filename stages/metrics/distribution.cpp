@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "stages/core/check.h"
@@ -31,8 +32,7 @@ std::size_t digit(std::uint64_t entry, unsigned which) {
 }
 
 // Sorts what shares a key.
-void sort_within_keys(std::span<const double> field, const std::vector<std::uint64_t>& entries,
-                      Order& order) {
+void sort_within_keys(std::span<const double> field, std::span<const std::uint64_t> entries, Order& order) {
   const auto smaller = [&](std::uint32_t a, std::uint32_t b) { return field[a] < field[b]; };
   for (std::size_t first = 0, end = 0; first < entries.size(); first = end) {
     while (end < entries.size() && entries[end] >> kIndexBits == entries[first] >> kIndexBits) ++end;
@@ -46,7 +46,9 @@ void sort_within_keys(std::span<const double> field, const std::vector<std::uint
 
 Order ascending_order(std::span<const double> field) {
   const std::size_t n = field.size();
-  std::vector<std::uint64_t> entries(n), sorted(n);  // key above index
+  // Key above index; all is written before it is read.
+  auto entries = std::make_unique_for_overwrite<std::uint64_t[]>(n);
+  auto sorted = std::make_unique_for_overwrite<std::uint64_t[]>(n);
   std::array<std::array<std::uint32_t, kBuckets>, kDigits> counts{};
   for (std::size_t i = 0; i < n; ++i) {
     entries[i] = key_of(field[i]) << kIndexBits | i;
@@ -56,32 +58,52 @@ Order ascending_order(std::span<const double> field) {
     if (counts[d][digit(entries[0], d)] == n) continue;  // all alike
     std::uint32_t start = 0;
     for (std::uint32_t& bucket : counts[d]) start += std::exchange(bucket, start);
-    for (const std::uint64_t entry : entries) sorted[counts[d][digit(entry, d)]++] = entry;
+    for (const std::uint64_t entry : std::span(entries.get(), n))
+      sorted[counts[d][digit(entry, d)]++] = entry;
     entries.swap(sorted);
   }
   Order order(n);
   for (std::size_t k = 0; k < n; ++k) order[k] = static_cast<std::uint32_t>(entries[k]);
-  sort_within_keys(field, entries, order);
+  sort_within_keys(field, {entries.get(), n}, order);
   return order;
 }
 
-Distribution distribution(std::span<const double> field, const Order& order, const Measure& measure) {
+namespace {
+
+// The mid-ranks; each(k, value, weight up to it) of the points in their order.
+template <class Each>
+ScalarField ranked(std::span<const double> field, const Order& order, const Measure& measure,
+                   const Each& each) {
   const std::size_t n = field.size();
   CHECK_EQ(order.size(), n);
   CHECK_EQ(measure.size(), n);
-  Distribution result{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
+  ScalarField mid(n);
   double weight = 0;
   for (std::size_t first = 0, end = 0; first < n; first = end) {
     const double value = field[order[first]], below = weight;
     for (; end < n && field[order[end]] == value; ++end) {
       weight += measure.weight[order[end]];
-      result.values[end] = value;
-      result.reached[end] = weight;
+      each(end, value, weight);
     }
-    const double mid = below + (weight - below) / 2;
-    for (std::size_t k = first; k < end; ++k) result.mid[order[k]] = mid;
+    const double middle = below + (weight - below) / 2;
+    for (std::size_t k = first; k < end; ++k) mid[order[k]] = middle;
   }
-  return result;
+  return mid;
+}
+
+}  // namespace
+
+ScalarField mid_ranks(std::span<const double> field, const Order& order, const Measure& measure) {
+  return ranked(field, order, measure, [](std::size_t, double, double) {});
+}
+
+Distribution distribution(std::span<const double> field, const Order& order, const Measure& measure) {
+  std::vector<double> values(field.size()), reached(field.size());
+  ScalarField mid = ranked(field, order, measure, [&](std::size_t k, double value, double weight) {
+    values[k] = value;
+    reached[k] = weight;
+  });
+  return {std::move(mid), std::move(values), std::move(reached)};
 }
 
 double Distribution::weight_below(double value) const {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "stages/core/types.h"
 #include "stages/metrics/measure.h"
 
 namespace salbench {
@@ -14,9 +15,11 @@ namespace salbench {
 using Order = std::vector<std::uint32_t>;
 Order ascending_order(std::span<const double> field);
 
+// By point, n: weight of the points with a smaller value, and half the weight of those with an equal one.
+ScalarField mid_ranks(std::span<const double> field, const Order& order, const Measure& measure);
+
 struct Distribution {
-  // By point, n: weight of the points with a smaller value, and half the weight of those with an equal one.
-  std::vector<double> mid;
+  ScalarField mid;  // by point, n
   // By value, ascending, n each.
   std::vector<double> values;
   std::vector<double> reached;  // weight up to this value; of equal values, the first ones count first

@@ -25,16 +25,42 @@ class Below {
 
 }  // namespace
 
-std::span<const double> UniformDraws::first(std::size_t count) {
-  drawn_.reserve(count);
-  while (drawn_.size() < count) drawn_.push_back(rng_.uniform());
-  return std::span(drawn_).first(count);
+std::span<const double> Draws::uniform(std::size_t count) {
+  const std::size_t known = uniform_.size();
+  if (known < count) {
+    uniform_.resize(count);
+    Rng rng = uniform_rng_;  // one that the stores below cannot change
+    for (double& drawn : std::span(uniform_).subspan(known)) drawn = rng.uniform();
+    uniform_rng_ = rng;
+  }
+  return std::span(uniform_).first(count);
+}
+
+std::span<const std::uint32_t> Draws::below(std::uint32_t bound, std::size_t count) {
+  if (bound != bound_) {
+    bound_ = bound;
+    below_rng_ = rng_;
+    below_.clear();
+  }
+  const std::size_t known = below_.size();
+  if (known < count) {
+    const Below draw(bound);
+    below_.resize(count);
+    Rng rng = below_rng_;
+    for (std::uint32_t& drawn : std::span(below_).subspan(known))
+      drawn = static_cast<std::uint32_t>(draw(rng));
+    below_rng_ = rng;
+  }
+  return std::span(below_).first(count);
 }
 
 std::span<const double> ValueDraws::first(std::size_t count) {
-  const Below below(map_.size() - 1);
-  drawn_.reserve(count);
-  while (drawn_.size() < count) drawn_.push_back(map_[1 + below(rng_)]);
+  const std::size_t known = drawn_.size();
+  if (known < count) {
+    const auto points = draws_.below(static_cast<std::uint32_t>(map_.size() - 1), count);
+    drawn_.resize(count);
+    for (std::size_t k = known; k < count; ++k) drawn_[k] = map_[points[k] + 1];
+  }
   return std::span(drawn_).first(count);
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "stages/core/field.h"
-#include "stages/metrics/density.h"
 #include "stages/metrics/metrics.h"
 #include "stages/metrics/roc.h"
 #include "stages/metrics/sampled_roc.h"
@@ -41,7 +40,9 @@ double height_of_picks(const MetricInput& in) {
   return nss(in.map, in.picked, in.comparison.map_moments(in.weighting), in.options.constant_nss);
 }
 
-double gain(const MetricInput& in) { return information_gain(in.map, in.picked, in.measure()); }
+double gain(const MetricInput& in) {
+  return information_gain(in.map, in.comparison.map_density(in.weighting), in.picked, in.measure());
+}
 
 // Metrics of the saliency values are undefined without any.
 template <double (*value)(const MetricInput&)>
@@ -49,16 +50,9 @@ double of_saliency(const MetricInput& in) {
   return in.saliency.empty() ? kUndefined : value(in);
 }
 
-using Distance = double (*)(std::span<const double>, std::span<const double>, const Measure&);
-
-template <Distance distance>
-double of_raw(const MetricInput& in) {
-  return distance(in.map, in.raw_saliency, in.measure());
-}
-
-template <Distance distance>
-double of_normalised(const MetricInput& in) {
-  return distance(in.comparison.normalised_map(), in.saliency, in.measure());
+template <double DensityScores::*value>
+double of_densities(const MetricInput& in) {
+  return in.comparison.density_scores(in.weighting).*value;
 }
 
 double pearson(const MetricInput& in) { return in.comparison.cc(in.weighting); }
@@ -102,15 +96,17 @@ std::vector<BaseMetric> base_metrics() {
       {{"ig", "bits per pick", "information gain over the uniform map", gain}, true},
       {{"spearman", "1", "rank correlation with the saliency of the ground truth", of_saliency<of_ranks>}},
       {{"kl", "nats", "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-        of_saliency<of_raw<kl>>, 1, false}},
+        of_saliency<of_densities<&DensityScores::kl>>, 1, false}},
       {{"kl_smoothed", "nats", "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-        of_saliency<of_raw<kl_smoothed>>, 1, false}},
-      {{"sim", "1", "intersection of map and ground truth as distributions", of_saliency<of_raw<sim>>}},
-      {{"sim_minmax", "1", "the same after min-max normalisation", of_saliency<of_normalised<sim>>}},
-      {{"mse", "1", "mean squared difference after min-max normalisation", of_saliency<of_normalised<mse>>, 1,
-        false}},
-      {{"mae", "1", "mean absolute difference after min-max normalisation", of_saliency<of_normalised<mae>>,
-        1, false}},
+        of_saliency<of_densities<&DensityScores::kl_smoothed>>, 1, false}},
+      {{"sim", "1", "intersection of map and ground truth as distributions",
+        of_saliency<of_densities<&DensityScores::sim>>}},
+      {{"sim_minmax", "1", "the same after min-max normalisation",
+        of_saliency<of_densities<&DensityScores::sim_of_normalised>>}},
+      {{"mse", "1", "mean squared difference after min-max normalisation",
+        of_saliency<of_densities<&DensityScores::mse>>, 1, false}},
+      {{"mae", "1", "mean absolute difference after min-max normalisation",
+        of_saliency<of_densities<&DensityScores::mae>>, 1, false}},
   };
   const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
     const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-const Rng kNoDraws(0, "", "");  // for what draws nothing
+Draws no_draws() { return Draws(Rng(0, "", "")); }  // for what draws nothing
 
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
@@ -46,12 +46,14 @@ std::vector<std::int32_t> picks_with_multiplicity(const GroundTruth& truth) {
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {
   if (map.size() < 2) return kUndefined;
-  ValueDraws draws(map, rng);
-  return sampled_auc(values_at(map, picked), draws, {options.splits, options.thresholds});
+  Draws draws(rng);
+  ValueDraws values(map, draws);
+  return sampled_auc(values_at(map, picked), values, {options.splits, options.thresholds});
 }
 
 double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
-  return auc_exact(map, picked, Weighting::vertex, Comparison(map, {}, {}, kNoDraws));
+  Draws draws = no_draws();
+  return auc_exact(map, picked, Weighting::vertex, Comparison({map}, draws));
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
@@ -68,8 +70,7 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked, do
 }
 
 double cc(std::span<const double> map, std::span<const double> saliency) {
-  CHECK_EQ(map.size(), saliency.size());
-  return Comparison(map, saliency, {}, kNoDraws).cc(Weighting::vertex);
+  return correlation(pair_moments(map, saliency, vertex_measure(map.size())));
 }
 
 std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
@@ -93,7 +94,7 @@ bool any_by_area(std::span<const Metric> metrics) {
 }
 
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
-             const MetricsOptions& options, Rng rng, std::span<const double> areas) {
+             const MetricsOptions& options, Draws& draws, std::span<const double> areas) {
   check(options);
   const std::vector<std::int32_t> picked = picked_points(truth), every_pick = picks_with_multiplicity(truth);
   check_fits(matched.size(), truth, picked);
@@ -101,10 +102,10 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
   if (const auto seen = seen_points(truth.saliency)) {
     if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
     const ScalarField seen_areas = areas.empty() ? ScalarField{} : values_at(areas, *seen);
-    return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, rng, seen_areas);
+    return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, draws, seen_areas);
   }
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
-  const Comparison comparison(matched, saliency, areas, rng);
+  const Comparison comparison({matched, saliency, truth.saliency, areas}, draws);
   Scores scores;
   for (const Metric& metric : metrics) {
     const bool without_areas =
@@ -112,11 +113,17 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
     scores.values.push_back(
         without_areas ? kUndefined
                       : metric.value({matched, metric.picks == PickCount::once ? picked : every_pick,
-                                      saliency, options, rng, truth.saliency, metric.weighting, comparison}));
+                                      saliency, options, draws.rng(), metric.weighting, comparison}));
   }
   scores.n_points = static_cast<std::int64_t>(matched.size());
   scores.n_picks = static_cast<std::int64_t>(picked.size());
   return scores;
+}
+
+Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+             const MetricsOptions& options, const Rng& rng, std::span<const double> areas) {
+  Draws draws(rng);
+  return score(metrics, matched, truth, options, draws, areas);
 }
 
 Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng,

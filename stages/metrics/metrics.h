@@ -63,7 +63,6 @@ struct MetricInput {
   std::span<const double> saliency;      // n, min-max-normalised; empty where not known
   const MetricsOptions& options;
   Rng rng;  // a metric draws from its own copy, so all metrics see the same stream
-  std::span<const double> raw_saliency;  // n, as people marked it; empty where not known
   Weighting weighting;
   const Comparison& comparison;  // of map and saliency
 
@@ -98,8 +97,11 @@ bool any_by_area(std::span<const Metric> metrics);  // they read the areas of th
 // without picks, metrics of saliency without saliency values, and metrics by area without areas. Points
 // whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. Throws
 // InputError where the ground truth is not of this shape: picks out of range, or another number of points.
+// The draws may be shared with other maps: each reads them from their beginning.
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
-             const MetricsOptions& options, Rng rng, std::span<const double> areas = {});
+             const MetricsOptions& options, Draws& draws, std::span<const double> areas = {});
+Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+             const MetricsOptions& options, const Rng& rng, std::span<const double> areas = {});
 // Those that the options name.
 Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
              std::span<const double> areas = {});

@@ -3,12 +3,14 @@
 #include "stages/metrics/sampled_roc.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
+#include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
+
+#include "stages/metrics/reached.h"
 
 namespace salbench {
 namespace {
@@ -25,13 +27,17 @@ std::vector<double> even_thresholds(std::int32_t count, double largest) {
   return thresholds;
 }
 
-// [threshold]: fraction of the counted values that reach it.
-void rates(const Counts& counts, std::size_t total, std::vector<double>& result) {
-  std::size_t reached = 0;
-  for (std::size_t t = counts.size() - 1; t-- > 0;) {
-    reached += counts[t + 1];
-    result[t] = static_cast<double>(reached) / static_cast<double>(total);
-  }
+// Turns counts into [number of thresholds reached]: values that reach so many or more.
+void accumulate(std::span<std::uint32_t> counts) {
+  for (std::size_t k = counts.size() - 1; k-- > 0;) counts[k] += counts[k + 1];
+}
+
+// [count]: fraction that so many values are of all.
+std::vector<double> fractions_of(std::size_t total) {
+  std::vector<double> fractions;
+  for (std::size_t count = 0; count <= total; ++count)
+    fractions.push_back(static_cast<double>(count) / static_cast<double>(total));
+  return fractions;
 }
 
 // [threshold]: fraction of the ascending values that reach it. Thresholds need not ascend: those up to a
@@ -57,41 +63,22 @@ double area_under_curve(const std::vector<double>& true_rates, const std::vector
   return area;
 }
 
-// How many of some ascending positions in [0, 1] a number in [0, 1) has reached, looked up in equal cells:
-// most of them have no position within.
-class Reached {
- public:
-  // Worth its making for so many numbers at a time.
-  Reached(std::vector<double> from, std::size_t numbers)
-      : from_(std::move(from)),
-        cells_(static_cast<double>(std::clamp(std::bit_ceil(numbers), kLeastCells, kMostCells))),
-        in_cell_(static_cast<std::size_t>(cells_)) {
-    std::int32_t reached = 0;
-    for (std::size_t cell = 0; cell < in_cell_.size(); ++cell) {
-      const std::int32_t before = reached = advanced(reached, static_cast<double>(cell) / cells_);
-      const std::int32_t behind = advanced(before, static_cast<double>(cell + 1) / cells_);
-      in_cell_[cell] = behind == before ? before : -1 - before;
+// The same of false rates that are given as counts: reaching(t) values reach threshold t. Between thresholds
+// that equally many reach there is no area, and in most splits there are many of them.
+template <class Reaching>
+double area_under_curve(const std::vector<double>& true_rates, const std::vector<double>& fractions,
+                        const Reaching& reaching) {
+  double area = 0, true_rate = 1;
+  std::size_t count = fractions.size() - 1;  // all
+  for (std::size_t t = 0; t < true_rates.size(); ++t) {
+    if (const std::size_t next = reaching(t); next != count) {
+      area += (fractions[count] - fractions[next]) * (true_rate + true_rates[t]) / 2;
+      count = next;
     }
+    true_rate = true_rates[t];
   }
-
-  std::size_t operator()(double u) const {
-    const std::int32_t known = in_cell_[static_cast<std::size_t>(u * cells_)];
-    return static_cast<std::size_t>(known >= 0 ? known : advanced(-1 - known, u));
-  }
-
- private:
-  static constexpr std::size_t kLeastCells = 64, kMostCells = 1024;
-
-  std::int32_t advanced(std::int32_t reached, double u) const {
-    while (static_cast<std::size_t>(reached) < from_.size() && from_[static_cast<std::size_t>(reached)] <= u)
-      ++reached;
-    return reached;
-  }
-
-  std::vector<double> from_;
-  double cells_;                       // a power of two: u * cells_ stays below it
-  std::vector<std::int32_t> in_cell_;  // -1 - the number at its beginning where it has one within
-};
+  return area + fractions[count] * true_rate / 2;
+}
 
 // Part of the weight that lies below each threshold.
 std::vector<double> parts_below(const Distribution& map, const std::vector<double>& thresholds) {
@@ -112,7 +99,7 @@ std::vector<double> tenths_of_range(const Distribution& map) {
 class Curve {
  public:
   Curve(std::span<const double> picks, std::int32_t splits)
-      : positives_(picks.begin(), picks.end()), splits_(splits) {
+      : positives_(picks.begin(), picks.end()), splits_(splits), fractions_(fractions_of(picks.size())) {
     std::ranges::sort(positives_);
   }
 
@@ -120,13 +107,16 @@ class Curve {
 
   void set_thresholds(const std::vector<double>& thresholds) {
     true_rates_ = rates_of(positives_, thresholds);
-    false_rates_.resize(thresholds.size());
     counts_.assign(thresholds.size() + 1, 0);
   }
-  void add_negative(std::size_t thresholds_reached) { ++counts_[thresholds_reached]; }
+  template <class Reached>
+  void add_negatives(std::span<const double> negatives, const Reached& thresholds_reached) {
+    std::uint32_t* const counts = counts_.data();
+    for (const double value : negatives) ++counts[thresholds_reached(value)];
+  }
   void end_split() {
-    rates(counts_, positives_.size(), false_rates_);
-    sum_ += area_under_curve(true_rates_, false_rates_);
+    accumulate(counts_);
+    sum_ += area_under_curve(true_rates_, fractions_, [this](std::size_t t) { return counts_[t + 1]; });
     std::ranges::fill(counts_, 0);
   }
   void end_split(std::vector<double> negatives, const std::vector<double>& thresholds) {
@@ -138,33 +128,32 @@ class Curve {
  private:
   std::vector<double> positives_;  // ascending
   std::int32_t splits_;
-  std::vector<double> true_rates_, false_rates_;
+  std::vector<double> fractions_;  // [count of negatives]
+  std::vector<double> true_rates_;
   Counts counts_;
   double sum_ = 0;
 };
 
-// How many even thresholds up to `largest` > 0 a value from 0 to `largest` reaches.
-class EvenReached {
- public:
-  EvenReached(std::vector<double> thresholds, double largest)
-      : per_unit_(static_cast<double>(thresholds.size() - 1) / largest), thresholds_(std::move(thresholds)) {
-    thresholds_.push_back(std::numeric_limits<double>::infinity());
-  }
-
-  std::size_t operator()(double value) const {
-    auto reached = static_cast<std::size_t>(value * per_unit_) + 1;
-    reached = std::min(reached, thresholds_.size() - 1);
-    // Where the product is rounded to the wrong side, the threshold decides. The first one is 0, the last
-    // infinite.
-    while (thresholds_[reached] <= value) ++reached;
-    while (thresholds_[reached - 1] > value) --reached;
-    return reached;
-  }
-
- private:
-  double per_unit_;
-  std::vector<double> thresholds_;
+struct Extremes {
+  double smallest, largest;
 };
+
+// In lanes, since each comparison waits for the one before.
+Extremes extremes_of(std::span<const double> values) {
+  constexpr std::size_t kLanes = 4;
+  std::array<double, kLanes> smallest, largest;
+  smallest.fill(values.front());
+  largest.fill(values.front());
+  const auto take = [&](std::size_t lane, double value) {
+    smallest[lane] = value < smallest[lane] ? value : smallest[lane];
+    largest[lane] = value > largest[lane] ? value : largest[lane];
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= values.size(); i += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) take(lane, values[i + lane]);
+  for (; i < values.size(); ++i) take(0, values[i]);
+  return {*std::ranges::min_element(smallest), *std::ranges::max_element(largest)};
+}
 
 }  // namespace
 
@@ -173,21 +162,22 @@ double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Split
   Curve curve(picks, splits.count);
   std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
   std::vector<double> thresholds;
+  std::optional<EvenReached> reached;
   double up_to = kUndefined;  // of the thresholds
   for (; !rest.empty(); rest = rest.subspan(picks.size())) {
     const auto negatives = rest.first(picks.size());
-    const auto [smallest, largest_negative] = std::ranges::minmax(negatives);
-    const double largest = std::max(curve.largest(), largest_negative);
+    const Extremes extremes = extremes_of(negatives);
+    const double largest = std::max(curve.largest(), extremes.largest);
     if (largest != up_to) {
       thresholds = even_thresholds(splits.thresholds, up_to = largest);
       curve.set_thresholds(thresholds);
+      reached.emplace(thresholds, largest);
     }
-    if (!(largest > 0) || smallest < 0) {  // no map that was matched, but a constant one may be
+    if (!(largest > 0) || extremes.smallest < 0) {  // no map that was matched, but a constant one may be
       curve.end_split({negatives.begin(), negatives.end()}, thresholds);
       continue;
     }
-    const EvenReached reached(thresholds, largest);
-    for (const double value : negatives) curve.add_negative(reached(value));
+    curve.add_negatives(negatives, *reached);
     curve.end_split();
   }
   return curve.mean();
@@ -244,7 +234,12 @@ class Ladder {
 class QuantileSums {
  public:
   QuantileSums(std::span<const QuantileCurve> curves, std::span<const double> picks, const Splits& splits)
-      : curves_(curves), splits_(splits), positives_(picks.begin(), picks.end()), areas_(curves.size(), 0) {
+      : curves_(curves),
+        splits_(splits),
+        positives_(picks.begin(), picks.end()),
+        fractions_(fractions_of(picks.size())),
+        areas_(curves.size(), 0),
+        largest_(curves.size(), 0) {
     std::ranges::sort(positives_);
     for (const QuantileCurve& curve : curves)
       lasting_.push_back(curve.thresholds == Thresholds::tenths
@@ -253,60 +248,59 @@ class QuantileSums {
   }
 
   void add_split(std::span<const double> draws) {
-    const std::vector<double> largest = largest_values(std::ranges::max(draws));
-    const Ladder& ladder = ladder_up_to(largest);
+    set_largest(extremes_of(draws).largest);
+    const Ladder& ladder = ladder_up_to_largest();
     count(draws, ladder);
     for (std::size_t c = 0; c < curves_.size(); ++c) {
-      if (is_even(c) && !(largest[c] > 0))  // the thresholds descend
-        false_rates_ = rates_of(values_of(draws, curves_[c].map), ladder.of(c).thresholds);
-      else
-        set_false_rates(ladder.places(c), draws.size());
-      areas_[c] += area_under_curve(ladder.of(c).true_rates, false_rates_);
+      const Rungs& rungs = ladder.of(c);
+      if (is_even(c) && !(largest_[c] > 0)) {  // the thresholds descend
+        areas_[c] +=
+            area_under_curve(rungs.true_rates, rates_of(values_of(draws, curves_[c].map), rungs.thresholds));
+        continue;
+      }
+      const std::vector<std::size_t>& places = ladder.places(c);
+      areas_[c] +=
+          area_under_curve(rungs.true_rates, fractions_, [&](std::size_t t) { return at_least_[places[t]]; });
     }
   }
   double mean(std::size_t curve) const { return areas_[curve] / splits_.count; }
 
  private:
-  static constexpr std::size_t kLanes = 4;
+  static constexpr std::size_t kLanes = 4, kWorthLanes = 64;  // draws
 
   bool is_even(std::size_t curve) const { return curves_[curve].thresholds == Thresholds::even; }
 
-  // [curve]: of the picks' values and the draws'; 0 where the thresholds do not depend on it.
-  std::vector<double> largest_values(double largest_draw) const {
-    std::vector<double> largest(curves_.size(), 0);
+  void set_largest(double largest_draw) {
     for (std::size_t c = 0; c < curves_.size(); ++c)
-      if (is_even(c)) largest[c] = std::max(positives_.back(), curves_[c].map.quantile(largest_draw));
-    return largest;
+      if (is_even(c)) largest_[c] = std::max(positives_.back(), curves_[c].map.quantile(largest_draw));
   }
 
   // Few points have the largest values, so that splits share their ladders.
-  const Ladder& ladder_up_to(const std::vector<double>& largest) {
-    if (const auto known = ladders_.find(largest); known != ladders_.end()) return known->second;
+  const Ladder& ladder_up_to_largest() {
+    if (const auto known = ladders_.find(largest_); known != ladders_.end()) return known->second;
     std::vector<Rungs> rungs = lasting_;
     for (std::size_t c = 0; c < curves_.size(); ++c)
       if (is_even(c))
-        rungs[c] = rungs_of(curves_[c].map, even_thresholds(splits_.thresholds, largest[c]), positives_);
-    return ladders_.emplace(largest, Ladder(std::move(rungs), positives_.size())).first->second;
+        rungs[c] = rungs_of(curves_[c].map, even_thresholds(splits_.thresholds, largest_[c]), positives_);
+    return ladders_.emplace(largest_, Ladder(std::move(rungs), positives_.size())).first->second;
   }
 
   // In lanes: where most draws reach equally few thresholds, each would wait for the count of the one before.
   void count(std::span<const double> draws, const Ladder& ladder) {
     const std::size_t bins = ladder.positions() + 1;
-    at_least_.assign(kLanes * bins, 0);
+    const std::size_t lanes = draws.size() < kWorthLanes ? 1 : kLanes;
+    at_least_.assign(lanes * bins, 0);
+    std::uint32_t* const counts = at_least_.data();
     std::size_t i = 0;
-    for (; i + kLanes <= draws.size(); i += kLanes)
-      for (std::size_t lane = 0; lane < kLanes; ++lane)
-        ++at_least_[lane * bins + ladder.reached(draws[i + lane])];
-    for (; i < draws.size(); ++i) ++at_least_[ladder.reached(draws[i])];
-    for (std::size_t lane = 1; lane < kLanes; ++lane)
-      for (std::size_t k = 0; k < bins; ++k) at_least_[k] += at_least_[lane * bins + k];
-    for (std::size_t k = bins - 1; k-- > 0;) at_least_[k] += at_least_[k + 1];
-  }
-
-  void set_false_rates(const std::vector<std::size_t>& places, std::size_t draws) {
-    false_rates_.clear();
-    for (const std::size_t place : places)
-      false_rates_.push_back(static_cast<double>(at_least_[place]) / static_cast<double>(draws));
+    if (lanes > 1) {
+      for (; i + kLanes <= draws.size(); i += kLanes)
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+          ++counts[lane * bins + ladder.reached(draws[i + lane])];
+      for (std::size_t lane = 1; lane < kLanes; ++lane)
+        for (std::size_t k = 0; k < bins; ++k) counts[k] += counts[lane * bins + k];
+    }
+    for (; i < draws.size(); ++i) ++counts[ladder.reached(draws[i])];
+    accumulate({counts, bins});
   }
 
   static std::vector<double> values_of(std::span<const double> draws, const Distribution& map) {
@@ -319,24 +313,26 @@ class QuantileSums {
   std::span<const QuantileCurve> curves_;
   Splits splits_;
   std::vector<double> positives_;  // ascending
+  std::vector<double> fractions_;  // [count of draws]
   std::vector<double> areas_;      // [curve]
-  std::vector<Rungs> lasting_;     // [curve]: of thresholds that no split changes
+  // [curve]: of the picks' values and the draws'; 0 where the thresholds do not depend on it.
+  std::vector<double> largest_;
+  std::vector<Rungs> lasting_;  // [curve]: of thresholds that no split changes
   std::map<std::vector<double>, Ladder> ladders_;
   Counts at_least_;  // [positions reached]: draws that reach so many or more
-  std::vector<double> false_rates_;
 };
 
 }  // namespace
 
 std::vector<double> quantile_aucs(std::span<const QuantileCurve> curves, std::span<const double> picks,
-                                  UniformDraws& draws, const Splits& splits) {
+                                  Draws& draws, const Splits& splits) {
   std::vector<double> areas(curves.size(), kUndefined);
   std::vector<QuantileCurve> defined;
   for (const QuantileCurve& curve : curves)
     if (curve.map.total() > 0) defined.push_back(curve);
   if (picks.empty() || defined.empty()) return areas;
   QuantileSums sums(defined, picks, splits);
-  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
+  std::span<const double> rest = draws.uniform(static_cast<std::size_t>(splits.count) * picks.size());
   for (; !rest.empty(); rest = rest.subspan(picks.size())) sums.add_split(rest.first(picks.size()));
   for (std::size_t c = 0, d = 0; c < curves.size(); ++c)
     if (curves[c].map.total() > 0) areas[c] = sums.mean(d++);

@@ -38,6 +38,6 @@ struct QuantileCurve {
 // The curves share the draws, which are counted once for all; no area depends on the other curves. NaN for a
 // distribution over nothing.
 std::vector<double> quantile_aucs(std::span<const QuantileCurve> curves, std::span<const double> picks,
-                                  UniformDraws& draws, const Splits& splits);
+                                  Draws& draws, const Splits& splits);
 
 }  // namespace salbench

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/top.h"
 
-#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -48,17 +47,6 @@ class TopSums {
 };
 
 }  // namespace
-
-Moments moments(std::span<const double> field, const Measure& measure) {
-  Moments result;
-  result.constant = is_constant(field, measure);
-  for (std::size_t i = 0; i < field.size(); ++i) result.mean += measure.weight[i] * field[i];
-  result.mean /= measure.total;
-  for (std::size_t i = 0; i < field.size(); ++i)
-    result.squares += measure.weight[i] * (field[i] - result.mean) * (field[i] - result.mean);
-  result.deviation = std::sqrt(result.squares / measure.total);
-  return result;
-}
 
 TopScores top_scores(const TopInput& in, const Measure& measure) {
   TopScores scores;

@@ -8,17 +8,9 @@
 
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/measure.h"
+#include "stages/metrics/moments.h"
 
 namespace salbench {
-
-// Population moments of a field.
-struct Moments {
-  double mean = 0;
-  double squares = 0;  // sum of weight * (value - mean)^2
-  double deviation = 0;
-  bool constant = false;  // the field has one value: its deviation is rounding, at most
-};
-Moments moments(std::span<const double> field, const Measure& measure);
 
 inline constexpr std::array<int, 4> kTopPercents = {20, 10, 5, 1};
 

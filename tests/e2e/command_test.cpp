@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <thread>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -183,6 +184,158 @@ TEST(Command, AnInterruptEndsItsWholeGroupAndTheNextRunGoesOn) {
   EXPECT_EQ(resumed.status, 0) << resumed.err;
 }
 
+// --- a command that is kept at work ------------------------------------------------------------------------
+
+// A command that counts its starts, and is then this one.
+std::string starts_counted(const fs::path& log, const std::string& command) {
+  return fmt::format("echo run >> '{}'; exec {}", log.string(), command);
+}
+
+TEST(ListCommand, GivesTheSameMapsAsACommandPerShapeAndIsStartedOnce) {
+  const Workspace toy;
+  const std::string model = fmt::format("/usr/bin/python3 '{}'", SALBENCH_OWN_MODEL);
+  toy.configure(
+      fmt::format("scan: {{step_degrees: 1}}\nmodels: {{EACH: {{command: \"printf '%s\\\\t%s\\\\n' {{shape}} "
+                  "{{out}} | {} "
+                  "/dev/stdin\"}}, ONCE: {{command: \"{}\", gpu: 1}}}}\n",
+                  model, starts_counted(toy / "log", model + " {list.h5}")));
+  const Outcome run = toy.salbench("run", {"--threads", "4"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(lines_of(toy / "log"), 1U);
+
+  ASSERT_EQ(toy.salbench("maps", {"--to", (toy / "maps").string()}).status, 0);
+  std::size_t maps = 0;
+  for (const auto& entry : fs::directory_iterator(toy / "maps/EACH")) {
+    EXPECT_EQ(read_file(entry.path()), read_file(toy / "maps/ONCE" / entry.path().filename()));
+    ++maps;
+  }
+  EXPECT_EQ(maps, 2U * (1 + 12));
+  EXPECT_EQ(lines_of(toy / "log"), 1U) << "the maps are in the cache";
+}
+
+TEST(ListCommand, IsStartedAtMostOncePerThreadAndAllEndWithTheRun) {
+  const Workspace toy;
+  const fs::path log = toy / "log", ends = toy / "ends";
+  toy.configure(
+      fmt::format("scan: {{step_degrees: 1}}\nmodels: {{MINE: {{command: \"echo run >> '{}'; "
+                  "/usr/bin/python3 '{}' {{list.h5}}; "
+                  "echo run >> '{}'\"}}}}\n",
+                  log.string(), SALBENCH_OWN_MODEL, ends.string()));
+  const Outcome run = toy.salbench("run", {"--threads", "2"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_GE(lines_of(log), 1U);
+  EXPECT_LE(lines_of(log), 2U);
+  EXPECT_EQ(lines_of(ends), lines_of(log)) << "each came to the end of its list";
+}
+
+// Serves one shape after the other: the number of each point's line, as kCount. `first` is done where the
+// shape has 162 points, with $out as the file to write, and `each` for all when they are done.
+std::string serving(const Workspace& toy, const std::string& first, const std::string& each = ":") {
+  const fs::path script =
+      toy.write("serve.sh", fmt::format(R"sh(while IFS="$(printf '\t')" read -r mesh out; do
+  n=$(grep -a -m1 'element vertex' "$mesh" | cut -d' ' -f3)
+  if [ "$n" = 162 ]; then {}; fi
+  seq "$n" > "$out"
+  echo "$out"
+  {}
+done < "$1"
+)sh",
+                                        first, each));
+  return starts_counted(toy / "log", fmt::format("sh '{}' {{list}}", script.string()));
+}
+
+class HostileListCommand : public testing::TestWithParam<Hostile> {};
+
+TEST_P(HostileListCommand, FailsItsShapeAloneAndTheNextOneIsServed) {
+  const Workspace toy;
+  const std::string mark = (toy / "mark").string();
+  write_toy_item(toy.data(), "3", shapes::bumpy_sphere(3));
+  toy.configure(command_config(
+      fmt::format("timeout: 2, gpu: 1, command: \"{}\"",
+                  serving(toy, fmt::format(fmt::runtime(GetParam().command), fmt::arg("mark", mark))))));
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 1) << run.err;
+  const auto lines = lines_with(run.err, "  1: map.MINE: ");
+  ASSERT_THAT(lines, SizeIs(1)) << run.err;
+  EXPECT_THAT(lines[0], ContainsRegex(GetParam().says));
+  EXPECT_LT(lines[0].size(), 6000U);
+  EXPECT_THAT(cells_of(toy.results(), "MINE"), SizeIs(1)) << "the others go on";
+  EXPECT_THAT(lines_with(toy.results(), ",PS,"), SizeIs(3));
+  EXPECT_THAT(processes_with(mark), IsEmpty());
+  EXPECT_THAT(processes_with("serve.sh"), IsEmpty());
+  EXPECT_LE(lines_of(toy / "log"), 3U);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Command, HostileListCommand,
+    testing::Values(Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
+                            "longer than its timeout of 2 s.*: loading"},
+                    Hostile{"Floods", "yes noise | head -c 48000000; echo; echo at last >&2; exit 3",
+                            "status 3; .*noise \\| at last"},
+                    Hostile{"AnswersAnotherShape", "echo \"$out.npy\"; echo \" $out\"; sleep 100",
+                            "longer than its timeout"},
+                    Hostile{"AnswersWithoutAFile", "echo no memory >&2; echo \"$out\"; continue",
+                            "answered \\(its last lines: no memory .*without a file"},
+                    Hostile{"WritesTooFew", "seq 7 > \"$out\"; echo \"$out\"; continue",
+                            "7 values, but the shape has 162 points"},
+                    Hostile{"WritesNaN", "(seq 161; echo nan) > \"$out\"; echo \"$out\"; continue",
+                            "not a finite number"},
+                    Hostile{"EndsWithoutAnAnswer", "exit 0", "ended without an answer"},
+                    Hostile{"KillsItself", "sh -c 'sleep 100' '{mark}' & kill -9 $$", "killed by signal 9"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(ListCommand, MayEndWellBetweenShapes) {
+  const Workspace toy;
+  write_toy_item(toy.data(), "3", shapes::bumpy_sphere(3));
+  for (const std::string delay : {"", "sleep 0.3; "}) {  // before the next line is written, and after
+    toy.forget_everything();
+    fs::remove(toy / "log");
+    toy.configure(
+        command_config(fmt::format("gpu: 1, command: \"{}\"", serving(toy, ":", delay + "exit 0"))));
+    const Outcome run = toy.salbench("run");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(lines_of(toy / "log"), 3U);
+  }
+}
+
+TEST(ListCommand, ItsGroupEndsWithTheProgramHoweverThatEnds) {
+  for (const int signal : {SIGINT, SIGKILL}) {
+    const Workspace toy;
+    const std::string mark = (toy / "mark").string();
+    toy.configure(command_config(
+        fmt::format("command: \"{}\"",
+                    serving(toy, fmt::format("[ -e '{}' ] || exec sh -c 'while :; do sleep 0.1; done' '{}'",
+                                             (toy / "quick").string(), mark)))));
+    Process process(toy.command("run"));
+    ASSERT_TRUE(wait_until(process, [&] { return !processes_with(mark).empty(); }));
+    process.send(signal);
+    EXPECT_EQ(process.wait().status, signal == SIGINT ? 130 : 128 + SIGKILL);
+    for (int i = 0; i < 100 && !processes_with(mark).empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_THAT(processes_with(mark), IsEmpty());
+    toy.write("quick", "");
+    const Outcome resumed = toy.salbench("run");
+    EXPECT_EQ(resumed.status, 0) << resumed.err;
+    EXPECT_THAT(processes_with((toy / "serve.sh").string()), IsEmpty());
+  }
+}
+
+TEST(ListCommand, AChangedFileRerunsItsMaps) {
+  const Workspace toy;
+  const fs::path weights = toy.write("weights.txt", "1");
+  toy.configure(command_config(
+      fmt::format("gpu: 1, depends: [\"{}\"], command: \"{}\"", weights.string(), serving(toy, ":"))));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0U);
+  EXPECT_EQ(lines_of(toy / "log"), 1U) << "one that has nothing to do is not started";
+  toy.write("weights.txt", "2");
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 2U);
+  EXPECT_EQ(lines_of(toy / "log"), 2U);
+}
+
+// --- limits and refusals -----------------------------------------------------------------------------------
+
 // Each run holds a folder as long as it is at work, and complains if another holds it.
 TEST(Command, NoMoreAreAtWorkAtOnceThanTheLimitSays) {
   const Workspace toy;
@@ -207,7 +360,9 @@ TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
   EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [colour]"), HasSubstr("names 'colour'"));
   EXPECT_THAT(refused("command: 'x {mesh} {out}', timeout: 0"),
               HasSubstr("timeout must be a number above 0"));
-  EXPECT_THAT(refused("command: 'x {list} {out}'"), HasSubstr("{list}"));
+  EXPECT_THAT(refused("command: 'x {list} {out}'"), HasSubstr("must not have {mesh}, {shape} or {out}"));
+  EXPECT_THAT(refused("command: 'x {list}', reads: [fpfh]"), HasSubstr("must have {list.h5}"));
+  EXPECT_THAT(refused("command: 'x {list} {list.h5}'"), HasSubstr("both {list} and {list.h5}"));
   EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known key"));
 }
 

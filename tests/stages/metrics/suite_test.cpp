@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/metrics/density.h"
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/metrics.h"
+#include "stages/metrics/reached.h"
 #include "stages/metrics/sampled_roc.h"
 
 namespace salbench {
@@ -161,7 +161,7 @@ TEST(Suite, AGroundTruthOfZerosOrWithNegativeValuesIsNoDistribution) {
       EXPECT_TRUE(std::isnan(v.at(name))) << name;
     EXPECT_FALSE(std::isnan(v.at("mse")));
   }
-  EXPECT_TRUE(std::isnan(kl(ScalarField{-1, 2}, ScalarField{0, 1}, vertex_measure(2))));
+  EXPECT_TRUE(std::isnan(all_values({-1, 2}, {{0, 1}, {}}).at("kl")));
 }
 
 TEST(Suite, NoMetricDependsOnWhichOthersAreComputed) {
@@ -189,15 +189,32 @@ TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
   const std::vector<std::int32_t> picked = {3, 40, 44, 100, 171, 300, 420};
   ScalarField positives;
   for (const std::int32_t i : picked) positives.push_back(map[static_cast<std::size_t>(i)]);
-  const Comparison comparison(map, {}, {}, Rng(1, "scores", "x"));
+  Draws draws(Rng(1, "scores", "x"));
+  const Comparison comparison({map}, draws);
   const Distribution& all = comparison.map_distribution(Weighting::vertex);
   double probability = 0;
   for (const std::int32_t i : picked) probability += all.mid[static_cast<std::size_t>(i)] / 500 / 7;
-  UniformDraws draws(Rng(1, "scores", "x"));
   const std::vector<QuantileCurve> curves = {{all, Thresholds::even}, {all, Thresholds::tenths}};
   const std::vector<double> areas = quantile_aucs(curves, positives, draws, {3000, 400});
   EXPECT_NEAR(areas[0], probability, 0.005);
   EXPECT_NEAR(areas[1], probability, 0.03);  // ten steps
+}
+
+TEST(Reached, CountsAsASearchDoes) {
+  Rng rng(8, "suite", "");
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    ScalarField positions(rng.below(50));
+    for (double& position : positions) {  // on borders of cells, equal, close together, at the ends
+      const double cell = static_cast<double>(rng.below(65)) / 64;
+      position = std::min(1.0, rng.below(2) == 0 ? cell : cell + rng.uniform() / 1000);
+    }
+    std::ranges::sort(positions);
+    const Reached reached(positions, rng.below(600));
+    for (int k = 0; k < 500; ++k) {
+      const double u = rng.below(4) == 0 ? static_cast<double>(rng.below(64)) / 64 : rng.uniform();
+      ASSERT_EQ(reached(u), std::ranges::upper_bound(positions, u) - positions.begin());
+    }
+  }
 }
 
 TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
@@ -207,12 +224,12 @@ TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
     for (double& value : map) value = std::pow(rng.uniform(), 4) + shift;
     for (std::size_t i = 0; i < map.size(); ++i) areas.push_back(rng.uniform());
     const ScalarField picks = {map[7], map[9], map[9], map[255]};
-    const Comparison comparison(map, {}, areas, Rng(1, "scores", "x"));
+    Draws draws(Rng(1, "scores", "x"));
+    const Comparison comparison({.map = map, .areas = areas}, draws);
     const std::vector<QuantileCurve> curves = {
         {comparison.map_distribution(Weighting::vertex), Thresholds::tenths},
         {comparison.map_distribution(Weighting::area), Thresholds::even},
         {comparison.map_distribution(Weighting::area), Thresholds::tenths}};
-    UniformDraws draws(Rng(1, "scores", "x"));
     const std::vector<double> together = quantile_aucs(curves, picks, draws, {100, 20});
     for (std::size_t c = 0; c < curves.size(); ++c)
       EXPECT_EQ(quantile_aucs({&curves[c], 1}, picks, draws, {100, 20}).front(), together[c]);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Commands of one model that stay at work from shape to shape.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace salbench {
+
+// As many as there are shapes asked for at the same time, each started when none is idle, and ended with the
+// object.
+class CommandServers {
+ public:
+  // `prepare` fills the folder that one is about to be started in.
+  CommandServers(std::string command, std::function<void(const std::filesystem::path&)> prepare);
+  CommandServers(const CommandServers&) = delete;
+  CommandServers& operator=(const CommandServers&) = delete;
+  ~CommandServers();
+
+  // Has one of them answer a line (ServingCommand::ask), and returns the last lines that it printed. Throws
+  // InputError, after which that one is ended; CommandInterrupted; StorageError.
+  std::string ask(const std::string& line, const std::string& answer, std::chrono::duration<double> timeout);
+
+ private:
+  struct Server;
+  std::unique_ptr<Server> idle_or_new();
+
+  std::string command_;
+  std::function<void(const std::filesystem::path&)> prepare_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Server>> idle_;
+};
+
+}  // namespace salbench

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A command of the user that computes saliency: the files it is given, and the file it must write.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pipeline/catalog/command_servers.h"
+#include "pipeline/catalog/depended_files.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// What stands in a command line for a file in the scratch folder of a shape.
+struct Placeholder {
+  std::string_view text, file;
+};
+inline constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", "shape.ply"},
+                                                              {"{shape}", "shape.h5"},
+                                                              {"{out}", "out.val"},
+                                                              {"{out.npy}", "out.npy"},
+                                                              {"{out.h5}", "out.h5"}}};
+// What stands for a list of shapes, one line each with the two files that {mesh}, or {shape}, and {out} stand
+// for.
+inline constexpr std::string_view kListOfMeshes = "{list}", kListOfShapes = "{list.h5}";
+
+// What the command may read of a shape; `reads` says which parts a job loads.
+struct ShapeParts {
+  Points points;
+  const Normals* normals = nullptr;
+  Surface faces = {};
+  const Descriptors* fpfh = nullptr;
+};
+
+// Runs the command for one shape, or with a list, keeps it at work for one after the other.
+class ShapeCommand {
+ public:
+  ShapeCommand(std::string command, std::chrono::duration<double> timeout,
+               std::shared_ptr<DependedFiles> depends);
+
+  // The values that it writes, one per point. Several threads may ask. Throws InputError if it fails,
+  // CommandInterrupted and StorageError (io/process.h).
+  ScalarField map(const ShapeParts& shape);
+
+ private:
+  bool has(std::string_view placeholder) const { return command_.find(placeholder) != std::string::npos; }
+  std::string run(const std::filesystem::path& folder);
+  std::string ask(const std::filesystem::path& folder);
+
+  std::string command_;
+  std::chrono::duration<double> timeout_;
+  std::shared_ptr<DependedFiles> depends_;
+  std::optional<CommandServers> servers_;  // of a command that has a list
+};
+
+}  // namespace salbench

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/serving_command.h"
+
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "io/file.h"
+#include "io/process.h"
+#include "stages/core/errors.h"
+#include "tests/support/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr std::chrono::seconds kLong(60);
+
+// Runs `body` for every line that it reads, as $line.
+std::string for_each_line(const std::string& body) { return "while read -r line; do " + body + "; done"; }
+
+// The message of what an ask throws; empty if it is answered.
+std::string failure_of(ServingCommand& command, std::chrono::duration<double> timeout = kLong) {
+  try {
+    return command.ask("x", "x", timeout) ? "" : "ended";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(ServingCommand, AnswersLineByLineInItsFolder) {
+  const ScratchFolder folder;
+  ServingCommand command(for_each_line("echo \"$line\" >> asked; echo \"done $line\""), folder.path());
+  for (const std::string line : {"one", "two", "three"})
+    EXPECT_TRUE(command.ask(line, "done " + line, kLong));
+  EXPECT_EQ(read_file(folder.path() / "asked"), "one\ntwo\nthree\n");
+  EXPECT_FALSE(command.has_ended());
+}
+
+TEST(ServingCommand, FindsItsAnswerInWhateverElseIsPrinted) {
+  const ScratchFolder folder;
+  ServingCommand command(
+      for_each_line(
+          "head -c 3000000 /dev/zero; printf '\\rloading x\\nx y\\nxx\\n x\\r'; echo x >&2; sleep 0.2; "
+          "touch late; printf x; sleep 0.1; echo"),
+      folder.path());
+  EXPECT_EQ(failure_of(command), "");
+  EXPECT_EQ(read_file(folder.path() / "late"), "") << "neither part of a line nor an error is an answer";
+  EXPECT_THAT(command.last_lines(), HasSubstr("loading x | x y | xx"));
+  EXPECT_LT(command.last_lines().size(), 5000U);
+}
+
+TEST(ServingCommand, SaysHowItEnded) {
+  const ScratchFolder folder;
+  const auto failure = [&](const std::string& body) {
+    ServingCommand command(for_each_line(body), folder.path());
+    return failure_of(command);
+  };
+  EXPECT_EQ(failure("exit 0"), "ended");
+  EXPECT_EQ(failure("echo out of memory >&2; exit 3"),
+            "the command ended with status 3; its last lines: out of memory");
+  EXPECT_EQ(failure("kill -9 $$"), "the command was killed by signal 9; it printed nothing");
+  ServingCommand missing("no-such-program", folder.path());
+  EXPECT_THAT(failure_of(missing), StartsWith("the command ended with status 127"));
+  EXPECT_TRUE(missing.has_ended());
+  EXPECT_THAT(failure_of(missing), StartsWith("the command ended with status 127"))
+      << "asked again, no SIGPIPE";
+}
+
+TEST(ServingCommand, IsEndedAtTheTimeoutEvenIfItResists) {
+  const ScratchFolder folder;
+  ServingCommand command("trap '' TERM; echo ready; while :; do sleep 0.1; done", folder.path());
+  EXPECT_EQ(failure_of(command, std::chrono::duration<double>(0.5)),
+            "the command took longer than its timeout of 0.5 s, and was ended; its last lines: ready");
+}
+
+TEST(ServingCommand, ComesToTheEndOfItsLinesWhenNoMoreWillCome) {
+  const TemporaryFolder kept;
+  const ScratchFolder folder;
+  {
+    ServingCommand command(for_each_line("echo \"$line\"") + "; touch '" + (kept / "end").string() + "'",
+                           folder.path());
+  }
+  EXPECT_EQ(read_file(kept / "end"), "");
+  // One that does not end by itself is ended.
+  { ServingCommand command("trap '' TERM; while :; do sleep 0.1; done", folder.path()); }
+}
+
+TEST(ServingCommand, OutlivesTheThreadThatStartedIt) {
+  const ScratchFolder folder;
+  std::unique_ptr<ServingCommand> command;
+  std::thread([&] {
+    command = std::make_unique<ServingCommand>(for_each_line("echo \"$line\""), folder.path());
+    EXPECT_EQ(failure_of(*command), "");
+  }).join();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_FALSE(command->has_ended());
+  EXPECT_EQ(failure_of(*command), "");
+}
+
+TEST(ServingCommand, IsInterruptedByTheProgramsEnd) {
+  EXPECT_EXIT(
+      {
+        ServingCommand idle(for_each_line("echo x"), "/");
+        ServingCommand command("sleep 50", "/");
+        std::signal(SIGALRM, [](int) { end_commands(SIGTERM); });
+        ::alarm(1);
+        try {
+          failure_of(command);
+        } catch (const CommandInterrupted&) {
+          for (int i = 0; i < 100 && !idle.has_ended(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          ::_exit(idle.has_ended() ? 7 : 1);
+        }
+        ::_exit(2);
+      },
+      testing::ExitedWithCode(7), "");
+}
+
+}  // namespace
+}  // namespace salbench
