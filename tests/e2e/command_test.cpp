@@ -124,6 +124,17 @@ TEST(Command, TheConfigurationOfARunIsReadBack) {
   EXPECT_EQ(config(), printed);
 }
 
+// With one short line that says why; the other items go on.
+void expect_first_alone_to_fail(const Workspace& toy, const Outcome& run, const std::string& says) {
+  EXPECT_EQ(run.status, 1) << run.err;
+  const auto lines = lines_with(run.err, "  1: map.MINE: ");
+  ASSERT_THAT(lines, SizeIs(1)) << run.err;
+  EXPECT_THAT(lines[0], ContainsRegex(says));
+  EXPECT_LT(lines[0].size(), 6000U);
+  EXPECT_THAT(cells_of(toy.results(), "MINE"), SizeIs(1));
+  EXPECT_THAT(lines_with(toy.results(), ",PS,"), SizeIs(3));
+}
+
 struct Hostile {
   const char* name;
   const char* command;
@@ -142,14 +153,7 @@ TEST_P(HostileCommand, FailsItsItemWithAClearLineAndLeavesNothing) {
                   fmt::format(fmt::runtime(GetParam().command), fmt::arg("mark", mark)));
   write_toy_item(toy.data(), "3", shapes::bumpy_sphere(3));
   toy.configure(command_config(fmt::format("timeout: 1, command: \"{}; {}\"", first_only, kCount)));
-  const Outcome run = toy.salbench("run");
-  EXPECT_EQ(run.status, 1) << run.err;
-  const auto lines = lines_with(run.err, "  1: map.MINE: ");
-  ASSERT_THAT(lines, SizeIs(1)) << run.err;
-  EXPECT_THAT(lines[0], ContainsRegex(GetParam().says));
-  EXPECT_LT(lines[0].size(), 6000U);
-  EXPECT_THAT(cells_of(toy.results(), "MINE"), SizeIs(1)) << "the others go on";
-  EXPECT_THAT(lines_with(toy.results(), ",PS,"), SizeIs(3));
+  expect_first_alone_to_fail(toy, toy.salbench("run"), GetParam().says);
   EXPECT_THAT(processes_with(mark), IsEmpty());
 }
 INSTANTIATE_TEST_SUITE_P(
@@ -253,16 +257,9 @@ TEST_P(HostileListCommand, FailsItsShapeAloneAndTheNextOneIsServed) {
   toy.configure(command_config(
       fmt::format("timeout: 2, gpu: 1, command: \"{}\"",
                   serving(toy, fmt::format(fmt::runtime(GetParam().command), fmt::arg("mark", mark))))));
-  const Outcome run = toy.salbench("run");
-  EXPECT_EQ(run.status, 1) << run.err;
-  const auto lines = lines_with(run.err, "  1: map.MINE: ");
-  ASSERT_THAT(lines, SizeIs(1)) << run.err;
-  EXPECT_THAT(lines[0], ContainsRegex(GetParam().says));
-  EXPECT_LT(lines[0].size(), 6000U);
-  EXPECT_THAT(cells_of(toy.results(), "MINE"), SizeIs(1)) << "the others go on";
-  EXPECT_THAT(lines_with(toy.results(), ",PS,"), SizeIs(3));
+  expect_first_alone_to_fail(toy, toy.salbench("run"), GetParam().says);
   EXPECT_THAT(processes_with(mark), IsEmpty());
-  EXPECT_THAT(processes_with("serve.sh"), IsEmpty());
+  EXPECT_THAT(processes_with((toy / "serve.sh").string()), IsEmpty());
   EXPECT_LE(lines_of(toy / "log"), 3U);
 }
 INSTANTIATE_TEST_SUITE_P(
