@@ -17,9 +17,8 @@ struct ChildLimits {
 };
 
 struct ChildResult {
-  std::string sent;  // the bytes that the function sent, all of them if it ended well
-  std::string
-      failure;  // empty if it ended well, else how it ended: "crashed (signal 11: Segmentation fault)"
+  std::string sent;     // the bytes that the function sent, all of them if it ended well
+  std::string failure;  // how it ended, such as "crashed (signal 11: Segmentation fault)"; empty: well
 };
 
 using Send = std::function<void(std::span<const std::byte>)>;

@@ -11,7 +11,7 @@
 
 namespace salbench {
 
-// What a file has values of, as many as the shape has, and how messages call it.
+// The elements of a shape that a file has one value for each of: their number, and their names in messages.
 struct Elements {
   std::size_t n;
   std::string_view shape = "mesh", one = "vertex", plural = "vertices";

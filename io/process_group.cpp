@@ -44,7 +44,7 @@ void take_off_list(pid_t group) {
     if (pid_t its = group; slot.compare_exchange_strong(its, 0)) return;
 }
 
-// What a command reads and writes; -1: it has nothing to read.
+// File descriptors of a command. Input -1: /dev/null.
 struct StandardFiles {
   int input, output, errors;
 };
@@ -143,7 +143,8 @@ ProcessGroup::ProcessGroup(const std::string& command, const std::filesystem::pa
   put_on_list(group_);
   output_.close_writing();
   if (answers_) answers_->close_writing();
-  // The end that it reads from stays open here too: a line for one that has ended is no SIGPIPE.
+  // The reading end of its input stays open here too, so that a line written after it has ended raises no
+  // SIGPIPE.
 }
 
 ProcessGroup::~ProcessGroup() {

@@ -52,10 +52,8 @@ class LineFinder {
 // `/bin/sh -c command` in a folder, as the leader of a group. When the object is gone, so is the group.
 class ProcessGroup {
  public:
-  enum class Serves : std::uint8_t {
-    no,
-    yes
-  };  // yes: it reads lines, and its answers are told from its errors
+  // One that serves reads lines, and its answers are told from its errors.
+  enum class Serves : std::uint8_t { no, yes };
   enum class Event : std::uint8_t { ended, answered, late };
   using Clock = std::chrono::steady_clock;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A command that stays at work, so that what takes long to load is loaded once.
+// A command that is started once and asked many times.
 #pragma once
 
 #include <chrono>

@@ -13,8 +13,8 @@
 
 namespace salbench {
 
-// What one value belongs to: a vertex, a face in the order of the mesh file, or a point whose coordinates
-// stand beside the value.
+// Element that one value belongs to: a vertex, a face in the order of the mesh file, or a point whose
+// coordinates stand beside the value.
 enum class ValuePer { vertex, face, point };
 template <>
 struct EnumNames<ValuePer> {

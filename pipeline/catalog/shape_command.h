@@ -16,7 +16,7 @@
 
 namespace salbench {
 
-// What stands in a command line for a file in the scratch folder of a shape.
+// A placeholder in a command line, and the file in the scratch folder of a shape that it is replaced by.
 struct Placeholder {
   std::string_view text, file;
 };
@@ -25,11 +25,11 @@ inline constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", "shape.
                                                               {"{out}", "out.val"},
                                                               {"{out.npy}", "out.npy"},
                                                               {"{out.h5}", "out.h5"}}};
-// What stands for a list of shapes, one line each with the two files that {mesh}, or {shape}, and {out} stand
-// for.
+// Placeholders of a list of shapes. Each line of it names two files: that of {mesh}, or of {shape}, and that
+// of {out}.
 inline constexpr std::string_view kListOfMeshes = "{list}", kListOfShapes = "{list.h5}";
 
-// What the command may read of a shape; `reads` says which parts a job loads.
+// The parts of a shape that a command may read; a job loads those in `reads`.
 struct ShapeParts {
   Points points;
   const Normals* normals = nullptr;

@@ -27,6 +27,9 @@ constexpr std::size_t kBins = kBlocks * kFilledBins;
 constexpr double kBlockTotal = 100;  // of each block in the published weighting
 constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distance is rounding
 
+// A point without others has no votes to divide.
+double divisor(std::size_t others) { return static_cast<double>(std::max<std::size_t>(others, 1)); }
+
 const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
 
 // The neighbours of each point. What fits into memory is kept, and looked up where it is asked for again.
@@ -144,8 +147,7 @@ class SimplifiedHistograms {
     rows_.reserve(requested.size() * kBins);
     for (std::size_t row = 0; row < requested.size(); ++row)
       for (const std::uint32_t count : votes_[row])
-        rows_.push_back(static_cast<float>(static_cast<double>(count) /
-                                           static_cast<double>(std::max<std::size_t>(neighbours_[row], 1))));
+        rows_.push_back(static_cast<float>(static_cast<double>(count) / divisor(neighbours_[row])));
     votes_ = {};
   }
 
@@ -257,7 +259,7 @@ void combine_published(std::span<const Neighbour> found, const SimplifiedHistogr
 void combine_text(std::int32_t point, double unit, std::span<const Neighbour> found, std::size_t others,
                   const SimplifiedHistograms& spfh, Filled& sum) {
   const float* own = spfh.of(point);
-  const auto count = static_cast<double>(std::max<std::size_t>(others, 1));
+  const double count = divisor(others);
   for (std::size_t b = 0; b < kBins; ++b) sum[b] = static_cast<double>(own[b]);
   for (const Neighbour& n : found) {
     if (n.distance_squared == 0) continue;

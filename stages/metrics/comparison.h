@@ -20,7 +20,7 @@
 
 namespace salbench {
 
-// What is compared; all of it outlives the comparison.
+// The map and the ground truth to compare. The arrays must outlive the comparison.
 struct Compared {
   std::span<const double> map;                // n
   std::span<const double> saliency = {};      // n, the ground truth, min-max-normalised; may be empty

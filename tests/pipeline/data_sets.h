@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs over data sets in a temporary folder, for the tests of layouts and descriptions.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+
+class DataSets : public testing::Test {
+ protected:
+  // A run over a layout: what it makes of its items, or what it says.
+  void run(const std::string& layout, const std::string& more = "scans: false") {
+    toy_.reset();
+    toy_ = std::make_unique<ToyRun>(
+        data_.path(), store_,
+        fmt::format("dataset: {{layout: {}, {}}}\nscan: {{step_degrees: 2}}\nmodels: {{RS: , HS: }}\n",
+                    layout, more));
+    toy_->run();
+  }
+  GroundTruth truth(std::size_t item = 0) const {
+    return std::get<GroundTruth>(*toy_->runner.result({toy_->row("ground_truth"), Item::mesh(item)}));
+  }
+  std::vector<std::string> failures() const {
+    std::vector<std::string> causes;
+    for (const Failure& failure : toy_->runner.failures()) causes.push_back(failure.cause);
+    return causes;
+  }
+  // Of a model and metric, over meshes or scans; NaN is undefined.
+  double score_of(std::string_view model, std::string_view metric, bool scan = false) const {
+    for (const ResultRow& row : toy_->results())
+      if (row.model == model && !row.view.empty() == scan) return value_of(row.scores, metric);
+    ADD_FAILURE() << "no scores of " << model;
+    return 0;
+  }
+  std::string description(const std::string& yaml) { return folder_.write("own.yaml", yaml).string(); }
+
+  TemporaryFolder data_, folder_;
+  MemoryStore store_;
+  std::unique_ptr<ToyRun> toy_;
+};
+
+}  // namespace salbench
