@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stages do, done by the libraries of the field as Debian has them. A peer is given everything in its
-// own structures, so that copying a shape into these is left out, while our stages start from a Shape; each
-// search tree and hierarchy is built anew each time, on both sides.
+// What stages do, done by the libraries of the field as Debian has them. A library is given the shape in its
+// own structures, while our stages start from a Shape: converting it is not measured. Both sides build their
+// search trees and hierarchies anew each time.
 #pragma once
 
 #include <cstddef>
@@ -19,34 +19,34 @@ namespace salbench::peers {
 // or is the shape's, which outlives it.
 using Work = std::function<std::size_t()>;
 
-// Of the mesh. Leaves out double precision and absolute values of the features.
+// FPFH of the mesh's vertices. PCL works in float, and takes no absolute values of the features.
 Work pcl_fpfh(const Shape& shape, const Support& support);
 
-// Of the scan: planes turned towards the camera. Leaves out that of equally distant neighbours the index
-// decides, neighbourhoods on a line, and double precision.
+// Normals of the scan's planes, turned towards the camera. PCL works in float, does not decide between
+// equally distant neighbours, and does not look for neighbourhoods on a line.
 Work pcl_normals(const Shape& shape, std::int32_t neighbours);
 
-// Of the scan: planes oriented by Hoppe's tree as a whole. Leaves out depth jumps and folds, which it
-// crosses, and a seed per component.
+// Normals of the scan's planes, oriented by Hoppe's tree. CGAL passes the orientation across depth jumps and
+// folds, has one seed in all, and leaves some points without orientation, which do not count.
 Work cgal_normals(const Shape& shape, const ScanNormalsOptions& options);
 
-// Of the scan: bare greedy projection. Leaves out the median spacing that the limits are in, and faces that
-// overlap or are turned over.
+// Greedy projection triangulation of the scan. The spacing that its limits are in is computed before, and
+// faces that overlap or are turned over stay.
 Work pcl_surface(const Shape& shape, const SurfaceOptions& options);
 
-// Nearest hits of the rays of the first `views` scans, on one hierarchy. Leaves out making the rays, the
-// choice of the nearest hit and its place in double precision, and equal hits on all machines: the hit is the
-// one that Embree finds nearest with the widest instructions of this one.
+// Nearest hits of the rays of the first `views` scans on one hierarchy. The rays are made before. Which hit
+// is nearest, and where it is, is decided by Embree in float, with the widest instructions of the machine, so
+// that machines differ.
 Work embree_scans(const Shape& shape, int views);
 
-// Quadric collapses of the mesh to so many faces. Throws std::runtime_error for a mesh that is not manifold,
-// which ours takes.
+// Quadric collapses of the mesh to so many faces. CGAL takes manifold meshes only: throws std::runtime_error
+// for others.
 Work cgal_simplified(const Shape& shape, std::size_t faces);
-// Leaves out places between the vertices: an edge collapses into one of its ends.
+// The same, in float and with vertices of the mesh alone: an edge collapses into one of its ends.
 Work meshoptimizer_simplified(const Shape& shape, std::size_t faces);
 
-// Chi-square distances of kQueries descriptors of the mesh, evenly chosen, from all: a plain loop over the 33
-// bins of each pair.
+// Chi-square distances of kQueries descriptors of the mesh, evenly chosen, from all. FLANN's is a plain loop
+// over the 33 bins of a pair.
 inline constexpr std::size_t kQueries = 256;
 Work flann_chi_squares(const Shape& shape);
 

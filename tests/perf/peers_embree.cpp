@@ -42,11 +42,12 @@ Rays rays_of(const Mesh& mesh, int view) {
     seen.extend(Eigen::Vector2d(from_camera.dot(right), from_camera.dot(up)) /
                 (from_camera.dot(forward) * step));
   }
-  const Eigen::Vector2d first = seen.min().array().floor() - 1, last = seen.max().array().ceil() + 1;
+  const Eigen::Vector2i first = (seen.min().array().floor() - 1).cast<int>().matrix();
+  const Eigen::Vector2i last = (seen.max().array().ceil() + 1).cast<int>().matrix();
   Rays rays{camera.cast<float>(), {}};
-  for (double row = last.y(); row >= first.y(); --row)
-    for (double column = first.x(); column <= last.x(); ++column)
-      rays.directions.push_back((forward + column * step * right + row * step * up).cast<float>());
+  for (int row = last.y(); row >= first.y(); --row)
+    for (int column = first.x(); column <= last.x(); ++column)
+      rays.directions.emplace_back((forward + column * step * right + row * step * up).cast<float>());
   return rays;
 }
 
