@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <span>
@@ -106,27 +107,45 @@ Window window_of(std::span<const Vec3> local_corners, const Camera& camera, cons
           static_cast<int>(first(seen.min().y())), static_cast<int>(last(seen.max().y()))};
 }
 
+// Much faster than element by element.
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+using Corners = std::array<Vec3, 3>;  // of a face
+
 // Everything that the views of a mesh share. Each thread keeps it for its last mesh, because building the
 // hierarchy is a large part of one scan.
 struct Traced {
   Mesh mesh;
   LocalFrame frame;
-  std::vector<Vec3> local_vertices;
-  std::vector<Vec3> local_corners;  // the vertices that are corners of faces, once each
+  std::vector<Vec3> local_corners;   // the vertices that are corners of faces, once each
+  std::vector<Corners> local_faces;  // a copy for each face: its vertices lie far apart in memory
   embree::Scene scene;
 
   explicit Traced(const Mesh& of) : mesh(of), frame(local_frame(of)) {
+    std::vector<Vec3> local_vertices;
     local_vertices.reserve(mesh.vertices.size());
     for (const Vec3& p : mesh.vertices) local_vertices.push_back(frame.local_from_mesh(p));
     std::vector<bool> is_corner(mesh.vertices.size(), false);
-    for (const Triangle& face : mesh.faces)
-      for (const std::int32_t v : face) is_corner[static_cast<std::size_t>(v)] = true;
+    local_faces.reserve(mesh.faces.size());
+    for (const Triangle& face : mesh.faces) {
+      Corners& corners = local_faces.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(face[k]);
+        is_corner[v] = true;
+        corners[k] = local_vertices[v];
+      }
+    }
     for (std::size_t v = 0; v < is_corner.size(); ++v)
       if (is_corner[v]) local_corners.push_back(local_vertices[v]);
     scene = embree::scene_of(embree::triangles(local_vertices, mesh.faces),
                              RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   }
-  bool is_of(const Mesh& other) const { return mesh.vertices == other.vertices && mesh.faces == other.faces; }
+  bool is_of(const Mesh& other) const {
+    return same_bytes(mesh.vertices, other.vertices) && same_bytes(mesh.faces, other.faces);
+  }
 };
 
 const Traced& traced(const Mesh& mesh) {
@@ -138,10 +157,27 @@ const Traced& traced(const Mesh& mesh) {
   return *last;
 }
 
-// The nearest hit so far of one ray; Embree hands the context on to the filter.
-struct NearestHit : RTCIntersectContext {
-  const Mesh& mesh;
-  const std::vector<Vec3>& local_vertices;
+// Embree hands the context on to the filter.
+struct Candidates : RTCIntersectContext {
+  const Traced& from;
+  std::vector<std::uint32_t> faces;  // that the rays so far may meet
+};
+
+// N is 1: rays are traced one by one. The face is looked at when the row is done; until then it arrives from
+// memory, which each look would wait for.
+void note_and_refuse(const RTCFilterFunctionNArguments* arguments) {
+  auto& candidates = *static_cast<Candidates*>(arguments->context);
+  const std::uint32_t face = RTCHitN_primID(arguments->hit, 1, 0);
+  candidates.faces.push_back(face);
+  const Corners& corners = candidates.from.local_faces[face];
+  __builtin_prefetch(&corners.front());
+  __builtin_prefetch(&corners.back());
+  arguments->valid[0] = 0;
+}
+
+// The nearest hit so far of one ray.
+struct NearestHit {
+  const Traced& from;
   Vec3 origin, direction;  // local
 
   double depth = std::numeric_limits<double>::infinity();  // of the hit, along the direction
@@ -151,9 +187,8 @@ struct NearestHit : RTCIntersectContext {
   // Embree found the face in float. Weights that are negative in double come from that rounding: clamping
   // keeps the point on the face. A face seen exactly edge-on is left to its neighbours.
   void offer(std::uint32_t candidate) {
-    const Triangle& corners = mesh.faces[candidate];
-    std::array<Vec3, 3> v;
-    for (std::size_t k = 0; k < 3; ++k) v[k] = local_vertices[static_cast<std::size_t>(corners[k])] - origin;
+    const Corners& corners = from.local_faces[candidate];
+    const std::array v = {Vec3(corners[0] - origin), Vec3(corners[1] - origin), Vec3(corners[2] - origin)};
     Vec3 shares(direction.dot(v[1].cross(v[2])), direction.dot(v[2].cross(v[0])),
                 direction.dot(v[0].cross(v[1])));
     if (shares.sum() < 0) shares = -shares;
@@ -173,16 +208,10 @@ struct NearestHit : RTCIntersectContext {
     Vec3 point = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k)
       point += weights[static_cast<Eigen::Index>(k)] *
-               mesh.vertices[static_cast<std::size_t>(mesh.faces[face][k])];
+               from.mesh.vertices[static_cast<std::size_t>(from.mesh.faces[face][k])];
     return point;
   }
 };
-
-// N is 1: rays are traced one by one.
-void offer_and_refuse(const RTCFilterFunctionNArguments* arguments) {
-  static_cast<NearestHit*>(arguments->context)->offer(RTCHitN_primID(arguments->hit, 1, 0));
-  arguments->valid[0] = 0;
-}
 
 RTCRayHit float_ray(const Vec3& origin, const Vec3& direction) {
   RTCRayHit ray{};
@@ -209,14 +238,26 @@ Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
   const Window window = window_of(from.local_corners, camera, options);
 
   Scan scan{{}, from.frame.mesh_from_local(camera.position)};
+  Candidates candidates{{}, from, {}};
+  rtcInitIntersectContext(&candidates);
+  candidates.filter = note_and_refuse;
+  std::vector<std::size_t> ends;  // of the candidates of each ray of the row
   for (int row = window.top; row >= window.bottom; --row) {
+    const auto direction = [&](int column) {
+      return camera.ray((column + options.phase) * step, (row + options.phase) * step);
+    };
+    candidates.faces.clear();
+    ends.clear();
     for (int column = window.left; column <= window.right; ++column) {
-      const Vec3 direction = camera.ray((column + options.phase) * step, (row + options.phase) * step);
-      NearestHit nearest{{}, mesh, from.local_vertices, camera.position, direction};
-      rtcInitIntersectContext(&nearest);
-      nearest.filter = offer_and_refuse;
-      alignas(16) RTCRayHit ray = float_ray(nearest.origin, nearest.direction);
-      rtcIntersect1(from.scene.get(), &nearest, &ray);
+      alignas(16) RTCRayHit ray = float_ray(camera.position, direction(column));
+      rtcIntersect1(from.scene.get(), &candidates, &ray);
+      ends.push_back(candidates.faces.size());
+    }
+    std::size_t next = 0;
+    for (int column = window.left; column <= window.right; ++column) {
+      NearestHit nearest{from, camera.position, direction(column)};
+      for (const std::size_t end = ends[static_cast<std::size_t>(column - window.left)]; next < end; ++next)
+        nearest.offer(candidates.faces[next]);
       if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh());
     }
   }

@@ -4,10 +4,9 @@
 #include "stages/surface/surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <unordered_set>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -62,21 +61,38 @@ Triangle oriented(Triangle face, Points points, const Normals& normals) {
   return face;
 }
 
+// Edges in the direction in which a face passes them. A point has as many slots as corners of faces lie
+// there.
+class PassedEdges {
+ public:
+  PassedEdges(std::size_t n_points, const Faces& faces) : end_(n_points + 1, 0), to_(3 * faces.size()) {
+    for (const Triangle& face : faces)
+      for (const std::int32_t v : face) ++end_[static_cast<std::size_t>(v) + 1];
+    std::partial_sum(end_.begin(), end_.end(), end_.begin());
+    begin_ = end_;
+  }
+  bool contains(std::int32_t from, std::int32_t to) const {
+    const auto at = static_cast<std::size_t>(from);
+    return std::find(to_.data() + begin_[at], to_.data() + end_[at], to) != to_.data() + end_[at];
+  }
+  void insert(std::int32_t from, std::int32_t to) { to_[end_[static_cast<std::size_t>(from)]++] = to; }
+
+ private:
+  std::vector<std::size_t> begin_, end_;  // per point
+  std::vector<std::int32_t> to_;
+};
+
 // PCL's faces overlap in places, and some come twice. Keeps the first of several faces that pass an edge in
 // the same direction, so that the faces are oriented consistently.
-Faces consistently_oriented(const Faces& faces) {
-  const auto key = [](std::int32_t from, std::int32_t to) {
-    return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint64_t>(to);
-  };
-  std::unordered_set<std::uint64_t> passed;
-  passed.reserve(3 * faces.size());
+Faces consistently_oriented(std::size_t n_points, const Faces& faces) {
+  PassedEdges passed(n_points, faces);
   Faces kept;
   kept.reserve(faces.size());
   for (const auto& [a, b, c] : faces) {
-    const std::array edges = {key(a, b), key(b, c), key(c, a)};
-    if (std::any_of(edges.begin(), edges.end(), [&](std::uint64_t edge) { return passed.contains(edge); }))
-      continue;
-    passed.insert(edges.begin(), edges.end());
+    if (passed.contains(a, b) || passed.contains(b, c) || passed.contains(c, a)) continue;
+    passed.insert(a, b);
+    passed.insert(b, c);
+    passed.insert(c, a);
     kept.push_back({a, b, c});
   }
   return kept;
@@ -111,7 +127,7 @@ Faces partial_mesh(Points points, const Normals& normals, const SurfaceOptions& 
     CHECK_EQ(v.size(), 3U);
     faces.push_back(oriented({v[0], v[1], v[2]}, points, normals));
   }
-  return consistently_oriented(faces);
+  return consistently_oriented(points.size(), faces);
 }
 
 }  // namespace salbench

@@ -11,17 +11,11 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <map>
-#include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
-#include "io/mesh_file.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/models/cs.h"
 #include "stages/models/lce.h"
@@ -34,64 +28,11 @@
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "stages/surface/surface.h"
+#include "tests/perf/shapes.h"
 #include "tests/support/data.h"
-#include "tests/support/subdivided.h"
 
 namespace salbench {
 namespace {
-
-namespace fs = std::filesystem;
-
-// What the stages read, made when it is first asked for.
-struct Shape {
-  Mesh mesh;
-  std::optional<Scan> scan;
-  Normals normals, scan_normals;
-  Descriptors descriptors, scan_descriptors;
-  Faces surface;
-
-  explicit Shape(Mesh of) : mesh(std::move(of)), normals(mesh_normals(mesh)) {
-    descriptors = fpfh(mesh.vertices, normals, FpfhOptions{});
-  }
-  void add_scan() {
-    if (scan) return;
-    scan = simulate_scan(mesh, 0);
-    scan_normals = salbench::scan_normals(*scan);
-    scan_descriptors = fpfh(scan->points, scan_normals, ScanFpfhOptions{});
-    surface = partial_mesh(scan->points, scan_normals);
-  }
-};
-
-struct Source {
-  fs::path file;
-  unsigned int subdivisions = 0;
-};
-
-// The last one that was asked for: a million points are not kept beside others.
-Shape& shape_of(const Source& source) {
-  static std::optional<std::pair<Source, Shape>> last;
-  if (!last || last->first.file != source.file || last->first.subdivisions != source.subdivisions) {
-    last.reset();
-    last.emplace(source, Shape(subdivided(read_mesh(source.file), source.subdivisions)));
-  }
-  return last->second;
-}
-
-// By the header, since there are hundreds: "OFF", then the number of vertices.
-std::size_t vertices_of(const fs::path& file) {
-  std::ifstream stream(file);
-  std::string word;
-  std::size_t vertices = 0;
-  stream >> word >> vertices;
-  return vertices;
-}
-
-std::map<std::size_t, fs::path> meshes_by_size(const fs::path& data) {
-  std::map<std::size_t, fs::path> meshes;
-  for (const auto& entry : fs::directory_iterator(data / "SchellingData" / "Meshes"))
-    meshes.emplace(vertices_of(entry.path()), entry.path());
-  return meshes;
-}
 
 template <class Stage>
 void add(const std::string& stage, const std::string& shape, const Source& source, Stage&& run,
@@ -168,21 +109,18 @@ void add_of_scan(const std::string& name, const Source& source) {
       true);
 }
 
-void register_all(const fs::path& data) {
-  const auto meshes = meshes_by_size(data);
-  const auto of_size = [&](std::size_t n) {
-    const auto at = meshes.lower_bound(n);
-    return at == meshes.end() ? *std::prev(at) : *at;
-  };
+void register_all(const std::filesystem::path& data) {
+  const MeshesBySize meshes = meshes_by_size(data);
   for (const std::size_t n : {2'000, 5'000, 10'000, 27'000}) {
-    const auto [size, file] = of_size(n);
-    const std::string name = file.stem().string() + ":" + std::to_string(size);
-    add_of_mesh(name, {file});
-    add_of_scan(name + "_0", {file});
+    const Source source = mesh_of_size(meshes, n);
+    add_of_mesh(source.name, source);
+    add_of_scan(source.name + "_0", source);
   }
-  const auto file = of_size(15'625).second;  // 4^3 of these are a million
-  for (const unsigned int times : {1U, 2U, 3U})
-    add_of_mesh(file.stem().string() + ":subdivided" + std::to_string(times), {file, times});
+  Source source = mesh_of_size(meshes, 15'625);  // 4^3 of these are a million
+  for (const unsigned int times : {1U, 2U, 3U}) {
+    source.subdivisions = times;
+    add_of_mesh(source.file.stem().string() + ":subdivided" + std::to_string(times), source);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/perf/shapes.h"
+
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "io/mesh_file.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/normals/normals.h"
+#include "stages/scan/scan.h"
+#include "stages/surface/surface.h"
+#include "tests/support/subdivided.h"
+
+namespace salbench {
+namespace {
+
+// By the header, since there are hundreds: "OFF", then the number of vertices.
+std::size_t vertices_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string word;
+  std::size_t vertices = 0;
+  stream >> word >> vertices;
+  return vertices;
+}
+
+}  // namespace
+
+Shape::Shape(Mesh of) : mesh(std::move(of)), normals(mesh_normals(mesh)) {
+  descriptors = fpfh(mesh.vertices, normals, FpfhOptions{});
+}
+
+void Shape::add_scan() {
+  if (scan) return;
+  scan = simulate_scan(mesh, 0);
+  scan_normals = salbench::scan_normals(*scan);
+  scan_descriptors = fpfh(scan->points, scan_normals, ScanFpfhOptions{});
+  surface = partial_mesh(scan->points, scan_normals);
+}
+
+MeshesBySize meshes_by_size(const std::filesystem::path& data) {
+  MeshesBySize meshes;
+  for (const auto& entry : std::filesystem::directory_iterator(data / "SchellingData" / "Meshes"))
+    meshes.emplace(vertices_of(entry.path()), entry.path());
+  return meshes;
+}
+
+Source mesh_of_size(const MeshesBySize& meshes, std::size_t vertices) {
+  const auto at = meshes.lower_bound(vertices);
+  const auto& [size, file] = at == meshes.end() ? *std::prev(at) : *at;
+  return {file.stem().string() + ":" + std::to_string(size), file};
+}
+
+Shape& shape_of(const Source& source) {
+  using Key = std::pair<std::filesystem::path, unsigned int>;
+  static std::map<Key, Shape> made;
+  const Key key(source.file, source.subdivisions);
+  if (const auto found = made.find(key); found != made.end()) return found->second;
+  if (source.subdivisions > 0) std::erase_if(made, [](const auto& entry) { return entry.first.second > 0; });
+  return made.emplace(key, Shape(subdivided(read_mesh(source.file), source.subdivisions))).first->second;
+}
+
+}  // namespace salbench
