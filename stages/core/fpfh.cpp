@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,14 +45,7 @@ class Neighbourhoods {
     if (k_ == 0) {
       kept_at_.resize(points.size());
     } else if (points.size() * k_ <= kMostKept) {
-      kept_.resize(points.size() * k_);
-      parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
-        Found found;
-        for (std::size_t i = first; i < last; ++i) {
-          tree.nearest(points[i], k_, found);
-          std::copy(found.begin(), found.end(), kept_.begin() + static_cast<std::ptrdiff_t>(i * k_));
-        }
-      });
+      nearest_ = tree.nearest_of_each(points, k_);
     }
   }
 
@@ -62,7 +56,7 @@ class Neighbourhoods {
   // By (distance, index), the point itself included; valid until `found` is used again.
   std::span<const Neighbour> of(std::int32_t i, Found& found) const {
     if (k_ > 0) {
-      if (!kept_.empty()) return std::span(kept_).subspan(static_cast<std::size_t>(i) * k_, k_);
+      if (nearest_) return nearest_->of(static_cast<std::size_t>(i));
       tree_.nearest(at(points_, i), k_, found);
     } else if (const auto kept = kept_of(i); !kept.empty()) {
       found.assign(kept.begin(), kept.end());
@@ -112,8 +106,9 @@ class Neighbourhoods {
   const KdTree& tree_;
   Support support_;
   std::size_t k_ = 0;  // 0: a radius
-  std::vector<Neighbour> kept_;
-  std::vector<Kept> kept_at_;  // of a radius, by point
+  std::optional<NearestPoints> nearest_;
+  std::vector<Neighbour> kept_;  // of a radius
+  std::vector<Kept> kept_at_;    // by point
 };
 
 // The points that are not among these, which ascend.

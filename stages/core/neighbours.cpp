@@ -331,6 +331,18 @@ std::int32_t KdTree::nearest(const Vec3& query) const {
   return found.front().index;
 }
 
+NearestPoints KdTree::nearest_of_each(std::span<const Vec3> queries, std::size_t k) const {
+  NearestPoints all(queries.size(), std::min(k, size()));
+  parallel_ranges(queries.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
+    std::vector<Neighbour> found;
+    for (std::size_t i = first; i < last; ++i) {
+      nearest(queries[i], k, found);
+      std::copy(found.begin(), found.end(), all.of(i).begin());
+    }
+  });
+  return all;
+}
+
 void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
   within_unordered(query, radius, found);
   std::sort(found.begin(), found.end(), closer);

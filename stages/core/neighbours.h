@@ -25,6 +25,21 @@ inline constexpr auto closer = [](const Neighbour& a, const Neighbour& b) {
          (a.distance_squared == b.distance_squared && a.index < b.index);
 };
 
+// The k points nearest to each of n: looked for once, read by several.
+class NearestPoints {
+ public:
+  NearestPoints(std::size_t n, std::size_t k) : n_(n), k_(k), found_(n * k) {}
+  std::size_t size() const { return n_; }
+  std::size_t each() const { return k_; }
+
+  std::span<const Neighbour> of(std::size_t point) const { return {&found_[point * k_], k_}; }
+  std::span<Neighbour> of(std::size_t point) { return {&found_[point * k_], k_}; }
+
+ private:
+  std::size_t n_, k_;
+  std::vector<Neighbour> found_;
+};
+
 // The points must outlive the tree. Results are ordered by (distance, index), so ties never depend on the
 // tree's layout. Searches are const and may run on several threads.
 class KdTree {
@@ -39,6 +54,8 @@ class KdTree {
   // The min(k, n) nearest points, the query's own point included if it is one of them.
   void nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const;
   std::int32_t nearest(const Vec3& query) const;  // index of the nearest point; n > 0
+
+  NearestPoints nearest_of_each(std::span<const Vec3> queries, std::size_t k) const;
 
   // All points with distance <= radius.
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;

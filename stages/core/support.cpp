@@ -92,14 +92,12 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, double factor) 
   return grown_support_radius(points, KdTree(points), factor);
 }
 
-double median_spacing(std::span<const Vec3> points, const KdTree& tree) {
+double median_spacing(const NearestPoints& near) {
+  const std::size_t other = near.each() < 2 ? 0 : 1;  // without another, the point itself
   std::vector<double> squared;
-  squared.reserve(points.size());
-  std::vector<Neighbour> near;
-  for (const Vec3& p : points) {
-    tree.nearest(p, 2, near);
-    squared.push_back(near.back().distance_squared);
-  }
+  squared.reserve(near.size());
+  for (std::size_t i = 0; i < near.size(); ++i)
+    squared.push_back(near.of(i)[other].distance_squared);
   if (squared.empty()) return 0;
   const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
   std::nth_element(squared.begin(), middle, squared.end());

@@ -18,8 +18,9 @@ inline constexpr std::int32_t kMinMeanNeighbours = 6;  // the point itself exclu
 std::array<double, 2> mean_neighbour_counts(std::span<const Vec3> points, const KdTree& tree, double small,
                                             double large);
 
-// Median distance of a point to its nearest other one; 0 for fewer than two points. `tree` is over `points`.
-double median_spacing(std::span<const Vec3> points, const KdTree& tree);
+// Median distance of a point to its nearest other one; 0 for fewer than two points. `near` has two or more of
+// each.
+double median_spacing(const NearestPoints& near);
 
 struct SupportRadius {
   double radius = 0;            // in the shape's unit

@@ -91,9 +91,11 @@ Normals outward_normals(const std::vector<Vec3>& points, const MeshNormalsOption
   const auto outwards = [&](std::size_t i) -> Vec3 {
     return points[i] == centre ? Vec3::UnitZ() : Vec3(points[i] - centre);
   };
-  Normals normals = plane_normals(points, tree, plane_neighbours(points, tree, options), outwards);
+  const OrientationGraph graph{options.orientation_neighbours};
+  NearestPoints near(points.size(), graph.searched(points.size()));
+  Normals normals = plane_normals(points, tree, plane_neighbours(points, tree, options), outwards, &near);
   const auto seed_of = [&](std::span<const std::int32_t> part) { return outermost(points, normals, part); };
-  orient_normals(points, tree, {options.orientation_neighbours}, seed_of, normals);
+  orient_normals(points, near, graph, seed_of, normals);
   return normals;
 }
 
@@ -123,8 +125,8 @@ Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
   const auto to_camera = [&](std::size_t i) -> Vec3 {
     return points[i] == scan.camera ? Vec3::UnitZ() : Vec3(scan.camera - points[i]);
   };
-  Normals normals = plane_normals(points, tree, options.neighbours, to_camera);
   if (options.orientation == ScanOrientation::camera) {
+    Normals normals = plane_normals(points, tree, options.neighbours, to_camera);
     for (std::size_t i = 0; i < points.size(); ++i)
       if (normals[i].dot(to_camera(i)) < 0) normals[i] = -normals[i];
     return normals;
@@ -136,9 +138,12 @@ Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
         });
     return {nearest, to_camera(static_cast<std::size_t>(nearest))};
   };
-  const OrientationGraph graph{options.orientation_neighbours, options.gap * median_spacing(points, tree),
-                               options.max_normal_angle_degrees * std::numbers::pi / 180};
-  orient_normals(points, tree, graph, nearest_to_camera, normals);
+  OrientationGraph graph{.neighbours = options.orientation_neighbours,
+                         .largest_turn = options.max_normal_angle_degrees * std::numbers::pi / 180};
+  NearestPoints near(points.size(), graph.searched(points.size()));
+  Normals normals = plane_normals(points, tree, options.neighbours, to_camera, &near);
+  graph.longest_edge = options.gap * median_spacing(near);
+  orient_normals(points, near, graph, nearest_to_camera, normals);
   return normals;
 }
 

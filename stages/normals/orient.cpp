@@ -16,6 +16,8 @@
 #include <CGAL/mst_orient_normals.h>
 #include <CGAL/property_map.h>
 
+#include "stages/core/check.h"
+
 namespace salbench {
 namespace {
 
@@ -37,23 +39,22 @@ class DisjointSets {
   std::vector<std::size_t> parent_;
 };
 
-std::vector<Component> connected_parts(std::span<const Vec3> points, const KdTree& tree,
-                                       const OrientationGraph& graph, const Normals& normals) {
+std::vector<Component> connected_parts(const NearestPoints& near, const OrientationGraph& graph,
+                                       const Normals& normals) {
+  CHECK_EQ(near.size(), normals.size());
   const double longest_squared = graph.longest_edge * graph.longest_edge;
   const double least_cosine = std::cos(graph.largest_turn);
-  DisjointSets sets(points.size());
-  std::vector<Neighbour> near;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    tree.nearest(points[i], static_cast<std::size_t>(graph.neighbours) + 1, near);
-    for (const Neighbour& n : near) {
+  DisjointSets sets(normals.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    for (const Neighbour& n : near.of(i)) {
       const auto j = static_cast<std::size_t>(n.index);
       if (j > i && n.distance_squared <= longest_squared &&
           std::abs(normals[i].dot(normals[j])) >= least_cosine)
         sets.join(i, j);
     }
   }
-  std::vector<Component> by_root(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
+  std::vector<Component> by_root(normals.size());
+  for (std::size_t i = 0; i < normals.size(); ++i)
     by_root[sets.root(i)].push_back(static_cast<std::int32_t>(i));
   std::erase_if(by_root, [](const Component& part) { return part.empty(); });
   return by_root;
@@ -87,9 +88,9 @@ Component pass_on(std::span<const Vec3> points, const Component& part, std::int3
 
 }  // namespace
 
-void orient_normals(std::span<const Vec3> points, const KdTree& tree, const OrientationGraph& graph,
+void orient_normals(std::span<const Vec3> points, const NearestPoints& near, const OrientationGraph& graph,
                     const SeedRule& seed_of, Normals& normals) {
-  for (Component& part : connected_parts(points, tree, graph, normals)) {
+  for (Component& part : connected_parts(near, graph, normals)) {
     // Usually one pass suffices. CGAL may choose other neighbours than KdTree among equally distant ones, and
     // it stops at a right angle; the points left over then form a part of their own. The loop ends because
     // each pass reaches at least the seed.

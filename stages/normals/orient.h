@@ -2,6 +2,8 @@
 // Consistent orientation of normals by Hoppe's minimum spanning tree.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -19,6 +21,9 @@ struct OrientationGraph {
   std::int32_t neighbours;  // >= 2
   double longest_edge = std::numeric_limits<double>::infinity();
   double largest_turn = std::numbers::pi / 2;  // between the normals of an edge, regardless of sign; radians
+
+  // How many are looked for around each of n points: the point itself is among them.
+  std::size_t searched(std::size_t n) const { return std::min(static_cast<std::size_t>(neighbours) + 1, n); }
 };
 
 // A point whose orientation is known: its normal makes no obtuse angle with `towards`.
@@ -31,8 +36,9 @@ struct OrientationSeed {
 using SeedRule = std::function<OrientationSeed(std::span<const std::int32_t> component)>;
 
 // Turns unit normals so that they agree along a spanning tree of each component of the graph, grown from the
-// component's seed; the tree prefers pairs of parallel normals. `tree` is over `points`. [hoppe1992]
-void orient_normals(std::span<const Vec3> points, const KdTree& tree, const OrientationGraph& graph,
+// component's seed; the tree prefers pairs of parallel normals. `near` has graph.searched(n) points of each
+// of the n. [hoppe1992]
+void orient_normals(std::span<const Vec3> points, const NearestPoints& near, const OrientationGraph& graph,
                     const SeedRule& seed_of, Normals& normals);
 
 }  // namespace salbench

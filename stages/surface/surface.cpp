@@ -103,7 +103,7 @@ Faces consistently_oriented(std::size_t n_points, const Faces& faces) {
 Faces partial_mesh(Points points, const Normals& normals, const SurfaceOptions& options) {
   CHECK_EQ(normals.size(), points.size());
   if (points.size() < 3) return {};
-  const double spacing = median_spacing(points, KdTree(points));
+  const double spacing = median_spacing(KdTree(points).nearest_of_each(points, 2));
   if (!(spacing > 0)) return {};
 
   silence_pcl();

@@ -46,7 +46,7 @@ NormalCloud::Ptr cloud_of_normals(const Normals& normals) {
 
 // In units of the median spacing, as the limits of the triangulation are.
 OrientedCloud::Ptr cloud_in_spacings(Points points, const Normals& normals) {
-  const double spacing = median_spacing(points, KdTree(points));
+  const double spacing = median_spacing(KdTree(points).nearest_of_each(points, 2));
   const Vec3 centre = centroid(points);
   auto cloud = pcl::make_shared<OrientedCloud>();
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -59,6 +59,20 @@ TEST(KdTree, ManyNearestEqualBruteForce) {
   }
 }
 
+TEST(KdTree, NeighbourhoodsAreTheNearestOfEachPoint) {
+  const std::vector<Vec3> cloud = shapes::random_cloud(2500, 5);  // more than one range of points
+  const KdTree tree(cloud);
+  const NearestPoints all = tree.nearest_of_each(cloud, 7);
+  std::vector<Neighbour> found;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    tree.nearest(cloud[i], 7, found);
+    EXPECT_EQ(indices({all.of(i).begin(), all.of(i).end()}), indices(found)) << "point " << i;
+  }
+  const std::vector<Vec3> few(cloud.begin(), cloud.begin() + 3);
+  EXPECT_EQ(KdTree(few).nearest_of_each(few, 7).each(), 3U);
+  EXPECT_EQ(tree.nearest_of_each({}, 7).size(), 0U);
+}
+
 TEST(KdTree, OfSomePointsFindsOnlyThese) {
   const std::vector<Vec3> cloud = shapes::random_cloud(500, 5);
   std::vector<std::int32_t> members;

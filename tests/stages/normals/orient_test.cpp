@@ -38,7 +38,7 @@ TEST(OrientNormals, UndoesRandomFlipsOnASphere) {
     EXPECT_TRUE(std::is_sorted(component.begin(), component.end()));
     return {17, points[17]};
   };
-  orient_normals(points, KdTree(points), {6}, top, normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, top, normals);
   EXPECT_EQ(normals, points);
   EXPECT_EQ(asked, 1U);
 }
@@ -58,7 +58,7 @@ TEST(OrientNormals, FollowsAFoldThatNoSingleDirectionCouldOrient) {
   }
   Normals normals = randomly_flipped(outward);
   const auto start = [&](std::span<const std::int32_t>) -> OrientationSeed { return {0, outward[0]}; };
-  orient_normals(points, KdTree(points), {6}, start, normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, start, normals);
   EXPECT_EQ(normals, outward);
 }
 
@@ -67,12 +67,12 @@ TEST(OrientNormals, EdgesBeyondTheLongestSeparate) {
   for (std::size_t i = 50; i < 100; ++i) points[i].y() += 0.2;  // a gap of three spacings
   FirstUp rule;
   Normals normals = randomly_flipped(Normals(points.size(), Vec3::UnitZ()));
-  orient_normals(points, KdTree(points), {60, 0.25}, std::ref(rule), normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 61), {60, 0.25}, std::ref(rule), normals);
   EXPECT_THAT(rule.sizes, testing::ElementsAre(50U, 50U));
   EXPECT_EQ(normals, Normals(points.size(), Vec3::UnitZ()));
 
   FirstUp unlimited;
-  orient_normals(points, KdTree(points), {60}, std::ref(unlimited), normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 61), {60}, std::ref(unlimited), normals);
   EXPECT_THAT(unlimited.sizes, testing::ElementsAre(100U));
 }
 
@@ -83,7 +83,8 @@ TEST(OrientNormals, TurnsBeyondTheLargestSeparate) {
   folded.insert(folded.end(), 50, Vec3(-0.8, 0, 0.6));
   FirstUp rule;
   Normals normals = randomly_flipped(folded);
-  orient_normals(points, KdTree(points), {8, 10, std::numbers::pi / 4}, std::ref(rule), normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 9), {8, 10, std::numbers::pi / 4},
+                 std::ref(rule), normals);
   EXPECT_THAT(rule.sizes, testing::ElementsAre(50U, 50U));
   EXPECT_EQ(normals, folded);
 }
@@ -100,18 +101,18 @@ TEST(OrientNormals, ReachesEveryPointAlsoAcrossRightAnglesAndCoincidentPoints) {
   const auto first_up = [](std::span<const std::int32_t> component) -> OrientationSeed {
     return {component.front(), Vec3::UnitZ()};
   };
-  orient_normals(points, KdTree(points), {6}, first_up, normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, first_up, normals);
   EXPECT_EQ(normals, upright);
 }
 
 TEST(OrientNormals, SinglePointsAndNone) {
   std::vector<Vec3> points;
   Normals normals;
-  orient_normals(points, KdTree(points), {6}, FirstUp(), normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, FirstUp(), normals);
   EXPECT_TRUE(normals.empty());
   points = {{1, 1, 1}};
   normals = {{0, 0, -1}};
-  orient_normals(points, KdTree(points), {6}, FirstUp(), normals);
+  orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, FirstUp(), normals);
   EXPECT_EQ(normals[0], Vec3::UnitZ());
 }
 
@@ -119,10 +120,10 @@ TEST(OrientNormals, DoesNotDependOnOtherThreads) {
   const std::vector<Vec3> points = shapes::random_cloud(3000, 8);
   const Normals start = shapes::random_normals(3000, 9);
   std::vector<Normals> results(3, start);
-  const KdTree tree(points);
+  const NearestPoints near = KdTree(points).nearest_of_each(points, 7);
   std::vector<std::thread> threads;
   for (Normals& normals : results)
-    threads.emplace_back([&] { orient_normals(points, tree, {6}, FirstUp(), normals); });
+    threads.emplace_back([&] { orient_normals(points, near, {6}, FirstUp(), normals); });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(results[0], results[1]);
   EXPECT_EQ(results[0], results[2]);
