@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All scores in two passes over the points, one for the sums that densities are scaled by: a sum in the order
 // of the points waits for each addition, and those of one pass wait together. Logarithms are what the rest
-// costs: a block of them at a time, so that no sum is put aside for the call, and of equal numbers in a row,
-// as where nobody marked anything, only one.
+// costs: they are taken a block at a time, so that no sum is put aside for the call, and once for all points
+// where both fields are 0: nobody marked most of a shape.
 #include "stages/metrics/density.h"
 
 #include <algorithm>
@@ -38,27 +38,27 @@ Density scaled_by(const WeighedSum& weighed, Weighting weighting, const Measure&
 }
 
 // A model may call all points equally salient, and in any number.
-Density of_map(std::span<const double> map, const WeighedSum& weighed, Weighting weighting,
-               const Measure& measure) {
-  if (is_constant(map, measure)) return {0, measure.unit / measure.total};
-  return has_negative(map) ? Density{} : scaled_by(weighed, weighting, measure);
+Density of_map(std::span<const double> map, Density scaled, const Measure& measure) {
+  return is_constant(map, measure) ? Density{0, measure.unit / measure.total} : scaled;
 }
 
 // People who marked nothing say nothing.
-Density of_truth(std::span<const double> saliency, const WeighedSum& weighed, Weighting weighting,
-                 const Measure& measure) {
+Density of_truth(std::span<const double> saliency, Density scaled, const Measure& measure) {
   for (std::size_t i = 0; i < saliency.size(); ++i)
-    if (measure.weight[i] > 0 && saliency[i] != 0)
-      return has_negative(saliency) ? Density{} : scaled_by(weighed, weighting, measure);
+    if (measure.weight[i] > 0 && saliency[i] != 0) return scaled;
   return {};
 }
 
-template <Density (*one)(std::span<const double>, const WeighedSum&, Weighting, const Measure&)>
+template <Density (*one)(std::span<const double>, Density, const Measure&)>
 Densities both(std::span<const double> field, const WeighedSum& weighed, const Measures& measures) {
+  const bool negative = has_negative(field);
   Densities densities;
-  for (const Weighting weighting : {Weighting::vertex, Weighting::area})
-    if (!measures[weighting].empty())
-      densities[static_cast<std::size_t>(weighting)] = one(field, weighed, weighting, measures[weighting]);
+  for (const Weighting weighting : {Weighting::vertex, Weighting::area}) {
+    const Measure& measure = measures[weighting];
+    if (measure.empty()) continue;
+    densities[static_cast<std::size_t>(weighting)] =
+        one(field, negative ? Density{} : scaled_by(weighed, weighting, measure), measure);
+  }
   return densities;
 }
 
@@ -108,13 +108,19 @@ AllDistributions distributions_of(const DensityInput& in, const Measures& measur
            both<of_truth>(in.normalised_saliency, normalised_saliency, measures)}};
 }
 
-// In place, of what is defined.
-void take_logarithms(std::span<PerWeighting> ratios, const Distributions& distributions) {
+// In place, of what is defined. `of_zeros` is the ratio where both fields are 0, the most frequent one.
+void take_logarithms(std::span<PerWeighting> ratios, const PerWeighting& of_zeros,
+                     const Distributions& distributions) {
   for (const std::size_t weighting : {0U, 1U}) {
     if (!distributions.defined(weighting)) continue;
     const auto k = static_cast<Eigen::Index>(weighting);
+    const double logarithm_of_zeros = std::log(of_zeros[k]);
     double last = 1, logarithm = 0;
     for (PerWeighting& ratio : ratios) {
+      if (ratio[k] == of_zeros[k]) {
+        ratio[k] = logarithm_of_zeros;
+        continue;
+      }
       if (ratio[k] != last) {
         last = ratio[k];
         logarithm = std::log(last);
@@ -124,7 +130,7 @@ void take_logarithms(std::span<PerWeighting> ratios, const Distributions& distri
   }
 }
 
-// Sums over the points, of which densities of both fields are known.
+// Sums over the points. What a point adds is computed for both weightings at once.
 class ScoreSums {
  public:
   ScoreSums(const DensityInput& in, const Measures& measures, const AllDistributions& all)
@@ -132,40 +138,65 @@ class ScoreSums {
 
   // Points from `first` on, at most a block.
   void add(std::size_t first, std::size_t count) {
-    const auto& [raw, smoothed, normalised] = all_;
-    const std::span<PerWeighting> ratios = std::span(ratios_).first(count);
-    const std::span<PerWeighting> smoothed_ratios = std::span(smoothed_ratios_).first(count);
-    for (std::size_t k = 0; k < count; ++k) {
-      const double map = in_.map[first + k], saliency = in_.saliency[first + k];
-      const PerWeighting g = raw.g(saliency), smoothed_g = smoothed.g(saliency);
-      ratios[k] = kEpsilon + g / (raw.p(map) + kEpsilon);
-      smoothed_ratios[k] = smoothed_g / smoothed.p(map);
-    }
-    take_logarithms(ratios, raw);
-    take_logarithms(smoothed_ratios, smoothed);
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t i = first + k;
-      const PerWeighting weight = measures_.weight(i), g = raw.g(in_.saliency[i]);
-      kl += weight * g * ratios[k];
-      kl_smoothed += weight * smoothed.g(in_.saliency[i]) * smoothed_ratios[k];
-      sim += weight * raw.p(in_.map[i]).min(g);
-      const double map_to_1 = in_.normalised_map[i], saliency_to_1 = in_.normalised_saliency[i];
-      sim_of_normalised += weight * normalised.p(map_to_1).min(normalised.g(saliency_to_1));
-      const double difference = map_to_1 - saliency_to_1;
-      squares += weight * (difference * difference);
-      magnitudes += weight * std::abs(difference);
-    }
+    set_logarithms(first, count);
+    for (std::size_t k = 0; k < count; ++k) add(measures_.weight(first + k), terms_of(first + k, k));
   }
 
-  static constexpr std::size_t kBlock = 128;
+  static constexpr std::size_t kBlock = 256;
   PerWeighting kl{0, 0}, kl_smoothed{0, 0}, sim{0, 0}, sim_of_normalised{0, 0}, squares{0, 0},
       magnitudes{0, 0};
 
  private:
+  // What a point adds, but for its weight.
+  struct Terms {
+    PerWeighting g, log_ratio, smoothed_g, smoothed_log_ratio, common, normalised_common;
+    double square, magnitude;
+  };
+
+  PerWeighting ratio(double map, double saliency) const {
+    return kEpsilon + all_.raw.g(saliency) / (all_.raw.p(map) + kEpsilon);
+  }
+  PerWeighting smoothed_ratio(double map, double saliency) const {
+    return all_.smoothed.g(saliency) / all_.smoothed.p(map);
+  }
+
+  void set_logarithms(std::size_t first, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const double map = in_.map[first + k], saliency = in_.saliency[first + k];
+      log_ratios_[k] = ratio(map, saliency);
+      smoothed_log_ratios_[k] = smoothed_ratio(map, saliency);
+    }
+    take_logarithms(std::span(log_ratios_).first(count), ratio(0, 0), all_.raw);
+    take_logarithms(std::span(smoothed_log_ratios_).first(count), smoothed_ratio(0, 0), all_.smoothed);
+  }
+
+  Terms terms_of(std::size_t i, std::size_t in_block) const {
+    const double map_to_1 = in_.normalised_map[i], saliency_to_1 = in_.normalised_saliency[i];
+    const double difference = map_to_1 - saliency_to_1;
+    const PerWeighting g = all_.raw.g(in_.saliency[i]);
+    return {g,
+            log_ratios_[in_block],
+            all_.smoothed.g(in_.saliency[i]),
+            smoothed_log_ratios_[in_block],
+            all_.raw.p(in_.map[i]).min(g),
+            all_.normalised.p(map_to_1).min(all_.normalised.g(saliency_to_1)),
+            difference * difference,
+            std::abs(difference)};
+  }
+
+  void add(const PerWeighting& weight, const Terms& terms) {
+    kl += weight * terms.g * terms.log_ratio;
+    kl_smoothed += weight * terms.smoothed_g * terms.smoothed_log_ratio;
+    sim += weight * terms.common;
+    sim_of_normalised += weight * terms.normalised_common;
+    squares += weight * terms.square;
+    magnitudes += weight * terms.magnitude;
+  }
+
   const DensityInput& in_;
   const Measures& measures_;
   const AllDistributions& all_;
-  std::array<PerWeighting, kBlock> ratios_, smoothed_ratios_;
+  std::array<PerWeighting, kBlock> log_ratios_, smoothed_log_ratios_;  // of the block
 };
 
 }  // namespace

@@ -79,11 +79,13 @@ Order ascending_order(std::span<const double> field) {
   std::size_t at_smallest = 0, above = 0;
   for (std::size_t i = 0; i < n; ++i) {  // one of the two is overwritten
     order[at_smallest] = static_cast<std::uint32_t>(i);
-    entries[above] = key_of(field[i]) << kIndexBits | i;
+    entries[above] = i;
     const bool is_smallest = field[i] == smallest;
     at_smallest += is_smallest ? 1 : 0;
     above += is_smallest ? 0 : 1;
   }
+  for (std::uint64_t& entry : std::span(entries.get(), above))
+    entry = key_of(field[entry]) << kIndexBits | entry;
   sort_entries(entries, sorted, above);
   for (std::size_t k = 0; k < above; ++k) order[at_smallest + k] = static_cast<std::uint32_t>(entries[k]);
   sort_within_keys(field, {entries.get(), above}, std::span(order).subspan(at_smallest));

@@ -57,14 +57,4 @@ std::span<const std::uint32_t> Draws::below(std::uint32_t bound, std::size_t cou
   return below_.first(count);
 }
 
-std::span<const double> ValueDraws::first(std::size_t count) {
-  const std::size_t known = drawn_.size();
-  if (known < count) {
-    const auto points = draws_.below(static_cast<std::uint32_t>(map_.size() - 1), count).subspan(known);
-    const std::span<double> drawn = drawn_.grow(count);
-    for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k] = map_[points[k] + 1];
-  }
-  return drawn_.first(count);
-}
-
 }  // namespace salbench

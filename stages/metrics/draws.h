@@ -60,18 +60,4 @@ class Draws {
   Growing<std::uint32_t> below_;
 };
 
-// Values of a map at points drawn uniformly, with replacement, from all but the first. [tasse2016]
-class ValueDraws {
- public:
-  // At least two points, before the first draw. Both outlive it.
-  ValueDraws(std::span<const double> map, Draws& draws) : map_(map), draws_(draws) {}
-  std::span<const double> map() const { return map_; }
-  std::span<const double> first(std::size_t count);  // valid until the next call
-
- private:
-  std::span<const double> map_;
-  Draws& draws_;
-  Growing<double> drawn_;
-};
-
 }  // namespace salbench

@@ -33,7 +33,8 @@ std::vector<double> even_thresholds(std::int32_t count, double largest) {
 
 // Turns counts into [number of thresholds reached]: values that reach so many or more.
 void accumulate(std::span<std::uint32_t> counts) {
-  for (std::size_t k = counts.size() - 1; k-- > 0;) counts[k] += counts[k + 1];
+  std::uint32_t sum = 0;
+  for (std::size_t k = counts.size(); k-- > 0;) counts[k] = sum += counts[k];
 }
 
 // [count]: fraction that so many values are of all.
@@ -50,9 +51,12 @@ std::vector<double> fractions_of(std::size_t total) {
 std::vector<double> rates_of(const std::vector<double>& values, const std::vector<double>& thresholds) {
   std::vector<double> result;
   result.reserve(thresholds.size());
-  for (const double threshold : thresholds)
-    result.push_back(static_cast<double>(values.end() - std::ranges::lower_bound(values, threshold)) /
-                     static_cast<double>(values.size()));
+  std::size_t below = 0;
+  for (const double threshold : thresholds) {
+    if (below > 0 && values[below - 1] >= threshold) below = 0;
+    while (below < values.size() && values[below] < threshold) ++below;
+    result.push_back(static_cast<double>(values.size() - below) / static_cast<double>(values.size()));
+  }
   return result;
 }
 
@@ -117,8 +121,8 @@ std::span<std::uint32_t> counted(std::span<const Number> numbers, std::size_t bi
   if (lanes > 1) {
     for (; i + kLanes <= numbers.size(); i += kLanes)
       for (std::size_t lane = 0; lane < kLanes; ++lane) ++count[lane * bins + bin_of(numbers[i + lane])];
-    for (std::size_t k = 0; k < bins; ++k)
-      for (std::size_t lane = 1; lane < kLanes; ++lane) count[k] += count[lane * bins + k];
+    for (std::size_t lane = 1; lane < kLanes; ++lane)
+      for (std::size_t k = 0; k < bins; ++k) count[k] += count[lane * bins + k];
   }
   for (; i < numbers.size(); ++i) ++count[bin_of(numbers[i])];
   return {count, bins};
@@ -134,14 +138,15 @@ class Curve {
 
   double largest() const { return positives_.back(); }
 
-  void set_thresholds(const std::vector<double>& thresholds) {
-    true_rates_ = rates_of(positives_, thresholds);
+  std::vector<double> true_rates(const std::vector<double>& thresholds) const {
+    return rates_of(positives_, thresholds);
   }
-  void add_split(std::span<const double> negatives, const EvenReached::LookUp& reached_of) {
-    const auto reached = counted(negatives, true_rates_.size() + 1, reached_of, counts_);
+  // How many negatives reach each number of thresholds.
+  void add_split(const std::vector<double>& true_rates, std::span<std::uint32_t> reached) {
     accumulate(reached);
-    sum_ += area_under_curve(true_rates_, fractions_, [&](std::size_t t) { return reached[t + 1]; });
+    sum_ += area_under_curve(true_rates, fractions_, [&](std::size_t t) { return reached[t + 1]; });
   }
+  // Also for negative values.
   void add_split(std::vector<double> negatives, const std::vector<double>& thresholds) {
     std::ranges::sort(negatives);
     sum_ += area_under_curve(rates_of(positives_, thresholds), rates_of(negatives, thresholds));
@@ -152,14 +157,8 @@ class Curve {
   std::vector<double> positives_;  // ascending
   std::int32_t splits_;
   std::vector<double> fractions_;  // [count of negatives]
-  std::vector<double> true_rates_;
-  Counts counts_;
   double sum_ = 0;
 };
-
-auto array_of(std::span<const double> values) {
-  return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 
 // In lanes, since each comparison waits for the one before.
 std::uint64_t largest_of(std::span<const std::uint64_t> numbers) {
@@ -174,29 +173,73 @@ std::uint64_t largest_of(std::span<const std::uint64_t> numbers) {
 
 }  // namespace
 
+bool ValueDraws::any_negative() {
+  if (!any_negative_) any_negative_ = std::ranges::any_of(map_, [](double value) { return value < 0; });
+  return *any_negative_;
+}
+
+std::span<const std::uint32_t> ValueDraws::points(std::size_t count) {
+  return draws_.below(static_cast<std::uint32_t>(map_.size() - 1), count);
+}
+
+std::span<const std::uint16_t> ValueDraws::reached(std::int32_t thresholds, double largest) {
+  if (thresholds != thresholds_ || largest != largest_) {
+    thresholds_ = thresholds;
+    largest_ = largest;
+    reached_.resize(map_.size() - 1);
+    const EvenReached even(even_thresholds(thresholds, largest), largest);
+    const EvenReached::LookUp reached = even.look_up();
+    for (std::size_t k = 0; k < reached_.size(); ++k)
+      reached_[k] = static_cast<std::uint16_t>(
+          map_[k + 1] > largest ? static_cast<std::size_t>(thresholds) + 1 : reached(map_[k + 1]));
+  }
+  return reached_;
+}
+
+namespace {
+
+// A split with thresholds of its own, up to the largest value drawn.
+void add_split(Curve& curve, std::span<const std::uint32_t> points, const ValueDraws& draws,
+               std::int32_t count, bool any_negative) {
+  std::vector<double> negatives;
+  negatives.reserve(points.size());
+  for (const std::uint32_t point : points) negatives.push_back(draws.value(point));
+  const double largest = std::max(curve.largest(), std::ranges::max(negatives));
+  const std::vector<double> thresholds = even_thresholds(count, largest);
+  if (any_negative || !(largest > 0)) {
+    curve.add_split(std::move(negatives), thresholds);
+    return;
+  }
+  const EvenReached reached(thresholds, largest);
+  Counts counts;
+  curve.add_split(curve.true_rates(thresholds),
+                  counted<double>(negatives, thresholds.size() + 1, reached.look_up(), counts));
+}
+
+}  // namespace
+
+// In most splits no value drawn lies above those of the picks: they have the same thresholds.
 double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Splits& splits) {
   if (picks.empty()) return kUndefined;
   Curve curve(picks, splits.count);
-  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
-  // So have all maps that were matched, but a constant one need not.
-  const bool none_negative = array_of(draws.map()).minCoeff() >= 0;
-  const bool picks_are_largest = curve.largest() >= array_of(draws.map()).maxCoeff();
-  std::vector<double> thresholds;
-  std::optional<EvenReached> reached;
-  double up_to = kUndefined;  // of the thresholds
+  const bool any_negative = draws.any_negative();
+  const bool shared =
+      !any_negative && curve.largest() > 0 && splits.thresholds < std::numeric_limits<std::uint16_t>::max();
+  const std::vector<double> thresholds = even_thresholds(splits.thresholds, curve.largest());
+  const std::vector<double> true_rates = curve.true_rates(thresholds);
+  std::span<const std::uint16_t> reached;
+  if (shared) reached = draws.reached(splits.thresholds, curve.largest());
+  const auto reached_by = [reached](std::uint32_t point) { return reached[point]; };
+  Counts counts;
+  std::span<const std::uint32_t> rest = draws.points(static_cast<std::size_t>(splits.count) * picks.size());
   for (; !rest.empty(); rest = rest.subspan(picks.size())) {
-    const auto negatives = rest.first(picks.size());
-    const double largest =
-        picks_are_largest ? curve.largest() : std::max(curve.largest(), array_of(negatives).maxCoeff());
-    if (largest != up_to) {
-      thresholds = even_thresholds(splits.thresholds, up_to = largest);
-      curve.set_thresholds(thresholds);
-      reached.emplace(thresholds, largest);
-    }
-    if (largest > 0 && none_negative)
-      curve.add_split(negatives, reached->look_up());
+    const auto points = rest.first(picks.size());
+    std::span<std::uint32_t> count;  // the last one is of values above the thresholds
+    if (shared) count = counted(points, thresholds.size() + 2, reached_by, counts);
+    if (shared && count.back() == 0)
+      curve.add_split(true_rates, count.first(thresholds.size() + 1));
     else
-      curve.add_split({negatives.begin(), negatives.end()}, thresholds);
+      add_split(curve, points, draws, splits.thresholds, any_negative);
   }
   return curve.mean();
 }
@@ -311,12 +354,15 @@ class QuantileSums {
 
   // Few points have the largest values, so that splits share their ladders.
   const Ladder& ladder_up_to_largest() {
-    if (const auto known = ladders_.find(largest_); known != ladders_.end()) return known->second;
+    if (ladder_ != nullptr && largest_ == ladder_->first) return ladder_->second;
+    if (const auto known = ladders_.find(largest_); known != ladders_.end())
+      return (ladder_ = &*known)->second;
     std::vector<SharedRungs> rungs = lasting_;
     for (std::size_t c = 0; c < curves_.size(); ++c)
       if (is_even(c))
         rungs[c] = rungs_of(curves_[c].map, even_thresholds(splits_.thresholds, largest_[c]), positives_);
-    return ladders_.emplace(largest_, Ladder(std::move(rungs), positives_.size())).first->second;
+    ladder_ = &*ladders_.emplace(largest_, Ladder(std::move(rungs), positives_.size())).first;
+    return ladder_->second;
   }
 
   static std::vector<double> values_of(std::span<const std::uint64_t> draws, const Distribution& map) {
@@ -335,7 +381,8 @@ class QuantileSums {
   std::vector<double> largest_;
   std::vector<SharedRungs> lasting_;  // [curve]: of thresholds that no split changes; or none
   std::map<std::vector<double>, Ladder> ladders_;
-  Counts counts_;  // of one split
+  const std::pair<const std::vector<double>, Ladder>* ladder_ = nullptr;  // of the split before
+  Counts counts_;                                                         // of one split
 };
 
 }  // namespace
