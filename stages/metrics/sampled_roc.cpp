@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "stages/metrics/reached.h"
 
 namespace salbench {
