@@ -30,16 +30,18 @@ ScalarField matched_where_seen(const ScalarField& map, const Histogram& referenc
 GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const MetricsOptions& options,
                          const Rng& rng) {
   const std::vector<Metric> metrics = chosen_metrics(options);
-  const ScalarField areas =
-      any_by_area(metrics) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{};
-  const auto draws = std::make_shared<Draws>(rng);  // the same for every pair of groups
+  // The same for every pair of groups.
+  const auto measures = std::make_shared<const Measures>(
+      mesh.vertices.size(),
+      any_by_area(metrics) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{});
+  const auto draws = std::make_shared<Draws>(rng);
   return {metrics.size(), [=](const ScalarField& map, const GroundTruth& others) {
             const ScalarField matched_map = matched_where_seen(map, reference);
             GroundTruth matched_others{matched_where_seen(others.saliency, reference), others.picks,
                                        others.simulated};
             for (std::size_t i = 0; i < matched_map.size(); ++i)
               if (std::isnan(matched_map[i])) matched_others.saliency[i] = matched_map[i];
-            return score(metrics, matched_map, matched_others, options, *draws, areas);
+            return score(metrics, matched_map, matched_others, options, *draws, *measures);
           }};
 }
 

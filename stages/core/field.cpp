@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Core>
+
 #include "stages/core/check.h"
 
 namespace salbench {
@@ -12,10 +14,13 @@ ScalarField min_max_normalised(std::span<const double> field) {
   ScalarField result(field.begin(), field.end());
   for (double& value : result)
     if (std::isnan(value)) value = 0;
-  if (is_constant(result)) return result;
-  const auto [low, high] = std::minmax_element(result.begin(), result.end());
-  const double from = *low;
-  const double range = *high - from;
+  if (result.empty()) return result;
+  const Eigen::Map<const Eigen::ArrayXd> values(result.data(), static_cast<Eigen::Index>(result.size()));
+  const double smallest = values.minCoeff(), largest = values.maxCoeff();
+  if (smallest == largest) return result;
+  const double from = *std::ranges::find(result, smallest);  // of -0 and 0 the first
+  const double range = largest - from;
+  if (from == 0 && !std::signbit(from) && range == 1) return result;
   for (double& value : result) value = (value - from) / range;
   return result;
 }

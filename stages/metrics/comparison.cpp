@@ -9,6 +9,8 @@
 namespace salbench {
 namespace {
 
+std::size_t index(Weighting weighting) { return static_cast<std::size_t>(weighting); }
+
 template <class T, class Make>
 const T& once(std::optional<T>& value, const Make& make) {
   if (!value) value = make();
@@ -17,18 +19,10 @@ const T& once(std::optional<T>& value, const Make& make) {
 
 }  // namespace
 
-const Measure& Comparison::measure(Weighting weighting) const {
-  return once(of(weighting).measure, [&] {
-    return weighting == Weighting::vertex ? vertex_measure(compared_.map.size())
-                                          : area_measure(compared_.areas);
-  });
-}
-
 const Distribution& Comparison::map_distribution(Weighting weighting) const {
-  return once(of(weighting).map, [&] {
-    return distribution(compared_.map, once(map_order_, [&] { return ascending_order(compared_.map); }),
-                        measure(weighting));
-  });
+  return once(map_distributions_, [&] {
+    return distributions(compared_.map, ascending_order(compared_.map), compared_.measures);
+  })[index(weighting)];
 }
 
 const Order& Comparison::saliency_order() const {
@@ -36,13 +30,14 @@ const Order& Comparison::saliency_order() const {
 }
 
 const PairMoments& Comparison::with_saliency(Weighting weighting) const {
-  return once(of(weighting).with_saliency,
-              [&] { return pair_moments(compared_.map, compared_.saliency, measure(weighting)); });
+  return once(with_saliency_, [&] {
+    return pair_moments(alike(compared_.map), alike(compared_.saliency), compared_.measures);
+  })[index(weighting)];
 }
 
 const Moments& Comparison::map_moments(Weighting weighting) const {
   if (!compared_.saliency.empty()) return with_saliency(weighting).a;
-  return once(of(weighting).map_moments, [&] { return moments(compared_.map, measure(weighting)); });
+  return once(map_moments_, [&] { return moments(compared_.map, compared_.measures); })[index(weighting)];
 }
 
 const ScalarField& Comparison::normalised_map() const {
@@ -50,19 +45,21 @@ const ScalarField& Comparison::normalised_map() const {
 }
 
 const Density& Comparison::map_density(Weighting weighting) const {
-  return once(of(weighting).map_density, [&] { return density_of_map(compared_.map, measure(weighting)); });
+  return once(map_densities_,
+              [&] { return densities_of_map(compared_.map, compared_.measures); })[index(weighting)];
 }
 
 const DensityScores& Comparison::density_scores(Weighting weighting) const {
-  return once(of(weighting).density_scores, [&] {
+  return once(density_scores_, [&] {
+    const Densities densities = {map_density(Weighting::vertex), map_density(Weighting::area)};
     return salbench::density_scores(
-        {compared_.map, compared_.raw_saliency, normalised_map(), compared_.saliency, map_density(weighting)},
-        measure(weighting));
-  });
+        {compared_.map, compared_.raw_saliency, normalised_map(), compared_.saliency, densities},
+        compared_.measures);
+  })[index(weighting)];
 }
 
 const TopScores& Comparison::top_scores(Weighting weighting) const {
-  return once(of(weighting).top, [&] {
+  return once(top_scores_[index(weighting)], [&] {
     return salbench::top_scores({compared_.map, map_distribution(weighting), map_moments(weighting),
                                  compared_.saliency, saliency_order()},
                                 measure(weighting));
@@ -72,25 +69,52 @@ const TopScores& Comparison::top_scores(Weighting weighting) const {
 double Comparison::cc(Weighting weighting) const { return correlation(with_saliency(weighting)); }
 
 double Comparison::spearman(Weighting weighting) const {
-  const Measure& over = measure(weighting);
-  const ScalarField of_saliency = mid_ranks(compared_.saliency, saliency_order(), over);
-  return correlation(pair_moments(map_distribution(weighting).mid, of_saliency, over));
+  return once(spearman_, [&] {
+    const auto [vertex, area] = mid_ranks(compared_.saliency, saliency_order(), compared_.measures);
+    const ScalarField& map_vertex = map_distribution(Weighting::vertex).mid;
+    const ScalarField& map_area = map_distribution(Weighting::area).mid;
+    const auto pairs = area.empty()
+                           ? pair_moments(alike(map_vertex), alike(vertex), compared_.measures)
+                           : pair_moments({map_vertex, map_area}, {vertex, area}, compared_.measures);
+    return std::array{correlation(pairs[0]), correlation(pairs[1])};
+  })[index(weighting)];
+}
+
+// Picks that are all distinct are the same with multiplicity.
+Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked) const {
+  for (OfPicks& known : of_picks_)
+    if (std::ranges::equal(known.picked, picked)) return known;
+  return of_picks_.emplace_back(OfPicks{{picked.begin(), picked.end()}});
+}
+
+Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked, const Splits& splits) const {
+  OfPicks& known = of(picked);
+  if (known.splits != splits) known = {std::move(known.picked), splits, {}, {}, std::move(known.groups)};
+  return known;
 }
 
 const Comparison::QuantileAreas& Comparison::quantile_areas(std::span<const std::int32_t> picked,
                                                             const Splits& splits) const {
-  for (const OfPicks& known : quantile_areas_)
-    if (std::ranges::equal(known.picked, picked) && known.splits == splits) return known.areas;
-  const double undefined = std::numeric_limits<double>::quiet_NaN();
-  std::vector<QuantileCurve> curves = {{map_distribution(Weighting::vertex), Thresholds::tenths}};
-  if (!measure(Weighting::area).empty())
-    for (const Thresholds thresholds : {Thresholds::tenths, Thresholds::even})
-      curves.push_back({map_distribution(Weighting::area), thresholds});
-  std::vector<double> areas = quantile_aucs(curves, values_at(compared_.map, picked), draws_, splits);
-  areas.resize(3, undefined);
-  return quantile_areas_
-      .emplace_back(OfPicks{{picked.begin(), picked.end()}, splits, {areas[2], {areas[0], areas[1]}}})
-      .areas;
+  return once(of(picked, splits).quantile_areas, [&] {
+    std::vector<QuantileCurve> curves = {{map_distribution(Weighting::vertex), Thresholds::tenths}};
+    if (!measure(Weighting::area).empty())
+      for (const Thresholds thresholds : {Thresholds::tenths, Thresholds::even})
+        curves.push_back({map_distribution(Weighting::area), thresholds});
+    std::vector<double> areas = quantile_aucs(curves, values_at(compared_.map, picked), draws_, splits);
+    areas.resize(3, std::numeric_limits<double>::quiet_NaN());
+    return QuantileAreas{areas[2], {areas[0], areas[1]}};
+  });
+}
+
+double Comparison::sampled_auc(std::span<const std::int32_t> picked, const Splits& splits) const {
+  return once(of(picked, splits).sampled_auc,
+              [&] { return salbench::sampled_auc(values_at(compared_.map, picked), value_draws_, splits); });
+}
+
+const std::vector<PickGroup>& Comparison::pick_groups(std::span<const std::int32_t> picked) const {
+  return once(of(picked).groups, [&] {
+    return salbench::pick_groups(compared_.map, picked, map_distribution(Weighting::vertex));
+  });
 }
 
 }  // namespace salbench

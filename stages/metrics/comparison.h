@@ -15,6 +15,7 @@
 #include "stages/metrics/draws.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
+#include "stages/metrics/picks.h"
 #include "stages/metrics/sampled_roc.h"
 #include "stages/metrics/top.h"
 
@@ -25,7 +26,7 @@ struct Compared {
   std::span<const double> map;                // n
   std::span<const double> saliency = {};      // n, the ground truth, min-max-normalised; may be empty
   std::span<const double> raw_saliency = {};  // the same as people marked it
-  std::span<const double> areas = {};         // n, of the points; may be empty
+  const Measures& measures;                   // of the shape
 };
 
 // Not for several threads.
@@ -34,7 +35,7 @@ class Comparison {
   // The draws may be shared with other comparisons, and outlive them.
   Comparison(const Compared& compared, Draws& draws) : compared_(compared), draws_(draws) {}
 
-  const Measure& measure(Weighting weighting) const;
+  const Measure& measure(Weighting weighting) const { return compared_.measures[weighting]; }
   const Distribution& map_distribution(Weighting weighting) const;
   const Moments& map_moments(Weighting weighting) const;
   const Density& map_density(Weighting weighting) const;
@@ -49,36 +50,40 @@ class Comparison {
     std::array<double, 2> tenths;  // [weighting]
   };
   const QuantileAreas& quantile_areas(std::span<const std::int32_t> picked, const Splits& splits) const;
-  ValueDraws& value_draws() const { return value_draws_; }
+  double sampled_auc(std::span<const std::int32_t> picked, const Splits& splits) const;
+  const std::vector<PickGroup>& pick_groups(std::span<const std::int32_t> picked) const;
 
  private:
   const PairMoments& with_saliency(Weighting weighting) const;
   const Order& saliency_order() const;
   const ScalarField& normalised_map() const;  // min-max
 
-  struct Lazy {
-    std::optional<Measure> measure;
-    std::optional<Distribution> map;
-    std::optional<Moments> map_moments;        // without saliency
-    std::optional<PairMoments> with_saliency;  // of map and saliency
-    std::optional<Density> map_density;
-    std::optional<DensityScores> density_scores;
-    std::optional<TopScores> top;
-  };
-  Lazy& of(Weighting weighting) const { return lazy_[static_cast<std::size_t>(weighting)]; }
+  template <class T>
+  using Both = std::optional<std::array<T, 2>>;  // [weighting]
 
+  // What is known of some picks. Areas under sampled curves are those of `splits`.
   struct OfPicks {
     std::vector<std::int32_t> picked;
-    Splits splits;
-    QuantileAreas areas;
+    Splits splits = {};
+    std::optional<QuantileAreas> quantile_areas = {};
+    std::optional<double> sampled_auc = {};
+    std::optional<std::vector<PickGroup>> groups = {};
   };
+  OfPicks& of(std::span<const std::int32_t> picked) const;
+  OfPicks& of(std::span<const std::int32_t> picked, const Splits& splits) const;
 
   Compared compared_;
   Draws& draws_;
-  mutable std::optional<Order> map_order_, saliency_order_;
+  mutable std::optional<Order> saliency_order_;
   mutable std::optional<ScalarField> normalised_map_;
-  mutable std::array<Lazy, 2> lazy_;
-  mutable std::deque<OfPicks> quantile_areas_;
+  mutable Both<Distribution> map_distributions_;
+  mutable Both<Moments> map_moments_;        // without saliency
+  mutable Both<PairMoments> with_saliency_;  // of map and saliency
+  mutable Both<Density> map_densities_;
+  mutable Both<DensityScores> density_scores_;
+  mutable std::array<std::optional<TopScores>, 2> top_scores_;
+  mutable Both<double> spearman_;
+  mutable std::deque<OfPicks> of_picks_;
   mutable ValueDraws value_draws_{compared_.map, draws_};
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All scores in two passes over the points, one for the sums that densities are scaled by: a sum in the order
-// of the points waits for each addition, and those of one pass wait together.
+// of the points waits for each addition, and those of one pass wait together. Logarithms are what the rest
+// costs: they are taken a block at a time, so that no sum is put aside for the call, and once for all points
+// where both fields are 0: nobody marked most of a shape.
 #include "stages/metrics/density.h"
 
 #include <algorithm>
@@ -16,100 +18,216 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEpsilon = 2.2204e-16;  // as the MIT benchmark has it: Matlab's eps to five digits
 constexpr double kSmoothing = 1e-12;
 
-// What a density is scaled by.
+// What densities are scaled by.
 struct WeighedSum {
   double smoothing = 0;
-  double sum = 0;
-  bool negative = false;  // a value
+  PerWeighting sum = PerWeighting::Zero();
 
-  void add(double weight, double value) {
-    sum += weight * (value + smoothing);
-    negative |= value < 0;
-  }
+  void add(const PerWeighting& weight, double value) { sum += weight * (value + smoothing); }
 };
 
-Density scaled_by(const WeighedSum& weighed, const Measure& measure) {
-  if (weighed.negative || measure.empty()) return {};
-  const double scale = measure.unit / weighed.sum;
+bool has_negative(std::span<const double> field) {
+  return !field.empty() &&
+         Eigen::Map<const Eigen::ArrayXd>(field.data(), static_cast<Eigen::Index>(field.size())).minCoeff() <
+             0;
+}
+
+Density scaled_by(const WeighedSum& weighed, Weighting weighting, const Measure& measure) {
+  const double scale = measure.unit / weighed.sum[static_cast<Eigen::Index>(weighting)];
   return {scale, weighed.smoothing * scale};
 }
 
 // A model may call all points equally salient, and in any number.
-Density of_map(std::span<const double> map, const WeighedSum& weighed, const Measure& measure) {
-  if (!measure.empty() && is_constant(map, measure)) return {0, measure.unit / measure.total};
-  return scaled_by(weighed, measure);
+Density of_map(std::span<const double> map, Density scaled, const Measure& measure) {
+  return is_constant(map, measure) ? Density{0, measure.unit / measure.total} : scaled;
 }
 
 // People who marked nothing say nothing.
-Density of_truth(std::span<const double> saliency, const WeighedSum& weighed, const Measure& measure) {
+Density of_truth(std::span<const double> saliency, Density scaled, const Measure& measure) {
   for (std::size_t i = 0; i < saliency.size(); ++i)
-    if (measure.weight[i] > 0 && saliency[i] != 0) return scaled_by(weighed, measure);
+    if (measure.weight[i] > 0 && saliency[i] != 0) return scaled;
   return {};
 }
 
+template <Density (*one)(std::span<const double>, Density, const Measure&)>
+Densities both(std::span<const double> field, const WeighedSum& weighed, const Measures& measures) {
+  const bool negative = has_negative(field);
+  Densities densities;
+  for (const Weighting weighting : {Weighting::vertex, Weighting::area}) {
+    const Measure& measure = measures[weighting];
+    if (measure.empty()) continue;
+    densities[static_cast<std::size_t>(weighting)] =
+        one(field, negative ? Density{} : scaled_by(weighed, weighting, measure), measure);
+  }
+  return densities;
+}
+
+// Both densities of a field where it has some value.
+struct DensitiesOf {
+  explicit DensitiesOf(const Densities& densities)
+      : scale(densities[0].scale, densities[1].scale), offset(densities[0].offset, densities[1].offset) {}
+  PerWeighting operator()(double value) const { return scale * value + offset; }
+
+  PerWeighting scale, offset;
+};
+
 // Of map and ground truth.
-struct Densities {
-  Density p, g;
+struct Distributions {
+  Distributions(const Densities& map, const Densities& truth) : p(map), g(truth) {}
 
-  double value_if_defined(double value) const { return p.defined() && g.defined() ? value : kUndefined; }
+  bool defined(std::size_t weighting) const {
+    const auto k = static_cast<Eigen::Index>(weighting);
+    return !std::isnan(p.scale[k]) && !std::isnan(g.scale[k]);
+  }
+  double value_if_defined(double value, std::size_t weighting) const {
+    return defined(weighting) ? value : kUndefined;
+  }
+
+  DensitiesOf p, g;
 };
 
-struct AllDensities {
-  Densities raw, smoothed, normalised;
+struct AllDistributions {
+  Distributions raw, smoothed, normalised;
 };
 
-AllDensities densities_of(const DensityInput& in, const Measure& measure) {
+AllDistributions distributions_of(const DensityInput& in, const Measures& measures) {
   WeighedSum smoothed_map{kSmoothing}, smoothed_saliency{kSmoothing}, saliency, normalised_map,
       normalised_saliency;
-  for (std::size_t i = 0; i < measure.size(); ++i) {
-    const double weight = measure.weight[i];
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const PerWeighting weight = measures.weight(i);
     smoothed_map.add(weight, in.map[i]);
     saliency.add(weight, in.saliency[i]);
     smoothed_saliency.add(weight, in.saliency[i]);
     normalised_map.add(weight, in.normalised_map[i]);
     normalised_saliency.add(weight, in.normalised_saliency[i]);
   }
-  return {{in.map_density, of_truth(in.saliency, saliency, measure)},
-          {of_map(in.map, smoothed_map, measure), of_truth(in.saliency, smoothed_saliency, measure)},
-          {of_map(in.normalised_map, normalised_map, measure),
-           of_truth(in.normalised_saliency, normalised_saliency, measure)}};
+  return {{in.map_densities, both<of_truth>(in.saliency, saliency, measures)},
+          {both<of_map>(in.map, smoothed_map, measures),
+           both<of_truth>(in.saliency, smoothed_saliency, measures)},
+          {both<of_map>(in.normalised_map, normalised_map, measures),
+           both<of_truth>(in.normalised_saliency, normalised_saliency, measures)}};
 }
+
+// In place, of what is defined. `of_zeros` is the ratio where both fields are 0, the most frequent one.
+void take_logarithms(std::span<PerWeighting> ratios, const PerWeighting& of_zeros,
+                     const Distributions& distributions) {
+  for (const std::size_t weighting : {0U, 1U}) {
+    if (!distributions.defined(weighting)) continue;
+    const auto k = static_cast<Eigen::Index>(weighting);
+    const double logarithm_of_zeros = std::log(of_zeros[k]);
+    double last = 1, logarithm = 0;
+    for (PerWeighting& ratio : ratios) {
+      if (ratio[k] == of_zeros[k]) {
+        ratio[k] = logarithm_of_zeros;
+        continue;
+      }
+      if (ratio[k] != last) {
+        last = ratio[k];
+        logarithm = std::log(last);
+      }
+      ratio[k] = logarithm;
+    }
+  }
+}
+
+// Sums over the points. What a point adds is computed for both weightings at once.
+class ScoreSums {
+ public:
+  ScoreSums(const DensityInput& in, const Measures& measures, const AllDistributions& all)
+      : in_(in), measures_(measures), all_(all) {}
+
+  // Points from `first` on, at most a block.
+  void add(std::size_t first, std::size_t count) {
+    set_logarithms(first, count);
+    for (std::size_t k = 0; k < count; ++k) add(measures_.weight(first + k), terms_of(first + k, k));
+  }
+
+  static constexpr std::size_t kBlock = 256;
+  PerWeighting kl{0, 0}, kl_smoothed{0, 0}, sim{0, 0}, sim_of_normalised{0, 0}, squares{0, 0},
+      magnitudes{0, 0};
+
+ private:
+  // What a point adds, but for its weight.
+  struct Terms {
+    PerWeighting g, log_ratio, smoothed_g, smoothed_log_ratio, common, normalised_common;
+    double square, magnitude;
+  };
+
+  PerWeighting ratio(double map, double saliency) const {
+    return kEpsilon + all_.raw.g(saliency) / (all_.raw.p(map) + kEpsilon);
+  }
+  PerWeighting smoothed_ratio(double map, double saliency) const {
+    return all_.smoothed.g(saliency) / all_.smoothed.p(map);
+  }
+
+  void set_logarithms(std::size_t first, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const double map = in_.map[first + k], saliency = in_.saliency[first + k];
+      log_ratios_[k] = ratio(map, saliency);
+      smoothed_log_ratios_[k] = smoothed_ratio(map, saliency);
+    }
+    take_logarithms(std::span(log_ratios_).first(count), ratio(0, 0), all_.raw);
+    take_logarithms(std::span(smoothed_log_ratios_).first(count), smoothed_ratio(0, 0), all_.smoothed);
+  }
+
+  Terms terms_of(std::size_t i, std::size_t in_block) const {
+    const double map_to_1 = in_.normalised_map[i], saliency_to_1 = in_.normalised_saliency[i];
+    const double difference = map_to_1 - saliency_to_1;
+    const PerWeighting g = all_.raw.g(in_.saliency[i]);
+    return {g,
+            log_ratios_[in_block],
+            all_.smoothed.g(in_.saliency[i]),
+            smoothed_log_ratios_[in_block],
+            all_.raw.p(in_.map[i]).min(g),
+            all_.normalised.p(map_to_1).min(all_.normalised.g(saliency_to_1)),
+            difference * difference,
+            std::abs(difference)};
+  }
+
+  void add(const PerWeighting& weight, const Terms& terms) {
+    kl += weight * terms.g * terms.log_ratio;
+    kl_smoothed += weight * terms.smoothed_g * terms.smoothed_log_ratio;
+    sim += weight * terms.common;
+    sim_of_normalised += weight * terms.normalised_common;
+    squares += weight * terms.square;
+    magnitudes += weight * terms.magnitude;
+  }
+
+  const DensityInput& in_;
+  const Measures& measures_;
+  const AllDistributions& all_;
+  std::array<PerWeighting, kBlock> log_ratios_, smoothed_log_ratios_;  // of the block
+};
 
 }  // namespace
 
-Density density_of_map(std::span<const double> map, const Measure& measure) {
-  CHECK_EQ(map.size(), measure.size());
+Densities densities_of_map(std::span<const double> map, const Measures& measures) {
+  CHECK_EQ(map.size(), measures.size());
   WeighedSum weighed;
-  for (std::size_t i = 0; i < map.size(); ++i) weighed.add(measure.weight[i], map[i]);
-  return of_map(map, weighed, measure);
+  for (std::size_t i = 0; i < map.size(); ++i) weighed.add(measures.weight(i), map[i]);
+  return both<of_map>(map, weighed, measures);
 }
 
-DensityScores density_scores(const DensityInput& in, const Measure& measure) {
+std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measures& measures) {
+  const std::size_t n = measures.size();
   for (const auto& field : {in.map, in.saliency, in.normalised_map, in.normalised_saliency})
-    CHECK_EQ(field.size(), measure.size());
-  const auto [raw, smoothed, normalised] = densities_of(in, measure);
-  double kl = 0, kl_smoothed = 0, sim = 0, sim_of_normalised = 0, squares = 0, magnitudes = 0;
-  for (std::size_t i = 0; i < measure.size(); ++i) {
-    const double weight = measure.weight[i], map = in.map[i], saliency = in.saliency[i];
-    const double p = raw.p.of(map), g = raw.g.of(saliency);
-    // Most of a shape is often marked by nobody; logarithms are what this costs.
-    if (g > 0) kl += weight * g * std::log(kEpsilon + g / (p + kEpsilon));
-    sim += weight * std::min(p, g);
-    const double smoothed_p = smoothed.p.of(map), smoothed_g = smoothed.g.of(saliency);
-    kl_smoothed += weight * smoothed_g * std::log(smoothed_g / smoothed_p);
-    const double map_to_1 = in.normalised_map[i], saliency_to_1 = in.normalised_saliency[i];
-    sim_of_normalised += weight * std::min(normalised.p.of(map_to_1), normalised.g.of(saliency_to_1));
-    const double difference = map_to_1 - saliency_to_1;
-    squares += weight * (difference * difference);
-    magnitudes += weight * std::abs(difference);
-  }
-  const double unit = measure.unit, total = measure.total;
-  return {.kl = raw.value_if_defined(kl / unit),
-          .kl_smoothed = smoothed.value_if_defined(kl_smoothed / unit),
-          .sim = raw.value_if_defined(sim / unit),
-          .sim_of_normalised = normalised.value_if_defined(sim_of_normalised / unit),
-          .mse = squares / total,  // NaN over nothing
-          .mae = magnitudes / total};
+    CHECK_EQ(field.size(), n);
+  const AllDistributions all = distributions_of(in, measures);
+  ScoreSums sums(in, measures, all);
+  for (std::size_t i = 0; i < n; i += ScoreSums::kBlock) sums.add(i, std::min(n - i, ScoreSums::kBlock));
+  const auto of = [&](std::size_t weighting) {
+    const auto k = static_cast<Eigen::Index>(weighting);
+    const Measure& measure = measures[static_cast<Weighting>(weighting)];
+    const double unit = measure.unit, total = measure.total;
+    return DensityScores{
+        .kl = all.raw.value_if_defined(sums.kl[k] / unit, weighting),
+        .kl_smoothed = all.smoothed.value_if_defined(sums.kl_smoothed[k] / unit, weighting),
+        .sim = all.raw.value_if_defined(sums.sim[k] / unit, weighting),
+        .sim_of_normalised = all.normalised.value_if_defined(sums.sim_of_normalised[k] / unit, weighting),
+        .mse = sums.squares[k] / total,  // NaN over nothing
+        .mae = sums.magnitudes[k] / total};
+  };
+  return {of(0), of(1)};
 }
 
 double information_gain(std::span<const double> map, const Density& density,

@@ -7,6 +7,7 @@
 // where a value is negative, and where the ground truth is zero everywhere.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -24,12 +25,13 @@ struct Density {
   bool defined() const { return !std::isnan(scale); }
   double of(double value) const { return scale * value + offset; }
 };
-Density density_of_map(std::span<const double> map, const Measure& measure);
+using Densities = std::array<Density, 2>;  // [weighting]
+Densities densities_of_map(std::span<const double> map, const Measures& measures);
 
 struct DensityInput {
   std::span<const double> map, saliency;                        // n; the ground truth as people marked it
   std::span<const double> normalised_map, normalised_saliency;  // min-max
-  Density map_density;
+  Densities map_densities;
 };
 
 struct DensityScores {
@@ -44,7 +46,7 @@ struct DensityScores {
   // Mean of the squared, or the absolute, difference of the normalised values, which may be negative.
   double mse, mae;
 };
-DensityScores density_scores(const DensityInput& in, const Measure& measure);
+std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measures& measures);  // [weighting]
 
 // Information gain over the uniform distribution, in bits per pick: mean over the picks of
 // log2(eps + p) - log2(eps + u/W), W the total weight. 0 for a constant map, NaN without picks.

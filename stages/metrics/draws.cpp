@@ -4,19 +4,18 @@
 namespace salbench {
 namespace {
 
-// Rng::below for one bound, the same numbers without its two divisions per draw.
+// What Rng::below makes of a number, for one bound: without its two divisions per draw.
 class Below {
  public:
   explicit Below(std::uint64_t bound)
       : bound_(bound), reject_below_((0 - bound) % bound), inverse_(~std::uint64_t{0} / bound) {}
-  std::uint64_t operator()(Rng& rng) const {
-    std::uint64_t draw = rng.next();
-    while (draw < reject_below_) draw = rng.next();
-    // The quotient is one or two too small at most.
+  bool rejects(std::uint64_t number) const { return number < reject_below_; }
+  std::uint64_t operator()(std::uint64_t number) const {
+    // The quotient is too small by one at most, and about every third time: what branches there guesses
+    // wrong.
     __extension__ using Wide = unsigned __int128;
-    std::uint64_t rest = draw - static_cast<std::uint64_t>((Wide{draw} * inverse_) >> 64U) * bound_;
-    while (rest >= bound_) rest -= bound_;
-    return rest;
+    const std::uint64_t rest = number - static_cast<std::uint64_t>((Wide{number} * inverse_) >> 64U) * bound_;
+    return rest < bound_ ? rest : rest - bound_;
   }
 
  private:
@@ -25,43 +24,37 @@ class Below {
 
 }  // namespace
 
-std::span<const double> Draws::uniform(std::size_t count) {
-  const std::size_t known = uniform_.size();
-  if (known < count) {
-    uniform_.resize(count);
-    Rng rng = uniform_rng_;  // one that the stores below cannot change
-    for (double& drawn : std::span(uniform_).subspan(known)) drawn = rng.uniform();
-    uniform_rng_ = rng;
+std::span<const std::uint64_t> Draws::numbers(std::size_t count) {
+  if (numbers_.size() < count) {
+    Rng rng = next_;  // one that the stores below cannot change
+    for (std::uint64_t& number : numbers_.grow(count)) number = rng.next();
+    next_ = rng;
   }
-  return std::span(uniform_).first(count);
+  return numbers_.first(count);
 }
 
 std::span<const std::uint32_t> Draws::below(std::uint32_t bound, std::size_t count) {
   if (bound != bound_) {
     bound_ = bound;
-    below_rng_ = rng_;
+    read_ = 0;
     below_.clear();
   }
-  const std::size_t known = below_.size();
-  if (known < count) {
-    const Below draw(bound);
-    below_.resize(count);
-    Rng rng = below_rng_;
-    for (std::uint32_t& drawn : std::span(below_).subspan(known))
-      drawn = static_cast<std::uint32_t>(draw(rng));
-    below_rng_ = rng;
+  if (below_.size() < count) {
+    const Below below(bound);
+    std::size_t read = read_;
+    std::span<const std::uint64_t> from = numbers(read + count - below_.size());
+    const auto next = [&] {
+      if (read == from.size()) from = numbers(read + 1);  // some were rejected
+      return from[read++];
+    };
+    for (std::uint32_t& drawn : below_.grow(count)) {
+      std::uint64_t number = next();
+      while (below.rejects(number)) number = next();
+      drawn = static_cast<std::uint32_t>(below(number));
+    }
+    read_ = read;
   }
-  return std::span(below_).first(count);
-}
-
-std::span<const double> ValueDraws::first(std::size_t count) {
-  const std::size_t known = drawn_.size();
-  if (known < count) {
-    const auto points = draws_.below(static_cast<std::uint32_t>(map_.size() - 1), count);
-    drawn_.resize(count);
-    for (std::size_t k = known; k < count; ++k) drawn_[k] = map_[points[k] + 1];
-  }
-  return std::span(drawn_).first(count);
+  return below_.first(count);
 }
 
 }  // namespace salbench

@@ -4,42 +4,60 @@
 // others.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "stages/core/rng.h"
 
 namespace salbench {
 
+// The number in [0, 1) that Rng::uniform makes of one of Rng::next.
+inline double uniform_of(std::uint64_t number) { return static_cast<double>(number >> 11U) * 0x1.0p-53; }
+
+// An array that grows at its end. What is new has no value until it is written.
+template <class T>
+class Growing {
+ public:
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
+  std::span<const T> first(std::size_t count) const { return {data_.get(), count}; }
+  std::span<T> grow(std::size_t size) {  // to no less than it is
+    if (size > room_) {
+      const std::size_t room = std::max(size, 2 * room_);
+      auto larger = std::make_unique_for_overwrite<T[]>(room);
+      std::copy_n(data_.get(), size_, larger.get());
+      data_ = std::move(larger);
+      room_ = room;
+    }
+    const std::size_t known = std::exchange(size_, size);
+    return {data_.get() + known, size - known};
+  }
+
+ private:
+  std::unique_ptr<T[]> data_;
+  std::size_t size_ = 0, room_ = 0;
+};
+
 // Not for several threads. What it returns is valid until the next call.
 class Draws {
  public:
-  explicit Draws(const Rng& rng) : rng_(rng), uniform_rng_(rng), below_rng_(rng) {}
+  explicit Draws(const Rng& rng) : rng_(rng), next_(rng) {}
 
-  const Rng& rng() const { return rng_; }                                        // at the beginning
-  std::span<const double> uniform(std::size_t count);                            // in [0, 1)
-  std::span<const std::uint32_t> below(std::uint32_t bound, std::size_t count);  // 0..bound-1; bound > 0
+  const Rng& rng() const { return rng_; }                     // at the beginning
+  std::span<const std::uint64_t> numbers(std::size_t count);  // of Rng::next
+  // Those of Rng::below: 0..bound-1; bound > 0.
+  std::span<const std::uint32_t> below(std::uint32_t bound, std::size_t count);
 
  private:
-  Rng rng_, uniform_rng_, below_rng_;
-  std::vector<double> uniform_;
+  Rng rng_, next_;
+  Growing<std::uint64_t> numbers_;
   std::uint32_t bound_ = 0;  // of below_
-  std::vector<std::uint32_t> below_;
-};
-
-// Values of a map at points drawn uniformly, with replacement, from all but the first. [tasse2016]
-class ValueDraws {
- public:
-  // At least two points, before the first draw. Both outlive it.
-  ValueDraws(std::span<const double> map, Draws& draws) : map_(map), draws_(draws) {}
-  std::span<const double> first(std::size_t count);  // valid until the next call
-
- private:
-  std::span<const double> map_;
-  Draws& draws_;
-  std::vector<double> drawn_;
+  std::size_t read_ = 0;     // numbers that below_ is made of
+  Growing<std::uint32_t> below_;
 };
 
 }  // namespace salbench

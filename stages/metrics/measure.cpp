@@ -15,8 +15,15 @@ Measure area_measure(std::span<const double> areas) {
   return {{areas.begin(), areas.end()}, total, total};
 }
 
+Measures::Measures(std::size_t n, std::span<const double> areas)
+    : vertex(vertex_measure(n)),
+      area(areas.empty() ? Measure{std::vector<double>(n, 0.0), 0, 0} : area_measure(areas)) {
+  CHECK_EQ(area.size(), n);
+}
+
 bool is_constant(std::span<const double> field, const Measure& measure) {
   CHECK_EQ(field.size(), measure.size());
+  if (measure.empty()) return true;
   std::optional<double> first;
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (!(measure.weight[i] > 0)) continue;

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -27,6 +29,35 @@ struct Measure {
 
 Measure vertex_measure(std::size_t n);
 Measure area_measure(std::span<const double> areas);  // n, or none: an empty measure
+
+// A number per weighting. A sum in the order of the points waits for each addition before the next one; the
+// two of a PerWeighting wait together.
+using PerWeighting = Eigen::Array2d;
+
+// Both measures of a shape.
+struct Measures {
+  Measures(std::size_t n,
+           std::span<const double> areas);  // areas: n, or none, and nothing is weighed by them
+
+  const Measure& operator[](Weighting weighting) const {
+    return weighting == Weighting::vertex ? vertex : area;
+  }
+  PerWeighting weight(std::size_t i) const { return {vertex.weight[i], area.weight[i]}; }
+  std::size_t size() const { return vertex.size(); }
+
+  Measure vertex, area;
+};
+
+// A field that may have other values by area, as ranks have. Both are n long.
+struct WeighedField {
+  std::span<const double> by_vertex, by_area;
+
+  PerWeighting operator[](std::size_t i) const { return {by_vertex[i], by_area[i]}; }
+  std::span<const double> operator[](Weighting weighting) const {
+    return weighting == Weighting::vertex ? by_vertex : by_area;
+  }
+};
+inline WeighedField alike(std::span<const double> field) { return {field, field}; }
 
 // Whether the field has one value wherever the weight is positive; also true where no weight is.
 bool is_constant(std::span<const double> field, const Measure& measure);

@@ -22,14 +22,12 @@ Splits splits_of(const MetricInput& in) { return {in.options.splits, in.options.
 double sampled(const MetricInput& in) {
   if (in.weighting == Weighting::area)
     return in.comparison.quantile_areas(in.picked, splits_of(in)).even_by_area;
-  return in.map.size() < 2
-             ? kUndefined
-             : sampled_auc(values_at(in.map, in.picked), in.comparison.value_draws(), splits_of(in));
+  return in.map.size() < 2 ? kUndefined : in.comparison.sampled_auc(in.picked, splits_of(in));
 }
 
-double exact(const MetricInput& in) { return auc_exact(in.map, in.picked, in.weighting, in.comparison); }
+double exact(const MetricInput& in) { return auc_exact(in.picked, in.weighting, in.comparison); }
 
-double judd(const MetricInput& in) { return auc_judd(in.map, in.picked, in.weighting, in.comparison); }
+double judd(const MetricInput& in) { return auc_judd(in.picked, in.weighting, in.comparison); }
 
 double borji(const MetricInput& in) {
   return in.comparison.quantile_areas(in.picked, splits_of(in))

@@ -53,7 +53,8 @@ double auc(std::span<const double> map, std::span<const std::int32_t> picked, co
 
 double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
   Draws draws = no_draws();
-  return auc_exact(map, picked, Weighting::vertex, Comparison({map}, draws));
+  const Measures measures(map.size(), {});
+  return auc_exact(picked, Weighting::vertex, Comparison({.map = map, .measures = measures}, draws));
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
@@ -66,11 +67,11 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked, co
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant) {
-  return nss(map, picked, moments(map, vertex_measure(map.size())), constant);
+  return nss(map, picked, moments(map, Measures(map.size(), {}))[0], constant);
 }
 
 double cc(std::span<const double> map, std::span<const double> saliency) {
-  return correlation(pair_moments(map, saliency, vertex_measure(map.size())));
+  return correlation(pair_moments(alike(map), alike(saliency), Measures(map.size(), {}))[0]);
 }
 
 std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
@@ -94,22 +95,21 @@ bool any_by_area(std::span<const Metric> metrics) {
 }
 
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
-             const MetricsOptions& options, Draws& draws, std::span<const double> areas) {
+             const MetricsOptions& options, Draws& draws, const Measures& measures) {
   check(options);
   const std::vector<std::int32_t> picked = picked_points(truth), every_pick = picks_with_multiplicity(truth);
   check_fits(matched.size(), truth, picked);
-  if (!areas.empty()) CHECK_EQ(areas.size(), matched.size());
+  CHECK_EQ(measures.size(), matched.size());
   if (const auto seen = seen_points(truth.saliency)) {
     if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
-    const ScalarField seen_areas = areas.empty() ? ScalarField{} : values_at(areas, *seen);
-    return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, draws, seen_areas);
+    const Measures of_seen(seen->size(), values_at(measures.area.weight, *seen));
+    return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, draws, of_seen);
   }
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
-  const Comparison comparison({matched, saliency, truth.saliency, areas}, draws);
+  const Comparison comparison({matched, saliency, truth.saliency, measures}, draws);
   Scores scores;
   for (const Metric& metric : metrics) {
-    const bool without_areas =
-        metric.weighting == Weighting::area && comparison.measure(Weighting::area).empty();
+    const bool without_areas = metric.weighting == Weighting::area && measures.area.empty();
     scores.values.push_back(
         without_areas ? kUndefined
                       : metric.value({matched, metric.picks == PickCount::once ? picked : every_pick,
@@ -123,7 +123,7 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
              const MetricsOptions& options, const Rng& rng, std::span<const double> areas) {
   Draws draws(rng);
-  return score(metrics, matched, truth, options, draws, areas);
+  return score(metrics, matched, truth, options, draws, Measures(matched.size(), areas));
 }
 
 Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng,

@@ -99,7 +99,7 @@ bool any_by_area(std::span<const Metric> metrics);  // they read the areas of th
 // InputError where the ground truth is not of this shape: picks out of range, or another number of points.
 // The draws may be shared with other maps: each reads them from their beginning.
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
-             const MetricsOptions& options, Draws& draws, std::span<const double> areas = {});
+             const MetricsOptions& options, Draws& draws, const Measures& measures);
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
              const MetricsOptions& options, const Rng& rng, std::span<const double> areas = {});
 // Those that the options name.

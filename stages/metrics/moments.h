@@ -2,6 +2,7 @@
 // Means, deviations and the correlation of fields over a shape.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "stages/metrics/measure.h"
@@ -15,15 +16,17 @@ struct Moments {
   double deviation = 0;
   bool constant = false;  // the field has one value: its deviation is rounding, at most
 };
-Moments moments(std::span<const double> field, const Measure& measure);
 
-// Those of two fields of equal length, to the bit as one by one, and what ties them.
+// Those of two fields of equal length, and what ties them.
 struct PairMoments {
   Moments a, b;
   double products = 0;  // sum of weight * (value of a - mean of a) * (value of b - mean of b)
   double total = 0;     // weight
 };
-PairMoments pair_moments(std::span<const double> a, std::span<const double> b, const Measure& measure);
+// [weighting]. Over nothing the numbers mean nothing.
+std::array<PairMoments, 2> pair_moments(const WeighedField& a, const WeighedField& b,
+                                        const Measures& measures);
+std::array<Moments, 2> moments(std::span<const double> field, const Measures& measures);
 
 // Pearson correlation; 0 where one of the two is constant, NaN over nothing.
 double correlation(const PairMoments& pair);

@@ -4,43 +4,57 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "stages/metrics/draws.h"
+
 namespace salbench {
 
-// How many of some ascending positions in [0, 1] a number in [0, 1) has reached, looked up in equal cells:
-// most of them have no position within.
+// How many of some ascending positions in [0, 1] a random number has reached, looked up in equal cells of
+// [0, 1): most of them have no position within.
 class Reached {
  public:
   // Worth its making for so many numbers at a time.
   Reached(std::vector<double> from, std::size_t numbers)
       : from_(std::move(from)),
-        cells_(static_cast<double>(std::clamp(std::bit_ceil(4 * numbers), kLeastCells, kMostCells))),
-        in_cell_(static_cast<std::size_t>(cells_)) {
+        // A power of two: a number's upper bits are its cell.
+        in_cell_(std::clamp(std::bit_ceil(4 * numbers), kLeastCells, kMostCells)) {
+    const auto cells = static_cast<double>(in_cell_.size());
     std::size_t filled = 0;
     for (std::size_t reached = 0; reached < from_.size(); ++reached) {
       // A position on a border has been reached by all of the cell that begins there.
-      const auto cell = static_cast<std::size_t>(std::ceil(from_[reached] * cells_));
+      const auto begun = static_cast<std::size_t>(from_[reached] * cells);
+      const bool on_border = static_cast<double>(begun) == from_[reached] * cells;
+      const std::size_t cell = on_border ? begun : begun + 1;
       fill(filled, cell, static_cast<std::int32_t>(reached));
-      if (cell > filled && from_[reached] * cells_ < static_cast<double>(cell))
-        in_cell_[cell - 1] = -1 - static_cast<std::int32_t>(reached);
+      if (cell > filled && !on_border) in_cell_[cell - 1] = -1 - static_cast<std::int32_t>(reached);
       filled = cell;
     }
     fill(filled, in_cell_.size(), static_cast<std::int32_t>(from_.size()));
     from_.push_back(std::numeric_limits<double>::infinity());
   }
 
-  std::size_t operator()(double u) const {
-    const std::int32_t known = in_cell_[static_cast<std::size_t>(u * cells_)];
-    if (known >= 0) return static_cast<std::size_t>(known);
-    auto reached = static_cast<std::size_t>(-1 - known);
-    while (from_[reached] <= u) ++reached;
-    return reached;
+  // Of a loop that stores, to be copied for it: nothing that is read here can then change.
+  struct LookUp {
+    const std::int32_t* in_cell;
+    const double* from;
+    unsigned shift;
+
+    // The number is one of Rng::next, and stands for uniform_of(number).
+    std::size_t operator()(std::uint64_t number) const {
+      const std::int32_t known = in_cell[number >> shift];
+      if (known >= 0) return static_cast<std::size_t>(known);
+      auto reached = static_cast<std::size_t>(-1 - known);
+      for (const double u = uniform_of(number); from[reached] <= u;) ++reached;
+      return reached;
+    }
+  };
+  LookUp look_up() const {
+    return {in_cell_.data(), from_.data(), 64 - static_cast<unsigned>(std::countr_zero(in_cell_.size()))};
   }
 
  private:
@@ -51,7 +65,6 @@ class Reached {
   }
 
   std::vector<double> from_;           // and infinity
-  double cells_;                       // a power of two: u * cells_ stays below it
   std::vector<std::int32_t> in_cell_;  // -1 - the number at its beginning where it has one within
 };
 
@@ -63,15 +76,22 @@ class EvenReached {
     thresholds_.push_back(std::numeric_limits<double>::infinity());
   }
 
-  std::size_t operator()(double value) const {
-    auto reached = static_cast<std::size_t>(value * per_unit_) + 1;
-    reached = std::min(reached, thresholds_.size() - 1);
-    // Where the product is rounded to the wrong side, the threshold decides. The first one is 0, the last
-    // infinite.
-    while (thresholds_[reached] <= value) ++reached;
-    while (thresholds_[reached - 1] > value) --reached;
-    return reached;
-  }
+  struct LookUp {
+    const double* thresholds;
+    double per_unit;
+    std::size_t most;
+
+    std::size_t operator()(double value) const {
+      auto reached = static_cast<std::size_t>(value * per_unit) + 1;
+      reached = std::min(reached, most);
+      // Where the product is rounded to the wrong side, the threshold decides. The first one is 0, the last
+      // infinite.
+      while (thresholds[reached] <= value) ++reached;
+      while (thresholds[reached - 1] > value) --reached;
+      return reached;
+    }
+  };
+  LookUp look_up() const { return {thresholds_.data(), per_unit_, thresholds_.size() - 1}; }
 
  private:
   double per_unit_;

@@ -14,12 +14,10 @@ namespace salbench {
 // without negatives or over an empty measure.
 
 // Probability that a pick has a larger value than a negative, ties one half. O(n log n). [mann1947]
-double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked, Weighting weighting,
-                 const Comparison& comparison);
+double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison);
 
 // The curve through the rates at the values of the picks and at the ends, (0, 0) and (1, 1); linear in
 // between, so with few picks it lies above auc_exact. [judd2009]
-double auc_judd(std::span<const double> map, std::span<const std::int32_t> picked, Weighting weighting,
-                const Comparison& comparison);
+double auc_judd(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison);
 
 }  // namespace salbench

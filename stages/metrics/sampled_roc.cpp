@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ using Counts = std::vector<std::uint32_t>;  // [number of thresholds reached]: v
 // Ascending if `largest` is >= 0.
 std::vector<double> even_thresholds(std::int32_t count, double largest) {
   std::vector<double> thresholds;
+  thresholds.reserve(static_cast<std::size_t>(count));
   for (std::int32_t t = 0; t + 1 < count; ++t) thresholds.push_back(largest * t / (count - 1));
   thresholds.push_back(largest);  // itself: rounding must not lift it above
   return thresholds;
@@ -29,12 +31,14 @@ std::vector<double> even_thresholds(std::int32_t count, double largest) {
 
 // Turns counts into [number of thresholds reached]: values that reach so many or more.
 void accumulate(std::span<std::uint32_t> counts) {
-  for (std::size_t k = counts.size() - 1; k-- > 0;) counts[k] += counts[k + 1];
+  std::uint32_t sum = 0;
+  for (std::size_t k = counts.size(); k-- > 0;) counts[k] = sum += counts[k];
 }
 
 // [count]: fraction that so many values are of all.
 std::vector<double> fractions_of(std::size_t total) {
   std::vector<double> fractions;
+  fractions.reserve(total + 1);
   for (std::size_t count = 0; count <= total; ++count)
     fractions.push_back(static_cast<double>(count) / static_cast<double>(total));
   return fractions;
@@ -44,9 +48,13 @@ std::vector<double> fractions_of(std::size_t total) {
 // negative largest value do not.
 std::vector<double> rates_of(const std::vector<double>& values, const std::vector<double>& thresholds) {
   std::vector<double> result;
-  for (const double threshold : thresholds)
-    result.push_back(static_cast<double>(values.end() - std::ranges::lower_bound(values, threshold)) /
-                     static_cast<double>(values.size()));
+  result.reserve(thresholds.size());
+  std::size_t below = 0;
+  for (const double threshold : thresholds) {
+    if (below > 0 && values[below - 1] >= threshold) below = 0;
+    while (below < values.size() && values[below] < threshold) ++below;
+    result.push_back(static_cast<double>(values.size() - below) / static_cast<double>(values.size()));
+  }
   return result;
 }
 
@@ -83,6 +91,7 @@ double area_under_curve(const std::vector<double>& true_rates, const std::vector
 // Part of the weight that lies below each threshold.
 std::vector<double> parts_below(const Distribution& map, const std::vector<double>& thresholds) {
   std::vector<double> parts;
+  parts.reserve(thresholds.size());
   for (const double threshold : thresholds) parts.push_back(map.weight_below(threshold) / map.total());
   return parts;
 }
@@ -95,6 +104,28 @@ std::vector<double> tenths_of_range(const Distribution& map) {
   return thresholds;
 }
 
+constexpr std::size_t kLanes = 4;
+
+// [bin]: how many of the numbers fall in it, of `bins`. In lanes: where most fall in the same bin, each would
+// wait for the count of the one before.
+template <class Number, class BinOf>
+std::span<std::uint32_t> counted(std::span<const Number> numbers, std::size_t bins, BinOf bin_of,
+                                 Counts& counts) {
+  constexpr std::size_t kWorthLanes = 64;  // numbers
+  const std::size_t lanes = numbers.size() < kWorthLanes ? 1 : kLanes;
+  counts.assign(lanes * bins, 0);
+  std::uint32_t* const count = counts.data();
+  std::size_t i = 0;
+  if (lanes > 1) {
+    for (; i + kLanes <= numbers.size(); i += kLanes)
+      for (std::size_t lane = 0; lane < kLanes; ++lane) ++count[lane * bins + bin_of(numbers[i + lane])];
+    for (std::size_t lane = 1; lane < kLanes; ++lane)
+      for (std::size_t k = 0; k < bins; ++k) count[k] += count[lane * bins + k];
+  }
+  for (; i < numbers.size(); ++i) ++count[bin_of(numbers[i])];
+  return {count, bins};
+}
+
 // The curve of one set of picks, split by split.
 class Curve {
  public:
@@ -105,21 +136,16 @@ class Curve {
 
   double largest() const { return positives_.back(); }
 
-  void set_thresholds(const std::vector<double>& thresholds) {
-    true_rates_ = rates_of(positives_, thresholds);
-    counts_.assign(thresholds.size() + 1, 0);
+  std::vector<double> true_rates(const std::vector<double>& thresholds) const {
+    return rates_of(positives_, thresholds);
   }
-  template <class Reached>
-  void add_negatives(std::span<const double> negatives, const Reached& thresholds_reached) {
-    std::uint32_t* const counts = counts_.data();
-    for (const double value : negatives) ++counts[thresholds_reached(value)];
+  // How many negatives reach each number of thresholds.
+  void add_split(const std::vector<double>& true_rates, std::span<std::uint32_t> reached) {
+    accumulate(reached);
+    sum_ += area_under_curve(true_rates, fractions_, [&](std::size_t t) { return reached[t + 1]; });
   }
-  void end_split() {
-    accumulate(counts_);
-    sum_ += area_under_curve(true_rates_, fractions_, [this](std::size_t t) { return counts_[t + 1]; });
-    std::ranges::fill(counts_, 0);
-  }
-  void end_split(std::vector<double> negatives, const std::vector<double>& thresholds) {
+  // Also for negative values.
+  void add_split(std::vector<double> negatives, const std::vector<double>& thresholds) {
     std::ranges::sort(negatives);
     sum_ += area_under_curve(rates_of(positives_, thresholds), rates_of(negatives, thresholds));
   }
@@ -129,56 +155,89 @@ class Curve {
   std::vector<double> positives_;  // ascending
   std::int32_t splits_;
   std::vector<double> fractions_;  // [count of negatives]
-  std::vector<double> true_rates_;
-  Counts counts_;
   double sum_ = 0;
 };
 
-struct Extremes {
-  double smallest, largest;
-};
-
 // In lanes, since each comparison waits for the one before.
-Extremes extremes_of(std::span<const double> values) {
-  constexpr std::size_t kLanes = 4;
-  std::array<double, kLanes> smallest, largest;
-  smallest.fill(values.front());
-  largest.fill(values.front());
-  const auto take = [&](std::size_t lane, double value) {
-    smallest[lane] = value < smallest[lane] ? value : smallest[lane];
-    largest[lane] = value > largest[lane] ? value : largest[lane];
-  };
+std::uint64_t largest_of(std::span<const std::uint64_t> numbers) {
+  std::array<std::uint64_t, kLanes> largest{};
   std::size_t i = 0;
-  for (; i + kLanes <= values.size(); i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) take(lane, values[i + lane]);
-  for (; i < values.size(); ++i) take(0, values[i]);
-  return {*std::ranges::min_element(smallest), *std::ranges::max_element(largest)};
+  for (; i + kLanes <= numbers.size(); i += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      largest[lane] = std::max(largest[lane], numbers[i + lane]);
+  for (; i < numbers.size(); ++i) largest[0] = std::max(largest[0], numbers[i]);
+  return std::ranges::max(largest);
 }
 
 }  // namespace
 
+bool ValueDraws::any_negative() {
+  if (!any_negative_) any_negative_ = std::ranges::any_of(map_, [](double value) { return value < 0; });
+  return *any_negative_;
+}
+
+std::span<const std::uint32_t> ValueDraws::points(std::size_t count) {
+  return draws_.below(static_cast<std::uint32_t>(map_.size() - 1), count);
+}
+
+std::span<const std::uint16_t> ValueDraws::reached(std::int32_t thresholds, double largest) {
+  if (thresholds != thresholds_ || largest != largest_) {
+    thresholds_ = thresholds;
+    largest_ = largest;
+    reached_.resize(map_.size() - 1);
+    const EvenReached even(even_thresholds(thresholds, largest), largest);
+    const EvenReached::LookUp reached = even.look_up();
+    for (std::size_t k = 0; k < reached_.size(); ++k)
+      reached_[k] = static_cast<std::uint16_t>(
+          map_[k + 1] > largest ? static_cast<std::size_t>(thresholds) + 1 : reached(map_[k + 1]));
+  }
+  return reached_;
+}
+
+namespace {
+
+// A split with thresholds of its own, up to the largest value drawn.
+void add_split(Curve& curve, std::span<const std::uint32_t> points, const ValueDraws& draws,
+               std::int32_t count, bool any_negative) {
+  std::vector<double> negatives;
+  negatives.reserve(points.size());
+  for (const std::uint32_t point : points) negatives.push_back(draws.value(point));
+  const double largest = std::max(curve.largest(), std::ranges::max(negatives));
+  const std::vector<double> thresholds = even_thresholds(count, largest);
+  if (any_negative || !(largest > 0)) {
+    curve.add_split(std::move(negatives), thresholds);
+    return;
+  }
+  const EvenReached reached(thresholds, largest);
+  Counts counts;
+  curve.add_split(curve.true_rates(thresholds),
+                  counted<double>(negatives, thresholds.size() + 1, reached.look_up(), counts));
+}
+
+}  // namespace
+
+// In most splits no value drawn lies above those of the picks: they have the same thresholds.
 double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Splits& splits) {
   if (picks.empty()) return kUndefined;
   Curve curve(picks, splits.count);
-  std::span<const double> rest = draws.first(static_cast<std::size_t>(splits.count) * picks.size());
-  std::vector<double> thresholds;
-  std::optional<EvenReached> reached;
-  double up_to = kUndefined;  // of the thresholds
+  const bool any_negative = draws.any_negative();
+  const bool shared =
+      !any_negative && curve.largest() > 0 && splits.thresholds < std::numeric_limits<std::uint16_t>::max();
+  const std::vector<double> thresholds = even_thresholds(splits.thresholds, curve.largest());
+  const std::vector<double> true_rates = curve.true_rates(thresholds);
+  std::span<const std::uint16_t> reached;
+  if (shared) reached = draws.reached(splits.thresholds, curve.largest());
+  const auto reached_by = [reached](std::uint32_t point) { return reached[point]; };
+  Counts counts;
+  std::span<const std::uint32_t> rest = draws.points(static_cast<std::size_t>(splits.count) * picks.size());
   for (; !rest.empty(); rest = rest.subspan(picks.size())) {
-    const auto negatives = rest.first(picks.size());
-    const Extremes extremes = extremes_of(negatives);
-    const double largest = std::max(curve.largest(), extremes.largest);
-    if (largest != up_to) {
-      thresholds = even_thresholds(splits.thresholds, up_to = largest);
-      curve.set_thresholds(thresholds);
-      reached.emplace(thresholds, largest);
-    }
-    if (!(largest > 0) || extremes.smallest < 0) {  // no map that was matched, but a constant one may be
-      curve.end_split({negatives.begin(), negatives.end()}, thresholds);
-      continue;
-    }
-    curve.add_negatives(negatives, *reached);
-    curve.end_split();
+    const auto points = rest.first(picks.size());
+    std::span<std::uint32_t> count;  // the last one is of values above the thresholds
+    if (shared) count = counted(points, thresholds.size() + 2, reached_by, counts);
+    if (shared && count.back() == 0)
+      curve.add_split(true_rates, count.first(thresholds.size() + 1));
+    else
+      add_split(curve, points, draws, splits.thresholds, any_negative);
   }
   return curve.mean();
 }
@@ -191,40 +250,50 @@ struct Rungs {
   std::vector<double> true_rates;
   std::vector<double> positions;  // part of the weight below each threshold: where a draw reaches it
 };
+using SharedRungs = std::shared_ptr<const Rungs>;
 
-Rungs rungs_of(const Distribution& map, const std::vector<double>& thresholds,
-               const std::vector<double>& positives) {
-  return {thresholds, rates_of(positives, thresholds), parts_below(map, thresholds)};
+SharedRungs rungs_of(const Distribution& map, const std::vector<double>& thresholds,
+                     const std::vector<double>& positives) {
+  return std::make_shared<const Rungs>(
+      Rungs{thresholds, rates_of(positives, thresholds), parts_below(map, thresholds)});
 }
 
 // The rungs of all curves in one order, so that a draw is looked up once.
 class Ladder {
  public:
-  Ladder(std::vector<Rungs> rungs, std::size_t draws)
+  Ladder(std::vector<SharedRungs> rungs, std::size_t draws)
       : rungs_(std::move(rungs)), positions_(sorted_positions(rungs_)), reached_(positions_, draws) {
-    for (const Rungs& own : rungs_) {
+    for (const SharedRungs& own : rungs_) {
       auto& places = places_.emplace_back();
-      for (const double position : own.positions)
-        places.push_back(
-            static_cast<std::size_t>(std::ranges::upper_bound(positions_, position) - positions_.begin()));
+      places.reserve(own->positions.size());
+      std::size_t place = 0;
+      for (std::size_t t = 0; t < own->positions.size(); ++t) {
+        if (t > 0 && own->positions[t] < own->positions[t - 1]) place = 0;
+        while (place < positions_.size() && positions_[place] <= own->positions[t]) ++place;
+        places.push_back(place);
+      }
     }
   }
 
-  const Rungs& of(std::size_t curve) const { return rungs_[curve]; }
+  const Rungs& of(std::size_t curve) const { return *rungs_[curve]; }
   // [threshold]: how many positions a draw has reached that reaches this one, at least.
   const std::vector<std::size_t>& places(std::size_t curve) const { return places_[curve]; }
   std::size_t positions() const { return positions_.size(); }
-  std::size_t reached(double draw) const { return reached_(draw); }
+  Reached::LookUp reached() const { return reached_.look_up(); }
 
  private:
-  static std::vector<double> sorted_positions(const std::vector<Rungs>& rungs) {
+  // Most ascend already.
+  static std::vector<double> sorted_positions(const std::vector<SharedRungs>& rungs) {
     std::vector<double> all;
-    for (const Rungs& own : rungs) all.insert(all.end(), own.positions.begin(), own.positions.end());
-    std::ranges::sort(all);
+    for (const SharedRungs& own : rungs) {
+      const auto middle = all.insert(all.end(), own->positions.begin(), own->positions.end());
+      if (!std::is_sorted(middle, all.end())) std::sort(middle, all.end());
+      std::inplace_merge(all.begin(), middle, all.end());
+    }
     return all;
   }
 
-  std::vector<Rungs> rungs_;                      // [curve]
+  std::vector<SharedRungs> rungs_;                // [curve]
   std::vector<double> positions_;                 // of all curves, ascending
   std::vector<std::vector<std::size_t>> places_;  // [curve]
   Reached reached_;
@@ -244,13 +313,14 @@ class QuantileSums {
     for (const QuantileCurve& curve : curves)
       lasting_.push_back(curve.thresholds == Thresholds::tenths
                              ? rungs_of(curve.map, tenths_of_range(curve.map), positives_)
-                             : Rungs{});
+                             : nullptr);
   }
 
-  void add_split(std::span<const double> draws) {
-    set_largest(extremes_of(draws).largest);
+  void add_split(std::span<const std::uint64_t> draws) {
+    set_largest(draws);
     const Ladder& ladder = ladder_up_to_largest();
-    count(draws, ladder);
+    const auto at_least = counted(draws, ladder.positions() + 1, ladder.reached(), counts_);
+    accumulate(at_least);
     for (std::size_t c = 0; c < curves_.size(); ++c) {
       const Rungs& rungs = ladder.of(c);
       if (is_even(c) && !(largest_[c] > 0)) {  // the thresholds descend
@@ -260,52 +330,42 @@ class QuantileSums {
       }
       const std::vector<std::size_t>& places = ladder.places(c);
       areas_[c] +=
-          area_under_curve(rungs.true_rates, fractions_, [&](std::size_t t) { return at_least_[places[t]]; });
+          area_under_curve(rungs.true_rates, fractions_, [&](std::size_t t) { return at_least[places[t]]; });
     }
   }
   double mean(std::size_t curve) const { return areas_[curve] / splits_.count; }
 
  private:
-  static constexpr std::size_t kLanes = 4, kWorthLanes = 64;  // draws
-
   bool is_even(std::size_t curve) const { return curves_[curve].thresholds == Thresholds::even; }
 
-  void set_largest(double largest_draw) {
-    for (std::size_t c = 0; c < curves_.size(); ++c)
-      if (is_even(c)) largest_[c] = std::max(positives_.back(), curves_[c].map.quantile(largest_draw));
+  void set_largest(std::span<const std::uint64_t> draws) {
+    std::optional<double> largest_draw;
+    for (std::size_t c = 0; c < curves_.size(); ++c) {
+      if (!is_even(c)) continue;
+      largest_[c] = positives_.back();
+      const Distribution& map = curves_[c].map;
+      if (positives_.back() >= map.values.back()) continue;
+      if (!largest_draw) largest_draw = uniform_of(largest_of(draws));
+      largest_[c] = std::max(positives_.back(), map.quantile(*largest_draw));
+    }
   }
 
   // Few points have the largest values, so that splits share their ladders.
   const Ladder& ladder_up_to_largest() {
-    if (const auto known = ladders_.find(largest_); known != ladders_.end()) return known->second;
-    std::vector<Rungs> rungs = lasting_;
+    if (ladder_ != nullptr && largest_ == ladder_->first) return ladder_->second;
+    if (const auto known = ladders_.find(largest_); known != ladders_.end())
+      return (ladder_ = &*known)->second;
+    std::vector<SharedRungs> rungs = lasting_;
     for (std::size_t c = 0; c < curves_.size(); ++c)
       if (is_even(c))
         rungs[c] = rungs_of(curves_[c].map, even_thresholds(splits_.thresholds, largest_[c]), positives_);
-    return ladders_.emplace(largest_, Ladder(std::move(rungs), positives_.size())).first->second;
+    ladder_ = &*ladders_.emplace(largest_, Ladder(std::move(rungs), positives_.size())).first;
+    return ladder_->second;
   }
 
-  // In lanes: where most draws reach equally few thresholds, each would wait for the count of the one before.
-  void count(std::span<const double> draws, const Ladder& ladder) {
-    const std::size_t bins = ladder.positions() + 1;
-    const std::size_t lanes = draws.size() < kWorthLanes ? 1 : kLanes;
-    at_least_.assign(lanes * bins, 0);
-    std::uint32_t* const counts = at_least_.data();
-    std::size_t i = 0;
-    if (lanes > 1) {
-      for (; i + kLanes <= draws.size(); i += kLanes)
-        for (std::size_t lane = 0; lane < kLanes; ++lane)
-          ++counts[lane * bins + ladder.reached(draws[i + lane])];
-      for (std::size_t lane = 1; lane < kLanes; ++lane)
-        for (std::size_t k = 0; k < bins; ++k) counts[k] += counts[lane * bins + k];
-    }
-    for (; i < draws.size(); ++i) ++counts[ladder.reached(draws[i])];
-    accumulate({counts, bins});
-  }
-
-  static std::vector<double> values_of(std::span<const double> draws, const Distribution& map) {
+  static std::vector<double> values_of(std::span<const std::uint64_t> draws, const Distribution& map) {
     std::vector<double> values;
-    for (const double draw : draws) values.push_back(map.quantile(draw));
+    for (const std::uint64_t draw : draws) values.push_back(map.quantile(uniform_of(draw)));
     std::ranges::sort(values);
     return values;
   }
@@ -317,9 +377,10 @@ class QuantileSums {
   std::vector<double> areas_;      // [curve]
   // [curve]: of the picks' values and the draws'; 0 where the thresholds do not depend on it.
   std::vector<double> largest_;
-  std::vector<Rungs> lasting_;  // [curve]: of thresholds that no split changes
+  std::vector<SharedRungs> lasting_;  // [curve]: of thresholds that no split changes; or none
   std::map<std::vector<double>, Ladder> ladders_;
-  Counts at_least_;  // [positions reached]: draws that reach so many or more
+  const std::pair<const std::vector<double>, Ladder>* ladder_ = nullptr;  // of the split before
+  Counts counts_;                                                         // of one split
 };
 
 }  // namespace
@@ -332,7 +393,7 @@ std::vector<double> quantile_aucs(std::span<const QuantileCurve> curves, std::sp
     if (curve.map.total() > 0) defined.push_back(curve);
   if (picks.empty() || defined.empty()) return areas;
   QuantileSums sums(defined, picks, splits);
-  std::span<const double> rest = draws.uniform(static_cast<std::size_t>(splits.count) * picks.size());
+  std::span<const std::uint64_t> rest = draws.numbers(static_cast<std::size_t>(splits.count) * picks.size());
   for (; !rest.empty(); rest = rest.subspan(picks.size())) sums.add_split(rest.first(picks.size()));
   for (std::size_t c = 0, d = 0; c < curves.size(); ++c)
     if (curves[c].map.total() > 0) areas[c] = sums.mean(d++);

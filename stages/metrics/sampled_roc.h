@@ -4,7 +4,9 @@
 // the values at the picked points; without any the area is NaN.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +20,30 @@ struct Splits {
   std::int32_t thresholds;  // evenly spaced from 0 to the largest value among picks and negatives
 
   bool operator==(const Splits&) const = default;
+};
+
+// Values of a map at points drawn uniformly, with replacement, from all but the first; and what the curves of
+// several lists of picks need of them. [tasse2016]
+class ValueDraws {
+ public:
+  // At least two points, before the first draw. Both outlive it.
+  ValueDraws(std::span<const double> map, Draws& draws) : map_(map), draws_(draws) {}
+
+  bool any_negative();
+  // Of all points but the first. Valid until the next call.
+  std::span<const std::uint32_t> points(std::size_t count);
+  double value(std::uint32_t point) const { return map_[point + 1]; }
+  // [point]: how many of so many even thresholds up to `largest` > 0 it reaches, one more if it lies above.
+  // Without negative values. Valid until the next call.
+  std::span<const std::uint16_t> reached(std::int32_t thresholds, double largest);
+
+ private:
+  std::span<const double> map_;
+  Draws& draws_;
+  std::optional<bool> any_negative_;
+  std::int32_t thresholds_ = 0;  // of reached_
+  double largest_ = 0;
+  std::vector<std::uint16_t> reached_;
 };
 
 // Negatives are the values that are drawn. [tasse2016]

@@ -51,9 +51,24 @@ TEST(Order, AscendsAndKeepsTheIndicesOfEqualValues) {
   EXPECT_TRUE(ascending_order({}).empty());
 }
 
+TEST(Order, PutsTheSmallestFirstHoweverManyThereAre) {
+  Rng rng(2, "order", "");
+  for (const std::size_t n : {1U, 2U, 600U, 3000U})
+    for (const double zeros : {0.0, 0.5, 0.9, 1.0}) {
+      ScalarField field(n);
+      for (double& v : field) v = rng.uniform() < zeros ? 0 : 1 + std::floor(rng.uniform() * 1000);
+      Order expected(n);
+      for (std::uint32_t i = 0; i < n; ++i) expected[i] = i;
+      std::ranges::stable_sort(expected, {}, [&](std::uint32_t i) { return field[i]; });
+      EXPECT_EQ(ascending_order(field), expected) << n << " points, zeros: " << zeros;
+    }
+}
+
 TEST(Distribution, CountsWeightBelowAndAtEachValue) {
   const ScalarField field = {2, 1, 2, 5};
-  const Distribution d = distribution(field, ascending_order(field), area_measure(ScalarField{1, 4, 2, 3}));
+  const Measures measures(4, ScalarField{1, 4, 2, 3});
+  const auto [per_vertex, d] = distributions(field, ascending_order(field), measures);
+  EXPECT_EQ(per_vertex.mid, (ScalarField{2, 0.5, 2, 3.5}));
   EXPECT_EQ(d.mid, (ScalarField{5.5, 2, 5.5, 8.5}));
   EXPECT_EQ(d.weight_below(2), 4);
   EXPECT_EQ(d.weight_below(2.5), 7);
@@ -190,7 +205,8 @@ TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
   ScalarField positives;
   for (const std::int32_t i : picked) positives.push_back(map[static_cast<std::size_t>(i)]);
   Draws draws(Rng(1, "scores", "x"));
-  const Comparison comparison({map}, draws);
+  const Measures measures(map.size(), {});
+  const Comparison comparison({.map = map, .measures = measures}, draws);
   const Distribution& all = comparison.map_distribution(Weighting::vertex);
   double probability = 0;
   for (const std::int32_t i : picked) probability += all.mid[static_cast<std::size_t>(i)] / 500 / 7;
@@ -198,6 +214,20 @@ TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
   const std::vector<double> areas = quantile_aucs(curves, positives, draws, {3000, 400});
   EXPECT_NEAR(areas[0], probability, 0.005);
   EXPECT_NEAR(areas[1], probability, 0.03);  // ten steps
+}
+
+TEST(Draws, AreThoseOfTheGenerator) {
+  const Rng rng(9, "suite", "");
+  Draws draws(rng);
+  for (const std::size_t count : {3U, 10U, 4U, 500U})
+    for (const std::uint32_t bound : {7U, 4000000000U}) {
+      Rng below = rng, next = rng, uniform = rng;
+      for (const std::uint32_t drawn : draws.below(bound, count)) ASSERT_EQ(drawn, below.below(bound));
+      for (const std::uint64_t number : draws.numbers(count)) {
+        ASSERT_EQ(number, next.next());
+        ASSERT_EQ(uniform_of(number), uniform.uniform());
+      }
+    }
 }
 
 TEST(Reached, CountsAsASearchDoes) {
@@ -209,10 +239,11 @@ TEST(Reached, CountsAsASearchDoes) {
       position = std::min(1.0, rng.below(2) == 0 ? cell : cell + rng.uniform() / 1000);
     }
     std::ranges::sort(positions);
-    const Reached reached(positions, rng.below(600));
+    const Reached table(positions, rng.below(600));
+    const Reached::LookUp reached = table.look_up();
     for (int k = 0; k < 500; ++k) {
-      const double u = rng.below(4) == 0 ? static_cast<double>(rng.below(64)) / 64 : rng.uniform();
-      ASSERT_EQ(reached(u), std::ranges::upper_bound(positions, u) - positions.begin());
+      const std::uint64_t number = rng.below(4) == 0 ? rng.below(64) << 58U : rng.next();
+      ASSERT_EQ(reached(number), std::ranges::upper_bound(positions, uniform_of(number)) - positions.begin());
     }
   }
 }
@@ -225,7 +256,8 @@ TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
     for (std::size_t i = 0; i < map.size(); ++i) areas.push_back(rng.uniform());
     const ScalarField picks = {map[7], map[9], map[9], map[255]};
     Draws draws(Rng(1, "scores", "x"));
-    const Comparison comparison({.map = map, .areas = areas}, draws);
+    const Measures measures(map.size(), areas);
+    const Comparison comparison({.map = map, .measures = measures}, draws);
     const std::vector<QuantileCurve> curves = {
         {comparison.map_distribution(Weighting::vertex), Thresholds::tenths},
         {comparison.map_distribution(Weighting::area), Thresholds::even},
