@@ -96,8 +96,7 @@ double median_spacing(const NearestPoints& near) {
   const std::size_t other = near.each() < 2 ? 0 : 1;  // without another, the point itself
   std::vector<double> squared;
   squared.reserve(near.size());
-  for (std::size_t i = 0; i < near.size(); ++i)
-    squared.push_back(near.of(i)[other].distance_squared);
+  for (std::size_t i = 0; i < near.size(); ++i) squared.push_back(near.of(i)[other].distance_squared);
   if (squared.empty()) return 0;
   const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
   std::nth_element(squared.begin(), middle, squared.end());
