@@ -16,6 +16,7 @@
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
 #include "stages/metrics/picks.h"
+#include "stages/metrics/quantile_roc.h"
 #include "stages/metrics/sampled_roc.h"
 #include "stages/metrics/top.h"
 
@@ -61,7 +62,7 @@ class Comparison {
   template <class T>
   using Both = std::optional<std::array<T, 2>>;  // [weighting]
 
-  // What is known of some picks. Areas under sampled curves are those of `splits`.
+  // Results for one list of picks, as far as they have been asked for; the areas belong to `splits`.
   struct OfPicks {
     std::vector<std::int32_t> picked;
     Splits splits = {};

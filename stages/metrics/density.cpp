@@ -18,7 +18,7 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEpsilon = 2.2204e-16;  // as the MIT benchmark has it: Matlab's eps to five digits
 constexpr double kSmoothing = 1e-12;
 
-// What densities are scaled by.
+// The weighed sum of a field, which its density is divided by.
 struct WeighedSum {
   double smoothing = 0;
   PerWeighting sum = PerWeighting::Zero();
@@ -147,7 +147,7 @@ class ScoreSums {
       magnitudes{0, 0};
 
  private:
-  // What a point adds, but for its weight.
+  // Terms of one point in each sum, before they are multiplied by its weight.
   struct Terms {
     PerWeighting g, log_ratio, smoothed_g, smoothed_log_ratio, common, normalised_common;
     double square, magnitude;

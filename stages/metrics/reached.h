@@ -38,7 +38,8 @@ class Reached {
     from_.push_back(std::numeric_limits<double>::infinity());
   }
 
-  // Of a loop that stores, to be copied for it: nothing that is read here can then change.
+  // A loop that stores to memory takes a copy, so that the compiler need not read these fields again each
+  // time.
   struct LookUp {
     const std::int32_t* in_cell;
     const double* from;
@@ -84,8 +85,8 @@ class EvenReached {
     std::size_t operator()(double value) const {
       auto reached = static_cast<std::size_t>(value * per_unit) + 1;
       reached = std::min(reached, most);
-      // Where the product is rounded to the wrong side, the threshold decides. The first one is 0, the last
-      // infinite.
+      // Rounding may put the product on the wrong side of a threshold: the threshold itself decides. The
+      // search ends, because the first threshold is 0 and the last is infinite.
       while (thresholds[reached] <= value) ++reached;
       while (thresholds[reached - 1] > value) --reached;
       return reached;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stages do, done by the libraries of the field as Debian has them. A library is given the shape in its
+// The work of our stages, done by the libraries that Debian has. A library is given the shape in its
 // own structures, while our stages start from a Shape: converting it is not measured. Both sides build their
 // search trees and hierarchies anew each time.
 #pragma once

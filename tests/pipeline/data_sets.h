@@ -35,7 +35,7 @@ class DataSets : public testing::Test {
     for (const Failure& failure : toy_->runner.failures()) causes.push_back(failure.cause);
     return causes;
   }
-  // Of a model and metric, over meshes or scans; NaN is undefined.
+  // Score of a model on the first mesh, or scan, of the table; NaN where the metric is undefined.
   double score_of(std::string_view model, std::string_view metric, bool scan = false) const {
     for (const ResultRow& row : toy_->results())
       if (row.model == model && !row.view.empty() == scan) return value_of(row.scores, metric);

@@ -11,8 +11,8 @@
 #include "stages/core/errors.h"
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/metrics.h"
+#include "stages/metrics/quantile_roc.h"
 #include "stages/metrics/reached.h"
-#include "stages/metrics/sampled_roc.h"
 
 namespace salbench {
 namespace {
