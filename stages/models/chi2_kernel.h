@@ -24,6 +24,10 @@ enum class Weight {
 };
 float weight_of(Weight weight, float distance);
 
+// chi2 * weight of the distance, rounded to a multiple of grid * 2^-23; `grid` is a power of two. A sum of
+// such terms in double precision is exact as long as it is below grid * 2^30, whatever their order.
+float term_of(Weight weight, float grid, float chi2, float distance);
+
 // All values below are finite and >= 0, but for the filling of a last group.
 struct Kernel {
   // distances[16 g + lane] = sum over the bins of (a - b)^2 / (a + b), a = bin of the query, b = bin of the
@@ -47,11 +51,11 @@ struct Kernel {
   std::size_t (*places_between)(float low, float high, const float* values, std::size_t count,
                                 std::int32_t* places);
 
-  // Sum of chi2 * weight(d) over the histograms of the groups whose chi2 is <= limit, d = distance in space.
+  // Sum of the terms of the histograms of the groups whose chi2 is <= limit.
   //   chi2    16 count
   //   places  groups x 3 x 16: x, y and z
   //   from    x, y, z
-  double (*weighted_sum)(Weight weight, float limit, const float* chi2, const float* places,
+  double (*weighted_sum)(Weight weight, float grid, float limit, const float* chi2, const float* places,
                          const float* from, const std::int32_t* groups, std::size_t count);
 };
 const Kernel& kernel(Instructions instructions);

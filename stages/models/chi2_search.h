@@ -10,13 +10,10 @@
 
 #include "stages/core/types.h"
 #include "stages/models/chi2_kernel.h"
+#include "stages/models/chi2_nearest.h"
+#include "stages/models/chi2_table.h"
 
 namespace salbench {
-
-struct Chi2Neighbour {
-  std::int32_t index;
-  float chi2;
-};
 
 class Chi2Search {
  public:
@@ -26,8 +23,18 @@ class Chi2Search {
   explicit Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references = {},
                       chi2_kernel::Instructions instructions = chi2_kernel::widest_supported());
 
-  std::size_t size() const { return order_.size(); }  // histograms that each is compared with
-  std::size_t used_bins() const { return bins_.size(); }
+  std::size_t size() const { return table_.size(); }           // histograms that each is compared with
+  std::span<const std::size_t> bins() const { return bins_; }  // used ones, ascending
+  float beyond_all() const { return beyond_all_; }             // more than any distance
+  const Chi2Table& table() const { return table_; }
+  const chi2_kernel::Kernel& kernel() const { return kernel_; }
+
+  // All histograms; those beside each other resemble each other. A row has the used bins.
+  std::span<const std::int32_t> queries() const { return queries_; }
+  const float* row(std::size_t query) const { return &rows_[query * bins_.size()]; }
+
+  // 1 <= k <= size().
+  Chi2Nearest nearest(std::size_t k) const;
 
   // Calls visit(i, nearest) once for each histogram i, in an order that depends on the histograms alone.
   // `nearest`, valid during the call, holds the k references of smallest distance to i, i itself among them
@@ -35,23 +42,13 @@ class Chi2Search {
   using Visit = std::function<void(std::size_t i, std::span<const Chi2Neighbour> nearest)>;
   void for_each(std::size_t k, const Visit& visit) const;
 
-  // Sums chi2 * weight(d) over the k nearest references of each histogram; d is the distance between their
-  // points. `points` has one per histogram, no two farther apart than 2, and is read in single precision.
-  std::vector<double> weighted_sums(std::size_t k, std::span<const Vec3> points,
-                                    chi2_kernel::Weight weight) const;
-
  private:
-  friend class Chi2Query;
-
   std::vector<std::size_t> bins_;
-  float beyond_all_ = 0;               // distance
-  std::vector<float> rows_;            // histograms x bins, in the order of the queries
-  std::vector<std::int32_t> queries_;  // all histograms; those beside each other resemble each other
-  std::vector<std::int32_t> order_;    // place in the table -> index of the histogram
-  std::vector<float> table_;           // groups x bins x 16, the last group filled up with empty histograms
-  // Boxes around the groups of 16 histograms, around 16 such boxes, and so on until one group is left.
-  std::vector<std::vector<float>> boxes_;
-  chi2_kernel::Kernel kernel_;
+  float beyond_all_;
+  std::vector<std::int32_t> queries_;
+  std::vector<float> rows_;  // histograms x bins, in the order of the queries
+  Chi2Table table_;
+  const chi2_kernel::Kernel& kernel_;
 };
 
 }  // namespace salbench

@@ -15,7 +15,7 @@
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
-#include "stages/models/chi2_search.h"
+#include "stages/models/chi2_sums.h"
 
 namespace salbench {
 namespace {
@@ -44,13 +44,14 @@ std::vector<std::int32_t> sample_of(std::span<const Vec3> points, const LsOption
   return points.size() > most ? KdTree(points).even_sample(most) : std::vector<std::int32_t>();
 }
 
-// 1 - exp(-mean dissimilarity to the selected points), which is chi2 weighted by the distance.
+// 1 - exp(-mean dissimilarity to the selected points), which is chi2 weighted by the distance. `kth` as in
+// weighted_sums().
 ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descriptors,
                          std::span<const std::int32_t> sample, double selected_share,
-                         chi2_kernel::Weight weight) {
+                         chi2_kernel::Weight weight, std::vector<float>& kth) {
   const Chi2Search search(descriptors, sample);
   const std::size_t selected = std::max<std::size_t>(count_of(selected_share, search.size()), 1);
-  ScalarField result = search.weighted_sums(selected, points, weight);
+  ScalarField result = weighted_sums(search, selected, points, weight, kth);
   for (double& value : result)
     value = 1 - std::exp(-value / (kHistogramTotal * static_cast<double>(selected)));
   return result;
@@ -79,9 +80,8 @@ ScalarField association(std::span<const Vec3> points, const ScalarField& low, co
 
 // The low-level descriptors, except that the most distinct points have high-level ones.
 Descriptors mixed_descriptors(Points points, const Normals& normals, const Descriptors& low_level,
-                              const ScalarField& low, const std::vector<std::int32_t>& sample,
-                              const LsOptions& options) {
-  const std::vector<std::int32_t> distinct = largest(low, count_of(options.high_share, low.size()));
+                              const std::vector<std::int32_t>& distinct,
+                              const std::vector<std::int32_t>& sample, const LsOptions& options) {
   const Support support{0, options.high_radius * bounding_radius(points)};
   const KdTree around = sample.empty() ? KdTree(points) : KdTree(points, sample);
   const Descriptors high = fpfh(points, normals, around, support, options.high_weighting, distinct);
@@ -128,12 +128,17 @@ ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors
 
   // Near points count more at the low level, far ones at the high level.
   const std::vector<std::int32_t> sample = sample_of(places, options);
+  std::vector<float> kth;
   const ScalarField low =
-      distinctness(places, fpfh, sample, options.selected_share, chi2_kernel::Weight::near);
+      distinctness(places, fpfh, sample, options.selected_share, chi2_kernel::Weight::near, kth);
   ScalarField saliency = association(places, low, options);
+
+  // Most points keep their descriptors, and so do most of those that resemble them.
+  const std::vector<std::int32_t> distinct = largest(low, count_of(options.high_share, low.size()));
+  for (const std::int32_t i : distinct) kth[static_cast<std::size_t>(i)] = 0;
   const ScalarField high =
-      distinctness(places, mixed_descriptors(points, normals, fpfh, low, sample, options), sample,
-                   options.selected_share, chi2_kernel::Weight::far);
+      distinctness(places, mixed_descriptors(points, normals, fpfh, distinct, sample, options), sample,
+                   options.selected_share, chi2_kernel::Weight::far, kth);
   for (std::size_t i = 0; i < saliency.size(); ++i) saliency[i] += low[i] + options.high_weight * high[i];
   return saliency;
 }

@@ -49,7 +49,7 @@ Work our_scans(const Shape& shape, int views) {
   };
 }
 
-// The table of Chi2Search, without its boxes: every pair is looked at.
+// The groups of Chi2Table, without their boxes: every pair is looked at.
 Work our_chi_squares(const Shape& shape) {
   namespace kernel = chi2_kernel;
   const Descriptors& descriptors = shape.descriptors;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Histograms to be searched in chi-square distance: those that resemble each other lie in groups of 16,
+// groups in groups of 16 and so on, each with the box that holds it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct Chi2Table {
+  std::size_t bins = 0;             // that are looked at
+  std::vector<std::int32_t> order;  // place -> index of the histogram
+  std::vector<float> values;        // groups x bins x 16, the last group filled up with empty histograms
+  // Groups x bins x 2 x 16: boxes around the groups of histograms, around groups of such boxes, and so on
+  // until one group is left. Last groups are filled up with boxes at infinity.
+  std::vector<std::vector<float>> boxes;
+
+  // `in_order`: indices of at least one histogram, beside each other those that resemble each other.
+  Chi2Table(const Descriptors& descriptors, std::span<const std::size_t> of_bins,
+            std::vector<std::int32_t> in_order);
+
+  std::size_t size() const { return order.size(); }
+};
+
+}  // namespace salbench

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/models/chi2_sums.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "stages/core/rng.h"
+#include "tests/stages/models/random_histograms.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using chi2_kernel::Instructions;
+using chi2_kernel::Weight;
+
+std::vector<double> sums_of(const Chi2Search& search, std::size_t k, Points points, Weight weight) {
+  std::vector<float> unknown;
+  return weighted_sums(search, k, points, weight, unknown);
+}
+
+double weight_by_definition(chi2_kernel::Weight weight, double d) {
+  return weight == chi2_kernel::Weight::near ? 1 / (1 + d) : std::log1p(d);
+}
+
+// The twin: the terms of the nearest, one after the other.
+std::vector<double> twin(const Chi2Search& search, std::size_t k, Points points, Weight weight) {
+  std::vector<double> sums(points.size());
+  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+    for (const auto& [j, chi2] : nearest)
+      sums[i] += static_cast<double>(chi2) *
+                 weight_by_definition(weight, (points[i] - points[static_cast<std::size_t>(j)]).norm());
+  });
+  return sums;
+}
+
+TEST(Chi2Sums, AreThoseOverTheNearestWithEveryVariant) {
+  const std::vector<Vec3> points = shapes::random_cloud(1100, 8);  // in the unit cube
+  for (const std::uint64_t levels : {2U, 5U, 1U << 20U}) {
+    const Descriptors histograms = random_histograms(1100, levels, levels + 1);
+    for (const Weight weight : {Weight::near, Weight::far}) {
+      const Chi2Search baseline(histograms, {}, Instructions::baseline);
+      const std::vector<double> sums = sums_of(baseline, 55, points, weight);
+      const std::vector<double> expected = twin(baseline, 55, points, weight);
+      for (std::size_t i = 0; i < sums.size(); ++i)
+        EXPECT_NEAR(sums[i], expected[i], 1e-6 * expected[i]) << i;
+      for (const Instructions wider : {Instructions::avx2, Instructions::avx512}) {
+        if (!chi2_kernel::supported(wider)) continue;
+        EXPECT_EQ(sums_of(Chi2Search(histograms, {}, wider), 55, points, weight), sums);  // to the last bit
+      }
+    }
+  }
+}
+
+// How the nearest are found, from good guesses or from bad ones, in one range or in several at a time, does
+// not show in the last bit.
+TEST(Chi2Sums, DependNeitherOnTheGuessesNorOnThreads) {
+  const std::vector<Vec3> points = shapes::random_cloud(2500, 8);
+  const Chi2Search search(random_histograms(2500, 1U << 20U, 11));
+  std::vector<float> kth;
+  const std::vector<double> sums = weighted_sums(search, 125, points, Weight::far, kth);
+  search.for_each(125, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+    const float last = std::max_element(nearest.begin(), nearest.end(), [](const auto& a, const auto& b) {
+                         return a.chi2 < b.chi2;
+                       })->chi2;
+    EXPECT_GE(kth[i], last);
+    EXPECT_LE(kth[i], 1.05F * last);
+  });
+  EXPECT_EQ(weighted_sums(search, 125, points, Weight::far, kth), sums);
+  for (std::size_t i = 0; i < kth.size(); ++i) kth[i] *= i % 3 == 0 ? 0 : i % 3 == 1 ? 1e-3F : 1e3F;
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(weighted_sums(search, 125, points, Weight::far, kth), sums);
+}
+
+// More alike than are asked for: sums are 0 without a look at all of them, and right for the others.
+TEST(Chi2Sums, AreZeroWhereMoreHistogramsAreAlikeThanCount) {
+  Descriptors histograms = random_histograms(900, 9, 9);
+  for (std::size_t i = 0; i < 600; ++i)
+    for (std::size_t bin = 0; bin < kFpfhBins; ++bin)
+      histograms.values[i * kFpfhBins + bin] = bin % 11 == 5 ? (i % 3 == 0 ? 100 : 99.99999F) : 0;
+  const std::vector<Vec3> points = shapes::random_cloud(900, 3);
+  const Chi2Search search(histograms);
+  const std::vector<double> sums = sums_of(search, 100, points, Weight::near);
+  search.for_each(100, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+    double expected = 0;
+    for (const Chi2Neighbour& n : nearest)
+      expected +=
+          static_cast<double>(n.chi2) / (1 + (points[i] - points[static_cast<std::size_t>(n.index)]).norm());
+    if (i < 600) {
+      EXPECT_EQ(sums[i], 0);
+    }
+    EXPECT_NEAR(sums[i], expected, 1e-6 * std::max(expected, 1.0)) << i;
+  });
+}
+
+TEST(Chi2Kernel, WeightsAreExactToSinglePrecision) {
+  for (double d = 0; d <= 2; d += 1.0 / 512)
+    for (const Weight weight : {Weight::near, Weight::far}) {
+      const double expected = weight_by_definition(weight, d);
+      EXPECT_NEAR(chi2_kernel::weight_of(weight, static_cast<float>(d)), expected, 3e-7 * expected) << d;
+    }
+}
+
+// Whatever the order of the terms; a double would round most of these sums.
+TEST(Chi2Kernel, SumsOfTermsAreExact) {
+  constexpr float kGrid = 1.0F / 16;
+  Rng rng(3, "terms", "");
+  std::vector<float> terms;
+  for (int i = 0; i < 4000; ++i)
+    terms.push_back(chi2_kernel::term_of(Weight::near, kGrid,
+                                         static_cast<float>(std::exp(20 * rng.uniform() - 12)),
+                                         static_cast<float>(rng.uniform())));
+  const auto sum = [&] {
+    double total = 0;
+    for (const float term : terms) total += static_cast<double>(term);
+    return total;
+  };
+  const double as_they_come = sum();
+  std::sort(terms.begin(), terms.end());
+  EXPECT_EQ(sum(), as_they_come);
+  std::reverse(terms.begin(), terms.end());
+  EXPECT_EQ(sum(), as_they_come);
+}
+
+}  // namespace
+}  // namespace salbench
