@@ -3,9 +3,9 @@
 
 #include <map>
 #include <mutex>
-#include <set>
 #include <shared_mutex>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -27,8 +27,10 @@ namespace fs = std::filesystem;
 
 struct StageEntries {
   std::unordered_map<Digest, ArtefactName> by_key;
-  std::set<std::string, std::less<>> items;
+  std::unordered_set<std::string> items;
 };
+
+constexpr std::size_t kShardGrain = 16;  // shards that are listed by one thread at a time
 
 std::string attribute_inputs(const Recipe& recipe) {
   std::string text;
@@ -72,30 +74,45 @@ struct FolderStore::Impl {
     return found == entries->second.by_key.end() ? nullptr : &found->second;
   }
 
-  static void insert(const ArtefactName& name, StageEntries& entries) {
-    const auto [known, fresh] = entries.by_key.try_emplace(name.key, name);
-    // Two contents under one key: some stage is not deterministic. Every machine takes the smaller digest.
-    if (!fresh && name.content < known->second.content) known->second = name;
+  static void insert(ArtefactName name, StageEntries& entries) {
     entries.items.insert(name.item);
+    const auto [known, fresh] = entries.by_key.try_emplace(name.key);
+    // Two contents under one key: some stage is not deterministic. Every machine takes the smaller digest.
+    if (fresh || name.content < known->second.content) known->second = std::move(name);
   }
 
   // A file whose size is not the one in its name was truncated by others: not listed, so a miss. Moved aside,
   // it is not reported again at each listing.
-  bool is_complete(const fs::path& file, const ArtefactName& name) const {
-    const auto size = size_of_file(file);
-    if (size && *size != name.size)
-      quarantine(file, fmt::format("truncated: {} of {} bytes", *size, name.size));
-    return size == name.size;
+  bool is_complete(const fs::path& shard, std::string_view file, const ArtefactName& name,
+                   std::uintmax_t bytes) const {
+    if (bytes == name.size) return true;
+    quarantine(shard / file, fmt::format("truncated: {} of {} bytes", bytes, name.size));
+    return false;
   }
 
-  // Most of the time of a run with nothing to do: several stages at a time.
+  std::vector<ArtefactName> complete_artefacts(const fs::path& shard) const {
+    std::vector<ArtefactName> complete;
+    visit_files(shard, [&](std::string_view file, std::uintmax_t bytes) {
+      if (auto name = parse_artefact_name(file); name && is_complete(shard, file, *name, bytes))
+        complete.push_back(std::move(*name));
+    });
+    return complete;
+  }
+
+  // Most of the time of a run with nothing to do: several stages at a time, and several shards of each.
   void list_all() {
     std::vector<std::pair<const std::string, StageEntries>*> listed;
     for (const std::string& stage : list_stages(folder)) listed.push_back(&*stages.try_emplace(stage).first);
     parallel_ranges(listed.size(), 1, [&](std::size_t i, std::size_t) {
       auto& [stage, entries] = *listed[i];
-      for (const ArtefactFile& file : list_stage(folder, stage).artefacts)
-        if (is_complete(file.path, file.name)) insert(file.name, entries);
+      const std::vector<FolderEntry> shards = list_folder(folder / stage);
+      std::vector<std::vector<ArtefactName>> found(shards.size());
+      parallel_ranges(shards.size(), kShardGrain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t s = first; s < last; ++s)
+          if (shards[s].is_folder) found[s] = complete_artefacts(shards[s].path);
+      });
+      for (std::vector<ArtefactName>& names : found)
+        for (ArtefactName& name : names) insert(std::move(name), entries);
     });
     std::erase_if(stages, [](const auto& stage) { return stage.second.by_key.empty(); });
   }
@@ -176,7 +193,9 @@ bool FolderStore::has_item(std::string_view stage, std::string_view item) const 
 std::optional<Digest> FolderStore::refresh_and_find(std::string_view stage, const Digest& key) {
   if (const auto content = find(stage, key)) return content;
   for (const ArtefactName& name : find_artefacts(impl_->folder, stage, key)) {
-    if (!impl_->is_complete(impl_->path(stage, name), name)) continue;
+    const fs::path file = impl_->path(stage, name);
+    const auto bytes = size_of_file(file);
+    if (!bytes || !impl_->is_complete(file.parent_path(), file.filename().native(), name, *bytes)) continue;
     const std::unique_lock lock(impl_->mutex);
     Impl::insert(name, impl_->stages[std::string(stage)]);
   }

@@ -17,7 +17,7 @@
 
 namespace salbench {
 
-// What `plan` may ask: it never touches the artefacts.
+// What `plan` may ask, from several threads at once: it never touches the artefacts.
 class Index {
  public:
   virtual ~Index() = default;

@@ -9,9 +9,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <system_error>
 #include <utility>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/random.h>
@@ -210,6 +212,25 @@ std::vector<FolderEntry> list_folder(const fs::path& folder) {
   std::sort(entries.begin(), entries.end(),
             [](const FolderEntry& a, const FolderEntry& b) { return a.path.native() < b.path.native(); });
   return entries;
+}
+
+// The folder stays open, and its files are looked at by their names in it: for the tens of thousands of a
+// cache, making a path of each and looking it up takes nearly as long as the rest of their listing.
+void visit_files(const fs::path& folder,
+                 const std::function<void(std::string_view name, std::uintmax_t bytes)>& visit) {
+  const std::unique_ptr<DIR, int (*)(DIR*)> listed(::opendir(folder.c_str()), ::closedir);
+  if (!listed && is_missing(errno)) return;
+  if (!listed) fail(folder, "listed", errno);
+  for (errno = 0; const dirent* entry = ::readdir(listed.get()); errno = 0) {
+    if (entry->d_type == DT_DIR) continue;
+    struct stat status {};
+    if (::fstatat(::dirfd(listed.get()), entry->d_name, &status, 0) == 0) {
+      if (S_ISREG(status.st_mode)) visit(entry->d_name, static_cast<std::uintmax_t>(status.st_size));
+    } else if (!is_missing(errno) && errno != ELOOP) {
+      fail(folder / entry->d_name, "looked at", errno);
+    }
+  }
+  if (errno != 0) fail(folder, "listed", errno);
 }
 
 void make_folder(const fs::path& folder, std::string_view advice) {

@@ -199,6 +199,10 @@ HumanCurve curve_of(const Arrays& arrays) {
 }
 Value human_curve_from(const Arrays& arrays) { return curve_of(arrays); }
 
+// As a curve has one row per group size, the table has one per shape.
+Arrays arrays_of(const ScoreTable& table) { return arrays_of(table.rows); }
+Value score_table_from(const Arrays& arrays) { return ScoreTable{curve_of(arrays)}; }
+
 // A curve of one point, without the dimension of the group size.
 Arrays arrays_of(const Scores& scores) {
   Arrays arrays = arrays_of(HumanCurve{scores});
@@ -305,6 +309,7 @@ constexpr std::array<Kind, std::variant_size_v<Value>> kKinds = {{
     {"human_curve", human_curve_from},
     {"picture", picture_from},
     {"point_cloud", cloud_from},
+    {"score_table", score_table_from},
 }};
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "io/arrays.h"
 #include "stages/core/picture.h"
@@ -13,8 +14,13 @@
 
 namespace salbench {
 
+// The scores of many shapes, so that tables need one file and not one per shape.
+struct ScoreTable {
+  std::vector<Scores> rows;  // in the order of the shapes
+};
+
 using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                           Scores, HumanCurve, Picture, PointCloud>;
+                           Scores, HumanCurve, Picture, PointCloud, ScoreTable>;
 
 Arrays arrays_from(const Value& value);
 

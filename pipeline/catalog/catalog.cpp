@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -54,6 +55,12 @@ Histogram mean_over(const Members<T>& members) {
     if (!values.empty()) histograms.push_back(normalised_histogram(values));  // a scan may show nothing known
   }
   return mean_histogram(histograms);
+}
+
+ScoreTable score_table(const Members<Scores>& members) {
+  ScoreTable table;
+  for (std::size_t i = 0; i < members.size; ++i) table.rows.push_back(std::get<Scores>(*members.value(i)));
+  return table;
 }
 
 // --- groups of rows ----------------------------------------------------------------------------------------
@@ -171,6 +178,15 @@ void add_picture(Catalog& catalog, const Config& config, Shapes shapes, const Fu
   catalog.add(shapes, head, picture, inputs..., section("picture", config.picture), kRandom);
 }
 
+// One per row of scores, of maps and of people alike: results are read from a few files, not from thousands.
+void add_score_tables(Catalog& catalog) {
+  for (std::size_t row = 0, n = catalog.rows.size(); row < n; ++row) {
+    if (catalog.rows[row].kind != "scores") continue;
+    const auto [name, shapes] = std::pair(catalog.rows[row].name, catalog.rows[row].shapes);
+    catalog.add(shapes, {"score_table" + name.substr(name.find('.')), 1}, score_table, RowOf<Scores>(row));
+  }
+}
+
 }  // namespace
 
 Catalog make_catalog(const Config& config, const std::optional<Histogram>& given_reference,
@@ -225,6 +241,7 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
     if (kinds.clouds)
       add_picture(catalog, config, Shapes::clouds, picture_of_cloud, cloud, clouds.normals, clouds.surface);
   }
+  add_score_tables(catalog);
   return catalog;
 }
 

@@ -26,10 +26,12 @@ struct ExportOptions {
   bool link = false;          // h5: refer to the artefacts in the cache, do not copy them
 };
 
+// All but the tables of scores, which are exported with the scores.
 std::vector<std::string> stages_of(const Catalog& catalog) {
   std::vector<std::string> names;
   for (const Row& row : catalog.rows)
-    if (std::find(names.begin(), names.end(), row.name) == names.end()) names.push_back(row.name);
+    if (row.kind != "score_table" && std::find(names.begin(), names.end(), row.name) == names.end())
+      names.push_back(row.name);
   return names;
 }
 

@@ -6,10 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "stages/core/parallel.h"
 #include "stages/scan/scan.h"
 
 namespace salbench {
 namespace {
+
+constexpr std::size_t kItemGrain = 64;  // items of a row that are planned by one thread at a time
 
 Job verdict_of(Verdict verdict, Reason reason, std::size_t blocking_input = 0) {
   return {verdict, reason, static_cast<std::uint8_t>(blocking_input), {}, {}};
@@ -204,14 +207,17 @@ Plan make_plan(const Context& context, const Index& index) {
   plan.jobs.resize(context.catalog.rows.size());
   for (std::size_t row = 0; row < plan.jobs.size(); ++row) {
     plan.jobs[row].resize(places_of(context, row), verdict_of(Verdict::not_applicable, Reason::none));
-    for (const Item& item : items_of(context, row)) {
-      const JobRef job{row, item};
-      Job decided = decide(context, plan, job, lookup);
-      if (decided.reason == Reason::never_computed &&
-          index.has_item(context.row(job).name, context.name(job)))
-        decided.reason = Reason::changed;
-      plan[job] = decided;
-    }
+    const std::vector<Item> items = items_of(context, row);
+    parallel_ranges(items.size(), kItemGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const JobRef job{row, items[i]};
+        Job decided = decide(context, plan, job, lookup);
+        if (decided.reason == Reason::never_computed &&
+            index.has_item(context.row(job).name, context.name(job)))
+          decided.reason = Reason::changed;
+        plan[job] = decided;
+      }
+    });
   }
   return plan;
 }

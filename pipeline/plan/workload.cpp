@@ -13,6 +13,7 @@
 #include "pipeline/catalog/given_maps.h"
 #include "pipeline/catalog/given_truth.h"
 #include "stages/core/errors.h"
+#include "stages/core/parallel.h"
 
 namespace salbench {
 namespace {
@@ -147,8 +148,10 @@ Workload make_workload(const Dataset& dataset, const std::string& selection,
   std::vector<DatasetItem> items = dataset.items;
   std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
   Workload workload{dataset.layout, {}, dataset.notes};
-  for (const DatasetItem& item : shard ? share_of(items, *shard) : items)
-    workload.families.push_back(make_family(item));
+  if (shard) items = share_of(items, *shard);
+  workload.families.resize(items.size());
+  parallel_ranges(items.size(), 1,
+                  [&](std::size_t i, std::size_t) { workload.families[i] = make_family(items[i]); });
   return workload;
 }
 

@@ -97,10 +97,7 @@ class Exporter {
     if (item.is_scan()) attributes.emplace_back("view", std::int64_t{item.view});
     file_->attributes(name, attributes);
     for (const JobRef& job : jobs_of(context_.catalog, item))
-      if (context_.row(job).kind == "scores")
-        add_score(job);
-      else
-        add_result(name + "/" + context_.row(job).name, job);
+      if (context_.row(job).kind != "scores") add_result(name + "/" + context_.row(job).name, job);
   }
 
   bool wanted(const JobRef& job) const {
@@ -141,20 +138,16 @@ class Exporter {
     return {std::move(*image), *path};
   }
 
-  void add_score(const JobRef& job) {
-    if (!wanted(job)) return;
-    const std::string& stage = context_.row(job).name;
-    rows_.push_back(result_row(context_, job.item, stage.substr(stage.find('.') + 1),
-                               std::get<Scores>(*source_.run.runner.result(job))));
-    origins_.emplace_back(source_.run.plan[job].key, source_.run.plan[job].content);
-  }
-
   void add_scores() {
-    if (rows_.empty()) return;
-    Table table = results_table(rows_, chosen_metrics(source_.run.config.metrics));
+    std::vector<ResultRow> rows = collect_results(source_.run);
+    std::erase_if(rows, [&](const ResultRow& row) { return !wanted(row.job); });
+    if (rows.empty()) return;
+    Table table = results_table(rows, chosen_metrics(source_.run.config.metrics));
     table.columns.insert(table.columns.end(), {"key", "content"});
-    for (std::size_t r = 0; r < table.rows.size(); ++r)
-      table.rows[r].insert(table.rows[r].end(), {origins_[r].first.hex(), origins_[r].second.hex()});
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const Job& job = source_.run.plan[rows[r].job];
+      table.rows[r].insert(table.rows[r].end(), {job.key.hex(), job.content.hex()});
+    }
     file_->table({std::string(kScores), std::move(table),
                   "agreement of each model's map with the ground truth; NaN where undefined"});
   }
@@ -165,8 +158,6 @@ class Exporter {
   const fs::path& folder_;
   bool link_;
   std::optional<Hdf5Writer> file_;
-  std::vector<ResultRow> rows_;
-  std::vector<std::pair<Digest, Digest>> origins_;  // key and content, as rows_
 };
 
 }  // namespace

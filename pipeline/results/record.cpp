@@ -2,8 +2,8 @@
 #include "pipeline/results/record.h"
 
 #include <algorithm>
-#include <set>
 #include <sstream>
+#include <unordered_set>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -106,23 +106,20 @@ double peak_memory_mb() {
 // By stage, in the order of the rows: what the artefacts of this run's jobs occupy. Items may share one.
 std::string cache_lines(const RunRecord& record) {
   const Context& context = record.run.context;
-  std::vector<std::pair<std::string, std::uint64_t>> stages;
-  std::set<std::pair<std::string, Digest>> counted;
+  std::vector<std::pair<std::string, std::unordered_set<Digest>>> stages;
   for (std::size_t row = 0; row < record.run.plan.jobs.size(); ++row) {
     const std::string& stage = context.catalog.rows[row].name;
-    std::uint64_t bytes = 0;
+    auto keys = std::find_if(stages.begin(), stages.end(), [&](const auto& of) { return of.first == stage; });
+    if (keys == stages.end()) keys = stages.insert(keys, {stage, {}});
     for (const Job& job : record.run.plan.jobs[row])
-      if (job.known() && counted.emplace(stage, job.key).second)
-        bytes += record.store.bytes_of(stage, job.key).value_or(0);
-    const auto known =
-        std::find_if(stages.begin(), stages.end(), [&](const auto& of) { return of.first == stage; });
-    if (known == stages.end())
-      stages.emplace_back(stage, bytes);
-    else
-      known->second += bytes;
+      if (job.known()) keys->second.insert(job.key);
   }
   std::string yaml = "cache_bytes:  # of the artefacts of this run, by stage\n";
-  for (const auto& [stage, bytes] : stages) yaml += fmt::format("  {}: {}\n", stage, bytes);
+  for (const auto& [stage, keys] : stages) {
+    std::uint64_t bytes = 0;
+    for (const Digest& key : keys) bytes += record.store.bytes_of(stage, key).value_or(0);
+    yaml += fmt::format("  {}: {}\n", stage, bytes);
+  }
   return yaml;
 }
 

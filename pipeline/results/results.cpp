@@ -2,6 +2,7 @@
 #include "pipeline/results/results.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,41 +25,41 @@ std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& r
   return pairs;
 }
 
-ResultRow result_row(const Context& context, const Item& item, const std::string& model,
-                     const Scores& scores) {
-  const DatasetItem& source = context.source(item);
-  return {std::string(name_of(item.shapes())),
+namespace {
+
+ResultRow result_row(const Context& context, const JobRef& job, Scores scores) {
+  const DatasetItem& source = context.source(job.item);
+  const std::string& stage = context.row(job).name;
+  return {std::string(name_of(job.item.shapes())),
           source.name,
           source.category,
-          item.is_scan() ? std::to_string(item.view) : "",
-          model,
-          scores};
+          job.item.is_scan() ? std::to_string(job.item.view) : "",
+          stage.substr(stage.find('.') + 1),
+          std::move(scores),
+          job};
 }
 
+}  // namespace
+
 std::vector<ResultRow> collect_results(const RunState& run) {
-  struct ScoresOf {
-    std::string model;
-    std::size_t row;
+  struct Scored {
+    std::size_t row;  // of the scores that the table is made of
+    ValuePtr table;
+    std::size_t taken = 0;  // rows of the table
   };
   const Catalog& catalog = run.context.catalog;
-  std::vector<ScoresOf> scored;
-  for (const Model& model : run.config.models)
-    for (const Shapes shapes : kAllShapes)
-      if (const std::string name = "scores." + model.name; catalog.has(shapes, name))
-        scored.push_back({model.name, catalog.index(shapes, name)});
+  std::vector<Scored> scored;
+  for (std::size_t row = 0; row < catalog.rows.size(); ++row)
+    if (catalog.rows[row].kind == "score_table")
+      scored.push_back({catalog.rows[row].inputs[0], run.runner.result_so_far({row, Item::set()})});
 
   std::vector<ResultRow> rows;
-  const std::vector<Item> items = all_items(run.context);
-  run.runner.progress().begin("collecting scores", items.size());
-  for (const Item& item : items) {
-    for (const ScoresOf& of : scored) {
-      const JobRef job{of.row, item};
+  for (const Item& item : all_items(run.context))
+    for (auto& [row, table, taken] : scored) {
+      const JobRef job{row, item};
       if (run.context.row(job).scope() == item.scope() && run.plan[job].known())
-        rows.push_back(result_row(run.context, item, of.model, std::get<Scores>(*run.runner.result(job))));
+        rows.push_back(result_row(run.context, job, std::get<ScoreTable>(*table).rows.at(taken++)));
     }
-    run.runner.progress().item_done();
-  }
-  run.runner.progress().end();
   return rows;
 }
 

@@ -23,6 +23,7 @@ struct ResultRow {
   std::string view;  // of a scan; empty for others
   std::string model;
   Scores scores;
+  JobRef job = {};  // that gave them
 
   // Of one of the metrics that the scores hold.
   double value(std::size_t metric) const { return scores.values.at(metric); }
@@ -44,10 +45,8 @@ struct RunState {
   Runner& runner;
 };
 
-ResultRow result_row(const Context& context, const Item& item, const std::string& model,
-                     const Scores& scores);
-
 // One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
+// Read from the tables of scores, or for those that are still open from the scores that there are.
 std::vector<ResultRow> collect_results(const RunState& run);
 
 // The tables below have the metrics that the scores hold, in their order.

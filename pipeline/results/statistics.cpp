@@ -178,7 +178,7 @@ Table mean_histogram_table(const RunState& run, Shapes shapes) {
   for (std::size_t r = 0; r < run.plan.jobs.size(); ++r) {
     const Row& row = run.context.catalog.rows[r];
     const JobRef job{r, Item::set()};
-    if (!row.gathers || row.shapes != shapes || !run.plan[job].known()) continue;
+    if (row.kind != "histogram" || row.shapes != shapes || !run.plan[job].known()) continue;
     const std::size_t dot = row.name.find('.');  // "mean_histogram.LS", or "reference"
     table.columns.push_back(dot == std::string::npos ? "GS" : row.name.substr(dot + 1));
     const auto histogram = std::get<Histogram>(*run.runner.result(job));

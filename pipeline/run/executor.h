@@ -47,7 +47,8 @@ class Executor {
   // only the same content will do. With Damaged::report it is an InputError.
   ValuePtr load(const JobRef& job);
 
-  // Computes a known job again from what the cache has, and stores nothing.
+  // Computes a job again from what the cache has, and stores nothing: a known one, or one of the data set
+  // over the members that are known so far.
   Value recompute(const JobRef& job);
 
   // Drops the values of an item.

@@ -130,6 +130,10 @@ std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
   return claimed_by_others;
 }
 
+ValuePtr Runner::result_so_far(const JobRef& set) {
+  return plan_[set].known() ? result(set) : std::make_shared<const Value>(executor_.recompute(set));
+}
+
 std::vector<Failure> Runner::failures() const {
   std::vector<Failure> failures = executor_.failures();
   std::stable_sort(failures.begin(), failures.end(), [](const Failure& a, const Failure& b) {

@@ -26,6 +26,9 @@ class Runner {
   // A known result, from the cache where it is there. Damaged artefacts are computed again.
   ValuePtr result(const JobRef& job) { return executor_.load(job); }
 
+  // The same for a job of the data set, which may be open: then over the members that are known so far.
+  ValuePtr result_so_far(const JobRef& set);
+
   std::vector<Failure> failures() const;  // by item, then in the order of rows
   const std::vector<NodeRecord>& records() const { return executor_.records(); }  // [row]
   std::size_t computed() const;

@@ -123,7 +123,8 @@ TEST(Evaluate, OnlyWhatAChangedMapConcernsIsComputed) {
   EXPECT_EQ(toy.computed(), 0);
   replace_first_line(maps / "1.val", "0.125");
   ASSERT_EQ(evaluate(toy, maps).status, 0);
-  EXPECT_EQ(toy.computed(), JobCounts(kMeshesOnly, 1).of_model("PS")) << "of one mesh, and the mean";
+  EXPECT_EQ(toy.computed(), JobCounts(kMeshesOnly, 1).of_model("PS"))
+      << "of one mesh, the mean and the table";
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0);
   EXPECT_EQ(toy.results(), alone);

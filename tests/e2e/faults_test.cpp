@@ -100,12 +100,12 @@ TEST(Faults, NoDamagedArtefactOfAnyKindIsReadAsValid) {
   spdlog::set_level(spdlog::level::off);  // each is named in a warning
   Tally lengths, bytes;
   for (const char* stage : {"mesh", "ground_truth", "normals", "scan", "surface", "fpfh", "map.PS",
-                            "reference", "scores.PS", "curve.HS"}) {
+                            "reference", "scores.PS", "score_table.PS", "curve.HS"}) {
     const auto found = std::find_if(artefacts.begin(), artefacts.end(),
                                     [&](const ArtefactFile& file) { return file.stage == stage; });
     ASSERT_NE(found, artefacts.end()) << stage;
     const Tally cut = cut_short(*found, stride), flipped = flip_bytes(*found, stride);
-    fmt::print("{:12}: {} of {} truncations, {} of {} flipped bytes read as valid\n", stage, cut.valid,
+    fmt::print("{:14}: {} of {} truncations, {} of {} flipped bytes read as valid\n", stage, cut.valid,
                cut.tried, flipped.valid, flipped.tried);
     EXPECT_EQ(cut.valid + flipped.valid, 0U) << stage;
     EXPECT_GT(std::min(cut.tried, flipped.tried), 3U);

@@ -164,7 +164,8 @@ TEST(Shards, WithAGivenReferenceLeaveNothingButTheTablesToDo) {
   EXPECT_THAT(toy.artefacts("scores.PS"), SizeIs(JobCounts().of("scores.PS")));
   ASSERT_EQ(toy.salbench("run", {"--reference", reference}).status, 0);
   const JobCounts jobs;
-  EXPECT_EQ(toy.computed(), jobs.means() - jobs.of("reference")) << "the mean histograms of the models";
+  EXPECT_EQ(toy.computed(), jobs.of_the_data_set() - jobs.of("reference"))
+      << "the mean histograms of the models, and their tables of scores";
 }
 
 TEST(Shards, AreWrittenIOfN) {

@@ -16,6 +16,8 @@ except ImportError as error:
 
 TEXTS = ("program", "item", "kind", "stage", "options", "seed", "inputs", "key", "content", "protocol")
 
+METRICS = ["auc", "auc_exact", "nss", "cc", "lcc"]
+
 
 def fail(path, what):
     sys.exit(f"{path}: {what}")
@@ -82,12 +84,25 @@ def points_of(path, file):
     return None
 
 
+def check_score_table(path, file, results):
+    """One row per shape, in the order of the attribute `inputs`."""
+    names = [line.rpartition(": ")[0] for line in text_of(path, file, "inputs").splitlines()]
+    expected = results[results["model"] == text_of(path, file, "stage").partition(".")[2]]
+    expected = expected.set_index("name").reindex(names)
+    if not numpy.array_equal(expected[METRICS].to_numpy(), file["scores"][:], equal_nan=True):
+        fail(path, "other scores than in results.csv")
+    if not numpy.array_equal(expected[["n_points", "n_picks"]].to_numpy(), file["counts"][:]):
+        fail(path, "other counts than in results.csv")
+    return len(names)
+
+
 def main():
     cache, results_csv = pathlib.Path(sys.argv[1]), sys.argv[2]
     results = pandas.read_csv(results_csv, dtype={"item": str, "view": "Int64"}, float_precision="round_trip")
     names = results["item"] + results["view"].map(lambda view: "" if pandas.isna(view) else f"_{view}")
+    results["name"] = names
     points = dict(zip(names, results["n_points"]))
-    checked = scored = 0
+    checked = scored = in_tables = 0
     for path in sorted(cache.glob("*/??/*.h5")):
         with h5py.File(path, "r") as file:
             check_attributes(path, file)
@@ -98,13 +113,14 @@ def main():
             if text_of(path, file, "kind") == "scores":
                 model = text_of(path, file, "stage").partition(".")[2]
                 row = results[(names == item) & (results["model"] == model)]
-                columns = ["auc", "auc_exact", "nss", "cc", "lcc"]
-                if not numpy.array_equal(row[columns].to_numpy()[0], file["scores"][:], equal_nan=True):
+                if not numpy.array_equal(row[METRICS].to_numpy()[0], file["scores"][:], equal_nan=True):
                     fail(path, "other scores than in results.csv")
                 scored += 1
+            if text_of(path, file, "kind") == "score_table":
+                in_tables += check_score_table(path, file, results)
             checked += 1
-    if scored != len(results):
-        sys.exit(f"{scored} artefacts of scores, {len(results)} rows of results")
+    if scored != len(results) or in_tables != len(results):
+        sys.exit(f"{scored} artefacts of scores, {in_tables} rows in tables of scores, {len(results)} rows of results")
     print(f"ok: {checked} artefacts, {scored} of them scores")
 
 

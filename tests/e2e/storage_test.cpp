@@ -130,10 +130,18 @@ TEST_F(DamagedCache, TruncatedArtefactsAreComputedAgain) {
 }
 
 TEST_F(DamagedCache, FlippedBytesAreFoundWhenTheArtefactIsRead) {
-  const fs::path first = artefact("scores.PS", 3), second = artefact("scores.RS", 7);
+  const fs::path first = artefact("mean_histogram.RS", 0), second = artefact("score_table.RS", 1);
   flip_byte(first, 0);  // HDF5's own signature
   flip_byte(second, fs::file_size(second) - 20);
   expect_recovery({first, second});
+}
+
+TEST_F(DamagedCache, TablesOfScoresAreMendedFromDamagedScores) {
+  std::vector<fs::path> damaged = toy_.artefacts("score_table.PS");  // of meshes and of scans
+  damaged.push_back(artefact("scores.PS", 3));
+  damaged.push_back(artefact("scores.PS", 17));
+  for (const fs::path& file : damaged) flip_byte(file, fs::file_size(file) / 2);
+  expect_recovery(damaged);
 }
 
 // What is cached and not read again is not looked at; with the maps gone, the descriptors are needed.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Arguments and configurations: what is wrong is said in one line, and the exit status says who has to act.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/e2e/workspace.h"
+#include "tests/support/job_counts.h"
 
 namespace salbench {
 namespace {
@@ -186,7 +188,9 @@ TEST(Usage, WhatTakesLongSaysHowFarItIs) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(lines_with(outcome.err, line), SizeIs(1)) << outcome.err;
   };
-  says(toy.command("run"), "collecting scores: 2/2 items");
+  const JobCounts jobs(kMeshesOnly);
+  const std::size_t of_reference = jobs.of("mesh") + jobs.of("ground_truth") + jobs.of("reference");
+  says(toy.command("run"), fmt::format("evaluation: {0}/{0} jobs", jobs.all() - of_reference));
   says(toy.command("maps", {"--to", (toy / "maps").string()}), "writing: 2/2 items");
   says(toy.command("export", {"--to", (toy / "all.h5").string()}), "exporting: 2/2 items");
   says(toy.command("export", {"--to", (toy / "shapes").string(), "--format", "ply"}), "exporting: 2/2 items");

@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <iterator>
+#include <map>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -128,6 +129,25 @@ TEST(File, ListsAFolderByNameAndTellsFoldersApart) {
   EXPECT_EQ(entries, (std::vector<std::pair<std::string, bool>>{{"a", false}, {"b", false}, {"c", true}}));
   EXPECT_TRUE(list_folder(folder / "absent").empty());
   EXPECT_TRUE(list_folder(folder / "b").empty()) << "a file is no folder";
+}
+
+TEST(File, VisitsTheFilesOfAFolderWithTheirSizes) {
+  const TemporaryFolder folder;
+  folder.write("empty", "");
+  folder.write(".hidden", "four");
+  folder.write("sub/below", "not directly in it");
+  std::filesystem::create_symlink("nowhere", folder / "dangling");
+  std::filesystem::create_symlink(".hidden", folder / "link");
+  std::filesystem::create_symlink("sub", folder / "link_to_folder");
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::map<std::string, std::uintmax_t> sizes;
+  const auto visit = [&](std::string_view name, std::uintmax_t bytes) { sizes.emplace(name, bytes); };
+  visit_files(folder.path(), visit);
+  EXPECT_EQ(sizes, (std::map<std::string, std::uintmax_t>{{"empty", 0}, {".hidden", 4}, {"link", 4}}));
+  sizes.clear();
+  visit_files(folder / "absent", visit);
+  visit_files(folder / "empty", visit);  // a file is no folder
+  EXPECT_TRUE(sizes.empty());
 }
 
 }  // namespace

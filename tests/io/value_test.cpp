@@ -102,6 +102,19 @@ TEST(Value, AHumanCurveCutOffIsNoCurve) {
   EXPECT_THROW(value_from("human_curve", arrays), InputError);
 }
 
+TEST(Value, ATableOfScoresHasOneRowPerShape) {
+  const ScoreTable table{{{{0.5, std::nan("")}, 100, 7}, {{0.25, 1}, 101, 0}, {{0, 0}, 3, 1}}};
+  EXPECT_EQ(arrays_from(table)[0].shape, (std::vector<std::size_t>{3, 2}));
+  EXPECT_EQ(arrays_from(table)[1].shape, (std::vector<std::size_t>{3, 2}));
+  const std::vector<Scores> back = round_trip(table).rows;
+  ASSERT_EQ(back.size(), 3U);
+  EXPECT_TRUE(std::isnan(back[0].values[1]));
+  EXPECT_EQ(back[1].values, (std::vector<double>{0.25, 1}));
+  EXPECT_EQ(back[1].n_points, 101);
+  EXPECT_EQ(back[2].n_picks, 1);
+  EXPECT_TRUE(round_trip(ScoreTable{}).rows.empty());
+}
+
 TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
   EXPECT_EQ(round_trip(ScalarField{1, 2, 3}), (ScalarField{1, 2, 3}));
   EXPECT_EQ(round_trip(Normals{{0, 0, 1}}), (Normals{{0, 0, 1}}));

@@ -41,7 +41,7 @@ Value made_up(std::string_view kind, std::size_t n_metrics, Rng rng) {
   throw std::invalid_argument("no made-up value for a result of kind " + std::string(kind));
 }
 
-// Means are real, of the made-up maps.
+// Means and tables are real, of the made-up maps and scores.
 void replace_bodies(Catalog& catalog, std::size_t n_metrics) {
   for (Row& row : catalog.rows)
     if (!row.gathers)

@@ -97,7 +97,7 @@ TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
   const auto computed = store.take_saved();
   const JobCounts jobs(config, 1);
   EXPECT_THAT(computed, SizeIs(jobs.of("map.FAR") + jobs.of("matched.FAR") + jobs.of("scores.FAR") +
-                               jobs.of("mean_histogram.FAR")));
+                               jobs.of("score_table.FAR") + jobs.of("mean_histogram.FAR")));
   EXPECT_THAT(computed, Each(HasSubstr("FAR")));
   const auto rows = run.results();
   const auto scored =

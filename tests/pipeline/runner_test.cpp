@@ -55,9 +55,36 @@ TEST_F(RunnerTest, ADamagedArtefactIsComputedAgainWhenItIsRead) {
   store_.damage("fpfh", "1_3");
   store_.remove("map.PS", "1_3");
   EXPECT_THAT(run(), ElementsAre("fpfh@1_3", "map.PS@1_3"));
+  store_.damage("score_table.PS", "meshes");
   store_.damage("scores.PS", "2");
-  EXPECT_THAT(run(), ElementsAre("scores.PS@2"));
+  EXPECT_THAT(run(), ElementsAre("score_table.PS@meshes", "scores.PS@2"));
   EXPECT_EQ(results_, before);
+}
+
+TEST_F(RunnerTest, ResultsAreReadFromTheTablesOfScores) {
+  run();
+  const std::string before = results_;
+  for (const char* item : {"1", "2", "1_3"}) store_.damage("scores.PS", item);
+  EXPECT_THAT(run(), IsEmpty()) << "the scores themselves were read";
+  EXPECT_EQ(results_, before);
+}
+
+TEST_F(RunnerTest, ResultsOfAnUnfinishedRunAreThoseOfTheScoresThatThereAre) {
+  run();
+  const auto line_of = [](const ResultRow& row) { return row.model + " " + row.item + " " + row.view; };
+  std::vector<std::string> expected;
+  for (const ResultRow& row : ToyRun(data_.path(), store_).results()) expected.push_back(line_of(row));
+  std::erase(expected, "PS 2 ");
+  store_.remove("scores.PS", "2");
+  store_.remove("score_table.PS", "meshes");
+  ToyRun planned(data_.path(), store_);
+  std::vector<std::string> found;
+  for (const ResultRow& row : planned.results()) {
+    found.push_back(line_of(row));
+    EXPECT_EQ(planned.plan[row.job].verdict, Verdict::cached);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_THAT(store_.take_saved(), IsEmpty());
 }
 
 // A configuration of every model, in which one of them has another option.
@@ -91,6 +118,7 @@ TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
         {"map." + name, jobs_.shapes()},
         {"matched." + name, jobs_.shapes()},
         {"scores." + name, jobs_.shapes()},
+        {"score_table." + name, jobs_.of("score_table.PS")},
         {"mean_histogram." + name, jobs_.of("mean_histogram.PS")}};
     EXPECT_EQ(jobs, name == "HS" ? of_people : of_maps);
     EXPECT_THAT(run(every_model()), IsEmpty());  // and back: both are in the cache
@@ -105,7 +133,7 @@ TEST_F(RunnerTest, AnEditedMeshConcernsItsFamilyAndTheReference) {
   const auto computed = run();
   for (const std::string& job : computed)
     EXPECT_THAT(job, testing::AnyOf(HasSubstr("@1"), HasSubstr("reference@"), HasSubstr("mean_histogram."),
-                                    HasSubstr("matched."), HasSubstr("scores.")));
+                                    HasSubstr("matched."), HasSubstr("scores."), HasSubstr("score_table.")));
   EXPECT_THAT(computed, Contains("map.PS@1_0"));
   EXPECT_THAT(computed, Not(Contains("map.PS@2_0")));
 }
@@ -122,7 +150,7 @@ TEST_F(RunnerTest, ANewlyWrittenButEqualFileConcernsNothing) {
 TEST_F(RunnerTest, AnotherSeedConcernsWhatIsRandom) {
   run();
   const auto computed = run(std::string(kToyConfig) + "seed: 7\n");
-  EXPECT_THAT(computed, SizeIs(jobs_.of_model("RS") + jobs_.of("scores.PS")));
+  EXPECT_THAT(computed, SizeIs(jobs_.of_model("RS") + jobs_.of("scores.PS") + jobs_.of("score_table.PS")));
 }
 
 TEST_F(RunnerTest, AFailingItemStopsNoOther) {

@@ -12,7 +12,9 @@
 namespace salbench {
 namespace {
 
+using testing::AnyOf;
 using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -22,16 +24,16 @@ using testing::SizeIs;
 TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
   run();
   const auto computed = run(std::string(kToyConfig) + "metrics: {splits: 7}\n");
-  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores")));
-  for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
+  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores") + jobs_.of_kind("score_table")));
+  EXPECT_THAT(computed, Each(AnyOf(HasSubstr("scores."), HasSubstr("score_table."))));
 }
 
 TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
   run();
   const std::string paper_results = results_;
   const auto computed = run(std::string(kToyConfig) + "metrics: [kl, auc, auc_judd_area]\n");
-  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores")));
-  for (const std::string& job : computed) EXPECT_THAT(job, HasSubstr("scores."));
+  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores") + jobs_.of_kind("score_table")));
+  EXPECT_THAT(computed, Each(AnyOf(HasSubstr("scores."), HasSubstr("score_table."))));
   EXPECT_THAT(results_, HasSubstr("model,auc,kl,auc_judd_area,n_points"));
   EXPECT_THAT(run(std::string(kToyConfig) + "metrics: {names: [auc_judd_area, kl, auc]}\n"), IsEmpty())
       << "the order in a file makes no other key";
@@ -87,7 +89,8 @@ TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
   std::vector<std::string> of_people;
   for (const std::string& job : computed)
     if (job.find(".HS@") != std::string::npos) of_people.push_back(job);
-  EXPECT_THAT(of_people, ElementsAre("curve.HS@1", "curve.HS@2", "scores.HS@1", "scores.HS@2"));
+  EXPECT_THAT(of_people,
+              ElementsAre("curve.HS@1", "curve.HS@2", "score_table.HS@meshes", "scores.HS@1", "scores.HS@2"));
   EXPECT_THAT(results_, HasSubstr("\nmeshes,1,human,,HS,"));
   EXPECT_THAT(results_, HasSubstr("\nscans,1,human,0,PS,"));
   EXPECT_THAT(results_, Not(HasSubstr("\nscans,1,human,0,HS,")));

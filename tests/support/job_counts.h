@@ -36,7 +36,7 @@ class JobCounts {
   std::size_t of_shapes() const {
     return where([](const Row& row) { return !row.gathers; });
   }
-  std::size_t means() const { return all() - of_shapes(); }
+  std::size_t of_the_data_set() const { return all() - of_shapes(); }
   std::size_t all() const {
     return where([](const Row&) { return true; });
   }
@@ -59,7 +59,7 @@ class JobCounts {
     return expect_some(where([&](const Row& row) { return row.name == name; }), name);
   }
 
-  // Map, matched map, scores and mean histogram, as far as the model has them.
+  // Map, matched map, scores, their table and mean histogram, as far as the model has them.
   std::size_t of_model(std::string_view model) const {
     return expect_some(
         where([end = "." + std::string(model)](const Row& row) { return row.name.ends_with(end); }), model);
