@@ -18,7 +18,7 @@ struct CsOptions {
   double descriptor_weight = 2;
   bool repair = true;
   double distribution_weight = 0.5;
-  std::int32_t sample = 65536;
+  std::int32_t sample = 262144;
 
   static CsOptions text();  // the paper's table of parameters: 100 clusters
 
