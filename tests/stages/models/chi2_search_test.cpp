@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -10,6 +11,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "tests/stages/models/chi2_variant.h"
 #include "tests/stages/models/random_histograms.h"
 #include "tests/support/shapes.h"
 
@@ -50,63 +52,71 @@ float chi2(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins
   return sum;
 }
 
-// The brute-force twin: a full sort of every row, of equal distances the higher index first.
-void expect_equals_brute_force(const Descriptors& descriptors, std::size_t k, Instructions instructions) {
-  const std::size_t n = descriptors.size();
+bool nearer(const Chi2Neighbour& a, const Chi2Neighbour& b) {
+  return std::pair(a.chi2, b.index) < std::pair(b.chi2, a.index);
+}
+
+// The brute-force twin: for each histogram a full sort of all, of equal distances the higher index first.
+using Ranking = std::vector<std::vector<Chi2Neighbour>>;
+Ranking ranking_of(const Descriptors& descriptors) {
+  Ranking ranking(descriptors.size());
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    for (std::size_t j = 0; j < descriptors.size(); ++j)
+      ranking[i].push_back({static_cast<std::int32_t>(j), chi2(descriptors.row(i), descriptors.row(j))});
+    std::sort(ranking[i].begin(), ranking[i].end(), nearer);
+  }
+  return ranking;
+}
+
+void expect_first_of(const Ranking& ranking, std::size_t k, const Chi2Search& search) {
   std::size_t rows = 0;
-  Chi2Search(descriptors, {}, instructions)
-      .for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
-        ++rows;
-        const std::vector<Chi2Neighbour> nearest = by_index(unordered);
-        std::vector<std::pair<float, std::size_t>> all;
-        for (std::size_t j = 0; j < n; ++j) all.emplace_back(chi2(descriptors.row(i), descriptors.row(j)), j);
-        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-          return std::pair(a.first, b.second) < std::pair(b.first, a.second);
-        });
-        all.resize(k);
-        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-        ASSERT_EQ(nearest.size(), k);
-        for (std::size_t c = 0; c < k; ++c) {
-          ASSERT_EQ(static_cast<std::size_t>(nearest[c].index), all[c].second) << "row " << i << " of " << n;
-          ASSERT_EQ(nearest[c].chi2, all[c].first) << "row " << i << " of " << n;  // to the last bit
-        }
-      });
-  EXPECT_EQ(rows, n);
-}
-
-TEST(Chi2Search, EqualsBruteForceWhereNoDistancesAreEqual) {
-  for (const std::size_t n : {1U, 15U, 16U, 17U, 130U}) {
-    const Descriptors histograms = random_histograms(n, 1U << 20U, n);
-    for (const std::size_t k : {std::size_t{1}, (n + 4) / 5, n})
-      expect_equals_brute_force(histograms, k, Instructions::baseline);
-  }
-}
-
-TEST(Chi2Search, EqualsBruteForceWhereManyDistancesAreEqual) {
-  for (const std::size_t k : {1U, 7U, 40U, 99U})
-    expect_equals_brute_force(random_histograms(100, 2, k), k, Instructions::baseline);
-}
-
-TEST(Chi2Search, EqualsBruteForceWithEveryVariantAndSeveralLevelsOfBoxes) {
-  for (const Instructions variant : {Instructions::baseline, Instructions::avx2, Instructions::avx512}) {
-    if (!chi2_kernel::supported(variant)) continue;
-    for (const std::uint64_t levels : {2U, 5U, 1U << 20U}) {
-      const Descriptors histograms = random_histograms(1100, levels, levels);
-      for (const std::size_t k : {1U, 55U, 1050U}) expect_equals_brute_force(histograms, k, variant);
+  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
+    ++rows;
+    std::vector<Chi2Neighbour> nearest(unordered.begin(), unordered.end());
+    std::sort(nearest.begin(), nearest.end(), nearer);
+    ASSERT_EQ(nearest.size(), k);
+    for (std::size_t c = 0; c < k; ++c) {
+      ASSERT_EQ(nearest[c].index, ranking[i][c].index) << "row " << i << " of " << ranking.size();
+      ASSERT_EQ(nearest[c].chi2, ranking[i][c].chi2) << "row " << i << ", to the last bit";
     }
+  });
+  EXPECT_EQ(rows, ranking.size());
+}
+
+class Chi2SearchVariant : public Chi2VariantTest {
+ protected:
+  static void expect_equals_brute_force(const Descriptors& descriptors,
+                                        std::initializer_list<std::size_t> counts) {
+    const Ranking ranking = ranking_of(descriptors);
+    const Chi2Search search(descriptors, {}, GetParam());
+    for (const std::size_t k : counts) expect_first_of(ranking, k, search);
   }
+};
+INSTANTIATE_TEST_SUITE_P(Chi2, Chi2SearchVariant, every_chi2_variant(), name_of_chi2_variant);
+
+TEST_P(Chi2SearchVariant, EqualsBruteForceWhereNoDistancesAreEqual) {
+  for (const std::size_t n : {1U, 15U, 16U, 17U, 130U})
+    expect_equals_brute_force(random_histograms(n, 1U << 20U, n), {1, (n + 4) / 5, n});
+}
+
+TEST_P(Chi2SearchVariant, EqualsBruteForceWhereManyDistancesAreEqual) {
+  for (const std::size_t k : {1U, 7U, 40U, 99U}) expect_equals_brute_force(random_histograms(100, 2, k), {k});
+}
+
+TEST_P(Chi2SearchVariant, EqualsBruteForceWithSeveralLevelsOfBoxes) {
+  for (const std::uint64_t levels : {2U, 5U, 1U << 20U})
+    expect_equals_brute_force(random_histograms(600, levels, levels), {1, 30, 570});
 }
 
 // Histograms of a few kinds, as those of shapes are: boxes far away are passed over.
-TEST(Chi2Search, EqualsBruteForceWhereMostIsPassedOver) {
+TEST_P(Chi2SearchVariant, EqualsBruteForceWhereMostIsPassedOver) {
   Rng rng(5, "kinds", "");
   const Descriptors kinds = random_histograms(12, 100, 6);
   Descriptors histograms;
   for (std::size_t i = 0; i < 1500; ++i)
     for (const float value : kinds.row(rng.below(12)))
       histograms.values.push_back(value + static_cast<float>(rng.below(4)));
-  for (const std::size_t k : {1U, 75U, 300U})
-    expect_equals_brute_force(histograms, k, chi2_kernel::widest_supported());
+  expect_equals_brute_force(histograms, {1, 75, 300});
 }
 
 TEST(Chi2Search, ComparesWithTheReferencesAlone) {
@@ -136,13 +146,12 @@ TEST(Chi2Search, ComparesWithTheReferencesAlone) {
   EXPECT_EQ(rows, 700U);
 }
 
-TEST(Chi2Search, RecoversFromAGuessThatMisleads) {
+TEST_P(Chi2SearchVariant, RecoversFromAGuessThatMisleads) {
   // Places that are neighbours in the order of the search have their k-th nearest at distances far apart.
   std::vector<float> heights(2048);
   for (std::size_t i = 0; i < heights.size(); ++i)
     heights[i] = i % 8 == 0 ? 1 : std::pow(1.04F, static_cast<float>(i % 1024));
-  for (const std::size_t k : {3U, 200U, 614U})
-    expect_equals_brute_force(one_bin(heights), k, chi2_kernel::widest_supported());
+  expect_equals_brute_force(one_bin(heights), {3, 200, 614});
 }
 
 TEST(Chi2Search, OrdersDistancesOfAnyMagnitude) {
@@ -188,7 +197,7 @@ TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
         testing::ThrowsMessage<InputError>(testing::HasSubstr("descriptor of point 2")));
 }
 
-TEST(Chi2Kernel, EveryVariantGivesTheSameBytes) {
+TEST_P(Chi2SearchVariant, KernelGivesTheBytesOfTheBaseline) {
   constexpr std::size_t bins = 17;
   const std::vector<std::int32_t> groups = {4, 0, 3};
   Rng rng(3, "kernel", "");
@@ -207,11 +216,7 @@ TEST(Chi2Kernel, EveryVariantGivesTheSameBytes) {
   const std::vector<float> baseline = run(Instructions::baseline);
   EXPECT_GT(*std::min_element(baseline.begin(), baseline.end() - 1), 0);
   EXPECT_GT(baseline.back(), 0);
-  for (const Instructions wider : {Instructions::avx2, Instructions::avx512}) {
-    if (chi2_kernel::supported(wider)) {
-      EXPECT_EQ(run(wider), baseline) << static_cast<int>(wider);
-    }
-  }
+  EXPECT_EQ(run(GetParam()), baseline);
 }
 
 TEST(Chi2Kernel, IsExactToSinglePrecision) {
@@ -228,20 +233,17 @@ TEST(Chi2Kernel, IsExactToSinglePrecision) {
   });
 }
 
-TEST(Chi2Kernel, PlacesAndCountTakeTheLimitAndPassOverInfinityAndNaN) {
+TEST_P(Chi2SearchVariant, PlacesAndCountTakeTheLimitAndPassOverInfinityAndNaN) {
   std::vector<float> values(48, std::numeric_limits<float>::infinity());
   values[0] = values[15] = values[16] = values[47] = 2;
   values[20] = 2.5F;
   values[21] = std::numeric_limits<float>::quiet_NaN();
   std::vector<std::int32_t> places(48, -1);
-  for (const Instructions variant : {Instructions::baseline, Instructions::avx2, Instructions::avx512}) {
-    if (!chi2_kernel::supported(variant)) continue;
-    const chi2_kernel::Kernel& kernel = chi2_kernel::kernel(variant);
-    EXPECT_EQ(kernel.count_up_to(2, values.data(), values.size()), 4U);
-    ASSERT_EQ(kernel.places_between(1, 2, values.data(), values.size(), places.data()), 4U);
-    EXPECT_THAT(std::vector(places.begin(), places.begin() + 4), ElementsAre(0, 15, 16, 47));
-    EXPECT_EQ(kernel.places_between(2, 2.5F, values.data(), values.size(), places.data()), 1U);
-  }
+  const chi2_kernel::Kernel& kernel = chi2_kernel::kernel(GetParam());
+  EXPECT_EQ(kernel.count_up_to(2, values.data(), values.size()), 4U);
+  ASSERT_EQ(kernel.places_between(1, 2, values.data(), values.size(), places.data()), 4U);
+  EXPECT_THAT(std::vector(places.begin(), places.begin() + 4), ElementsAre(0, 15, 16, 47));
+  EXPECT_EQ(kernel.places_between(2, 2.5F, values.data(), values.size(), places.data()), 1U);
 }
 
 }  // namespace
