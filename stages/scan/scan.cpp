@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
-// where the ray meets it, is decided in double. The filter receives every candidate and refuses it, so Embree
-// never shortens the ray: the result depends neither on the order in which it visits its tree, which differs
-// with the number of threads that built it, nor on the reciprocal estimates of the processor.
+// where the ray meets it, is decided in double, among those that float puts no farther behind the nearest one
+// than kMargin. The filter cuts the ray there at each hit, so that Embree does not search what is hidden. The
+// result depends neither on the order in which it visits its tree, which differs with the number of threads
+// that built it, nor on the reciprocal estimates of the processor.
 //
 // Frame of tracing, "local": the centroid at the origin, the square root of the surface area as unit.
 #include "stages/scan/scan.h"
@@ -28,6 +29,7 @@ namespace salbench {
 namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+constexpr float kMargin = 0.01F;  // local; thousands of times what float is off by
 
 // The corners of an icosahedron in the order of the benchmark's views.
 Vec3 view_direction(int view) {
@@ -157,22 +159,30 @@ const Traced& traced(const Mesh& mesh) {
   return *last;
 }
 
+struct Candidate {
+  std::uint32_t face;
+  float depth;  // along the direction of the ray, as Embree sees it
+};
+
 // Embree hands the context on to the filter.
 struct Candidates : RTCIntersectContext {
   const Traced& from;
-  std::vector<std::uint32_t> faces;  // that the rays so far may meet
+  std::vector<Candidate> noted;  // by the rays so far
+  float limit = 0;               // of the depth, for the present ray
 };
 
 // N is 1: rays are traced one by one. The face is looked at when the row is done; until then it arrives from
 // memory, which each look would wait for.
-void note_and_refuse(const RTCFilterFunctionNArguments* arguments) {
+void note_and_cut(const RTCFilterFunctionNArguments* arguments) {
   auto& candidates = *static_cast<Candidates*>(arguments->context);
+  float& depth = RTCRayN_tfar(arguments->ray, 1, 0);
   const std::uint32_t face = RTCHitN_primID(arguments->hit, 1, 0);
-  candidates.faces.push_back(face);
+  candidates.noted.push_back({face, depth});
   const Corners& corners = candidates.from.local_faces[face];
   __builtin_prefetch(&corners.front());
   __builtin_prefetch(&corners.back());
-  arguments->valid[0] = 0;
+  candidates.limit = std::min(candidates.limit, depth + kMargin);
+  depth = candidates.limit;  // where Embree goes on to search
 }
 
 // The nearest hit so far of one ray.
@@ -240,24 +250,30 @@ Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
   Scan scan{{}, from.frame.mesh_from_local(camera.position)};
   Candidates candidates{{}, from, {}};
   rtcInitIntersectContext(&candidates);
-  candidates.filter = note_and_refuse;
-  std::vector<std::size_t> ends;  // of the candidates of each ray of the row
+  candidates.filter = note_and_cut;
+  struct Traversed {
+    std::size_t end;  // of the ray's candidates in the row's
+    float limit;
+  };
+  std::vector<Traversed> rays;
   for (int row = window.top; row >= window.bottom; --row) {
     const auto direction = [&](int column) {
       return camera.ray((column + options.phase) * step, (row + options.phase) * step);
     };
-    candidates.faces.clear();
-    ends.clear();
+    candidates.noted.clear();
+    rays.clear();
     for (int column = window.left; column <= window.right; ++column) {
       alignas(16) RTCRayHit ray = float_ray(camera.position, direction(column));
+      candidates.limit = std::numeric_limits<float>::infinity();
       rtcIntersect1(from.scene.get(), &candidates, &ray);
-      ends.push_back(candidates.faces.size());
+      rays.push_back({candidates.noted.size(), candidates.limit});
     }
     std::size_t next = 0;
     for (int column = window.left; column <= window.right; ++column) {
       NearestHit nearest{from, camera.position, direction(column)};
-      for (const std::size_t end = ends[static_cast<std::size_t>(column - window.left)]; next < end; ++next)
-        nearest.offer(candidates.faces[next]);
+      // Whether a face behind the limit was noted depends on the order of the search.
+      for (const auto [end, limit] = rays[static_cast<std::size_t>(column - window.left)]; next < end; ++next)
+        if (const auto [face, depth] = candidates.noted[next]; depth <= limit) nearest.offer(face);
       if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh());
     }
   }
