@@ -10,8 +10,9 @@ namespace {
 
 using chi2_kernel::kLanes;
 
-constexpr float kMargin = 1.02F;  // of a guess from another query
-constexpr float kMarginExpected = 1.01F;
+// Times the k-th distance that is guessed from another query, or expected: a little too far costs less than a
+// second look.
+constexpr float kMarginGuessed = 1.02F, kMarginExpected = 1.01F;
 constexpr float kAlike = 1e-9F;    // of the largest distance: within, histograms do not differ
 constexpr std::size_t kSpare = 8;  // so few candidates beyond the k-th are put in order, not counted again
 
@@ -72,7 +73,7 @@ float Chi2Nearest::guess() const {
   kernel_.distances(recent_.data(), bins_, query_, &kGroup, 1, distances.data());
   const auto end = distances.begin() + static_cast<std::ptrdiff_t>(std::min(found_, kLanes));
   const auto nearest = static_cast<std::size_t>(std::min_element(distances.begin(), end) - distances.begin());
-  return std::min(kMargin * recent_kth_[nearest], beyond_all_);
+  return std::min(kMarginGuessed * recent_kth_[nearest], beyond_all_);
 }
 
 void Chi2Nearest::remember() {

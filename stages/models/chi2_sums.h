@@ -11,9 +11,8 @@
 namespace salbench {
 
 // Sums chi2 * weight(d) over the k nearest references of each histogram, d the distance between their points;
-// 0 where the k nearest differ by no more than 1e-9 of the largest distance. Terms are rounded to multiples
-// of 2^-28 or so of the largest distance and sums are exact: how the nearest were found does not show in
-// them.
+// 0 where the k nearest differ by no more than 1e-9 of the largest distance. Terms are rounded, by some 2^-37
+// of the largest distance, so that sums are exact: how the nearest were found does not show in them.
 //   points  one per histogram, no two farther apart than 2; read in single precision
 //   kth     per histogram, where its k-th nearest is thought to be, 0 if nothing is known, or empty;
 //           afterwards where it is, or a little farther
