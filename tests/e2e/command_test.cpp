@@ -139,6 +139,7 @@ struct Hostile {
   const char* name;
   const char* command;
   const char* says;  // a regular expression
+  int timeout = 60;  // seconds; short where it is to pass
 };
 
 void PrintTo(const Hostile& param, std::ostream* out) { *out << param.name; }
@@ -152,7 +153,8 @@ TEST_P(HostileCommand, FailsItsItemWithAClearLineAndLeavesNothing) {
       fmt::format("if [ $(grep -a -m1 'element vertex' {{mesh}} | cut -d' ' -f3) = 162 ]; then {}; fi",
                   fmt::format(fmt::runtime(GetParam().command), fmt::arg("mark", mark)));
   write_toy_item(toy.data(), "3", shapes::bumpy_sphere(3));
-  toy.configure(command_config(fmt::format("timeout: 1, command: \"{}; {}\"", first_only, kCount)));
+  toy.configure(command_config(
+      fmt::format("timeout: {}, command: \"{}; {}\"", GetParam().timeout, first_only, kCount)));
   expect_first_alone_to_fail(toy, toy.salbench("run"), GetParam().says);
   EXPECT_THAT(processes_with(mark), IsEmpty());
 }
@@ -160,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(
     Command, HostileCommand,
     testing::Values(
         Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
-                "longer than its timeout of 1 s.*: loading"},
+                "longer than its timeout of 1 s.*: loading", 1},
         Hostile{"Floods", "yes noise | head -c 48000000; echo; echo at last >&2; exit 3",
                 "status 3; .*noise \\| at last"},
         Hostile{"WritesTooFew", "seq 7 > {{out}}; exit 0", "7 values, but the shape has 162 points"},
@@ -255,7 +257,7 @@ TEST_P(HostileListCommand, FailsItsShapeAloneAndTheNextOneIsServed) {
   const std::string mark = (toy / "mark").string();
   write_toy_item(toy.data(), "3", shapes::bumpy_sphere(3));
   toy.configure(command_config(
-      fmt::format("timeout: 2, gpu: 1, command: \"{}\"",
+      fmt::format("timeout: {}, gpu: 1, command: \"{}\"", GetParam().timeout,
                   serving(toy, fmt::format(fmt::runtime(GetParam().command), fmt::arg("mark", mark))))));
   expect_first_alone_to_fail(toy, toy.salbench("run"), GetParam().says);
   EXPECT_THAT(processes_with(mark), IsEmpty());
@@ -265,11 +267,11 @@ TEST_P(HostileListCommand, FailsItsShapeAloneAndTheNextOneIsServed) {
 INSTANTIATE_TEST_SUITE_P(
     Command, HostileListCommand,
     testing::Values(Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
-                            "longer than its timeout of 2 s.*: loading"},
+                            "longer than its timeout of 2 s.*: loading", 2},
                     Hostile{"Floods", "yes noise | head -c 48000000; echo; echo at last >&2; exit 3",
                             "status 3; .*noise \\| at last"},
                     Hostile{"AnswersAnotherShape", "echo \"$out.npy\"; echo \" $out\"; sleep 100",
-                            "longer than its timeout"},
+                            "longer than its timeout", 2},
                     Hostile{"AnswersWithoutAFile", "echo no memory >&2; echo \"$out\"; continue",
                             "answered \\(its last lines: no memory .*without a file"},
                     Hostile{"WritesTooFew", "seq 7 > \"$out\"; echo \"$out\"; continue",
