@@ -223,10 +223,6 @@ Instructions widest_supported() {
   return supported(Instructions::avx2) ? Instructions::avx2 : Instructions::baseline;
 }
 
-float weight_of(Weight weight, float distance) {
-  return weight == Weight::near ? weigh<Weight::near>(distance) : weigh<Weight::far>(distance);
-}
-
 float term_of(Weight weight, float grid, float chi2, float distance) {
   return weight == Weight::near ? term<Weight::near>(grid, chi2, distance)
                                 : term<Weight::far>(grid, chi2, distance);

@@ -22,8 +22,6 @@ enum class Weight {
   near,  // 1 / (1 + d)
   far    // log(1 + d)
 };
-float weight_of(Weight weight, float distance);
-
 // chi2 * weight of the distance, rounded to a multiple of grid * 2^-23; `grid` is a power of two. A sum of
 // such terms in double precision is exact as long as it is below grid * 2^30, whatever their order.
 float term_of(Weight weight, float grid, float chi2, float distance);

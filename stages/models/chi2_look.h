@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a table lies within a distance of a query: boxes farther away are not looked into.
+// Histograms of a table within a distance of a query. Boxes that are farther away stay closed.
 #pragma once
 
 #include <cstddef>

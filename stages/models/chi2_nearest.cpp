@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lies in a box farther away than the guess is not looked at. If the k-th nearest lies within the guess,
-// nothing was missed; otherwise the guess is raised.
+// The search opens the boxes within a guess of the k-th distance. If k histograms lie within the guess, none
+// was missed; otherwise the guess is raised.
 #include "stages/models/chi2_nearest.h"
 
 #include <algorithm>

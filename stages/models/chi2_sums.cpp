@@ -29,7 +29,7 @@ float grid_for(const Chi2Search& search) {
   return largest_sum > 0 ? static_cast<float>(std::exp2(std::ceil(std::log2(largest_sum)) - 30)) : 1;
 }
 
-// What the histograms of a search add to a sum.
+// Terms of a sum: one per reference, its distance weighted by how far it lies away in space.
 class Terms {
  public:
   Terms(const Chi2Search& search, Points points, chi2_kernel::Weight weight)
