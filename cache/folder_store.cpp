@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/folder_store.h"
 
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <shared_mutex>
@@ -62,6 +63,7 @@ struct FolderStore::Impl {
   Access access;
   mutable std::shared_mutex mutex;  // of stages
   std::map<std::string, StageEntries, std::less<>> stages;
+  std::atomic<bool> is_synced = true;
 
   fs::path path(std::string_view stage, const ArtefactName& name) const {
     return folder / shard_of(stage, name.key) / name.text();
@@ -229,10 +231,15 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   make_folder(target.parent_path(), "choose another cache with --cache");
   UnfinishedFile file(impl_->folder / kScratchFolder);
   file.append(image);
-  file.finish(target);
+  file.finish_unsynced(target);
   const std::unique_lock lock(impl_->mutex);
+  impl_->is_synced = false;
   Impl::insert(name, impl_->stages[recipe.stage]);
   return content;
+}
+
+void FolderStore::sync() {
+  if (!impl_->is_synced.exchange(true)) sync_file_system(impl_->folder);
 }
 
 std::unique_ptr<Claim> FolderStore::claim(std::string_view work) { return claim_in(impl_->folder, work); }

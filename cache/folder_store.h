@@ -32,6 +32,7 @@ class FolderStore final : public Store {
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override;
   Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
               const ArtefactNote& note) override;
+  void sync() override;
 
   std::unique_ptr<Claim> claim(std::string_view work) override;
 

@@ -44,6 +44,9 @@ class Store : public Index {
   // The artefact is complete on return, or does not exist. Throws StorageError.
   virtual Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
                       const ArtefactNote& note) = 0;
+  // What was saved outlasts a crash of the machine from now on; before, such a crash may cost it, and `load`
+  // finds out. Throws StorageError.
+  virtual void sync() {}
   // One process at a time holds a claim; nothing if another holds it. A store of a single process grants all.
   virtual std::unique_ptr<Claim> claim(std::string_view work) {
     static_cast<void>(work);

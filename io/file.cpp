@@ -180,8 +180,23 @@ void UnfinishedFile::append(std::span<const std::byte> bytes) {
 
 void UnfinishedFile::finish(const fs::path& target) {
   if (::fsync(fd_) != 0) fail(target, "written", errno);
+  rename_to(target);
+}
+
+// A network file system says at a close what it could not store. That of a copy leaves the lock.
+void UnfinishedFile::finish_unsynced(const fs::path& target) {
+  if (const int copy = ::dup(fd_); copy >= 0 && ::close(copy) != 0) fail(target, "written", errno);
+  rename_to(target);
+}
+
+void UnfinishedFile::rename_to(const fs::path& target) {
   if (std::rename(path_.c_str(), target.c_str()) != 0) fail(target, "written", errno);
   ::close(std::exchange(fd_, -1));
+}
+
+void sync_file_system(const fs::path& folder) {
+  const Descriptor fd(open_file(folder, O_RDONLY | O_DIRECTORY));
+  if (fd.get() < 0 || ::syncfs(fd.get()) != 0) fail(folder, "written to", errno);
 }
 
 void write_file(const fs::path& path, std::string_view text) {

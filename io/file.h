@@ -43,11 +43,20 @@ class UnfinishedFile {
   const std::filesystem::path& path() const { return path_; }
   void append(std::span<const std::byte> bytes);
   void finish(const std::filesystem::path& target);  // syncs and renames it, within one file system
+  // The same without waiting for the disk. A crash of the whole machine can leave the file short or with
+  // other bytes until sync_file_system has returned: for files whose readers check them.
+  void finish_unsynced(const std::filesystem::path& target);
 
  private:
+  void rename_to(const std::filesystem::path& target);
+
   std::filesystem::path path_;
   int fd_ = -1;
 };
+
+// Returns when everything that was written to the file system of the folder, by any program, is on the disk.
+// Throws StorageError.
+void sync_file_system(const std::filesystem::path& folder);
 
 // Calls `visit` for every unfinished file in the folder whose writer is dead; for none on a file system
 // without locks.

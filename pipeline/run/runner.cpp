@@ -63,10 +63,12 @@ void Runner::run(int threads) {
     settle("maps", rows_without_reference(context_.catalog), threads, Claimed::left);
   settle("reference", reference, threads, Claimed::awaited);
   settle("evaluation", std::vector<bool>(context_.catalog.rows.size(), true), threads, Claimed::awaited);
+  store_.sync();
 }
 
 void Runner::run_rows(const std::string& what, const std::vector<bool>& rows, int threads) {
   settle(what, rows, threads, Claimed::awaited);
+  store_.sync();
 }
 
 std::size_t Runner::open_jobs(const std::vector<bool>& rows) const {

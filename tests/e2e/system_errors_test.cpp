@@ -61,6 +61,18 @@ INSTANTIATE_TEST_SUITE_P(Errors, SystemErrors,
                                          SystemError{"StaleHandle", ESTALE, "Stale file handle"}),
                          [](const auto& test) { return test.param.name; });
 
+TEST(SystemError, WhatCannotBeBroughtToTheDiskEndsTheRunThatWroteIt) {
+  const Workspace toy;
+  const auto run = [&] {
+    return run_process(in_trouble("SALBENCH_AT_SYNC=" + std::to_string(EIO), toy.command("run")));
+  };
+  const Outcome first = run();
+  EXPECT_EQ(first.status, 3);
+  EXPECT_THAT(lines_with(first.err, "error: "), AllOf(SizeIs(1), Each(HasSubstr("Input/output error"))));
+  const Outcome second = run();
+  EXPECT_EQ(second.status, 0) << "nothing new was written: " << second.err;
+}
+
 TEST(SystemError, OneInterruptedCallIsMadeAgain) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
