@@ -11,42 +11,61 @@
 namespace salbench {
 namespace {
 
-constexpr std::size_t kLanes = 8;
-constexpr std::size_t kWidth = 4;  // of vectors that every x86-64 has
-using Floats [[gnu::vector_size(kWidth * sizeof(float))]] = float;
-using Doubles [[gnu::vector_size(kWidth * sizeof(double))]] = double;
+constexpr std::size_t kLanes = 8;  // rows of a block
 
-// By bin: a descriptor, and some that it is compared with.
-struct Gathered {
-  std::array<float, kFpfhBins> own;
-  std::array<std::array<float, kLanes>, kFpfhBins> others{};
+// Vectors as wide as the processor has them.
+template <std::size_t kBytes>
+struct Vectors {
+  static constexpr std::size_t kFloats = kBytes / sizeof(float);
+  typedef float Floats __attribute__((vector_size(kBytes)));
+  typedef float HalfFloats __attribute__((vector_size(kBytes / 2)));
+  typedef double Doubles __attribute__((vector_size(kBytes)));
 };
 
-std::array<double, kLanes> distances(const Gathered& of, std::size_t bins) {
-  std::array<double, kLanes> result;
-  for (std::size_t lane = 0; lane < kLanes; lane += kWidth) {
-    Doubles total = {};
+// The distances of a descriptor, given by bin, from the rows of a block.
+template <std::size_t kBytes>
+[[gnu::always_inline]] inline void distances(const float* own, const float* block, std::size_t bins,
+                                             double* result) {
+  using V = Vectors<kBytes>;
+  constexpr std::size_t kFloats = V::kFloats, kHalf = kFloats / 2;
+  for (std::size_t lane = 0; lane < kLanes; lane += kFloats) {
+    typename V::Doubles totals[2] = {};
     for (std::size_t bin = 0; bin < bins; ++bin) {
-      Floats other;
-      std::memcpy(&other, &of.others[bin][lane], sizeof other);
-      const Floats sum = of.own[bin] + other, difference = of.own[bin] - other;
-      const Floats term = difference * difference / sum;
-      total += __builtin_convertvector(sum > 0 ? term : Floats{}, Doubles);
+      typename V::Floats other;
+      std::memcpy(&other, block + bin * kLanes + lane, sizeof other);
+      const typename V::Floats sum = own[bin] + other, difference = own[bin] - other;
+      const typename V::Floats quotient = difference * difference / sum;
+      const typename V::Floats term = sum > 0 ? quotient : typename V::Floats{};
+      typename V::HalfFloats halves[2];
+      std::memcpy(halves, &term, sizeof term);
+      for (std::size_t half = 0; half < 2; ++half)
+        totals[half] += __builtin_convertvector(halves[half], typename V::Doubles);
     }
-    std::memcpy(&result[lane], &total, sizeof total);
+    for (std::size_t half = 0; half < 2; ++half)
+      std::memcpy(result + lane + half * kHalf, &totals[half], sizeof totals[half]);
   }
-  return result;
 }
+
+using Distances = void (*)(const float* own, const float* block, std::size_t bins, double* result);
+
+void distances_baseline(const float* own, const float* block, std::size_t bins, double* result) {
+  distances<16>(own, block, bins, result);
+}
+[[gnu::target("avx2")]] void distances_avx2(const float* own, const float* block, std::size_t bins,
+                                            double* result) {
+  distances<32>(own, block, bins, result);
+}
+
+const Distances kDistances = __builtin_cpu_supports("avx2") != 0 ? distances_avx2 : distances_baseline;
 
 }  // namespace
 
 double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
-  Gathered gathered;
-  for (std::size_t bin = 0; bin < kFpfhBins; ++bin) {
-    gathered.own[bin] = a[bin];
-    gathered.others[bin][0] = b[bin];
-  }
-  return distances(gathered, kFpfhBins)[0];
+  std::array<float, kFpfhBins * kLanes> block{};
+  for (std::size_t bin = 0; bin < kFpfhBins; ++bin) block[bin * kLanes] = b[bin];
+  std::array<double, kLanes> result;
+  kDistances(a.data(), block.data(), kFpfhBins, result.data());
+  return result[0];
 }
 
 std::vector<std::size_t> used_bins(const Descriptors& descriptors) {
@@ -59,20 +78,25 @@ std::vector<std::size_t> used_bins(const Descriptors& descriptors) {
   return bins;
 }
 
-void chi_squares(std::span<const float, kFpfhBins> a, const Descriptors& descriptors,
-                 std::span<const std::int32_t> rows, std::span<const std::size_t> bins,
-                 std::span<double> result) {
-  CHECK_EQ(rows.size(), result.size());
-  Gathered gathered;
-  for (std::size_t b = 0; b < bins.size(); ++b) gathered.own[b] = a[bins[b]];
-  for (std::size_t first = 0; first < rows.size(); first += kLanes) {
-    const std::size_t count = std::min(rows.size() - first, kLanes);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const auto row = descriptors.row(static_cast<std::size_t>(rows[first + lane]));
-      for (std::size_t b = 0; b < bins.size(); ++b) gathered.others[b][lane] = row[bins[b]];
-    }
-    const std::array<double, kLanes> some = distances(gathered, bins.size());
-    std::copy_n(some.begin(), count, result.begin() + static_cast<std::ptrdiff_t>(first));
+void ChiSquares::set_rows(const Descriptors& descriptors, std::span<const std::int32_t> rows) {
+  count_ = rows.size();
+  blocks_.resize((count_ + kLanes - 1) / kLanes * kLanes * bins_.size());
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto row = descriptors.row(static_cast<std::size_t>(rows[i]));
+    float* lane = &blocks_[i / kLanes * kLanes * bins_.size()] + i % kLanes;
+    for (std::size_t b = 0; b < bins_.size(); ++b) lane[b * kLanes] = row[bins_[b]];
+  }
+}
+
+void ChiSquares::measure(std::span<const float, kFpfhBins> from, std::span<double> result) const {
+  CHECK_EQ(result.size(), count_);
+  std::array<float, kFpfhBins> own;
+  for (std::size_t b = 0; b < bins_.size(); ++b) own[b] = from[bins_[b]];
+  const float* block = blocks_.data();
+  for (std::size_t first = 0; first < count_; first += kLanes, block += kLanes * bins_.size()) {
+    std::array<double, kLanes> some;
+    kDistances(own.data(), block, bins_.size(), some.data());
+    std::copy_n(some.begin(), std::min(count_ - first, kLanes), &result[first]);
   }
 }
 

@@ -37,6 +37,7 @@ namespace {
 
 constexpr int kRings = 3;                 // a point depends on clusters up to so many steps of adjacency away
 constexpr std::size_t kFallbackNear = 9;  // nearest points, used if none is within the radius
+constexpr std::size_t kClusterGrain = 8;  // clusters that are a task of their own
 constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the affinity of a point to a cluster
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
@@ -115,6 +116,13 @@ Variances variances(const GroupMeans& clusters) {
 // A quantity that does not vary does not tell clusters apart.
 double relative(double distance, double variance) { return variance > 0 ? distance / variance : 0; }
 
+std::vector<std::vector<std::size_t>> points_by_cluster(const Clusters& clusters) {
+  std::vector<std::vector<std::size_t>> points(clusters.count);
+  for (std::size_t i = 0; i < clusters.of_point.size(); ++i)
+    points[static_cast<std::size_t>(clusters.of_point[i])].push_back(i);
+  return points;
+}
+
 // Affinity w_ik of each point to each cluster in reach, and its sums over the points.
 struct Affinity {
   std::vector<double> weights;       // of point i: one for each cluster in reach of its own, from offsets[i]
@@ -124,7 +132,6 @@ struct Affinity {
 
 Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptors, const Clusters& of,
                      const GroupMeans& clusters, const Neighbours& in_reach, const Variances& variance) {
-  const std::vector<std::size_t> bins = used_bins(descriptors);
   const auto reach_of = [&](std::size_t i) -> const std::vector<std::int32_t>& {
     return in_reach[static_cast<std::size_t>(of.of_point[i])];
   };
@@ -136,15 +143,21 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
     entries += reach_of(i).size();
   }
   result.weights.resize(entries);
-  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const auto& reach = reach_of(i);
-      const auto weights = std::span(result.weights).subspan(result.offsets[i], reach.size());
-      chi_squares(descriptors.row(i), clusters.descriptors, reach, bins, weights);
-      for (std::size_t c = 0; c < reach.size(); ++c) {
-        const Vec3& centre = clusters.centres[static_cast<std::size_t>(reach[c])];
-        weights[c] = -relative((points[i] - centre).squaredNorm(), 2 * variance.distance_squared) -
-                     kDescriptorRate * relative(weights[c], variance.chi2);
+  const std::vector<std::vector<std::size_t>> members = points_by_cluster(of);
+  const std::vector<std::size_t> bins = used_bins(descriptors);
+  parallel_ranges(clusters.size(), kClusterGrain, [&](std::size_t first, std::size_t last) {
+    ChiSquares chi_squares(bins);
+    for (std::size_t own = first; own < last; ++own) {
+      const std::vector<std::int32_t>& reach = in_reach[own];
+      chi_squares.set_rows(clusters.descriptors, reach);
+      for (const std::size_t i : members[own]) {
+        const auto weights = std::span(result.weights).subspan(result.offsets[i], reach.size());
+        chi_squares.measure(descriptors.row(i), weights);
+        for (std::size_t c = 0; c < reach.size(); ++c) {
+          const Vec3& centre = clusters.centres[static_cast<std::size_t>(reach[c])];
+          weights[c] = -relative((points[i] - centre).squaredNorm(), 2 * variance.distance_squared) -
+                       kDescriptorRate * relative(weights[c], variance.chi2);
+        }
       }
     }
   });
@@ -205,9 +218,10 @@ ScalarField cluster_saliency(const GroupMeans& clusters, const Variances& varian
   std::vector<double> chi2(count);
   std::vector<std::int32_t> all(count);
   std::iota(all.begin(), all.end(), 0);
-  const std::vector<std::size_t> bins = used_bins(clusters.descriptors);
+  ChiSquares chi_squares(used_bins(clusters.descriptors));
+  chi_squares.set_rows(clusters.descriptors, all);
   for (std::size_t j = 0; j < count; ++j) {
-    chi_squares(clusters.descriptors.row(j), clusters.descriptors, all, bins, chi2);
+    chi_squares.measure(clusters.descriptors.row(j), chi2);
     unique[j] = uniqueness(j, clusters, shares, chi2, unit);
     scattered[j] = distribution(clusters, shares, chi2, variance, unit);
   }

@@ -128,7 +128,7 @@ class KMeans {
  public:
   KMeans(const Voxels& voxels, Labels labels, std::size_t count, double unit, const CsOptions& options)
       : voxels_(voxels),
-        bins_(used_bins(voxels.means.descriptors)),
+        chi_squares_(used_bins(voxels.means.descriptors)),
         labels_(std::move(labels)),
         clusters_(cluster_means(voxels, labels_, count)),
         largest_(largest_distances(voxels, labels_, clusters_)),
@@ -174,7 +174,8 @@ class KMeans {
     rows_.clear();
     for (const Neighbour& voxel : found_) rows_.push_back(voxel.index);
     chi2_.resize(rows_.size());
-    chi_squares(cluster, voxels_.means.descriptors, rows_, bins_, chi2_);
+    chi_squares_.set_rows(voxels_.means.descriptors, rows_);
+    chi_squares_.measure(cluster, chi2_);
   }
 
   // Returns how far the centres have moved: the sum of the absolute differences along the axes.
@@ -186,7 +187,7 @@ class KMeans {
   }
 
   const Voxels& voxels_;
-  std::vector<std::size_t> bins_;
+  ChiSquares chi_squares_;
   Labels labels_;
   GroupMeans clusters_;
   Largest largest_;

@@ -55,7 +55,9 @@ TEST(ChiSquares, AreToTheBitThoseOfTheFormulaHoweverManyThereAre) {
     std::vector<std::int32_t> rows;
     for (std::size_t i = 0; i < count; ++i) rows.push_back(static_cast<std::int32_t>((7 * i + count) % 40));
     std::vector<double> result(count);
-    chi_squares(descriptors.row(count), descriptors, rows, used_bins(descriptors), result);
+    ChiSquares chi_squares(used_bins(descriptors));
+    chi_squares.set_rows(descriptors, rows);
+    chi_squares.measure(descriptors.row(count), result);
     for (std::size_t i = 0; i < count; ++i) {
       const auto other = descriptors.row(static_cast<std::size_t>(rows[i]));
       EXPECT_EQ(result[i], by_definition(descriptors.row(count), other));
