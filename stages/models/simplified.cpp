@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <optional>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -27,8 +29,9 @@ using Index = std::int32_t;            // of a vertex or a face
 using Edge = std::pair<Index, Index>;  // ascending
 
 constexpr double kBorderWeight = 1;  // of a border edge's plane, per squared length of the edge
-constexpr double kEvenness = 1e-8;  // factor of an edge's squared length in its error; decides in flat places
+constexpr double kEvenness = 1e-8;   // factor of an edge's squared length in its cost; decides in flat places
 constexpr double kMinStiffness = 1e-5;  // relative to the largest eigenvalue: below, a direction is free
+constexpr double kRounding = 1e-14;     // of an error, relative to its terms; generous
 constexpr double kMinCosine = 0.2;      // of the angle by which one collapse turns a face
 
 // Sum of weighted squared distances to planes: x'Ax + 2b'x + c.
@@ -53,6 +56,20 @@ struct Quadric {
   double operator()(const Vec3& x) const { return std::max(0.0, x.dot(a * x) + 2 * b.dot(x) + c); }
 };
 
+// x of Ax = b by LDL', if no direction is free. The least eigenvalue is at most each pivot, and at least the
+// determinant by the sum of the principal minors of order two.
+std::optional<Vec3> solved(const Eigen::Matrix3d& a, const Vec3& b) {
+  const double least = kMinStiffness * a.trace();
+  const double d0 = a(0, 0), l10 = a(1, 0) / d0, l20 = a(2, 0) / d0;
+  const double d1 = a(1, 1) - l10 * a(1, 0), rest = a(2, 1) - l10 * a(2, 0);
+  if (!(d0 > least && d1 > least)) return {};
+  const double l21 = rest / d1, d2 = a(2, 2) - l20 * a(2, 0) - l21 * rest;
+  const double minors = d0 * (d1 + a(2, 2)) - a(2, 0) * a(2, 0) + a(1, 1) * a(2, 2) - a(2, 1) * a(2, 1);
+  if (!(d0 * d1 * d2 > least * minors)) return {};
+  const double y1 = b[1] - l10 * b[0], x2 = (b[2] - l20 * b[0] - l21 * y1) / d2, x1 = y1 / d1 - l21 * x2;
+  return Vec3(b[0] / d0 - l10 * x1 - l20 * x2, x1, x2);
+}
+
 // The point of least error. Along directions that the quadric leaves free it is the one nearest to `near`.
 Vec3 optimum(const Quadric& quadric, const Vec3& near) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(quadric.a);
@@ -67,6 +84,15 @@ Vec3 optimum(const Quadric& quadric, const Vec3& near) {
   return place;
 }
 
+// A little less than the error at the optimum, in a third of the time; nothing if a direction may be free.
+std::optional<double> least_error(const Quadric& quadric, const Vec3& near) {
+  const auto move = solved(quadric.a, -(quadric.b + quadric.a * near));
+  if (!move) return {};
+  const Vec3 place = near + *move;
+  const double square = place.dot(quadric.a * place), product = 2 * quadric.b.dot(place);
+  return square + product + quadric.c - kRounding * (square + std::abs(product) + quadric.c);
+}
+
 class EdgeCollapse {
  public:
   explicit EdgeCollapse(const Mesh& mesh);
@@ -77,18 +103,21 @@ class EdgeCollapse {
   struct Candidate {
     Edge edge;
     std::uint32_t state_a, state_b;  // of the end points when it was queued
-    Vec3 place;
+    Vec3 place;                      // until the cost is known, the middle of the edge
   };
 
   // What the queue moves about is small; the edge of the candidate decides between equal costs.
   struct Queued {
     double cost;
-    std::size_t candidate;
+    std::uint32_t candidate;
+    bool is_bound;  // the cost itself is not known, only that it is greater
   };
   struct Later {
     const std::vector<Candidate>& candidates;
     bool operator()(const Queued& a, const Queued& b) const {
-      return a.cost != b.cost ? a.cost > b.cost : candidates[a.candidate].edge > candidates[b.candidate].edge;
+      if (a.cost != b.cost) return a.cost > b.cost;
+      if (a.is_bound != b.is_bound) return b.is_bound;
+      return candidates[a.candidate].edge > candidates[b.candidate].edge;
     }
   };
 
@@ -107,6 +136,7 @@ class EdgeCollapse {
   void add_border_planes();
   void fill_queue();
   void push(Index a, Index b);
+  void push_cost(std::uint32_t candidate);
   bool is_current(const Candidate& candidate) const;
   bool keeps_topology(const Edge& edge);
   bool doubles_a_face(const Edge& edge) const;
@@ -114,6 +144,15 @@ class EdgeCollapse {
   void collapse(const Edge& edge, const Vec3& place);
 
   const Vec3& place(Index v) const { return places_[static_cast<std::size_t>(v)]; }
+  std::uint32_t state_of(Index v) const { return states_[static_cast<std::size_t>(v)]; }
+  Vec3 middle(const Edge& edge) const { return (place(edge.first) + place(edge.second)) / 2; }
+  Quadric quadric_of(const Edge& edge) const {
+    Quadric sum = quadrics_[static_cast<std::size_t>(edge.first)];
+    return sum += quadrics_[static_cast<std::size_t>(edge.second)];
+  }
+  double unevenness(const Edge& edge, const Quadric& quadric) const {
+    return kEvenness * quadric.weight() * (place(edge.first) - place(edge.second)).squaredNorm();
+  }
   const std::array<Index, 3>& face(Index f) const { return faces_[static_cast<std::size_t>(f)]; }
   const std::vector<Index>& faces_of(Index v) const { return faces_of_[static_cast<std::size_t>(v)]; }
   std::vector<Index>& faces_of(Index v) { return faces_of_[static_cast<std::size_t>(v)]; }
@@ -194,9 +233,15 @@ void EdgeCollapse::run(std::size_t target_faces) {
     changed = false;
     fill_queue();
     while (!queue_.empty() && n_faces_ > target_faces) {
-      const Candidate next = candidates_[queue_.top().candidate];
+      const auto [cost, candidate, is_bound] = queue_.top();
+      const Candidate next = candidates_[candidate];
       queue_.pop();
-      if (!is_current(next) || !keeps_topology(next.edge) || folds(next.edge, next.place)) continue;
+      if (!is_current(next)) continue;
+      if (is_bound) {
+        push_cost(candidate);
+        continue;
+      }
+      if (!keeps_topology(next.edge) || folds(next.edge, next.place)) continue;
       collapse(next.edge, next.place);
       changed = true;
     }
@@ -215,18 +260,26 @@ void EdgeCollapse::fill_queue() {
 
 void EdgeCollapse::push(Index a, Index b) {
   const Edge edge = std::minmax(a, b);
-  const auto first = static_cast<std::size_t>(edge.first), second = static_cast<std::size_t>(edge.second);
-  Quadric sum = quadrics_[first];
-  sum += quadrics_[second];
-  const double evenness = kEvenness * sum.weight() * (place(a) - place(b)).squaredNorm();
-  const Vec3 best = optimum(sum, (place(edge.first) + place(edge.second)) / 2);
-  candidates_.push_back({edge, states_[first], states_[second], best});
-  queue_.push({sum(best) + evenness, candidates_.size() - 1});
+  candidates_.push_back({edge, state_of(edge.first), state_of(edge.second), middle(edge)});
+  const auto candidate = static_cast<std::uint32_t>(candidates_.size() - 1);
+  const Quadric quadric = quadric_of(edge);
+  if (const auto least = least_error(quadric, middle(edge)))
+    queue_.push({*least + unevenness(edge, quadric), candidate, true});
+  else
+    push_cost(candidate);
+}
+
+// Most candidates are outdated before their turn comes, so what takes long waits until then.
+void EdgeCollapse::push_cost(std::uint32_t candidate) {
+  auto& [edge, state_a, state_b, place] = candidates_[candidate];
+  const Quadric quadric = quadric_of(edge);
+  place = optimum(quadric, place);
+  queue_.push({quadric(place) + unevenness(edge, quadric), candidate, false});
 }
 
 bool EdgeCollapse::is_current(const Candidate& candidate) const {
-  return states_[static_cast<std::size_t>(candidate.edge.first)] == candidate.state_a &&
-         states_[static_cast<std::size_t>(candidate.edge.second)] == candidate.state_b;
+  return state_of(candidate.edge.first) == candidate.state_a &&
+         state_of(candidate.edge.second) == candidate.state_b;
 }
 
 // The link condition: where the surface is a manifold, it is homeomorphic before and after. A triangle that
