@@ -42,6 +42,14 @@ void Chi2Nearest::start(const float* query) {
   look_.start(query);
 }
 
+bool Chi2Nearest::find_unless_alike(float expected) {
+  alike_ = alike_ && are_alike();
+  if (alike_) return false;
+  find(expected);
+  alike_ = look_.count_up_to(kAlike * beyond_all_) >= k_;
+  return !alike_;
+}
+
 bool Chi2Nearest::are_alike() {
   const float alike = kAlike * beyond_all_;
   const std::size_t some = 2 * chi2_kernel::groups_of(k_);

@@ -18,13 +18,12 @@ class Chi2Nearest {
 
   void start(const float* query);
 
-  // Whether the k nearest are within rounding, as in flat places, where they may be most of the table: mostly
-  // it is enough to look at some of them.
-  bool are_alike();
-
   // `expected`: where the k-th is thought to be; 0: to be guessed from the queries before, which had better
   // resemble this one. A bad guess costs time, no more.
   void find(float expected = 0);
+  // The same, unless the k nearest are within rounding: false then, and nothing is found. They are in flat
+  // places, where they may be most of the table; after one such query it is enough to look at some of it.
+  bool find_unless_alike(float expected);
 
   // All up to this distance are among the k nearest; others() are the rest.
   float sure() const { return sure_; }
@@ -42,6 +41,7 @@ class Chi2Nearest {
     std::size_t count;
   };
 
+  bool are_alike();
   float guess() const;
   float raised(const Limit& limit) const;
   Limit narrow(Limit& most) const;
@@ -59,6 +59,7 @@ class Chi2Nearest {
   std::size_t found_ = 0;  // queries so far
 
   float sure_ = 0, kth_ = 0;
+  bool alike_ = true;  // those of the last query; of the first it is unknown
   std::vector<Chi2Neighbour> others_;
 };
 

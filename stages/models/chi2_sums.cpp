@@ -79,8 +79,7 @@ std::vector<double> weighted_sums(const Chi2Search& search, std::size_t k, Point
     for (std::size_t q = first; q < last; ++q) {
       const auto i = static_cast<std::size_t>(search.queries()[q]);
       nearest.start(search.row(q));
-      if (nearest.are_alike()) continue;
-      nearest.find(kth[i]);
+      if (!nearest.find_unless_alike(kth[i])) continue;
       kth[i] = nearest.kth();
       sums[i] = terms.sum(i, nearest);
     }
