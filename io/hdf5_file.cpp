@@ -176,11 +176,14 @@ Handle unlocked_access() {
 }  // namespace
 
 Bytes hdf5_image(const Hdf5Content& content) {
+  std::vector<std::optional<PackedChunks>> chunks;
+  for (const Array& array : content.arrays) chunks.push_back(packed(array));
   const auto lock = library();
   const Handle file = created_file(image_name().c_str(), core_access());
   const Handle links = groups_between();
   for (const auto& [name, value] : content.attributes) write_attribute(file, name, value);
-  for (const Array& array : content.arrays) write_array(file, links, array);
+  for (std::size_t i = 0; i < content.arrays.size(); ++i)
+    write_array(file, links, content.arrays[i], chunks[i]);
   must(H5Fflush(file, H5F_SCOPE_LOCAL), "H5Fflush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   if (size <= 0) throw std::runtime_error("HDF5: H5Fget_file_image failed");

@@ -10,8 +10,6 @@
 namespace salbench::hdf5 {
 namespace {
 
-constexpr std::size_t kCompressFrom = 64 * 1024;  // bytes; below, filters cost more than they save
-constexpr std::size_t kChunkRows = 4096;
 constexpr std::size_t kLongText = 60'000;  // bytes; an object header has no room for attributes beyond 64 KB
 constexpr std::ptrdiff_t kMaxDepth = 64;   // groups within groups; the library visits them by recursion
 constexpr std::uint64_t kMinObjectBytes = 16;  // of an object and its link, in any version of the format
@@ -25,22 +23,23 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const vo
   must(H5Awrite(attribute, type, value), "H5Awrite");
 }
 
-// Deflate saves an eighth of coordinates, half of descriptors (single precision, mostly zeros), and most of
-// pictures.
-Handle creation_properties(const Array& array) {
+Handle creation_properties(const std::optional<PackedChunks>& packed) {
   Handle properties = property_list(H5P_DATASET_CREATE);
   must(H5Pset_obj_track_times(properties, false), "H5Pset_obj_track_times");
-  const std::size_t value =
-      std::visit([]<class T>(const std::vector<T>&) { return sizeof(T); }, array.values);
-  if ((!array.repetitive && !std::holds_alternative<std::vector<float>>(array.values)) ||
-      array.count() * value < kCompressFrom)
-    return properties;
-  std::vector<hsize_t> chunk(array.shape.begin(), array.shape.end());
-  chunk[0] = std::min<hsize_t>(chunk[0], kChunkRows);
+  if (!packed) return properties;
+  const std::vector<hsize_t> chunk(packed->shape.begin(), packed->shape.end());
   must(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
   must(H5Pset_shuffle(properties), "H5Pset_shuffle");
   must(H5Pset_deflate(properties, 1), "H5Pset_deflate");
   return properties;
+}
+
+void write_chunks(hid_t set, const PackedChunks& packed) {
+  std::vector<hsize_t> at(packed.shape.size(), 0);
+  for (const Bytes& chunk : packed.chunks) {
+    must(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), chunk.size(), chunk.data()), "H5Dwrite_chunk");
+    at[0] += packed.shape[0];
+  }
 }
 
 struct Visit {
@@ -110,13 +109,13 @@ void write_attribute(hid_t object, const std::string& name, const AttributeValue
   }
 }
 
-void write_array(hid_t file, hid_t links, const Array& array) {
+void write_array(hid_t file, hid_t links, const Array& array, const std::optional<PackedChunks>& packed) {
   const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
   const Handle space = shape.empty()
                            ? scalar_space()
                            : Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                                     H5Sclose, "H5Screate_simple");
-  const Handle properties = creation_properties(array);
+  const Handle properties = creation_properties(packed);
   std::visit(
       [&]<class T>(const std::vector<T>& values) {
         if (values.size() != array.count())
@@ -125,7 +124,9 @@ void write_array(hid_t file, hid_t links, const Array& array) {
         const Handle set(
             H5Dcreate2(file, array.name.c_str(), type_of<T>(), space, links, properties, H5P_DEFAULT),
             H5Dclose, "H5Dcreate");
-        if (!values.empty())
+        if (packed)
+          write_chunks(set, *packed);
+        else if (!values.empty())
           must(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite");
         write_attribute(set, "unit", array.unit);
         write_attribute(set, "description", array.description);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,7 @@
 #include <hdf5.h>
 
 #include "io/arrays.h"
+#include "io/packed_chunks.h"
 
 namespace salbench::hdf5 {
 
@@ -54,7 +56,8 @@ Handle property_list(hid_t kind);
 Handle string_type(std::size_t length);  // UTF-8; H5T_VARIABLE
 
 void write_attribute(hid_t object, const std::string& name, const AttributeValue& value);
-void write_array(hid_t file, hid_t links, const Array& array);
+// `packed`: of the array, made before the lock is taken.
+void write_array(hid_t file, hid_t links, const Array& array, const std::optional<PackedChunks>& packed);
 
 Handle created_file(const char* name, hid_t access);
 Handle groups_between();  // link creation that makes the missing groups on a path

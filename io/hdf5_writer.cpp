@@ -234,7 +234,8 @@ void Hdf5Writer::attributes(const std::string& object, const Attributes& attribu
 }
 
 void Hdf5Writer::array(const Array& array) {
-  open_->write([&] { write_array(*open_->file, *open_->links, array); });
+  const auto chunks = packed(array);
+  open_->write([&] { write_array(*open_->file, *open_->links, array, chunks); });
 }
 
 void Hdf5Writer::table(const Hdf5Table& table) {

@@ -5,15 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include <flann/algorithms/dist.h>
+#include <flann/algorithms/kdtree_single_index.h>
 #include <pcl/console/print.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <pcl/search/kdtree.h>
+#include <pcl/search/search.h>
 #include <pcl/surface/gp3.h>
 
 #include "stages/core/check.h"
@@ -50,6 +55,51 @@ Cloud::Ptr cloud_in_spacings(Points points, const Normals& normals, double spaci
   }
   return cloud;
 }
+
+// The tree of pcl::search::KdTree, whose order of equally distant points decides where faces begin. PCL's own
+// class allocates memory and starts a team of threads for each query.
+class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
+ public:
+  using Distances = std::vector<float>;
+  using Search::nearestKSearch;
+  using Search::radiusSearch;
+
+  void setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices) override {
+    Search::setInputCloud(cloud, indices);
+    places_.clear();
+    for (const pcl::PointNormal& p : *cloud) places_.insert(places_.end(), {p.x, p.y, p.z});
+    tree_.emplace(flann::Matrix<float>(places_.data(), cloud->size(), 3),
+                  flann::KDTreeSingleIndexParams(kPclLeaf));
+    tree_->buildIndex();
+  }
+
+  int nearestKSearch(const pcl::PointNormal& query, int k, pcl::Indices& found,
+                     Distances& distances_squared) const override {
+    const auto count = static_cast<std::size_t>(k);
+    CHECK_LE(count, input_->size());
+    if (!nearest_ || found_.size() != count) nearest_.emplace(count);
+    nearest_->clear();
+    tree_->findNeighbors(*nearest_, query.data, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    // Where the squares of distances overflow there are fewer; PCL reads on.
+    found_.assign(count, 0);
+    distances_squared.assign(count, std::numeric_limits<float>::max());
+    nearest_->copy(found_.data(), distances_squared.data(), nearest_->size());
+    found.assign(found_.begin(), found_.end());
+    return k;
+  }
+
+  int radiusSearch(const pcl::PointNormal&, double, pcl::Indices&, Distances&, unsigned) const override {
+    throw std::logic_error("the triangulation searches by number only");
+  }
+
+ private:
+  static constexpr int kPclLeaf = 15;  // points at most
+
+  std::vector<float> places_;  // n x 3
+  std::optional<flann::KDTreeSingleIndex<flann::L2_Simple<float>>> tree_;
+  mutable std::optional<flann::KNNSimpleResultSet<float>> nearest_;  // and so on: working memory
+  mutable std::vector<std::size_t> found_;
+};
 
 // Orients the face towards the normals of its corners, whatever order PCL gave them.
 Triangle oriented(Triangle face, Points points, const Normals& normals) {
@@ -115,7 +165,7 @@ Faces partial_mesh(Points points, const Normals& normals, const SurfaceOptions& 
   triangulation.setMinimumAngle(options.smallest_angle * kRadiansPerDegree);
   triangulation.setMaximumAngle(options.largest_angle * kRadiansPerDegree);
   triangulation.setNormalConsistency(true);
-  triangulation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>());
+  triangulation.setSearchMethod(pcl::make_shared<CloudSearch>());
   triangulation.setInputCloud(cloud_in_spacings(points, normals, spacing));
   std::vector<pcl::Vertices> polygons;
   triangulation.reconstruct(polygons);

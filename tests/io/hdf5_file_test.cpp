@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "io/hdf5_writer.h"
+#include "io/packed_chunks.h"
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "tests/support/temporary_folder.h"
@@ -111,6 +112,30 @@ TEST(Hdf5File, AttributesMayBeLong) {
 TEST(Hdf5File, EqualContentGivesEqualBytes) { EXPECT_EQ(hdf5_image(sample()), hdf5_image(sample())); }
 
 TEST(Hdf5File, CompressesDescriptors) { EXPECT_LT(hdf5_image(sample()).size(), 5000U * 33 * 4 * 6 / 10); }
+
+// On both sides of a chunk's 4096 rows, and of every type.
+TEST(Hdf5File, ReadsBackPackedChunksOfEachType) {
+  const auto values = []<class T>(std::size_t count) {
+    std::vector<T> result(count);
+    for (std::size_t i = 0; i < count; ++i) result[i] = static_cast<T>(i * i % 251);
+    return ArrayValues(result);
+  };
+  for (const std::size_t rows : {4095U, 4096U, 4097U, 8192U, 9000U}) {
+    Hdf5Content content;
+    const auto add = [&](const char* name, std::vector<std::size_t> shape, ArrayValues of_shape) {
+      content.arrays.push_back({name, std::move(shape), std::move(of_shape), "1", "", true});
+      const auto chunks = packed(content.arrays.back());
+      ASSERT_TRUE(chunks);
+      EXPECT_EQ(chunks->chunks.size(), (rows + 4095) / 4096);
+    };
+    add("a", {rows, 2, 3}, values.operator()<double>(rows * 6));
+    add("b", {rows, 5}, values.operator()<float>(rows * 5));
+    add("c", {rows, 5}, values.operator()<std::int32_t>(rows * 5));
+    add("d", {rows, 3}, values.operator()<std::int64_t>(rows * 3));
+    add("e", {rows, 20}, values.operator()<std::uint8_t>(rows * 20));
+    expect_equal(hdf5_content(hdf5_image(content), "image"), content);
+  }
+}
 
 TEST(Hdf5File, TruncatedImagesAreErrorsNamingTheFile) {
   Bytes image = hdf5_image({{{"a", {4}, std::vector<double>{1, 2, 3, 4}, "1", ""}}, {}});
