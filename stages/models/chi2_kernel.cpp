@@ -103,21 +103,8 @@ std::uint32_t mask_between(float low, float high, const float* values) {
   return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(lower, upper)));
 }
 
-[[gnu::target("avx2")]] std::uint32_t mask_between_avx2(float low, float high, const float* values) {
-  const __m256 lows = _mm256_set1_ps(low), highs = _mm256_set1_ps(high);
-  std::uint32_t mask = 0;
-  for (const int half : {0, 8}) {
-    const __m256 eight = _mm256_loadu_ps(values + half);
-    const __m256 between =
-        _mm256_and_ps(_mm256_cmp_ps(eight, lows, _CMP_GT_OQ), _mm256_cmp_ps(eight, highs, _CMP_LE_OQ));
-    mask |= static_cast<std::uint32_t>(_mm256_movemask_ps(between)) << half;
-  }
-  return mask;
-}
-
-template <auto mask_between>
-[[gnu::always_inline]] inline std::size_t find_between(float low, float high, const float* values,
-                                                       std::size_t count, std::int32_t* places) {
+std::size_t places_baseline(float low, float high, const float* values, std::size_t count,
+                            std::int32_t* places) {
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += kLanes)
     for (std::uint32_t mask = mask_between(low, high, values + i); mask != 0; mask &= mask - 1)
@@ -125,13 +112,48 @@ template <auto mask_between>
   return found;
 }
 
-std::size_t places_baseline(float low, float high, const float* values, std::size_t count,
-                            std::int32_t* places) {
-  return find_between<mask_between>(low, high, values, count, places);
+// For each mask of eight bits, which are set.
+constexpr auto kSetBits = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> all{};
+  for (std::size_t mask = 0; mask < all.size(); ++mask)
+    for (std::size_t bit = 0, count = 0; bit < 8; ++bit)
+      if ((mask >> bit & 1) != 0) all[mask][count++] = static_cast<std::uint8_t>(bit);
+  return all;
+}();
+
+// In the wide variants each vector's places are written whole, and the next one's over those that are none.
+[[gnu::target("avx2,popcnt")]] std::size_t places_avx2(float low, float high, const float* values,
+                                                       std::size_t count, std::int32_t* places) {
+  constexpr std::size_t kWidth = 8;
+  const __m256 lows = _mm256_set1_ps(low), highs = _mm256_set1_ps(high);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count; i += kWidth) {
+    const __m256 eight = _mm256_loadu_ps(values + i);
+    const auto mask = static_cast<std::uint32_t>(_mm256_movemask_ps(
+        _mm256_and_ps(_mm256_cmp_ps(eight, lows, _CMP_GT_OQ), _mm256_cmp_ps(eight, highs, _CMP_LE_OQ))));
+    const __m256i set =
+        _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kSetBits[mask].data())));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(places + found),
+                        _mm256_add_epi32(set, _mm256_set1_epi32(static_cast<std::int32_t>(i))));
+    found += static_cast<std::size_t>(std::popcount(mask));
+  }
+  return found;
 }
-[[gnu::target("avx2")]] std::size_t places_avx2(float low, float high, const float* values, std::size_t count,
-                                                std::int32_t* places) {
-  return find_between<mask_between_avx2>(low, high, values, count, places);
+
+[[gnu::target("avx512f,popcnt")]] std::size_t places_avx512(float low, float high, const float* values,
+                                                            std::size_t count, std::int32_t* places) {
+  const __m512 lows = _mm512_set1_ps(low), highs = _mm512_set1_ps(high);
+  __m512i at = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const __m512 all = _mm512_loadu_ps(values + i);
+    const __mmask16 mask =
+        _mm512_mask_cmp_ps_mask(_mm512_cmp_ps_mask(all, lows, _CMP_GT_OQ), all, highs, _CMP_LE_OQ);
+    _mm512_storeu_si512(places + found, _mm512_maskz_compress_epi32(mask, at));
+    at = _mm512_add_epi32(at, _mm512_set1_epi32(static_cast<std::int32_t>(kLanes)));
+    found += static_cast<std::size_t>(std::popcount(static_cast<std::uint32_t>(mask)));
+  }
+  return found;
 }
 
 // log(1 + d) = 2 artanh(t), t = d / (2 + d) <= 1/2. artanh(t) / t is interpolated in t^2 at Chebyshev's
@@ -209,9 +231,10 @@ SALBENCH_VARIANT(avx512, "avx512f,avx512vl", 16)
 bool supported(Instructions instructions) {
   switch (instructions) {
     case Instructions::avx512:
-      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+             supported(Instructions::avx2);
     case Instructions::avx2:
-      return __builtin_cpu_supports("avx2") != 0;
+      return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("popcnt") != 0;
     case Instructions::baseline:
       break;
   }
@@ -232,7 +255,7 @@ const Kernel& kernel(Instructions instructions) {
   static constexpr std::array kernels = {
       Kernel{distances_baseline, bounds_baseline, count_baseline, places_baseline, weighted_sum_baseline},
       Kernel{distances_avx2, bounds_avx2, count_avx2, places_avx2, weighted_sum_avx2},
-      Kernel{distances_avx512, bounds_avx512, count_avx512, places_avx2, weighted_sum_avx512}};
+      Kernel{distances_avx512, bounds_avx512, count_avx512, places_avx512, weighted_sum_avx512}};
   return kernels[static_cast<std::size_t>(instructions)];
 }
 

@@ -46,7 +46,8 @@ bool Chi2Nearest::find_unless_alike(float expected) {
   alike_ = alike_ && are_alike();
   if (alike_) return false;
   find(expected);
-  alike_ = look_.count_up_to(kAlike * beyond_all_) >= k_;
+  const float alike = kAlike * beyond_all_;
+  alike_ = short_of_kth_ < alike && look_.count_up_to(alike) >= k_;
   return !alike_;
 }
 
@@ -64,6 +65,7 @@ void Chi2Nearest::find(float expected) {
     most.count = look_.up_to(most.value);
   }
   const Limit least = narrow(most);
+  short_of_kth_ = least.count < k_ ? least.value : -1;
   kth_ = most.value;
   sure_ = least.value;
   others_.clear();

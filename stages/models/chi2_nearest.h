@@ -59,7 +59,8 @@ class Chi2Nearest {
   std::size_t found_ = 0;  // queries so far
 
   float sure_ = 0, kth_ = 0;
-  bool alike_ = true;  // those of the last query; of the first it is unknown
+  float short_of_kth_ = 0;  // a distance within which there are fewer than k
+  bool alike_ = true;       // those of the last query; of the first it is unknown
   std::vector<Chi2Neighbour> others_;
 };
 
