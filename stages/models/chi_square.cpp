@@ -83,7 +83,7 @@ void ChiSquares::set_rows(const Descriptors& descriptors, std::span<const std::i
   blocks_.resize((count_ + kLanes - 1) / kLanes * kLanes * bins_.size());
   for (std::size_t i = 0; i < count_; ++i) {
     const auto row = descriptors.row(static_cast<std::size_t>(rows[i]));
-    float* lane = &blocks_[i / kLanes * kLanes * bins_.size()] + i % kLanes;
+    float* lane = blocks_.data() + i / kLanes * kLanes * bins_.size() + i % kLanes;
     for (std::size_t b = 0; b < bins_.size(); ++b) lane[b * kLanes] = row[bins_[b]];
   }
 }

@@ -6,6 +6,10 @@
 // The queue holds every edge once for each state of its end points; an entry whose end points have changed
 // since is skipped when it comes up. A refused collapse may become possible when the faces around it have
 // changed, so an empty queue is filled again until a whole round changes nothing.
+//
+// meshoptimizer's simplification, which leaves vertices where they are, takes a tenth of the time, but MS on
+// its meshes is farther from the published maps and scores: r .938, .928 with the two figures instead of
+// .977, .964, mean difference of NSS over 12 meshes .084 instead of .023.
 #include "stages/models/simplified.h"
 
 #include <algorithm>
