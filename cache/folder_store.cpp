@@ -63,7 +63,7 @@ struct FolderStore::Impl {
   Access access;
   mutable std::shared_mutex mutex;  // of stages
   std::map<std::string, StageEntries, std::less<>> stages;
-  std::atomic<bool> is_synced = true;
+  std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 
   fs::path path(std::string_view stage, const ArtefactName& name) const {
     return folder / shard_of(stage, name.key) / name.text();

@@ -44,8 +44,8 @@ class Store : public Index {
   // The artefact is complete on return, or does not exist. Throws StorageError.
   virtual Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
                       const ArtefactNote& note) = 0;
-  // What was saved outlasts a crash of the machine from now on; before, such a crash may cost it, and `load`
-  // finds out. Throws StorageError.
+  // Returns when everything that was saved is on the disk. Until then a crash of the machine may lose or
+  // damage artefacts; `load` takes those for misses. Throws StorageError.
   virtual void sync() {}
   // One process at a time holds a claim; nothing if another holds it. A store of a single process grants all.
   virtual std::unique_ptr<Claim> claim(std::string_view work) {

@@ -80,7 +80,8 @@ class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
     if (!nearest_ || found_.size() != count) nearest_.emplace(count);
     nearest_->clear();
     tree_->findNeighbors(*nearest_, query.data, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-    // Where the squares of distances overflow there are fewer; PCL reads on.
+    // FLANN finds fewer than k points if squared distances overflow, and PCL reads all k: the rest are the
+    // first point, too far away to be connected.
     found_.assign(count, 0);
     distances_squared.assign(count, std::numeric_limits<float>::max());
     nearest_->copy(found_.data(), distances_squared.data(), nearest_->size());
