@@ -91,9 +91,10 @@ SignedRank signed_rank_test(std::span<const double> x, std::span<const double> y
   }
 
   const Ranks ranks = midranks(sizes);
-  double sum_positive = 0, sum_negative = 0;
-  for (std::size_t i = 0; i < sizes.size(); ++i) (positive[i] ? sum_positive : sum_negative) += ranks.rank[i];
-  result.statistic = std::min(sum_positive, sum_negative);
+  double sum_negative = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    (positive[i] ? result.sum_positive : sum_negative) += ranks.rank[i];
+  result.statistic = std::min(result.sum_positive, sum_negative);
   result.exact = sizes.size() <= kMaxExactPairs && result.n_equal == 0 && ranks.ties == 0;
   result.p_value =
       result.exact

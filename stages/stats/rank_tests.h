@@ -40,6 +40,7 @@ struct SignedRank {
   std::int64_t n = 0;                                           // pairs that differ
   std::int64_t n_equal = 0;                                     // pairs that do not differ: left out
   bool exact = false;                                           // false: the normal approximation
+  double sum_positive = 0;                                      // of the ranks of positive differences
   double statistic = std::numeric_limits<double>::quiet_NaN();  // the smaller of both sums of ranks
   double p_value = std::numeric_limits<double>::quiet_NaN();    // two-sided
 };

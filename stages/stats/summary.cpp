@@ -5,9 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include "stages/core/check.h"
+#include "stages/stats/distributions.h"
 
 namespace salbench {
 namespace {
@@ -31,11 +30,6 @@ double sample_deviation(std::span<const double> values, double mean) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-double student_quantile(double degrees_of_freedom) {
-  const boost::math::students_t distribution(degrees_of_freedom);
-  return boost::math::quantile(boost::math::complement(distribution, (1 - kConfidence) / 2));
-}
-
 }  // namespace
 
 Summary summarise(std::span<const double> values) {
@@ -48,7 +42,7 @@ Summary summarise(std::span<const double> values) {
   if (sample.size() < 2) return summary;
   summary.sd = sample_deviation(sample, summary.mean);
   const auto n = static_cast<double>(sample.size());
-  const double half_width = student_quantile(n - 1) * summary.sd / std::sqrt(n);
+  const double half_width = student_upper_quantile((1 - kConfidence) / 2, n - 1) * summary.sd / std::sqrt(n);
   summary.ci_low = summary.mean - half_width;
   summary.ci_high = summary.mean + half_width;
   return summary;

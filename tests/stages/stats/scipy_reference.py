@@ -10,11 +10,19 @@ import numpy as np
 from scipy import special, stats
 
 
+def critical_t(freedom, confidence):
+    """By the incomplete beta function: stats.t.ppf has only nine digits in SciPy 1.10."""
+    beta = special.betaincinv(freedom / 2, 0.5, 1 - confidence)
+    return np.sqrt(freedom * (1 - beta) / beta)
+
+
+def student(x, confidence):
+    """Half of the interval of the mean."""
+    return critical_t(len(x) - 1, confidence) * stats.sem(x)
+
+
 def summary(x):
-    # Student's quantile by the incomplete beta function: stats.t.ppf has only nine digits in SciPy 1.10.
-    freedom = len(x) - 1
-    beta = special.betaincinv(freedom / 2, 0.5, 1 - 0.95)
-    half_width = np.sqrt(freedom * (1 - beta) / beta) * stats.sem(x)
+    half_width = student(x, 0.95)
     return np.mean(x), np.std(x, ddof=1), np.mean(x) - half_width, np.mean(x) + half_width
 
 
@@ -25,6 +33,34 @@ def signed_rank(x, y):
     exact = len(x) <= 50 and len(np.unique(sizes)) == len(sizes) and sizes.min() > 0
     result = stats.wilcoxon(x, y, zero_method="wilcox", correction=False, method="exact" if exact else "approx")
     return (*result, float(exact))
+
+
+def paired(a, b):
+    difference = a - b
+    n = len(difference)
+    t = stats.ttest_rel(a, b)
+    half = student(difference, 0.95)
+    ranks = stats.rankdata(np.abs(difference[difference != 0]))
+    signs = np.sign(difference[difference != 0])
+    wins = np.mean(difference > 0) + np.mean(difference == 0) / 2
+    z2 = special.ndtri(0.975) ** 2
+    root = np.sqrt(z2 * wins * (1 - wins) / n + z2 ** 2 / (4 * n ** 2))
+    return (difference.mean(), difference.mean() - half, difference.mean() + half, t.pvalue,
+            difference.mean() / difference.std(ddof=1), (ranks * signs).sum() / ranks.sum(), wins,
+            (wins + z2 / (2 * n) - root) / (1 + z2 / n), (wins + z2 / (2 * n) + root) / (1 + z2 / n))
+
+
+def equivalence(difference, margin):
+    below = stats.ttest_1samp(difference, -margin[0], alternative="greater")
+    above = stats.ttest_1samp(difference, margin[0], alternative="less")
+    half = student(difference, 0.9)
+    return max(below.pvalue, above.pvalue), difference.mean() - half, difference.mean() + half
+
+
+def power(parameters):
+    effect, n = parameters
+    critical = critical_t(n - 1, 0.95)
+    return [stats.nct.sf(critical, n - 1, effect * np.sqrt(n)) + stats.nct.cdf(-critical, n - 1, effect * np.sqrt(n))]
 
 
 def holm(p):
@@ -48,6 +84,10 @@ OPERATIONS = {
     ),
     "signed_rank": signed_rank,
     "holm": holm,
+    "paired": paired,
+    "equivalence": equivalence,
+    "power": power,
+    "kendall": lambda x, y: [stats.kendalltau(x, y)[0]],
     "pearson": lambda x, y: [stats.pearsonr(x, y)[0]],
     "spearman": lambda x, y: [stats.spearmanr(x, y)[0]],
     "kolmogorov_smirnov": kolmogorov_smirnov,

@@ -16,7 +16,9 @@
 #include "stages/stats/correlation.h"
 #include "stages/stats/distance.h"
 #include "stages/stats/multiple.h"
+#include "stages/stats/paired.h"
 #include "stages/stats/rank_tests.h"
+#include "stages/stats/ranking.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
@@ -61,6 +63,22 @@ void add_paired_cases(std::vector<Case>& cases, Rng& rng, double step) {
   cases.push_back({"spearman", {x, y}, {spearman(x, y)}});
   const SignedRank test = signed_rank_test(x, y);
   cases.push_back({"signed_rank", {x, y}, {test.statistic, test.p_value, static_cast<double>(test.exact)}});
+  const PairedComparison pair = compare_paired(x, y);
+  cases.push_back(
+      {"paired",
+       {x, y},
+       {pair.mean_difference, pair.interval.low, pair.interval.high, pair.t_p, pair.d_z, pair.rank_biserial,
+        pair.superiority, pair.superiority_interval.low, pair.superiority_interval.high}});
+  const double margin = std::exp(rng.normal());
+  const Equivalence equivalence = test_equivalence(x, margin);
+  cases.push_back({"equivalence",
+                   {x, {margin}},
+                   {equivalence.p_value, equivalence.interval.low, equivalence.interval.high}});
+  cases.push_back({"kendall", {x, y}, {kendall_tau(x, y)}});
+  const double effect = rng.uniform();
+  cases.push_back({"power",
+                   {{effect, static_cast<double>(n)}},
+                   {power_of_paired_test(effect, 1, static_cast<double>(n))}});
 }
 
 void add_one_sample_cases(std::vector<Case>& cases, Rng& rng, double step) {

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/stats/resampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "stages/core/check.h"
+#include "stages/core/parallel.h"
+#include "stages/core/rng.h"
+#include "stages/stats/distributions.h"
+#include "stages/stats/summary.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::size_t kResampleGrain = 125;  // a stream of random numbers each
+
+// The columns less their first value, so that a constant one resamples to itself exactly.
+Columns relative_to_first(Columns columns) {
+  const std::vector<double> first(columns.values.begin(),
+                                  columns.values.begin() + static_cast<std::ptrdiff_t>(columns.count));
+  for (std::size_t i = 0; i < columns.values.size(); ++i) columns.values[i] -= first[i % columns.count];
+  return columns;
+}
+
+// Third moment over the second to the power 3/2, divided by 6: the jackknife's acceleration of a mean.
+double acceleration(std::span<const double> sample, double mean) {
+  double squares = 0, cubes = 0;
+  for (const double value : sample) {
+    const double d = value - mean;
+    squares += d * d;
+    cubes += d * d * d;
+  }
+  return cubes / (6 * std::pow(squares, 1.5));
+}
+
+// Share of the resampled means below the mean; those equal to it count one half.
+double share_below(std::span<const double> resampled, double mean) {
+  double twice = 0;
+  for (const double value : resampled) twice += (value < mean ? 1 : 0) + (value <= mean ? 1 : 0);
+  return twice / (2 * static_cast<double>(resampled.size()));
+}
+
+// Linear between order statistics; reorders the sample. [hyndman1996, definition 7]
+double quantile_in_place(std::vector<double>& sample, double q) {
+  const double position = q * static_cast<double>(sample.size() - 1);
+  const auto at = sample.begin() + static_cast<std::ptrdiff_t>(position);
+  std::nth_element(sample.begin(), at, sample.end());
+  const double share = position - std::floor(position);
+  return share == 0 ? *at : std::lerp(*at, *std::min_element(at + 1, sample.end()), share);
+}
+
+}  // namespace
+
+std::vector<double> Columns::column(std::size_t c) const {
+  std::vector<double> result(units());
+  for (std::size_t u = 0; u < result.size(); ++u) result[u] = at(u, c);
+  return result;
+}
+
+std::vector<double> Columns::means() const {
+  CHECK_LT(0U, units());
+  std::vector<double> result(count, 0.0);
+  for (std::size_t u = 0; u < units(); ++u)
+    for (std::size_t c = 0; c < count; ++c) result[c] += at(u, c) - at(0, c);
+  for (std::size_t c = 0; c < count; ++c) result[c] = at(0, c) + result[c] / static_cast<double>(units());
+  return result;
+}
+
+Columns resampled_means(const Columns& columns, std::uint64_t seed, std::size_t resamples) {
+  const std::size_t n = columns.units(), count = columns.count;
+  CHECK_LT(0U, n);
+  const Columns relative = relative_to_first(columns);
+  Columns means{count, std::vector<double>(resamples * count, 0.0)};
+  parallel_ranges(resamples, kResampleGrain, [&](std::size_t first, std::size_t last) {
+    Rng rng(seed, "bootstrap", std::to_string(first));
+    for (std::size_t r = first; r < last; ++r) {
+      double* sums = means.values.data() + r * count;
+      for (std::size_t drawn = 0; drawn < n; ++drawn) {
+        const double* row = relative.values.data() + rng.below(n) * count;
+        for (std::size_t c = 0; c < count; ++c) sums[c] += row[c];
+      }
+      for (std::size_t c = 0; c < count; ++c) sums[c] = columns.at(0, c) + sums[c] / static_cast<double>(n);
+    }
+  });
+  return means;
+}
+
+Interval bca_interval(std::span<const double> sample, std::span<const double> resampled_means) {
+  const Summary summary = summarise(sample);
+  CHECK_EQ(summary.n_undefined, 0);
+  if (!(summary.sd > 0) || resampled_means.empty()) return {};
+  const double share = share_below(resampled_means, summary.mean);
+  if (share <= 0 || share >= 1) return {};
+  const double bias = normal_quantile(share), a = acceleration(sample, summary.mean);
+  std::vector<double> means(resampled_means.begin(), resampled_means.end());
+  const auto end_at = [&](double level) {
+    const double z = bias + normal_quantile(level);
+    return quantile_in_place(means, normal_cdf(bias + z / (1 - a * z)));
+  };
+  constexpr double kTail = (1 - kConfidence) / 2;
+  return {end_at(kTail), end_at(1 - kTail)};
+}
+
+}  // namespace salbench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bootstrap over the units of inference. One set of resamples serves every column of a table, so that means,
+// differences and ranks of models are compared within the same resample. [efron1993]
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace salbench {
+
+struct Interval {
+  double low = std::numeric_limits<double>::quiet_NaN();  // NaN where there is none
+  double high = std::numeric_limits<double>::quiet_NaN();
+};
+
+// Values of several columns on the same units, row-major; none is NaN.
+struct Columns {
+  std::size_t count = 0;       // of columns
+  std::vector<double> values;  // units x count
+
+  std::size_t units() const { return count == 0 ? 0 : values.size() / count; }
+  double at(std::size_t unit, std::size_t column) const { return values[unit * count + column]; }
+  std::vector<double> column(std::size_t c) const;
+  // Means over the units. n > 0; the mean of equal values is that value, without rounding.
+  std::vector<double> means() const;
+};
+
+inline constexpr std::size_t kResamples = 10000;
+
+// Means of the columns over resamples of the units, drawn with replacement: resamples x columns. They depend
+// on the seed, the number of units and the values alone.
+Columns resampled_means(const Columns& columns, std::uint64_t seed, std::size_t resamples = kResamples);
+
+// 95 % interval of the mean of a sample, bias-corrected and accelerated, from its resampled means; none for
+// fewer than two values, or for equal ones. [efron1987]
+Interval bca_interval(std::span<const double> sample, std::span<const double> resampled_means);
+
+}  // namespace salbench
