@@ -23,6 +23,7 @@ void for_each_section(Self& config, Visit&& visit) {
   visit("fpfh", config.fpfh);
   visit("scan_fpfh", config.scan_fpfh);
   visit("metrics", config.metrics);
+  visit("statistics", config.statistics);
 }
 
 std::vector<Model> read_models(const Section& root, Protocol protocol) {

@@ -17,6 +17,7 @@
 #include "stages/normals/normals.h"
 #include "stages/picture/picture.h"
 #include "stages/scan/scan.h"
+#include "stages/stats/unit.h"
 #include "stages/surface/surface.h"
 
 namespace salbench {
@@ -64,6 +65,7 @@ struct Config {
   FpfhOptions fpfh;
   ScanFpfhOptions scan_fpfh;
   MetricsOptions metrics;
+  StatisticsOptions statistics;
   PictureOptions picture;
   Pictures pictures = Pictures::none;  // computed where the file has the section
   std::vector<Model> models;           // in the order of the file

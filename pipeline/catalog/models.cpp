@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/catalog/models.h"
 
+#include <algorithm>
 #include <array>
 
 #include "stages/models/cb.h"
@@ -34,6 +35,11 @@ ModelRow only_if_named(ModelRow row) {
   return row;
 }
 
+ModelRow reference(ModelRow row) {
+  row.is_reference = true;
+  return row;
+}
+
 }  // namespace
 
 std::span<const ModelRow> model_rows() {
@@ -42,8 +48,8 @@ std::span<const ModelRow> model_rows() {
       model_row("CS", 2, cs_saliency),
       model_row("PS", 1, ps_saliency),
       model_row("MS", 1, ms_saliency),
-      human_row("HS", 1),
-      model_row("RS", 1, rs_saliency),
+      reference(human_row("HS", 1)),
+      reference(model_row("RS", 1, rs_saliency)),
       // Beside the paper's: configs/extended.yaml has them.
       only_if_named(model_row("MC", 1, mc_saliency)),
       only_if_named(model_row("LVJ", 1, lvj_saliency)),
@@ -52,6 +58,11 @@ std::span<const ModelRow> model_rows() {
       only_if_named(model_row("VIS", 1, vis_saliency)),
   };
   return rows;
+}
+
+bool is_reference_model(std::string_view name) {
+  return std::ranges::any_of(model_rows(),
+                             [&](const ModelRow& row) { return row.is_reference && row.name == name; });
 }
 
 }  // namespace salbench

@@ -51,6 +51,8 @@ struct ModelRow {
   // Reads the model's section over the defaults of the protocol.
   std::function<Model(const Section& section, Protocol protocol)> bind;
   bool by_default = true;  // runs if a configuration names no models
+  // People or chance: what models are measured against, and no competitor in a ranking.
+  bool is_reference = false;
 };
 
 namespace binding {
@@ -100,5 +102,7 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
 }
 
 std::span<const ModelRow> model_rows();
+
+bool is_reference_model(std::string_view name);  // by its row; false for a name that has none
 
 }  // namespace salbench

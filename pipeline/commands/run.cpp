@@ -9,6 +9,7 @@
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/plan/causes.h"
+#include "pipeline/results/conclusions.h"
 #include "pipeline/results/record.h"
 
 namespace salbench {
@@ -27,10 +28,10 @@ void finish_shard(const Session& session, const RunRecord& record, const Argumen
         session.setup.context.shard->text(), shapes_text(session.setup.workload), session.runner.computed());
 }
 
-void print_summary(const Session& session, const std::vector<ResultRow>& rows) {
+void print_summary(const Session& session, const Conclusions& conclusions) {
   const Setup& setup = session.setup;
   if (setup.config.simulated()) fmt::print("{}\n", kSimulatedNote);
-  fmt::print("{}", aligned(summary_table(rows, chosen_metrics(setup.config.metrics))));
+  fmt::print("{}", aligned(overview_table(conclusions)));
   fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup.config.protocol),
              session.runner.computed(), setup.output.string());
   fmt::print("to make a report of them: {} {}\n", report_command(), shell_word(setup.output.string()));
@@ -41,9 +42,13 @@ void write_results(Session& session, const RunRecord& record, const Arguments& a
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
   if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
-  if (!record.interrupted || !rows.empty()) write_tables(session.setup.output, record.run, rows, remarks);
+  const Config& config = session.setup.config;
+  const Conclusions conclusions =
+      conclude(rows, chosen_metrics(config.metrics), config.statistics, config.seed);
+  if (!record.interrupted || !rows.empty())
+    write_tables(session.setup.output, record.run, rows, conclusions, remarks);
   write_record(session.setup.output, record);
-  if (!arguments.quiet && !record.interrupted) print_summary(session, rows);
+  if (!arguments.quiet && !record.interrupted) print_summary(session, conclusions);
   if (record.interrupted)
     fmt::print(stderr, "\n{}: {}\n", session.setup.output.string(), state_of_results(session.setup.output));
 }

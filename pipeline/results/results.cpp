@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
+#include "pipeline/results/conclusions.h"
 #include "pipeline/results/statistics.h"
 #include "stages/core/check.h"
-#include "stages/stats/summary.h"
 
 namespace salbench {
 
@@ -77,22 +77,6 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) 
   return table;
 }
 
-Table summary_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
-  Table table{.columns = {"dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"},
-              .rows = {}};
-  for (const auto& [dataset, model] : datasets_and_models(rows)) {
-    for (std::size_t m = 0; m < metrics.size(); ++m) {
-      std::vector<double> values;
-      for (const ResultRow& row : rows)
-        if (row.dataset == dataset && row.model == model) values.push_back(row.value(m));
-      const Summary summary = summarise(values);
-      table.rows.push_back({dataset, model, metrics[m].name, summary.n, summary.mean, summary.sd,
-                            summary.ci_low, summary.ci_high});
-    }
-  }
-  return table;
-}
-
 void prepare_output(const fs::path& folder) {
   make_folder(folder, "choose another with --out");
   visit_abandoned(folder, [](const fs::path& file) { fs::remove(file); });
@@ -100,17 +84,19 @@ void prepare_output(const fs::path& folder) {
 }
 
 void write_tables(const fs::path& folder, const RunState& run, const std::vector<ResultRow>& rows,
-                  const std::vector<std::string>& remarks) {
+                  const Conclusions& conclusions, const std::vector<std::string>& remarks) {
   std::string head;
   for (const std::string& remark : remarks) head += fmt::format("# {}\n", remark);
   const auto write = [&](const std::string& name, const Table& table) {
     write_file(folder / name, head + to_csv(table));
   };
-  const Metrics metrics = chosen_metrics(run.config.metrics);
+  const Metrics& metrics = conclusions.metrics;
   write("results.csv", results_table(rows, metrics));
-  write("summary.csv", summary_table(rows, metrics));
-  write("per_class.csv", per_class_table(rows, metrics));
-  write("significance.csv", significance_table(rows, metrics));
+  write("summary.csv", summary_table(conclusions));
+  write("ranking.csv", ranking_table(conclusions));
+  write("ranking_agreement.csv", agreement_table(conclusions));
+  write("significance.csv", significance_table(conclusions));
+  write("per_class.csv", per_class_table(rows, metrics, conclusions.unit));
   // Tables of an earlier run would pass for some of this.
   for (const Shapes shapes : kAllShapes) {
     const std::string name = fmt::format("mean_histograms_{}.csv", name_of(shapes));

@@ -12,6 +12,8 @@
 
 namespace salbench {
 
+struct Conclusions;  // pipeline/results/conclusions.h
+
 inline constexpr const char* kSimulatedNote =
     "SIMULATED participants: the ground truth was made by the program; these scores say nothing about "
     "people.";
@@ -54,17 +56,15 @@ using Metrics = std::vector<Metric>;
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
 
-// dataset, model, metric, n, mean, sd, 95 % confidence interval of the mean; undefined scores are left out of
-// n.
-Table summary_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
-
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
-// results.csv, summary.csv, per_class.csv, significance.csv, mean_histograms_{meshes,scans}.csv,
+// results.csv, summary.csv, ranking.csv, ranking_agreement.csv, significance.csv, per_class.csv,
+// mean_histograms_{meshes,scans}.csv,
 // mean_histograms_clouds.csv where there are point clouds and, where HS was computed, human_curve.csv. Each
 // begins with the remarks, as comments. Throws StorageError.
 void write_tables(const std::filesystem::path& folder, const RunState& run,
-                  const std::vector<ResultRow>& rows, const std::vector<std::string>& remarks);
+                  const std::vector<ResultRow>& rows, const Conclusions& conclusions,
+                  const std::vector<std::string>& remarks);
 
 }  // namespace salbench

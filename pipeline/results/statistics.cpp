@@ -2,47 +2,15 @@
 #include "pipeline/results/statistics.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
+#include <functional>
 #include <numeric>
 
+#include "pipeline/results/unit_scores.h"
 #include "stages/metrics/metrics.h"
-#include "stages/stats/multiple.h"
-#include "stages/stats/rank_tests.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
 namespace {
-
-// Rows of one model by shape: paired tests need to know which belong together.
-using ByShape = std::map<std::string, const ResultRow*>;
-
-ByShape rows_by_shape(const std::vector<ResultRow>& rows, const DatasetAndModel& of) {
-  ByShape by_shape;
-  for (const ResultRow& row : rows)
-    if (row.dataset == of.dataset && row.model == of.model) by_shape[row.item + "/" + row.view] = &row;
-  return by_shape;
-}
-
-std::vector<double> values_of(const ByShape& rows, std::size_t metric) {
-  std::vector<double> values;
-  for (const auto& [shape, row] : rows) values.push_back(row->value(metric));
-  return values;
-}
-
-// Scores of shapes that both models have one for.
-std::pair<std::vector<double>, std::vector<double>> paired(const ByShape& a, const ByShape& b,
-                                                           std::size_t metric) {
-  std::pair<std::vector<double>, std::vector<double>> pairs;
-  for (const auto& [shape, row] : a) {
-    const auto other = b.find(shape);
-    if (other == b.end() || std::isnan(row->value(metric)) || std::isnan(other->second->value(metric)))
-      continue;
-    pairs.first.push_back(row->value(metric));
-    pairs.second.push_back(other->second->value(metric));
-  }
-  return pairs;
-}
 
 // Columns of a table by class: AUC alone for the paper's metrics, as in the paper.
 std::vector<std::size_t> metrics_by_class(const Metrics& metrics) {
@@ -52,94 +20,55 @@ std::vector<std::size_t> metrics_by_class(const Metrics& metrics) {
   return all;
 }
 
-void add_class_rows(Table& table, const std::string& dataset, const std::string& category,
-                    const std::vector<ResultRow>& rows, const Metrics& metrics) {
-  const std::vector<std::size_t> columns = metrics_by_class(metrics);
-  std::map<std::string, std::vector<const ResultRow*>> by_model;
-  for (const ResultRow& row : rows)
-    if (row.dataset == dataset && row.category == category) by_model[row.model].push_back(&row);
-  std::vector<std::vector<double>> means(columns.size());
-  const auto add = [&](const std::string& model, const std::vector<Summary>& summaries) {
-    auto& cells = table.rows.emplace_back(std::vector<Cell>{dataset, category, model, summaries.front().n});
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      cells.insert(cells.end(), {summaries[c].mean, (summaries[c].ci_high - summaries[c].ci_low) / 2});
-      means[c].push_back(summaries[c].mean);
-    }
-  };
-  const auto summaries_of = [&](const auto& values_of_column) {
-    std::vector<Summary> summaries;
-    for (std::size_t c = 0; c < columns.size(); ++c) summaries.push_back(summarise(values_of_column(c)));
-    return summaries;
-  };
-  for (const DatasetAndModel& of : datasets_and_models(rows)) {
-    if (of.dataset != dataset || !by_model.contains(of.model)) continue;
-    add(of.model, summaries_of([&](std::size_t c) {
-          std::vector<double> values;
-          for (const ResultRow* row : by_model[of.model]) values.push_back(row->value(columns[c]));
-          return values;
-        }));
-  }
-  add(columns.size() == 1 && metrics.front().name == "auc" ? "Avg-AUC" : "Avg",
-      summaries_of([&](std::size_t c) { return means[c]; }));
+// In the order of their first item.
+std::vector<std::pair<std::string, std::string>> datasets_and_classes(const std::vector<ResultRow>& rows) {
+  std::vector<std::pair<std::string, std::string>> classes;
+  for (const std::string_view dataset : EnumNames<Shapes>::names)
+    for (const ResultRow& row : rows)
+      if (const std::pair key(row.dataset, row.category);
+          row.dataset == dataset && !row.category.empty() && std::ranges::find(classes, key) == classes.end())
+        classes.push_back(key);
+  return classes;
 }
 
-struct RowsOfModel {
-  DatasetAndModel of;
-  ByShape rows;
-};
+// Model, number of units and summaries of a row.
+using AddRow = std::function<void(const std::string&, const std::vector<Summary>&)>;
 
-void add_significance_rows(Table& table, const std::vector<RowsOfModel>& models, const Metrics& metrics,
-                           std::size_t metric) {
-  std::vector<std::vector<Cell>> added;
-  std::vector<double> p_values;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    for (std::size_t j = i + 1; j < models.size(); ++j) {
-      const RankSum rank_sum =
-          rank_sum_test(values_of(models[i].rows, metric), values_of(models[j].rows, metric));
-      const auto [x, y] = paired(models[i].rows, models[j].rows, metric);
-      const SignedRank signed_rank = signed_rank_test(x, y);
-      std::vector<double> differences;
-      for (std::size_t k = 0; k < x.size(); ++k) differences.push_back(x[k] - y[k]);
-      added.push_back({models[i].of.dataset, metrics[metric].name, models[i].of.model, models[j].of.model,
-                       static_cast<std::int64_t>(x.size()), summarise(differences).mean, rank_sum.z,
-                       rank_sum.p_value, signed_rank.statistic, signed_rank.p_value});
-      p_values.push_back(signed_rank.p_value);
+void add_class_rows(const DatasetScores& scores, const std::vector<std::size_t>& metrics,
+                    const std::string& name_of_average, const AddRow& add) {
+  std::vector<std::vector<double>> means(metrics.size());
+  for (std::size_t model = 0; model < scores.models().size(); ++model) {
+    std::vector<Summary> summaries;
+    for (std::size_t c = 0; c < metrics.size(); ++c) {
+      summaries.push_back(summarise(scores.compared(metrics[c], {&model, 1}).scores.values));
+      if (!scores.is_reference(model)) means[c].push_back(summaries[c].mean);
     }
+    add(scores.models()[model], summaries);
   }
-  const std::vector<double> adjusted = holm_adjusted(p_values);
-  for (std::size_t k = 0; k < added.size(); ++k) {
-    added[k].emplace_back(adjusted[k]);
-    table.rows.push_back(std::move(added[k]));
-  }
+  std::vector<Summary> averages;
+  for (const std::vector<double>& of_metric : means) averages.push_back(summarise(of_metric));
+  add(name_of_average, averages);
 }
 
 }  // namespace
 
-Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
+Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics, Unit unit) {
+  // Within a class its shapes are the units.
+  if (unit == Unit::item_class) unit = Unit::mesh;
+  const std::vector<std::size_t> columns = metrics_by_class(metrics);
+  const std::string average = columns.size() == 1 && metrics.front().name == "auc" ? "Avg-AUC" : "Avg";
   Table table{.columns = {"dataset", "class", "model", "n"}, .rows = {}};
-  for (const std::size_t m : metrics_by_class(metrics))
+  for (const std::size_t m : columns)
     for (const char* part : {"_mean", "_ci95"}) table.columns.push_back(metrics[m].name + part);
-  std::vector<std::pair<std::string, std::string>> classes;  // in the order of their first item
-  for (const std::string_view dataset : EnumNames<Shapes>::names)
-    for (const ResultRow& row : rows)
-      if (const std::pair key(row.dataset, row.category);
-          row.dataset == dataset && !row.category.empty() &&
-          std::find(classes.begin(), classes.end(), key) == classes.end())
-        classes.push_back(key);
-  for (const auto& [dataset, category] : classes) add_class_rows(table, dataset, category, rows, metrics);
-  return table;
-}
-
-Table significance_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
-  Table table{.columns = {"dataset", "metric", "model_a", "model_b", "n", "mean_difference", "rank_sum_z",
-                          "rank_sum_p", "signed_rank", "signed_rank_p", "signed_rank_p_holm"},
-              .rows = {}};
-  for (const std::string_view dataset : EnumNames<Shapes>::names) {
-    std::vector<RowsOfModel> models;
-    for (const DatasetAndModel& of : datasets_and_models(rows))
-      if (of.dataset == dataset) models.push_back({of, rows_by_shape(rows, of)});
-    for (std::size_t m = 0; m < metrics.size(); ++m) add_significance_rows(table, models, metrics, m);
-  }
+  for (const auto& [dataset, category] : datasets_and_classes(rows))
+    add_class_rows(DatasetScores(rows, dataset, unit, category), columns, average,
+                   [&, &dataset = dataset, &category = category](const std::string& model,
+                                                                 const std::vector<Summary>& summaries) {
+                     auto& cells = table.rows.emplace_back(
+                         std::vector<Cell>{dataset, category, model, summaries.front().n});
+                     for (const Summary& summary : summaries)
+                       cells.insert(cells.end(), {summary.mean, (summary.ci_high - summary.ci_low) / 2});
+                   });
   return table;
 }
 

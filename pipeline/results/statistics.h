@@ -6,19 +6,16 @@
 
 #include "io/table.h"
 #include "pipeline/results/results.h"
+#include "stages/stats/unit.h"
 
 namespace salbench {
 
-// dataset, class, model, n, auc_mean, auc_ci95 (half width): the paper's table of AUC by class. The model
-// "Avg-AUC" is the mean over the models of a class. Empty where items have no class. With other metrics than
-// the paper's there is a mean and a half width per metric, n counts what the first one is defined for, and
-// the mean over the models is called "Avg".
-Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
-
-// Every pair of models under every metric: the paper's rank-sum test, and the paired signed-rank test with
-// Holm's correction over the pairs of one data set and metric. Differences are model_a - model_b whether
-// higher or lower values are better. [wilcoxon1945] [holm1979]
-Table significance_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
+// dataset, class, model, n (units), auc_mean, auc_ci95 (half width): the paper's table of AUC by class, over
+// the shapes that all competitors have a score for. The model "Avg-AUC" is the mean over the competitors of a
+// class. Empty where items have no class. With other metrics than the paper's there is a mean and a half
+// width per metric, n counts what the first one is defined for, and the mean over the models is called "Avg".
+Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}),
+                      Unit unit = Unit::mesh);
 
 // Human curves of the meshes that HS was computed for, in their order.
 std::vector<HumanCurve> collect_human_curves(const RunState& run);

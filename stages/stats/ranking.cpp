@@ -115,7 +115,6 @@ std::vector<std::string> compact_letters(const std::vector<std::vector<bool>>& d
 }
 
 Ranking rank_models(const Columns& scores, const Columns& resampled, bool higher_is_better) {
-  CHECK_EQ(scores.count, resampled.count);
   const std::size_t k = scores.count;
   Ranking ranking{std::vector<ModelRank>(k), std::numeric_limits<double>::quiet_NaN()};
   if (scores.units() == 0) return ranking;
@@ -127,6 +126,7 @@ Ranking rank_models(const Columns& scores, const Columns& resampled, bool higher
         1 + std::ranges::count_if(means, [&](double other) { return better(other, means[m]); });
   }
   if (scores.units() < 2) return ranking;
+  CHECK_EQ(k, resampled.count);
 
   const std::vector<Pair> pairs = all_pairs(scores);
   ranking.critical = critical_value(pairs, resampled, scores.units());

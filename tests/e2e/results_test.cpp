@@ -27,7 +27,8 @@ TEST(Results, TheTablesHaveTheDocumentedColumnsAndARowForEverythingScored) {
   EXPECT_THAT(results.rows, SizeIs(JobCounts().of_kind("scores")));
   const Table summary = read_csv(toy.out() / "summary.csv");
   EXPECT_THAT(summary.columns,
-              ElementsAre("dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"));
+              ElementsAre("dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high",
+                          "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean"));
   EXPECT_THAT(summary.rows, SizeIs(2 * toy_config().models.size() * chosen_metrics({}).size()));
   EXPECT_THAT(run.out, HasSubstr("protocol published"));
 }

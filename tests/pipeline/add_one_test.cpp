@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/commands/program.h"
+#include "pipeline/results/conclusions.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/metrics/metrics.h"
 #include "tests/support/job_counts.h"
@@ -103,7 +104,8 @@ TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
   const auto scored =
       std::count_if(rows.begin(), rows.end(), [](const ResultRow& row) { return row.model == "FAR"; });
   EXPECT_EQ(static_cast<std::size_t>(scored), jobs.shapes());
-  EXPECT_THAT(to_csv(summary_table(rows)), HasSubstr("meshes,FAR,auc,1,"));
+  EXPECT_THAT(to_csv(summary_table(conclude(rows, chosen_metrics({}), {}, 1))),
+              HasSubstr("meshes,FAR,auc,1,"));
 }
 
 // --- what a row reads follows from its signature ---------------------------------------------------------

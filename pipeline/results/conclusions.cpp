@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/results/conclusions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "stages/core/parallel.h"
+#include "stages/stats/multiple.h"
+#include "stages/stats/paired.h"
+#include "stages/stats/rank_tests.h"
+#include "stages/stats/summary.h"
+
+namespace salbench {
+namespace {
+
+// The rows that `each` makes of every metric of every data set; metrics in parallel, rows in their order.
+template <class Each>
+Table rows_by_metric(const Conclusions& conclusions, std::vector<std::string> columns, const Each& each) {
+  Table table{.columns = std::move(columns), .rows = {}};
+  for (const DatasetConclusions& dataset : conclusions.datasets) {
+    std::vector<std::vector<std::vector<Cell>>> rows(dataset.metrics.size());
+    parallel_ranges(rows.size(), 1, [&](std::size_t m, std::size_t) {
+      rows[m] = each(dataset, dataset.metrics[m], conclusions.metrics[m].name);
+    });
+    for (auto& of_metric : rows) std::ranges::move(of_metric, std::back_inserter(table.rows));
+  }
+  return table;
+}
+
+std::size_t place_of(const std::vector<std::size_t>& numbers, std::size_t number) {
+  return static_cast<std::size_t>(std::ranges::find(numbers, number) - numbers.begin());
+}
+
+// Student's interval; none where the values do not vary: 0 is no width that could be known.
+Interval interval_of(const Summary& summary) {
+  return summary.sd > 0 ? Interval{summary.ci_low, summary.ci_high} : Interval{};
+}
+
+// Resampled means of a model's scores: those of the ranking where it is ranked, else by the same draws.
+Interval bca_of(const UnitScores& own, std::size_t model, const RankedMetric& ranked, std::uint64_t seed) {
+  if (own.units.size() < 2) return {};
+  const std::size_t place = place_of(ranked.scores.models, model);
+  return bca_interval(own.scores.values, place < ranked.scores.models.size()
+                                             ? ranked.resampled.column(place)
+                                             : resampled_means(own.scores, seed).values);
+}
+
+std::vector<Cell> summary_row(const DatasetScores& scores, std::size_t model, const RankedMetric& ranked,
+                              const std::string& metric, std::uint64_t seed) {
+  const UnitScores compared = scores.compared(ranked.metric, {&model, 1});
+  const UnitScores own = scores.own(ranked.metric, model);
+  const Summary summary = summarise(compared.scores.values);
+  const Interval student = interval_of(summary), bca = bca_of(compared, model, ranked, seed);
+  return {scores.dataset(),
+          scores.models()[model],
+          metric,
+          summary.n,
+          summary.mean,
+          summary.sd,
+          student.low,
+          student.high,
+          bca.low,
+          bca.high,
+          compared.n_shapes,
+          own.n_shapes,
+          summarise(own.scores.values).mean};
+}
+
+std::vector<Cell> significance_row(const DatasetScores& scores, std::size_t metric, std::size_t a,
+                                   std::size_t b) {
+  const std::array pair{a, b};
+  const UnitScores both = scores.compared(metric, pair);
+  const std::vector<double> of_a = both.scores.column(0), of_b = both.scores.column(1);
+  const PairedComparison found = compare_paired(of_a, of_b);
+  const RankSum rank_sum = rank_sum_test(scores.by_shape(metric, a), scores.by_shape(metric, b));
+  const SignedRank signed_rank = signed_rank_test(of_a, of_b);
+  return {found.n,
+          both.n_shapes,
+          found.mean_difference,
+          found.interval.low,
+          found.interval.high,
+          found.t_p,
+          found.d_z,
+          found.rank_biserial,
+          found.superiority,
+          found.superiority_interval.low,
+          found.superiority_interval.high,
+          rank_sum.z,
+          rank_sum.p_value,
+          signed_rank.statistic,
+          signed_rank.p_value};
+}
+
+std::vector<std::vector<Cell>> significance_rows(const DatasetScores& scores, std::size_t metric,
+                                                 const std::string& name) {
+  std::vector<std::vector<Cell>> rows;
+  std::vector<double> p_values;
+  const std::vector<std::size_t> models = scores.scored(metric);
+  for (std::size_t i = 0; i < models.size(); ++i)
+    for (std::size_t j = i + 1; j < models.size(); ++j) {
+      std::vector<Cell>& row = rows.emplace_back(
+          std::vector<Cell>{scores.dataset(), name, scores.models()[models[i]], scores.models()[models[j]]});
+      std::ranges::move(significance_row(scores, metric, models[i], models[j]), std::back_inserter(row));
+      p_values.push_back(std::get<double>(row.back()));
+    }
+  const std::vector<double> adjusted = holm_adjusted(p_values);
+  const auto n_tests = std::ranges::count_if(p_values, [](double p) { return !std::isnan(p); });
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].emplace_back(adjusted[k]);
+    rows[k].emplace_back(static_cast<std::int64_t>(n_tests));
+  }
+  return rows;
+}
+
+// A rank that is not known is an empty cell.
+Cell rank_cell(std::int64_t rank) { return rank > 0 ? Cell(rank) : Cell(std::string()); }
+
+std::vector<std::vector<Cell>> ranking_rows(const DatasetScores& scores, const RankedMetric& ranked,
+                                            const std::string& metric) {
+  std::vector<std::size_t> order(ranked.ranking.models.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t m) { return ranked.ranking.models[m].rank; });
+  std::vector<std::vector<Cell>> rows;
+  for (const std::size_t m : order) {
+    const ModelRank& model = ranked.ranking.models[m];
+    rows.push_back({scores.dataset(), metric, scores.models()[ranked.scores.models[m]],
+                    cell_of(ranked.scores.units.size()), ranked.scores.n_shapes, model.mean,
+                    rank_cell(model.rank), rank_cell(model.rank_low), rank_cell(model.rank_high), model.first,
+                    model.letters});
+  }
+  return rows;
+}
+
+}  // namespace
+
+Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
+                     const StatisticsOptions& options, std::uint64_t seed) {
+  Conclusions conclusions{metrics, options.unit, seed, {}};
+  for (const std::string_view dataset : EnumNames<Shapes>::names) {
+    DatasetScores scores(rows, dataset, options.unit);
+    if (scores.models().empty()) continue;
+    std::vector<RankedMetric> ranked(metrics.size());
+    for (std::size_t m = 0; m < metrics.size(); ++m) {
+      ranked[m].metric = m;
+      ranked[m].scores = scores.compared(m, scores.competitors(m));
+      if (ranked[m].scores.units.size() >= 2)
+        ranked[m].resampled = resampled_means(ranked[m].scores.scores, seed);
+    }
+    parallel_ranges(metrics.size(), 1, [&](std::size_t m, std::size_t) {
+      ranked[m].ranking =
+          rank_models(ranked[m].scores.scores, ranked[m].resampled, metrics[m].higher_is_better);
+    });
+    conclusions.datasets.push_back({std::move(scores), std::move(ranked)});
+  }
+  return conclusions;
+}
+
+Table summary_table(const Conclusions& conclusions) {
+  Table table{.columns = {"dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high",
+                          "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean"},
+              .rows = {}};
+  for (const auto& [scores, metrics] : conclusions.datasets) {
+    const std::size_t n_models = scores.models().size();
+    std::vector<std::vector<Cell>> rows(n_models * metrics.size());
+    parallel_ranges(rows.size(), 1, [&](std::size_t row, std::size_t) {
+      const std::size_t m = row % metrics.size();
+      rows[row] = summary_row(scores, row / metrics.size(), metrics[m], conclusions.metrics[m].name,
+                              conclusions.seed);
+    });
+    std::ranges::move(rows, std::back_inserter(table.rows));
+  }
+  return table;
+}
+
+Table overview_table(const Conclusions& conclusions) {
+  Table table{
+      .columns = {"dataset", "model", "metric", "n", "mean", "ci95_low", "ci95_high", "rank", "group"},
+      .rows = {}};
+  for (const auto& [scores, metrics] : conclusions.datasets)
+    for (std::size_t model = 0; model < scores.models().size(); ++model)
+      for (const RankedMetric& ranked : metrics) {
+        const Summary summary = summarise(scores.compared(ranked.metric, {&model, 1}).scores.values);
+        const Interval student = interval_of(summary);
+        const std::size_t place = place_of(ranked.scores.models, model);
+        const ModelRank rank =
+            place < ranked.scores.models.size() ? ranked.ranking.models[place] : ModelRank{};
+        table.rows.push_back({scores.dataset(), scores.models()[model],
+                              conclusions.metrics[ranked.metric].name, summary.n, summary.mean, student.low,
+                              student.high, rank_cell(rank.rank), rank.letters});
+      }
+  return table;
+}
+
+Table significance_table(const Conclusions& conclusions) {
+  return rows_by_metric(
+      conclusions, {"dataset",    "metric",          "model_a",     "model_b",         "n",
+                    "n_shapes",   "mean_difference", "ci95_low",    "ci95_high",       "t_p",
+                    "d_z",        "rank_biserial",   "superiority", "superiority_low", "superiority_high",
+                    "rank_sum_z", "rank_sum_p",      "signed_rank", "signed_rank_p",   "signed_rank_p_holm",
+                    "n_tests"},
+      [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
+        return significance_rows(dataset.scores, ranked.metric, metric);
+      });
+}
+
+Table ranking_table(const Conclusions& conclusions) {
+  return rows_by_metric(
+      conclusions,
+      {"dataset", "metric", "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first",
+       "group"},
+      [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
+        return ranking_rows(dataset.scores, ranked, metric);
+      });
+}
+
+}  // namespace salbench
