@@ -33,11 +33,6 @@ std::size_t place_of(const std::vector<std::size_t>& numbers, std::size_t number
   return static_cast<std::size_t>(std::ranges::find(numbers, number) - numbers.begin());
 }
 
-// Student's interval; none where the values do not vary: 0 is no width that could be known.
-Interval interval_of(const Summary& summary) {
-  return summary.sd > 0 ? Interval{summary.ci_low, summary.ci_high} : Interval{};
-}
-
 // Resampled means of a model's scores: those of the ranking where it is ranked, else by the same draws.
 Interval bca_of(const UnitScores& own, std::size_t model, const RankedMetric& ranked, std::uint64_t seed) {
   if (own.units.size() < 2) return {};
@@ -52,7 +47,7 @@ std::vector<Cell> summary_row(const DatasetScores& scores, std::size_t model, co
   const UnitScores compared = scores.compared(ranked.metric, {&model, 1});
   const UnitScores own = scores.own(ranked.metric, model);
   const Summary summary = summarise(compared.scores.values);
-  const Interval student = interval_of(summary), bca = bca_of(compared, model, ranked, seed);
+  const Interval student = student_interval(summary), bca = bca_of(compared, model, ranked, seed);
   return {scores.dataset(),
           scores.models()[model],
           metric,
@@ -82,6 +77,8 @@ std::vector<Cell> significance_row(const DatasetScores& scores, std::size_t metr
           found.interval.low,
           found.interval.high,
           found.t_p,
+          found.equivalence_interval.low,
+          found.equivalence_interval.high,
           found.d_z,
           found.rank_biserial,
           found.superiority,
@@ -182,7 +179,7 @@ Table overview_table(const Conclusions& conclusions) {
     for (std::size_t model = 0; model < scores.models().size(); ++model)
       for (const RankedMetric& ranked : metrics) {
         const Summary summary = summarise(scores.compared(ranked.metric, {&model, 1}).scores.values);
-        const Interval student = interval_of(summary);
+        const Interval student = student_interval(summary);
         const std::size_t place = place_of(ranked.scores.models, model);
         const ModelRank rank =
             place < ranked.scores.models.size() ? ranked.ranking.models[place] : ModelRank{};
@@ -195,11 +192,30 @@ Table overview_table(const Conclusions& conclusions) {
 
 Table significance_table(const Conclusions& conclusions) {
   return rows_by_metric(
-      conclusions, {"dataset",    "metric",          "model_a",     "model_b",         "n",
-                    "n_shapes",   "mean_difference", "ci95_low",    "ci95_high",       "t_p",
-                    "d_z",        "rank_biserial",   "superiority", "superiority_low", "superiority_high",
-                    "rank_sum_z", "rank_sum_p",      "signed_rank", "signed_rank_p",   "signed_rank_p_holm",
-                    "n_tests"},
+      conclusions,
+      {"dataset",
+       "metric",
+       "model_a",
+       "model_b",
+       "n",
+       "n_shapes",
+       "mean_difference",
+       "ci95_low",
+       "ci95_high",
+       "t_p",
+       "ci90_low",
+       "ci90_high",
+       "d_z",
+       "rank_biserial",
+       "superiority",
+       "superiority_low",
+       "superiority_high",
+       "rank_sum_z",
+       "rank_sum_p",
+       "signed_rank",
+       "signed_rank_p",
+       "signed_rank_p_holm",
+       "n_tests"},
       [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
         return significance_rows(dataset.scores, ranked.metric, metric);
       });

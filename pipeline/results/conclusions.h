@@ -46,10 +46,10 @@ Table overview_table(const Conclusions& conclusions);
 
 // Every pair of models under every metric, as model_a - model_b whether higher or lower values are better: n
 // (units), n_shapes, mean_difference, ci95_low, ci95_high, t_p (paired Student: below .05 where the interval
-// leaves out 0), d_z, rank_biserial, superiority with its interval (probability that a is higher on a new
-// unit), signed_rank, signed_rank_p, signed_rank_p_holm (over the n_tests pairs of one data set and metric);
-// and, as the paper has them, rank_sum_z and rank_sum_p over all shapes of both, whatever the unit.
-// [wilcoxon1945] [holm1979]
+// leaves out 0), ci90_low, ci90_high (within a margin: equivalent by two one-sided tests at .05), d_z,
+// rank_biserial, superiority with its interval (probability that a is higher on a new unit), signed_rank,
+// signed_rank_p, signed_rank_p_holm (over the n_tests pairs of one data set and metric); and, as the paper
+// has them, rank_sum_z and rank_sum_p over all shapes of both, whatever the unit. [wilcoxon1945] [holm1979]
 Table significance_table(const Conclusions& conclusions);
 
 // dataset, metric, model, n (units), mean, rank, rank_low, rank_high, first, group: the competitors by rank.

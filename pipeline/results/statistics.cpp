@@ -2,8 +2,6 @@
 #include "pipeline/results/statistics.h"
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
 
 #include "pipeline/results/unit_scores.h"
 #include "stages/metrics/metrics.h"
@@ -12,13 +10,7 @@
 namespace salbench {
 namespace {
 
-// Columns of a table by class: AUC alone for the paper's metrics, as in the paper.
-std::vector<std::size_t> metrics_by_class(const Metrics& metrics) {
-  std::vector<std::size_t> all(metrics.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  if (std::ranges::equal(metrics, chosen_metrics({}), {}, &Metric::name, &Metric::name)) all.resize(1);
-  return all;
-}
+constexpr const char* kAverage = "Avg";  // no model can be called so
 
 // In the order of their first item.
 std::vector<std::pair<std::string, std::string>> datasets_and_classes(const std::vector<ResultRow>& rows) {
@@ -31,23 +23,30 @@ std::vector<std::pair<std::string, std::string>> datasets_and_classes(const std:
   return classes;
 }
 
-// Model, number of units and summaries of a row.
-using AddRow = std::function<void(const std::string&, const std::vector<Summary>&)>;
-
-void add_class_rows(const DatasetScores& scores, const std::vector<std::size_t>& metrics,
-                    const std::string& name_of_average, const AddRow& add) {
-  std::vector<std::vector<double>> means(metrics.size());
-  for (std::size_t model = 0; model < scores.models().size(); ++model) {
-    std::vector<Summary> summaries;
-    for (std::size_t c = 0; c < metrics.size(); ++c) {
-      summaries.push_back(summarise(scores.compared(metrics[c], {&model, 1}).scores.values));
-      if (!scores.is_reference(model)) means[c].push_back(summaries[c].mean);
-    }
-    add(scores.models()[model], summaries);
+// Mean of the columns, unit by unit.
+std::vector<double> mean_of_columns(const Columns& columns) {
+  std::vector<double> means(columns.units(), 0.0);
+  for (std::size_t u = 0; u < means.size(); ++u) {
+    for (std::size_t c = 0; c < columns.count; ++c) means[u] += columns.at(u, c);
+    means[u] /= static_cast<double>(columns.count);
   }
-  std::vector<Summary> averages;
-  for (const std::vector<double>& of_metric : means) averages.push_back(summarise(of_metric));
-  add(name_of_average, averages);
+  return means;
+}
+
+void add_class_rows(Table& table, const std::string& category, const DatasetScores& scores,
+                    const Metrics& metrics) {
+  const auto add = [&](const std::string& model, std::size_t metric, const UnitScores& of) {
+    if (of.units.empty()) return;
+    const Summary summary = summarise(mean_of_columns(of.scores));
+    const Interval interval = student_interval(summary);
+    table.rows.push_back({scores.dataset(), category, model, metrics[metric].name, summary.n, of.n_shapes,
+                          summary.mean, interval.low, interval.high});
+  };
+  for (std::size_t model = 0; model < scores.models().size(); ++model)
+    for (std::size_t m = 0; m < metrics.size(); ++m)
+      add(scores.models()[model], m, scores.compared(m, {&model, 1}));
+  for (std::size_t m = 0; m < metrics.size(); ++m)
+    add(kAverage, m, scores.compared(m, scores.competitors(m)));
 }
 
 }  // namespace
@@ -55,20 +54,11 @@ void add_class_rows(const DatasetScores& scores, const std::vector<std::size_t>&
 Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics, Unit unit) {
   // Within a class its shapes are the units.
   if (unit == Unit::item_class) unit = Unit::mesh;
-  const std::vector<std::size_t> columns = metrics_by_class(metrics);
-  const std::string average = columns.size() == 1 && metrics.front().name == "auc" ? "Avg-AUC" : "Avg";
-  Table table{.columns = {"dataset", "class", "model", "n"}, .rows = {}};
-  for (const std::size_t m : columns)
-    for (const char* part : {"_mean", "_ci95"}) table.columns.push_back(metrics[m].name + part);
+  Table table{
+      .columns = {"dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"},
+      .rows = {}};
   for (const auto& [dataset, category] : datasets_and_classes(rows))
-    add_class_rows(DatasetScores(rows, dataset, unit, category), columns, average,
-                   [&, &dataset = dataset, &category = category](const std::string& model,
-                                                                 const std::vector<Summary>& summaries) {
-                     auto& cells = table.rows.emplace_back(
-                         std::vector<Cell>{dataset, category, model, summaries.front().n});
-                     for (const Summary& summary : summaries)
-                       cells.insert(cells.end(), {summary.mean, (summary.ci_high - summary.ci_low) / 2});
-                   });
+    add_class_rows(table, category, DatasetScores(rows, dataset, unit, category), metrics);
   return table;
 }
 

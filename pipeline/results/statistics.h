@@ -10,10 +10,9 @@
 
 namespace salbench {
 
-// dataset, class, model, n (units), auc_mean, auc_ci95 (half width): the paper's table of AUC by class, over
-// the shapes that all competitors have a score for. The model "Avg-AUC" is the mean over the competitors of a
-// class. Empty where items have no class. With other metrics than the paper's there is a mean and a half
-// width per metric, n counts what the first one is defined for, and the mean over the models is called "Avg".
+// dataset, class, model, metric, n (units), n_shapes, mean, ci95_low, ci95_high: over the shapes of the class
+// that all competitors have a score for. The model "Avg" is the mean over the competitors, shape by shape, so
+// that its interval is one over shapes. Empty where items have no class.
 Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}),
                       Unit unit = Unit::mesh);
 

@@ -24,6 +24,13 @@ double t_statistic(const Summary& summary, double hypothesis) {
   return away / (summary.sd / std::sqrt(static_cast<double>(summary.n)));
 }
 
+// What two one-sided tests at 0.05 compare with their margins.
+Interval interval_90(const Summary& summary) {
+  const double half = student_upper_quantile(kLevel, static_cast<double>(summary.n - 1)) * summary.sd /
+                      std::sqrt(static_cast<double>(summary.n));
+  return {summary.mean - half, summary.mean + half};
+}
+
 // Share of wins, draws one half.
 double share_above(std::span<const double> differences) {
   double twice = 0;
@@ -50,7 +57,8 @@ PairedComparison compare_paired(std::span<const double> a, std::span<const doubl
   result.superiority_interval = wilson_interval(result.superiority, summary.n);
   result.t_p = student_two_sided(t_statistic(summary, 0), static_cast<double>(summary.n - 1));
   if (!(summary.sd > 0)) return result;
-  result.interval = {summary.ci_low, summary.ci_high};
+  result.interval = student_interval(summary);
+  result.equivalence_interval = interval_90(summary);
   result.d_z = summary.mean / summary.sd;
   return result;
 }
@@ -71,11 +79,9 @@ Equivalence test_equivalence(std::span<const double> differences, double margin)
   CHECK_EQ(summary.n_undefined, 0);
   if (summary.n < 2) return {};
   const auto freedom = static_cast<double>(summary.n - 1);
-  const double half =
-      student_upper_quantile(kLevel, freedom) * summary.sd / std::sqrt(static_cast<double>(summary.n));
   return {std::max(student_upper_tail(t_statistic(summary, -margin), freedom),
                    student_upper_tail(-t_statistic(summary, margin), freedom)),
-          {summary.mean - half, summary.mean + half}};
+          interval_90(summary)};
 }
 
 double power_of_paired_test(double difference, double deviation, double n) {

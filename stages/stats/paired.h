@@ -15,9 +15,10 @@ namespace salbench {
 struct PairedComparison {
   std::int64_t n = 0;  // units
   double mean_difference = std::numeric_limits<double>::quiet_NaN();
-  Interval interval = {};                                           // Student, 95 %; none if all agree
-  double t_p = std::numeric_limits<double>::quiet_NaN();            // two-sided; below .05 where the
-                                                                    // interval leaves out 0
+  Interval interval = {};                                 // Student, 95 %; none if all agree
+  double t_p = std::numeric_limits<double>::quiet_NaN();  // two-sided; below .05 where the
+                                                          // interval leaves out 0
+  Interval equivalence_interval = {};  // Student, 90 %: within +-margin, the two are equivalent at 0.05
   double d_z = std::numeric_limits<double>::quiet_NaN();            // Cohen: mean over deviation
   double rank_biserial = std::numeric_limits<double>::quiet_NaN();  // of matched pairs, in [-1, 1]
   double superiority = std::numeric_limits<double>::quiet_NaN();    // P(a > b) + P(a = b) / 2

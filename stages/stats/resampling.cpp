@@ -9,7 +9,6 @@
 #include "stages/core/parallel.h"
 #include "stages/core/rng.h"
 #include "stages/stats/distributions.h"
-#include "stages/stats/summary.h"
 
 namespace salbench {
 namespace {

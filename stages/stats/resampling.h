@@ -4,16 +4,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
-namespace salbench {
+#include "stages/stats/summary.h"
 
-struct Interval {
-  double low = std::numeric_limits<double>::quiet_NaN();  // NaN where there is none
-  double high = std::numeric_limits<double>::quiet_NaN();
-};
+namespace salbench {
 
 // Values of several columns on the same units, row-major; none is NaN.
 struct Columns {

@@ -48,6 +48,10 @@ Summary summarise(std::span<const double> values) {
   return summary;
 }
 
+Interval student_interval(const Summary& summary) {
+  return summary.sd > 0 ? Interval{summary.ci_low, summary.ci_high} : Interval{};
+}
+
 double quantile(std::span<const double> values, double q) {
   CHECK_LE(0.0, q);
   CHECK_LE(q, 1.0);

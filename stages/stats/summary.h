@@ -10,6 +10,11 @@ namespace salbench {
 
 inline constexpr double kConfidence = 0.95;  // of every interval in the reports
 
+struct Interval {
+  double low = std::numeric_limits<double>::quiet_NaN();  // NaN where there is none
+  double high = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct Summary {
   std::int64_t n = 0;                                         // values that are defined
   std::int64_t n_undefined = 0;                               // values that are NaN
@@ -21,6 +26,10 @@ struct Summary {
 
 // Mean, standard deviation and Student's confidence interval mean -+ t(n - 1) sd / sqrt(n).
 Summary summarise(std::span<const double> values);
+
+// The interval of the mean; none where the values do not vary: a width of 0 says that they are few or equal,
+// not that the mean is known.
+Interval student_interval(const Summary& summary);
 
 // The value below which a fraction q of the defined values lies, 0 <= q <= 1, linear between the values at
 // q (n - 1); NaN if no value is defined. [hyndman1996, definition 7]

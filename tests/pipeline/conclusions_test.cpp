@@ -199,15 +199,18 @@ TEST(AgreementTable, TakesTheUnitsThatBothMetricsHave) {
     EXPECT_EQ(number(table, "tau", pair), 1) << pair[1];
 }
 
-TEST(PerClassTable, AveragesCompetitorsOverTheSameShapes) {
+// The average's interval is over shapes: models that agree on each shape make it no narrower.
+TEST(PerClassTable, AveragesCompetitorsShapeByShape) {
   const std::vector<ResultRow> rows{scored("1", "0", "A", .2, "cup"),  scored("1", "1", "A", .4, "cup"),
-                                    scored("2", "0", "A", .6, "cup"),  scored("1", "0", "RS", .9, "cup"),
-                                    scored("1", "1", "RS", .9, "cup"), scored("2", "0", "RS", .9, "cup")};
-  const Table table = per_class_table(rows, kAuc);
+                                    scored("2", "0", "A", .6, "cup"),  scored("1", "0", "B", .2, "cup"),
+                                    scored("1", "1", "B", .4, "cup"),  scored("2", "0", "B", .6, "cup"),
+                                    scored("1", "0", "RS", .9, "cup"), scored("2", "0", "RS", .9, "cup")};
+  const Table table = per_class_table(rows, kAuc, Unit::mesh);
   EXPECT_EQ(number(table, "n", {"A"}), 2);
-  EXPECT_NEAR(number(table, "auc_mean", {"A"}), (.3 + .6) / 2, 1e-12);
-  EXPECT_NEAR(number(table, "auc_mean", {"Avg-AUC"}), (.3 + .6) / 2, 1e-12);
-  EXPECT_NEAR(number(per_class_table(rows, kAuc, Unit::shape), "auc_mean", {"A"}), .4, 1e-12);
+  EXPECT_NEAR(number(table, "mean", {"A"}), (.3 + .6) / 2, 1e-12);
+  for (const char* column : {"n", "n_shapes", "mean", "ci95_low", "ci95_high"})
+    EXPECT_DOUBLE_EQ(number(table, column, {"Avg"}), number(table, column, {"A"})) << column;
+  EXPECT_NEAR(number(per_class_table(rows, kAuc, Unit::shape), "mean", {"A"}), .4, 1e-12);
 }
 
 }  // namespace

@@ -68,20 +68,6 @@ TEST_F(RunnerTest, OnlyScoresByAreaReadTheSurface) {
               ElementsAre("matched.PS", "scan_ground_truth", "scan", "surface"));
 }
 
-TEST_F(RunnerTest, TheTableByClassHasEachMetricButForThePapers) {
-  run();
-  const auto columns = [&](const std::string& metrics) {
-    ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
-    toy.run();
-    std::vector<ResultRow> rows = toy.results();
-    for (ResultRow& row : rows) row.category = "human";
-    return per_class_table(rows, chosen_metrics(toy.config.metrics)).columns;
-  };
-  EXPECT_THAT(columns(""), ElementsAre("dataset", "class", "model", "n", "auc_mean", "auc_ci95"));
-  EXPECT_THAT(columns("metrics: [kl, nss]\n"),
-              ElementsAre("dataset", "class", "model", "n", "nss_mean", "nss_ci95", "kl_mean", "kl_ci95"));
-}
-
 constexpr const char* kWithPeople = "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\n";
 
 TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
