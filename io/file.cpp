@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <system_error>
@@ -100,6 +101,11 @@ void sync_folder(const fs::path& folder) {
   const Descriptor fd(open_file(folder, O_RDONLY | O_DIRECTORY));
   if (fd.get() >= 0) ::fsync(fd.get());
 }
+
+std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; }
+
+// The coarsest resolution of times that a file system has (FAT).
+constexpr std::int64_t kTimeResolution_ns = 2'000'000'000;
 
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
 
@@ -274,6 +280,16 @@ std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
   if (!error) return size;
   if (is_missing(error.value())) return {};
   fail(path, "looked at", error.value());
+}
+
+std::optional<FileIdentity> identity_of_file(const fs::path& path) {
+  struct stat status {};
+  timespec now{};
+  if (::clock_gettime(CLOCK_REALTIME, &now) != 0 || ::stat(path.c_str(), &status) != 0) return {};
+  const std::int64_t changed_ns = nanoseconds(status.st_ctim);
+  if (nanoseconds(now) - changed_ns <= kTimeResolution_ns) return {};
+  return FileIdentity{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
+                      nanoseconds(status.st_mtim), changed_ns};
 }
 
 }  // namespace salbench

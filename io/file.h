@@ -89,6 +89,19 @@ void remove_file(const std::filesystem::path& path);
 // Size in bytes; nothing if there is no such file. Throws StorageError if the system refuses.
 std::optional<std::uintmax_t> size_of_file(const std::filesystem::path& path);
 
+// Where a file's content stands on the disk, and when it last changed. Equal identities mean equal content:
+// unlike the modification time, the time of the last change (ctime) cannot be set by a program.
+struct FileIdentity {
+  std::uint64_t device = 0, number = 0, bytes = 0;
+  std::int64_t modified_ns = 0, changed_ns = 0;  // since 1970
+
+  bool operator==(const FileIdentity&) const = default;
+};
+
+// Nothing if the file cannot be looked at, or changed so recently that another change could bear the same
+// time.
+std::optional<FileIdentity> identity_of_file(const std::filesystem::path& path);
+
 // The system's reason and what to do about it: "Too many open files: use fewer --threads, or ...".
 std::string system_reason(int error);
 

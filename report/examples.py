@@ -38,17 +38,6 @@ def scores_of(shop):
     return shop.scores
 
 
-def pieces(shop, shape, model):
-    """The leading scores of a map as text, each bold where no other model's is better."""
-    found = []
-    for metric, of in shop.results.leading.items():
-        row = scores_of(shop).of(shape.dataset, metric, shape.item, shape.view)
-        value = row.get(model, (float("nan"),))[0]
-        best = value == value and value == of.best(entry[0] for name, entry in row.items() if name != "HS")
-        found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), best))
-    return found
-
-
 def thumbnails(shop):
     """(item, path of its painted ground truth) of the meshes and point clouds that have both, in the order of their names."""
     found = scored_pictures(shop, "meshes") + scored_pictures(shop, "clouds")
@@ -65,7 +54,7 @@ def map_tile(shop, painter, what, when, title, scored=True, small=False):
     picture = painter.paint(what, when, small)
     dots = "; dots: what participants picked" if what == "ground truth" and len(shape.picks) else ""
     return Tile(picture, title, f"{label_of(what, when)}: {describe(shape)}{dots}" if picture else "Not in the export.",
-                pieces(shop, shape, what) if scored and what != "ground truth" else [], shop.page_of(shape.item))
+                scores_of(shop).pieces(shape, what) if scored and what != "ground truth" else [], shop.page_of(shape.item))
 
 
 def rows_of_maps(shop, painters, small=False):
@@ -96,20 +85,20 @@ def chosen(shop, dataset, count):
 
 
 def meshes(shop):
-    gallery = Gallery(f"Saliency maps before histogram matching, with ({leading_labels(shop)}) of the matched map; best model "
+    gallery = Gallery(f"Saliency maps before histogram matching, with ({leading_labels(shop)}) of the matched map; best "
                       "in bold.", rows_of_maps(shop, chosen(shop, "meshes", 2)))
     return printed(shop, "examples-meshes", gallery)
 
 
 def scans(shop):
     gallery = Gallery(f"Saliency maps before histogram matching on simulated range scans, with ({leading_labels(shop)}) of the "
-                      "matched map; best model in bold.", rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
+                      "matched map; best in bold.", rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
     return printed(shop, "examples-scans", gallery)
 
 
 def clouds(shop):
     gallery = Gallery(f"Saliency maps before histogram matching on point clouds, with ({leading_labels(shop)}) of the matched "
-                      "map; best model in bold.", rows_of_maps(shop, chosen(shop, "clouds", 2)))
+                      "map; best in bold.", rows_of_maps(shop, chosen(shop, "clouds", 2)))
     return printed(shop, "examples-clouds", gallery)
 
 
@@ -148,10 +137,10 @@ def difficult(shop, dataset, metric, count=3):
             continue
         painter = painters[item, view]
         with_maps = [model for model in wide if painter.has(model)]
-        best = wide.loc[(item, view), with_maps].astype(float).dropna()
+        best = of.best(wide.loc[(item, view), with_maps].astype(float).to_dict())
         tiles.append(map_tile(shop, painter, "ground truth", "before", label))
-        if len(best):
-            name = best.idxmin() if of.lower else best.idxmax()
+        if best:
+            name = next(model for model in with_maps if model in best)
             tiles.append(map_tile(shop, painter, name, "after", f"best: {name}"))
     gallery = Gallery(f"The {lowest_scoring}: ground truth, and the map of the model that scores best there, after "
                       f"matching; below: {leading_labels(shop)}.", [("", tiles)])
@@ -173,12 +162,12 @@ def printed(shop, name, gallery):
         for axes, tile in zip(line, tiles):
             axes.set_title(tile.title, fontsize=9)
             if tile.picture:
-                axes.imshow(Image.open(shop.out / tile.picture).convert("RGB"))
+                axes.imshow(Image.open(shop.folder.path / tile.picture).convert("RGB"))
                 axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in tile.pieces),
                           transform=axes.transAxes, ha="center", va="top", fontsize=9)
     bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
     figure.colorbar(style.scale(), cax=bar)
     bar.grid(visible=False)
-    style.save(figure, shop.out / "figures", name)
+    shop.draw(name, figure)
     gallery.files = [("SVG", f"figures/{name}.svg"), ("PDF", f"figures/{name}.pdf")]
     return gallery

@@ -29,14 +29,14 @@ class Painter:
             return ""
         of = self.shape.view or KIND_NAMES[self.shape.dataset].replace(" ", "-")
         name = f"{self.folder}/{of}-{file_name(what)}-{when}{'-small' if small else ''}.webp"
-        path = self.shop.out / name
-        if path.is_file():
+        if name in self.shop.painted:
             return name
         try:
             image = self.image(what, when)
         except (IndexError, *BROKEN):  # indices that do not belong to the shape: a damaged export
             return ""
-        path.parent.mkdir(exist_ok=True)
+        path = self.shop.file(name)
+        self.shop.painted.add(name)
         if small:
             image.reduce(2).save(path, quality=SMALL_QUALITY, method=4)
         else:

@@ -35,13 +35,11 @@ def number(row, bold):
     return rf"$\mathbf{{{value}}}$" if bold else f"${value}$"
 
 
-def write_per_class(path, classes, models, by_cell, metric, dataset, simulated):
-    """by_cell: (class, model or "Avg") -> a row with mean and ci95."""
+def write_per_class(path, classes, models, by_cell, best, metric, dataset, simulated):
+    """by_cell: (class, model or "Avg") -> a row with mean and ci95. best: class -> its best models."""
     rows = []
     for name in classes:
-        values = [by_cell.get((name, model)) for model in models]
-        best = metric.best(row["mean"] for row in values if row is not None)
-        cells = [number(row, row is not None and row["mean"] == best) for row in values]
+        cells = [number(by_cell.get((name, model)), model in best[name]) for model in models]
         rows.append((name, cells + [number(by_cell.get((name, "Avg")), False)]))
     environment = Environment(trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, autoescape=False)
     environment.filters["tex"] = escape

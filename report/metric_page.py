@@ -55,13 +55,12 @@ def classes(shop, dataset):
 def class_rows(shop, name, table):
     of = shop.results.metric(name)
     by_cell = {(row["class"], row["model"]): row for row in table.to_dict("records")}
+    best = tables.best_per_class(of, by_cell)
     rows = []
     for category in dict.fromkeys(table["class"]):
         found = [by_cell.get((category, model)) for model in shop.models]
-        best = of.best(row["mean"] for row in found if row)
         line = [Cell(of.label), Cell(category or "(no class)"), count(max((row["n"] for row in found if row), default=0))]
         for row in found + [by_cell.get((category, "Avg"))]:
-            bold = bool(row) and row["model"] != "Avg" and row["mean"] == best
-            line.append(tables.class_cell(row, None, bold) if row else cell(None))
+            line.append(tables.class_cell(row, None, row["model"] in best[category]) if row else cell(None))
         rows.append(line)
     return rows

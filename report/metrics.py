@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Metrics by name: label, unit, direction, and which are conventions of the same measurement."""
 
+import math
 from dataclasses import dataclass
 
 PAPER = {"auc": "AUC", "nss": "NSS", "lcc": "LCC"}
+TIE = 1e-12  # relative difference of equal means: the same scores summed in another order
 LEADING = 3  # metrics that every page shows; the others stand behind a menu
 
 _LABELS = {**PAPER, "auc_exact": "AUC (exact)", "auc_judd": "AUC (Judd)", "auc_borji": "AUC (Borji)", "cc": "CC",
@@ -51,10 +53,12 @@ class Metric:
     unit: str = "1"
     lower: bool = False  # better
 
-    def best(self, values):
-        """The best of some values, NaN left out; None if there is none."""
-        known = [value for value in values if value == value]
-        return (min if self.lower else max)(known, default=None)
+    def best(self, scores):
+        """The keys of the best scores: what every page and table sets in bold. Several where scores tie; none where no score
+        is a finite number."""
+        known = {key: value for key, value in scores.items() if value is not None and math.isfinite(value)}
+        top = (min if self.lower else max)(known.values(), default=0)
+        return {key for key, value in known.items() if abs(value - top) <= TIE * abs(top)}
 
 
 def described(name, entry=None):

@@ -46,7 +46,7 @@ def write_scripts(shop, script, table):
     """The leading metrics stand in the script itself, each other one in its own, which the page loads when it is chosen."""
     def write(path, name, value):
         text = json.dumps(value, separators=(",", ":"), ensure_ascii=True)
-        (shop.out / path).write_text(f"{name} = {text};\n", encoding="utf-8")
+        shop.file(path).write_text(f"{name} = {text};\n", encoding="utf-8")
     later = [metric for metric in table["scores"] if metric not in shop.results.leading]
     table["files"] = {metric: f"{script.removesuffix('.js')}-{file_name(metric)}.js" for metric in later}
     for metric, path in table["files"].items():

@@ -110,7 +110,7 @@ def table(shop, dataset):
         lines.append(line)
     name = f"sensitivity-{dataset}"
     write_csv(pandas.DataFrame(data, columns=["family", "metric", "run", "n", "kendall_tau", "model", "mean", "rank",
-                                              "rank_of_reference"]), shop.out / "data" / f"{name}.csv")
+                                              "rank_of_reference"]), shop.file(f"data/{name}.csv"))
     return [Note(sentence(dataset, rows)),
             Table(name, CAPTION.format(DATASETS[dataset]), ["Family", "Convention", "Shapes", "Tau", *models], lines,
                   [False, False, True, True] + [True] * len(models), filters=[0], files=[("numbers (CSV)", f"data/{name}.csv")])]

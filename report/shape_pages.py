@@ -31,6 +31,20 @@ class Scores:
         ranks, counts = self.ranks.get((dataset, metric), ({}, {}))
         return {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
 
+    def best(self, dataset, metric, item, view=""):
+        """The models with the best score of the shape."""
+        found = self.of(dataset, metric, item, view)
+        return self.metrics[metric].best({model: value for model, (value, _, _) in found.items()})
+
+    def pieces(self, shape, model):
+        """The scores of a map as text, and whether each is the best of the shape."""
+        found = []
+        for metric in self.metrics:
+            key = (shape.dataset, metric, shape.item, shape.view)
+            value = self.of(*key).get(model, (float("nan"),))[0]
+            found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key)))
+        return found
+
     def dataset_of(self, item):
         """Of a mesh or point cloud that has scores."""
         clouds = any(dataset == "clouds" and (item, "") in rows for (dataset, _), rows in self.wide.items())
@@ -59,11 +73,9 @@ def path_of(item):
 def score_cells(scores, dataset, item, view, model):
     """Per metric the score and its rank; best of the shape in bold."""
     cells = []
-    for metric, of_metric in scores.metrics.items():
-        found = scores.of(dataset, metric, item, view)
-        value, rank, of = found.get(model, (None, None, 0))
-        best = of_metric.best(entry[0] for entry in found.values())
-        cells.append(cell(value, bold=best is not None and value == best))
+    for metric in scores.metrics:
+        value, rank, of = scores.of(dataset, metric, item, view).get(model, (None, None, 0))
+        cells.append(cell(value, bold=model in scores.best(dataset, metric, item, view)))
         defined = rank is not None and rank == rank
         cells.append(Cell(f"{int(rank)} of {of}", int(rank)) if defined else Cell("–", ""))
     return cells
@@ -109,15 +121,7 @@ def tile(painter, scores, what, when, small=False):
     if not picture:
         return Tile("", title, "The picture does not fit the shape: damaged export.")
     dots = "; dots: what participants picked" if what == "ground truth" and len(shape.picks) else ""
-    pieces = []
-    if when == "after":
-        for metric, of in scores.metrics.items():
-            found = scores.of(shape.dataset, metric, shape.item, shape.view)
-            value = found.get(what, (float("nan"),))[0]
-            if value == value:
-                best = of.best(entry[0] for entry in found.values())
-                pieces.append((f"{value:.2f}".replace("-", "−"), value == best))
-    return Tile(picture, title, f"{title}: {describe(shape)}{dots}", pieces)
+    return Tile(picture, title, f"{title}: {describe(shape)}{dots}", scores.pieces(shape, what) if when == "after" else [])
 
 
 def gallery(painter, scores, models, caption, small=False):

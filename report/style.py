@@ -52,12 +52,11 @@ def scale():
     return ScalarMappable(Normalize(0, 1), MAP)
 
 
-def save(figure, folder, name):
-    """folder/name.svg and folder/name.pdf without dates. Laid out once; savefig would draw each file twice."""
+def save(figure, svg, pdf):
+    """Writes both files, without dates. Laid out once; savefig would draw each file twice."""
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     dpi = figure.dpi
-    FigureCanvasSVG(figure).print_svg(folder / f"{name}.svg", metadata={"Date": None, "Creator": "salbench"})
+    FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": "salbench"})
     figure.dpi = dpi
-    FigureCanvasPdf(figure).print_pdf(folder / f"{name}.pdf",
-                                      metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})
+    FigureCanvasPdf(figure).print_pdf(pdf, metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})

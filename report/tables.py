@@ -26,14 +26,15 @@ def means(shop):
 
 def means_table(shop, identifier, caption, table):
     compare = not shop.results.simulated  # the paper's scores are of people
-    best = {key: shop.results.metric(key[1]).best(part) for key, part in table.groupby(["dataset", "metric"])["mean"]}
+    best = {key: shop.results.metric(key[1]).best(dict(zip(part["model"], part["mean"])))
+            for key, part in table.groupby(["dataset", "metric"])}
     rows = []
     for row in table.to_dict("records"):
         printed = compare and (row["dataset"], row["metric"]) == ("meshes", "auc")
         known = paper.mean_auc(row["model"]) if printed else None
         rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(row["model"]),
                      Cell(shop.results.metric(row["metric"]).label), count(row["n"]),
-                     cell(row["mean"], bold=row["mean"] == best[row["dataset"], row["metric"]]),
+                     cell(row["mean"], bold=row["model"] in best[row["dataset"], row["metric"]]),
                      cell(row["ci95_low"]), cell(row["ci95_high"]), cell(row["sd"]), cell(known, 2), signed(row["mean"] - known) if known else cell(None)])
     return Table(identifier, caption,
                  ["Data set", "Model", "Metric", "Shapes", "Mean", "95 % low", "95 % high", "SD", "Paper", "Difference"],
@@ -50,24 +51,31 @@ def per_class(shop, dataset, metric):
     order = sorted(dict.fromkeys(table["class"]), key=lambda name: average.get(name, 0) * (1 if of.lower else -1))
     printed = (dataset, metric) == ("meshes", "auc") and not shop.results.simulated
     known = paper.per_class() if printed else {}
+    best = best_per_class(of, by_cell)
     rows = []
     for name in order:
         numbers = [by_cell.get((name, model)) for model in models]
-        best = of.best(row["mean"] for row in numbers if row is not None)
         shapes = max((row["n"] for row in numbers if row is not None), default=0)
         cells = [Cell(name or "(no class)"), count(shapes)]
         for row, model in zip(numbers + [by_cell.get((name, "Avg"))], models + ["Avg"]):
-            bold = model != "Avg" and row is not None and row["mean"] == best
-            cells.append(class_cell(row, known.get((name, model)), bold))
+            cells.append(class_cell(row, known.get((name, model)), model in best[name]))
         rows.append(cells)
     label = of.label
     identifier = f"classes-{dataset}-{metric}"
-    path = shop.out / "data" / f"{identifier}.tex"
-    write_per_class(path, order, models, by_cell, of, dataset, shop.results.simulated)
+    write_per_class(shop.file(f"data/{identifier}.tex"), order, models, by_cell, best, of, dataset, shop.results.simulated)
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
     return Table(identifier, f"{label} per class on {spoken(dataset)}: mean and half of the 95 % interval, best in bold{remark}.",
                  ["Class", "Shapes"] + models + [f"Avg-{label}"], rows, [False] + [True] * (len(models) + 2), files=files)
+
+
+def best_per_class(metric, by_cell):
+    """class -> its best models. by_cell: (class, model or "Avg") -> a row with the mean."""
+    means = {}
+    for (name, model), row in by_cell.items():
+        if model != "Avg":
+            means.setdefault(name, {})[model] = row["mean"]
+    return {name: metric.best(means.get(name, {})) for name, _ in by_cell}
 
 
 def class_cell(row, known, bold):

@@ -83,7 +83,7 @@ def write_scripts(shop, shapes, titles, maps):
         if text is None:
             continue
         path = f"{file_name(shape.name)}.js"
-        (shop.out / "shapes" / path).write_text(text, encoding="utf-8")
+        shop.file(f"shapes/{path}").write_text(text, encoding="utf-8")
         entries.append({"name": shape.name, "title": titles[shape.name], "path": path})
     return entries
 

@@ -2,21 +2,22 @@
 """What every element is built from and writes to: results, exports, the paper's figures, and the folder of the report."""
 
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from report import names, statistics, style
 from report.blocks import Plot
+from report.folder import Folder
 from report.results import Results, write_csv
 
 
 @dataclass
 class Workshop:
     results: Results
-    out: Path
+    folder: Folder
     shapes: object                                # exports.Shapes
     protocols: dict = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
     pages: dict = field(default_factory=dict)      # item -> path of its page within the report
     examples: tuple = ()                          # meshes that the user wants to see
+    painted: set = field(default_factory=set)     # pictures that were written
     painters: list = None                         # of the shapes with pictures; made when first needed
     scores: object = None                         # shape_pages.Scores; made when first needed
 
@@ -29,9 +30,17 @@ class Workshop:
 
     def plot(self, name, figure, data, alt, caption):
         """Writes a figure as SVG and PDF with the plotted numbers beside it."""
-        style.save(figure, self.out / "figures", name)
-        write_csv(data, self.out / "data" / f"{name}.csv")
+        self.draw(name, figure)
+        write_csv(data, self.file(f"data/{name}.csv"))
         return Plot(name, alt, round(figure.get_figwidth() * 96), caption)
+
+    def draw(self, name, figure):
+        """Writes a figure as SVG and PDF."""
+        style.save(figure, self.file(f"figures/{name}.svg"), self.file(f"figures/{name}.pdf"))
+
+    def file(self, name):
+        """The path of a file of the report, to be written now."""
+        return self.folder.file(name)
 
     def page_of(self, item):
         return self.pages.get(item, "")

@@ -7,8 +7,9 @@ from report import comparison, examples, metric_page, run_page, score_pages, sha
 from report.blocks import attempt
 from report.elements import elements_of
 from report.exports import Shapes
+from report.folder import Folder
 from report.names import spoken
-from report.pages import Pages, copy_static, prepare_folder
+from report.pages import Pages, copy_static
 from report.results import DATASETS, Missing, read_results
 from report.workshop import Workshop
 
@@ -19,11 +20,11 @@ def write_report(options, protocols):
     out = Path(options.to) if options.to else results.folder / "report"
     other = read_results(options.compare) if options.compare else None
     shapes = Shapes(exports(options, results))
-    prepare_folder(out)
+    folder = Folder(out)
     style.apply()
-    copy_static(out)
+    copy_static(folder)
     meshes = shape_pages.items(results, shapes)
-    shop = Workshop(results, out, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes},
+    shop = Workshop(results, folder, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes},
                     tuple(options.examples.split(",")) if options.examples else (), other=other)
     comparing = [("comparison.html", "Comparison")] if other else []
     metrics = [("metrics.html", "Other metrics")] if metric_page.others(shop) else []

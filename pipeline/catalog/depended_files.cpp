@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -20,8 +19,7 @@ const std::string& DependedFiles::key_lines() {
   std::vector<File> files;
   std::string lines;
   for (const std::string& name : names_) try {
-      std::error_code none;
-      File& file = files.emplace_back(File{fs::absolute(name), {}, fs::last_write_time(name, none)});
+      File& file = files.emplace_back(File{fs::absolute(name), {}, identity_of_file(name)});
       file.digest = file_digest(read_file(file.path));
       lines += fmt::format("{}{}: {}\n", kDependsOption, name, file.digest.hex());
     } catch (const InputError& error) {
@@ -43,17 +41,16 @@ void DependedFiles::link_into(const fs::path& folder) const {
   }
 }
 
-// A file with the same time is not read again: weights are large, and commands are many.
+// A file with the same identity is not read again: weights are large, and commands are many.
 void DependedFiles::check_unchanged() {
   const std::lock_guard lock(mutex_);
   for (File& file : files_) {
-    std::error_code none;
-    const auto time = fs::last_write_time(file.path, none);
-    if (!none && time == file.time) continue;
+    const std::optional<FileIdentity> identity = identity_of_file(file.path);
+    if (identity && identity == file.identity) continue;
     if (file_digest(read_file(file.path)) != file.digest)
       throw InputError(
           fmt::format("{}: changed since this run was planned; run it again", file.path.string()));
-    file.time = time;
+    file.identity = identity;
   }
 }
 

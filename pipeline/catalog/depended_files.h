@@ -4,11 +4,13 @@
 
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cache/digest.h"
+#include "io/file.h"
 #include "pipeline/config/section.h"
 
 namespace salbench {
@@ -35,7 +37,7 @@ class DependedFiles {
   struct File {
     std::filesystem::path path;
     Digest digest;
-    std::filesystem::file_time_type time;  // when it was last found to hold that
+    std::optional<FileIdentity> identity;  // before it was last found to hold that
   };
 
   Words names_;

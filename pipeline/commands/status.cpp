@@ -25,9 +25,10 @@ ExitStatus print_status(const Arguments& arguments) {
                           static_cast<double>(used.bytes) / 1e6});
   }
   const std::string state = state_of_results(setup.output);
-  fmt::print("{}\ndata set: {}, {} models; cache: {}; results: {}{}\n", aligned(table, 1),
-             shapes_text(setup.workload), setup.config.models.size(), setup.cache.string(),
-             setup.output.string(), state.empty() ? "" : fmt::format(" ({})", state));
+  fmt::print("{}\ndata set: {}, {} models; cache: {}\n", aligned(table, 1), shapes_text(setup.workload),
+             setup.config.models.size(), setup.cache.string());
+  if (!state.empty()) fmt::print("last run: {}\n", state);
+  fmt::print("results: {}\n", setup.output.string());  // the last line and nothing else: scripts/slurm/submit
   return kAllDone;
 }
 

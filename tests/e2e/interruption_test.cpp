@@ -3,6 +3,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -129,7 +130,7 @@ TEST(Interruption, HalfWayThereAreFinalScoresOfTheItemsThatWereFinished) {
   const std::vector<std::string> complete = lines_with(toy.results(), ",");
   const std::size_t half = toy.contents().size() / 2;
   const std::size_t shapes = 5 * (1 + kViews);
-  EXPECT_THAT(toy.salbench("status").out, HasSubstr("(finished)"));
+  EXPECT_THAT(toy.salbench("status").out, HasSubstr("\nlast run: finished\n"));
   toy.forget_everything();
 
   const Outcome ended =
@@ -140,11 +141,11 @@ TEST(Interruption, HalfWayThereAreFinalScoresOfTheItemsThatWereFinished) {
   EXPECT_THAT(complete, testing::IsSupersetOf(partial));
 
   const std::string status = toy.salbench("status").out;
-  const std::size_t at = status.find("(partial, ");
+  const std::size_t at = status.find("last run: partial, ");
   ASSERT_NE(at, std::string::npos) << status;
-  const int finished = std::stoi(status.substr(at + 10));
+  const int finished = std::stoi(status.substr(at + std::strlen("last run: partial, ")));
   EXPECT_GE(finished, 0.4 * static_cast<double>(shapes));
-  EXPECT_THAT(status, HasSubstr(" of " + std::to_string(shapes) + " shapes have all scores)"));
+  EXPECT_THAT(status, HasSubstr(" of " + std::to_string(shapes) + " shapes have all scores\n"));
 
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(lines_with(toy.results(), ","), complete);

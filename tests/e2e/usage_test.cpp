@@ -12,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -128,14 +129,15 @@ TEST(Usage, PlanAndStatusChangeNothing) {
   EXPECT_EQ(plan.status, 0) << plan.err;
   EXPECT_EQ(status.status, 0) << status.err;
   EXPECT_THAT(plan.out, AllOf(HasSubstr("map.PS"), HasSubstr("jobs to do")));
-  EXPECT_THAT(status.out, HasSubstr("; results: " + toy.out().string() + "\n"));
+  EXPECT_THAT(status.out, EndsWith("\nresults: " + toy.out().string() + "\n"));
   EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
 
   ASSERT_EQ(toy.salbench("run").status, 0);
   const auto artefacts = toy.artefacts();
   const std::string results = toy.results();
   EXPECT_THAT(toy.salbench("plan").out, HasSubstr("\n0 jobs to do"));
-  EXPECT_EQ(toy.salbench("status").status, 0);
+  EXPECT_THAT(toy.salbench("status").out,
+              EndsWith("\nlast run: finished\nresults: " + toy.out().string() + "\n"));
   EXPECT_EQ(toy.artefacts(), artefacts);
   EXPECT_EQ(toy.results(), results);
 }

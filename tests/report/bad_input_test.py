@@ -69,13 +69,6 @@ class BadInput(BadInputTest):
         self.assertIn("choose another folder with --to", errors)
         self.assertEqual([path.name for path in to.iterdir()], ["thesis.tex"])
 
-    def test_a_report_is_written_again_in_its_place(self):
-        self.full("again")
-        to = self.report("again")
-        (to / "shapes" / "999.html").write_text("stale")
-        self.report("again")
-        self.assertFalse((to / "shapes" / "999.html").exists())
-
     def test_each_file_may_be_missing(self):
         for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "mean_histograms_meshes.csv",
                      "mean_histograms_scans.csv", "human_curve.csv", "run.yaml"):

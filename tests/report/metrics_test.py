@@ -16,6 +16,7 @@ from report.results import read_results
 
 LEADING = ("AUC", "NSS", "LCC")
 MODELS = ("LS", "CS", "PS", "RS")
+NAN = float("nan")
 
 
 class Names(unittest.TestCase):
@@ -42,8 +43,69 @@ class Names(unittest.TestCase):
         self.assertTrue(metrics.described("kl_area").lower)
         self.assertFalse(metrics.described("kl_area", {"better": "higher"}).lower)
         self.assertTrue(metrics.described("of_tomorrow", {"better": "lower", "unit": "bits"}).lower)
-        self.assertEqual(metrics.described("kl").best([3.0, float("nan"), 1.0]), 1.0)
-        self.assertIsNone(metrics.described("kl").best([float("nan")]))
+
+    def test_best_are_all_that_tie_in_the_direction_of_the_metric_and_no_nan(self):
+        inf = float("inf")
+        higher, lower = metrics.described("nss"), metrics.described("kl")
+        scores = {"A": 0.1 + 0.2, "B": 0.3, "C": NAN, "D": 0.1, "E": None, "F": 0.1}
+        self.assertEqual(higher.best(scores), {"A", "B"})
+        self.assertEqual(lower.best(scores), {"D", "F"})
+        self.assertEqual(higher.best({"A": -2.0, "B": -1.0, "C": inf}), {"B"})
+        self.assertEqual(lower.best({"A": -2.0, "B": -1.0, "C": -inf}), {"A"})
+        self.assertEqual(higher.best({"A": 0.0, "B": 0.0, "C": -1e-300}), {"A", "B"})
+        self.assertEqual(higher.best({"A": NAN, "B": None}), set())
+        self.assertEqual(higher.best({}), set())
+
+
+class BestInBold(support.ReportTest):
+    """Two meshes of one class, human performance best on the first: each page says the same of the same scores."""
+
+    def bold_models(self, metric, scores, lower):
+        """Per page the models that are bold: in the means, the classes, the LaTeX table, on the page of mesh 1, under its
+        pictures, and in the gallery of examples. scores: model -> score of mesh 1 and of mesh 2."""
+        items = [("1", "human"), ("2", "human")]
+        table = fixture.results_table(items, tuple(scores), views=0)
+        table = table[["dataset", "item", "class", "view", "model", "n_points", "n_picks"]].assign(
+            **{metric: [scores[model][int(item) - 1] for model, item in zip(table["model"], table["item"])]})
+        out, to = self.folder / f"{metric}", self.folder / f"{metric}-report"
+        better = "lower" if lower else "higher"
+        fixture.write_results(out, items, tuple(scores), results=table,
+                              extra=f'metrics:\n  {metric}: {{unit: "1", better: {better}}}\n')
+        fixture.write_export(out / "shapes.h5", items[:1], tuple(scores), views=0)
+        with support.without_figures():
+            self.assertEqual(support.make(out, to)[0], 0)
+        index, shape = support.page(to), support.page(to, "shapes/1.html")
+        models = list(scores)
+        texts = support.bold(index, "means")
+        found = {"means": {row[1] for row, bold in texts if any(bold)}}
+        for row, bold in support.bold(index, f"classes-meshes-{metric}"):
+            found["classes"] = {model for model, is_bold in zip(models, bold[2:]) if is_bold}
+        tex = (to / f"data/classes-meshes-{metric}.tex").read_text()
+        line = next(line for line in tex.splitlines() if line.startswith("\\emph{human}")).split(" & ")
+        found["LaTeX"] = {model for model, cell in zip(models, line[1:]) if "mathbf" in cell}
+        found["shape"] = {row[0] for row, bold in support.bold(shape, "mesh-scores") if any(bold)}
+        found["pictures"] = {model for model in models if re.search(
+            rf">{model}, after matching</p>(?:(?!</li>).)*<strong>", shape, flags=re.S)}
+        found["examples"] = {model for model in models if re.search(
+            rf'<p class="head">{model}</p>(?:(?!</li>).)*<strong>', support.section(index, "figure-1"), flags=re.S)}
+        return found
+
+    def expect(self, metric, lower, scores, means, first):
+        """The models that are bold where scores of the mesh alone stand, and where means over both meshes do."""
+        with_maps = first - {"HS"}
+        self.assertEqual(self.bold_models(metric, scores, lower),
+                         {"means": means, "classes": means, "LaTeX": means, "shape": first, "pictures": with_maps,
+                          "examples": with_maps - {"RS"}})
+
+    def test_higher_is_better_and_two_tie(self):
+        self.expect("tied", False, {"LS": (0.1 + 0.2, 0.5), "CS": (0.3, 0.5), "PS": (0.1, 0.1), "RS": (NAN, NAN)},
+                    {"LS", "CS"}, {"LS", "CS"})
+
+    def test_lower_is_better_and_the_lowest_is_not_a_number(self):
+        self.expect("short", True, {"LS": (0.25, 0.75), "CS": (0.5, 0.25), "PS": (NAN, NAN), "RS": (1.0, 1.0)}, {"CS"}, {"LS"})
+
+    def test_people_are_best(self):
+        self.expect("people", False, {"LS": (0.25, 0.75), "CS": (0.25, 0.25), "HS": (0.5, 0.0)}, {"LS"}, {"HS"})
 
 
 class AllMetrics(support.ReportTest):

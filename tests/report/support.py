@@ -28,9 +28,9 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>\n'
 
 def without_drawing():
     """Figures are laid out but not drawn, and their files are empty ones: drawing takes most of the time of a report."""
-    def touch(_, folder, name):
-        (folder / f"{name}.svg").write_text(SVG)
-        (folder / f"{name}.pdf").touch()
+    def touch(_, svg, pdf):
+        svg.write_text(SVG)
+        pdf.touch()
     return unittest.mock.patch("report.style.save", touch)
 
 
@@ -79,6 +79,15 @@ def rows(text, identifier):
         cells = re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, flags=re.S)
         found.append([html.unescape(re.sub(r"<[^>]*>", " ", cell)).strip() for cell in cells])
     return found
+
+
+def bold(text, identifier):
+    """The rows of a table as lists of cell texts, with lists of whether each is bold."""
+    start = text.index(f'id="table-{identifier}"')
+    lines = re.findall(r"<tr>(.*?)</tr>", text[text.index("<tbody>", start):text.index("</tbody>", start)], flags=re.S)
+    return list(zip(rows(text, identifier),
+                    (["<strong>" in cell for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", line, flags=re.S)]
+                     for line in lines)))
 
 
 class ReportTest(unittest.TestCase):
