@@ -51,11 +51,13 @@ void check(const DatasetOptions& options);
 // Which pictures a run makes; no score needs them. In this order, each makes more than the one before.
 enum class Pictures { none, cached, computed };
 
+inline constexpr std::uint64_t kDefaultSeed = 2016;
+
 struct Config {
   std::string name;                 // the file's stem
   std::string data, cache, output;  // folders; empty where only the command line can say
   Protocol protocol = Protocol::published;
-  std::uint64_t seed = 2016;
+  std::uint64_t seed = kDefaultSeed;
   DatasetOptions dataset;
   SimulationOptions simulation;
   ScanOptions scan;

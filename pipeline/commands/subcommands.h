@@ -11,6 +11,7 @@ Subcommand maps_subcommand(Arguments& arguments);
 Subcommand evaluate_subcommand(Arguments& arguments);
 Subcommand export_subcommand(Arguments& arguments);
 Subcommand pictures_subcommand(Arguments& arguments);
+Subcommand conclusions_subcommand(Arguments& arguments);
 Subcommand plan_subcommand(Arguments& arguments);
 Subcommand graph_subcommand(Arguments& arguments);
 Subcommand explain_subcommand(Arguments& arguments);

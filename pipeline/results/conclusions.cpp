@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/file.h"
+#include "pipeline/results/statistics.h"
 #include "stages/core/parallel.h"
 #include "stages/stats/multiple.h"
 #include "stages/stats/paired.h"
@@ -229,6 +231,18 @@ Table ranking_table(const Conclusions& conclusions) {
       [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
         return ranking_rows(dataset.scores, ranked, metric);
       });
+}
+
+void write_conclusions(const std::filesystem::path& folder, const std::vector<ResultRow>& rows,
+                       const Conclusions& conclusions, const std::string& head) {
+  const auto write = [&](const char* name, const Table& table) {
+    write_file(folder / name, head + to_csv(table));
+  };
+  write("summary.csv", summary_table(conclusions));
+  write("ranking.csv", ranking_table(conclusions));
+  write("ranking_agreement.csv", agreement_table(conclusions));
+  write("significance.csv", significance_table(conclusions));
+  write("per_class.csv", per_class_table(rows, conclusions.metrics, conclusions.unit));
 }
 
 }  // namespace salbench

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "io/table.h"
@@ -61,5 +63,10 @@ Table ranking_table(const Conclusions& conclusions);
 // dataset, metric_a, metric_b, n, n_models, tau, ci95_low, ci95_high: Kendall's tau-b of the competitors'
 // rankings by two metrics over the units that both are defined for, with percentiles over resampled units.
 Table agreement_table(const Conclusions& conclusions);
+
+// summary.csv, ranking.csv, ranking_agreement.csv, significance.csv and per_class.csv, each below `head`.
+// Throws StorageError.
+void write_conclusions(const std::filesystem::path& folder, const std::vector<ResultRow>& rows,
+                       const Conclusions& conclusions, const std::string& head);
 
 }  // namespace salbench

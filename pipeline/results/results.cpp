@@ -92,11 +92,7 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
   };
   const Metrics& metrics = conclusions.metrics;
   write("results.csv", results_table(rows, metrics));
-  write("summary.csv", summary_table(conclusions));
-  write("ranking.csv", ranking_table(conclusions));
-  write("ranking_agreement.csv", agreement_table(conclusions));
-  write("significance.csv", significance_table(conclusions));
-  write("per_class.csv", per_class_table(rows, metrics, conclusions.unit));
+  write_conclusions(folder, rows, conclusions, head);
   // Tables of an earlier run would pass for some of this.
   for (const Shapes shapes : kAllShapes) {
     const std::string name = fmt::format("mean_histograms_{}.csv", name_of(shapes));

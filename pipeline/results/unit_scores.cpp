@@ -54,6 +54,12 @@ double DatasetScores::value(const Shape& shape, std::size_t metric, std::size_t 
   return row == nullptr ? std::numeric_limits<double>::quiet_NaN() : row->value(metric);
 }
 
+std::vector<std::size_t> DatasetScores::units_of_shapes() const {
+  std::vector<std::size_t> units;
+  for (const Shape& shape : shapes_) units.push_back(shape.unit);
+  return units;
+}
+
 std::vector<double> DatasetScores::by_shape(std::size_t metric, std::size_t model) const {
   std::vector<double> values;
   for (const Shape& shape : shapes_) values.push_back(value(shape, metric, model));

@@ -44,6 +44,7 @@ class DatasetScores {
   // Of one model, over all shapes that it has a score for.
   UnitScores own(std::size_t metric, std::size_t model) const;
 
+  std::vector<std::size_t> units_of_shapes() const;  // [shape]
   // One value per shape, NaN where the model has no score: the paper's reading.
   std::vector<double> by_shape(std::size_t metric, std::size_t model) const;
 

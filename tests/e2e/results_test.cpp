@@ -46,6 +46,20 @@ TEST(Results, TheSummaryIsTheMeanOfTheRows) {
   EXPECT_DOUBLE_EQ(mean[3], (cc[0] + cc[2]) / 2);
 }
 
+TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const Outcome concluded =
+      run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv", "--out", toy / "concluded"});
+  ASSERT_EQ(concluded.status, 0) << concluded.err;
+  for (const char* table :
+       {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv", "per_class.csv"})
+    EXPECT_EQ(read_file(toy / "concluded" / table), read_file(toy.out() / table)) << table;
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "timeline.csv"}).status, 2);
+  EXPECT_EQ(
+      run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv", "--unit", "view"}).status, 2);
+}
+
 TEST(Results, ASecondRunComputesNothingAndSaysTheSame) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
