@@ -84,6 +84,7 @@ std::vector<std::size_t> DatasetScores::competitors(std::size_t metric) const {
 UnitScores DatasetScores::averaged(std::size_t metric, std::span<const std::size_t> models,
                                    std::span<const std::size_t> required) const {
   const std::size_t k = models.size();
+  if (k == 0) return {};
   std::vector<std::int64_t> counts(n_units_, 0);
   std::vector<double> sums(n_units_ * k, 0.0);
   UnitScores result{{models.begin(), models.end()}, {}, {k, {}}};

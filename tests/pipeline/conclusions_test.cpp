@@ -151,6 +151,8 @@ TEST(Conclusions, OfPoorDataHaveEmptyCells) {
        scored("2", "", "B", .5)},
       {scored("1", "", "A", kNone), scored("2", "", "A", kNone), scored("1", "", "B", .5)},
       {scored("1", "0", "A", .5), scored("2", "0", "A", .4), scored("2", "1", "A", .3)},
+      {scored("1", "", "RS", .5, "cup"), scored("2", "", "RS", .4, "cup")},  // no competitor
+      {},
   };
   for (const std::vector<ResultRow>& rows : poor)
     for (const Unit unit : {Unit::mesh, Unit::item_class, Unit::shape}) {
