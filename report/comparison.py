@@ -8,9 +8,9 @@ from scipy import stats
 from report import statistics
 from report.blocks import Cell, Note, Table, attempt, cell, interval
 from report.names import DATASETS
-from report.results import Missing, text_of
+from report.results import Missing, flatten, text_of
 from report.score_pages import page_data
-from report.tables import flatten, signed
+from report.tables import signed
 from report.units import HEAD, count_cell
 
 ABSENT = "–"

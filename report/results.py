@@ -125,6 +125,17 @@ def text_of(value):
     return value if isinstance(value, str) else ""
 
 
+def flatten(values, prefix=""):
+    """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
+    flat = {}
+    for key, value in values.items():
+        if isinstance(value, dict):
+            flat |= flatten(value, f"{prefix}{key}.")
+        else:
+            flat[f"{prefix}{key}"] = str(value)
+    return flat
+
+
 def number_of(value, otherwise=float("nan")):
     """A number that run.yaml holds as text."""
     try:

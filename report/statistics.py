@@ -131,7 +131,7 @@ def pair(results, dataset, metric, a, b):
     """The row of significance.csv of a pair: n, n_shapes, mean_difference, its two intervals and t_p, turned so that the
     difference is a less b."""
     signed = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high")
-    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", "rank_sum_p", *signed)
+    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", *signed)
     rows = of_metric(table, dataset, metric)
     for first, second, turned in ((a, b, False), (b, a, True)):
         match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]

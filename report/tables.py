@@ -5,7 +5,7 @@ from report import paper, statistics, units
 from report.blocks import Cell, Note, Table, cell, interval, p_value
 from report.latex import write_per_class
 from report.names import DATASETS, KIND_NAMES, spoken
-from report.results import Missing
+from report.results import Missing, flatten
 from report.units import count_cell, several
 
 LEVEL = 0.05  # of the tests
@@ -22,7 +22,9 @@ def means(shop):
     table = shop.results.table("summary.csv", *statistics.SUMMARY)
     if table.empty:
         raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
-    caption = (f"{MEANS} The paper's mean AUC is that of its table of classes; it prints no mean of the other metrics.")
+    caption = MEANS
+    if not paper.other_data(shop.results):
+        caption += " The paper's mean AUC is that of its table of classes; it prints no mean of the other metrics."
     made = [means_table(shop, "means", caption, table[table["metric"].isin(shop.results.leading)])]
     return made + [Note(HUMAN)] if (table["model"] == "HS").any() else made
 
@@ -35,23 +37,26 @@ HUMAN = ("HS is one participant against all others, and no model. One person pic
 
 
 def means_table(shop, identifier, caption, table):
-    compare = not shop.results.simulated  # the paper's scores are of people
+    compare = not paper.other_data(shop.results) and (table["metric"] == "auc").any()
     best = {key: shop.results.metric(key[1]).best(dict(zip(part["model"], part["mean"])))
             for key, part in table.groupby(["dataset", "metric"])}
     rows = []
     for row in table.to_dict("records"):
         dataset = row["dataset"]
-        printed = compare and (dataset, row["metric"]) == ("meshes", "auc")
-        known = paper.mean_auc(row["model"]) if printed else None
-        rows.append([Cell(DATASETS.get(dataset, dataset)), Cell(row["model"]), Cell(shop.results.metric(row["metric"]).label),
-                     count_cell(shop.results, dataset, row["n"], row["n_shapes"]),
-                     cell(row["mean"], bold=row["model"] in best[dataset, row["metric"]], below=own_shapes(row)),
-                     cell(row["ci95_low"]), cell(row["ci95_high"]), cell(row["sd"]),
-                     interval(row["bca95_low"], row["bca95_high"]), cell(known, 2),
-                     signed(row["mean"] - known) if known else cell(None)])
-    return Table(identifier, caption, ["Data set", "Model", "Metric", units.HEAD, "Mean", "95 % low", "95 % high", "SD",
-                                       "95 % by bootstrap", "Paper", "Difference"],
-                 rows, [False] * 3 + [True] * 8, filters=[0, 1, 2])
+        cells = [Cell(DATASETS.get(dataset, dataset)), Cell(row["model"]), Cell(shop.results.metric(row["metric"]).label),
+                 count_cell(shop.results, dataset, row["n"], row["n_shapes"]),
+                 cell(row["mean"], bold=row["model"] in best[dataset, row["metric"]], below=own_shapes(row)),
+                 cell(row["ci95_low"]), cell(row["ci95_high"]), cell(row["sd"]), interval(row["bca95_low"], row["bca95_high"])]
+        rows.append(cells + (paper_cells(row) if compare else []))
+    heads = ["Data set", "Model", "Metric", units.HEAD, "Mean", "95 % low", "95 % high", "SD", "95 % by bootstrap"]
+    heads += ["Paper", "Difference"] if compare else []
+    return Table(identifier, caption, heads, rows, [False] * 3 + [True] * (len(heads) - 3), filters=[0, 1, 2])
+
+
+def paper_cells(row):
+    """The paper's mean, where it prints one, and the difference."""
+    known = paper.mean_auc(row["model"]) if (row["dataset"], row["metric"]) == ("meshes", "auc") else None
+    return [cell(known, 2), signed(row["mean"] - known) if known else cell(None)]
 
 
 def own_shapes(row):
@@ -70,7 +75,7 @@ def per_class(shop, dataset, metric):
     by_cell = {(row["class"], row["model"]): row for _, row in table.iterrows()}
     average = {name: row["mean"] for (name, model), row in by_cell.items() if model == "Avg"}
     order = sorted(dict.fromkeys(table["class"]), key=lambda name: average.get(name, 0) * (1 if of.lower else -1))
-    printed = (dataset, metric) == ("meshes", "auc") and not shop.results.simulated
+    printed = (dataset, metric) == ("meshes", "auc") and not paper.other_data(shop.results)
     known = paper.per_class() if printed else {}
     best = best_per_class(of, by_cell)
     rows = []
@@ -236,14 +241,3 @@ def model_options(configuration):
     """The options that saliency maps depend on, by path."""
     sections = ("models.", "fpfh.", "scan_fpfh.", "normals.", "scan_normals.", "surface.")
     return {path: value for path, value in flatten(configuration).items() if path.startswith(sections)}
-
-
-def flatten(values, prefix=""):
-    """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
-    flat = {}
-    for key, value in values.items():
-        if isinstance(value, dict):
-            flat |= flatten(value, f"{prefix}{key}.")
-        else:
-            flat[f"{prefix}{key}"] = str(value)
-    return flat
