@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One function per kind of claim: our figure, its 95 % interval, and whether the claim holds.
+"""One function per kind of claim: our figure, its interval, and whether the claim holds by that interval.
 
-A claim about a difference holds or fails by the paper's own test, the rank sum at 0.05. Where the test finds nothing that
-says little over few shapes: then, unless there are nearly as many as in the paper, the claim is undecided."""
+A difference holds where its 95 % interval lies on the claimed side, and does not where it lies on the other. "Do not differ"
+holds where the 90 % interval lies within the margin, which is two one-sided tests at 0.05, and does not where the 95 %
+interval leaves out 0 all the same. Everything else is undecided. [schuirmann1987] [lakens2017]"""
 
 from dataclasses import dataclass
 from itertools import product
@@ -11,204 +12,252 @@ import numpy
 from scipy import stats
 
 from report import paper, statistics
-from report.names import MODELS
 from report.results import Missing
-from report.tables import LEVEL
+from report.units import counted, several
 
-HOLDS, FAILS, UNDECIDED = "holds", "does not hold", "cannot be decided with this many shapes"
-ENOUGH = 0.9  # of the paper's number of shapes: 380 of its 400 meshes can be had
+HOLDS, FAILS, UNDECIDED = "holds", "does not hold", "undecided"
+NAN = float("nan")
+NEAR, APART = 0.05, 0.1  # largest distances of two distributions: our reading of the paper's words, undecided between them
 
 
 @dataclass
 class Finding:
-    verdict: str
-    figure: str               # what was found, in words and numbers
-    value: float = float("nan")
-    low: float = float("nan")
-    high: float = float("nan")
-    n: int = 0
+    figure: str               # what was compared
+    value: float = NAN        # the effect
+    low: float = NAN          # its 95 % interval
+    high: float = NAN
+    low90: float = NAN        # and 90 %, where a margin decides
+    high90: float = NAN
+    count: str = ""           # units and shapes
+    test: str = ""
+    verdict: str = UNDECIDED
+    others: str = ""          # verdicts of the other comparisons of the same claim
 
 
-def few(dataset, n):
-    return n < ENOUGH * paper.SHAPES[dataset]
+def beyond(finding):
+    """The difference is claimed to be above 0."""
+    return HOLDS if finding.low > 0 else FAILS if finding.high < 0 else UNDECIDED
 
 
-def combined(findings):
-    """The finding that decides: a failure, else an open one, else the one nearest to failing."""
-    for verdict in (FAILS, UNDECIDED):
-        found = [finding for finding in findings if finding.verdict == verdict]
-        if found:
-            return min(found, key=lambda finding: finding.value)
-    return min(findings, key=lambda finding: finding.value)
+def leaves_out_0(finding):
+    return finding.low > 0 or finding.high < 0
 
 
-def compared(results, claim, a, b):
-    """The pair's p of the rank-sum test, and a finding without verdict: the mean difference a less b."""
-    row = statistics.pair(results, claim["dataset"], claim["metric"], a, b)
-    wide = statistics.scores(results, claim["dataset"], claim["metric"])
-    n, _, low, high = statistics.paired_difference(wide, a, b)
-    p = row["rank_sum_p"]
-    text = "p < 0.001" if p < 0.001 else f"p = {p:.3f}"
-    return p, Finding("", f"{a} − {b}, {text}", row["mean_difference"], low, high, n)
+def equal(finding, margin):
+    """The difference is claimed to be none."""
+    if -margin < finding.low90 and finding.high90 < margin:
+        return HOLDS
+    return FAILS if leaves_out_0(finding) else UNDECIDED
 
 
-def decide(claim, finding, significant, as_claimed):
-    """as_claimed: the sign of the difference is that of the claim."""
-    finding.verdict = ((HOLDS if as_claimed else FAILS) if significant
-                       else UNDECIDED if few(claim["dataset"], finding.n) else FAILS)
-    return finding
+def unequal(finding, margin):
+    """A difference is claimed, of whichever sign."""
+    if leaves_out_0(finding):
+        return HOLDS
+    return FAILS if -margin < finding.low90 and finding.high90 < margin else UNDECIDED
+
+
+def no_rise(finding, margin):
+    """No rise is claimed: one that is smaller than the margin counts as none."""
+    return HOLDS if finding.high90 < margin else FAILS if finding.low > 0 else UNDECIDED
+
+
+def tally(counts):
+    """counts: verdict -> number"""
+    words = {HOLDS: ("holds", "hold"), FAILS: ("does not", "do not"), UNDECIDED: ("undecided", "undecided")}
+    return ", ".join(f"{counts[verdict]} {words[verdict][counts[verdict] != 1]}" for verdict in words if counts[verdict])
+
+
+def combined(findings, support):
+    """The finding that decides about all together: they hold if each does, and do not if one does not. support: larger for
+    findings that speak more for the claim."""
+    counts = {verdict: sum(finding.verdict == verdict for finding in findings) for verdict in (FAILS, UNDECIDED, HOLDS)}
+    worst = next(verdict for verdict, number in counts.items() if number)
+
+    def rank(finding):
+        value = support(finding)
+        return value if value == value else -numpy.inf
+
+    deciding = min((finding for finding in findings if finding.verdict == worst), key=rank)
+    if len(findings) > 1:
+        deciding.others = f"of {len(findings)}: {tally(counts)}"
+    return deciding
+
+
+def by(results):
+    """How tests name their unit."""
+    return f" by {results.unit}" if results.unit else ""
+
+
+def pair(results, claim, a, b, test="paired t"):
+    """The difference a less b, without a verdict."""
+    dataset = claim["dataset"]
+    row = statistics.pair(results, dataset, claim["metric"], a, b)
+    return Finding(f"{a} − {b}", row["mean_difference"], row["ci95_low"], row["ci95_high"], row["ci90_low"], row["ci90_high"],
+                   counted(results.unit, dataset, row["n"], row["n_shapes"]), f"{test}{by(results)}")
 
 
 def above(results, claim):
-    """Every model of a is significantly above every one of b."""
-    findings = []
-    for a, b in product(claim["a"].split(), claim["b"].split()):
-        p, finding = compared(results, claim, a, b)
-        findings.append(decide(claim, finding, p < LEVEL, finding.value > 0))
-    return combined(findings)
+    """Every model of a is above every one of b."""
+    findings = [pair(results, claim, a, b) for a, b in product(claim["a"].split(), claim["b"].split())]
+    for finding in findings:
+        finding.verdict = beyond(finding)
+    return combined(findings, lambda finding: finding.value)
 
 
 def differ(results, claim):
-    findings = []
-    for a, b in product(claim["a"].split(), claim["b"].split()):
-        p, finding = compared(results, claim, a, b)
-        findings.append(decide(claim, finding, p < LEVEL, True))
-    open_ones = [finding for finding in findings if finding.verdict != HOLDS]
-    return min(open_ones or findings, key=lambda finding: abs(finding.value))
+    """Every model of a differs from every one of b."""
+    findings = [pair(results, claim, a, b, "paired t and two one-sided t")
+                for a, b in product(claim["a"].split(), claim["b"].split())]
+    for finding in findings:
+        finding.verdict = unequal(finding, claim["margin"])
+    return combined(findings, lambda finding: abs(finding.value))
 
 
 def same(results, claim):
-    """No significant difference, which means something only over many shapes."""
-    p, finding = compared(results, claim, claim["a"], claim["b"])
-    finding.verdict = FAILS if p < LEVEL else UNDECIDED if few(claim["dataset"], finding.n) else HOLDS
+    finding = pair(results, claim, claim["a"], claim["b"], "two one-sided t")
+    finding.verdict = equal(finding, claim["margin"])
     return finding
 
 
-def leads(results, claim):
-    """a has the highest mean of the paper's models; the figure is its lead over the best other."""
-    table = statistics.summary(results, claim["dataset"], claim["metric"])
-    means = table[table["model"].isin(MODELS)].set_index("model")["mean"].dropna()
-    if claim["a"] not in means or len(means) < 2:
-        raise Missing(f"needs the means of {claim['a']} and of another of the paper's models")
-    other = means.drop(claim["a"]).idxmax()
-    p, finding = compared(results, claim, claim["a"], other)
-    ahead = finding.value > 0
-    enough = not few(claim["dataset"], finding.n)
-    finding.verdict = ((HOLDS if ahead else FAILS) if p < LEVEL or enough else UNDECIDED)
-    return finding
-
-
-def class_means(results, claim):
+def classes_of(results, claim):
+    """Rows of per_class.csv by class and model, and the classes in their order."""
     table = statistics.per_class(results, claim["dataset"], claim["metric"])
     return table.set_index(["class", "model"])
 
 
+def class_row(table, name, model="Avg"):
+    if (name, model) not in table.index:
+        raise Missing(f"no scores of {'the models' if model == 'Avg' else model} in class {name}")
+    return table.loc[(name, model)]
+
+
+def around(text, value, half, count, test):
+    """A finding with an interval of half that width, and the verdict that it is above 0."""
+    finding = Finding(text, float(value), float(value - half), float(value + half), count=count, test=test)
+    finding.verdict = beyond(finding)
+    return finding
+
+
 def leads_class(results, claim):
-    """Model a is above every other one of the paper's in class b."""
-    wide = statistics.scores(results, claim["dataset"], claim["metric"])
-    class_of = statistics.classes(results)
-    part = wide[[class_of.get(item) == claim["b"] for item, _ in wide.index]]
-    others = [model for model in part if model in MODELS and model not in (claim["a"], "RS") and part[model].notna().any()]
-    if part.empty or not others:
-        raise Missing(f"no scores of class {claim['b']}")
-    best = part[others].mean().idxmax()
-    n, mean, low, high = statistics.paired_difference(part, claim["a"], best)
-    verdict = HOLDS if low > 0 else FAILS if high < 0 else UNDECIDED
-    return Finding(verdict, f"{claim['a']} − {best} in {claim['b']}", mean, low, high, n)
+    """a: a model and a class, in which it is above each model of b. Both are over the same shapes there, so that their half
+    intervals together are at least that of the paired difference."""
+    table = classes_of(results, claim)
+    (a, name), findings = claim["a"].split(), []
+    best = class_row(table, name, a)
+    for model in claim["b"].split():
+        row = class_row(table, name, model)
+        if (row["n"], row["n_shapes"]) != (best["n"], best["n_shapes"]):
+            raise Missing(f"{a} and {model} have scores of different shapes in class {name}")
+        findings.append(around(f"{a} − {model}", best["mean"] - row["mean"], best["ci95"] + row["ci95"],
+                               meshes(best["n"]), "half intervals of both added"))
+    return combined(findings, lambda finding: finding.value)
 
 
-def average_of(results, claim, name):
-    table = class_means(results, claim)
-    if (name, "Avg") not in table.index:
-        raise Missing(f"no scores of class {name}")
-    return table.loc[(name, "Avg")]
+def meshes(*numbers):
+    return " and ".join([str(int(n)) for n in numbers[:-1]] + [several(int(numbers[-1]), "mesh")])
+
+
+INDEPENDENT = "half intervals added in squares"  # of independent means [zou2008]
 
 
 def class_above(results, claim):
-    """The averages over the models of class a and of class b; independent classes, so that intervals add in squares."""
-    a, b = (average_of(results, claim, claim[side]) for side in "ab")
-    return class_difference(f"{claim['a']} − {claim['b']}", a["mean"] - b["mean"], numpy.hypot(a["ci95"], b["ci95"]))
-
-
-def class_difference(text, difference, half):
-    verdict = HOLDS if difference - half > 0 else FAILS if difference + half < 0 else UNDECIDED
-    return Finding(verdict, text, float(difference), float(difference - half), float(difference + half))
+    """The shapes of class a are above those of class b, in their mean over the models."""
+    table = classes_of(results, claim)
+    a, b = (class_row(table, claim[side]) for side in "ab")
+    return around(f"{claim['a']} − {claim['b']}", a["mean"] - b["mean"], numpy.hypot(a["ci95"], b["ci95"]), meshes(a["n"], b["n"]),
+                  INDEPENDENT)
 
 
 def classes_above_mean(results, claim):
-    table = class_means(results, claim)
-    overall = table.xs("Avg", level="model")["mean"].mean()
-    found = [(name, average_of(results, claim, name)) for name in claim["a"].split()]
-    return combined([class_difference(f"{name} − mean of the classes", row["mean"] - overall, row["ci95"])
-                     for name, row in found])
+    """Each class of a is above the mean of the classes, which it is one of."""
+    table = classes_of(results, claim)
+    rows = table.xs("Avg", level="model")
+    findings = []
+    for name in claim["a"].split():
+        row = class_row(table, name)
+        weights = (rows.index == name) - 1 / len(rows)
+        findings.append(around(f"{name} − mean of {len(rows)} classes", row["mean"] - rows["mean"].mean(),
+                               numpy.linalg.norm(weights * rows["ci95"]), meshes(rows["n"].sum()), INDEPENDENT))
+    return combined(findings, lambda finding: finding.value)
 
 
 def hardest_class(results, claim):
-    averages = class_means(results, claim).xs("Avg", level="model")["mean"].dropna()
-    average_of(results, claim, claim["a"])
-    lowest = averages.idxmin()
-    if lowest == claim["a"] and len(averages) < paper.CLASSES:
-        verdict = UNDECIDED
-    else:
-        verdict = HOLDS if lowest == claim["a"] else FAILS
-    return Finding(verdict, f"lowest average: {lowest}, {averages.min():.3f}; {claim['a']}: {averages[claim['a']]:.3f}",
-                   n=len(averages))
+    """Every other class is above class a; one that is not there might be below it."""
+    table = classes_of(results, claim)
+    name = claim["a"]
+    lowest = class_row(table, name)
+    rows = table.xs("Avg", level="model")
+    if len(rows) < 2:
+        raise Missing("no scores of another class")
+    finding = combined([around(f"{other} − {name}", row["mean"] - lowest["mean"], numpy.hypot(row["ci95"], lowest["ci95"]),
+                               meshes(row["n"], lowest["n"]), INDEPENDENT) for other, row in rows.drop(name).iterrows()],
+                       lambda finding: finding.value)
+    if finding.verdict == HOLDS and len(rows) < paper.CLASSES:
+        finding.verdict, finding.others = UNDECIDED, f"{len(rows)} of {paper.CLASSES} classes"
+    return finding
 
 
 def curve(results, claim):
     table = results.table("human_curve.csv", "n", "metric", "n_meshes", "mean", "sd")
-    rows = table[table["metric"] == claim["metric"]].sort_values("n").set_index("n")
+    rows = table[table["metric"] == claim["metric"]].dropna(subset=["n", "n_meshes", "mean"]).sort_values("n").set_index("n")
     if len(rows) < 2:
         raise Missing("human_curve.csv has no curve of this metric")
     return rows
 
 
 def step(rows, first, second):
-    """Rise of the curve from one number of participants to another, with Welch's interval."""
+    """Rise of the curve from one number of participants to another, by Welch's test [welch1947]. It takes the two for
+    independent, although they are over the same meshes: where meshes that score high at one do so at the other, the interval
+    is wider than it need be."""
     if first not in rows.index or second not in rows.index:
-        raise Missing(f"the curve does not reach from {first} to {second} participants")
+        raise Missing(f"the curve does not reach from {first:.0f} to {second:.0f} participants")
     a, b = rows.loc[first], rows.loc[second]
-    variances = numpy.array([a["sd"] ** 2 / a["n_meshes"], b["sd"] ** 2 / b["n_meshes"]])
-    freedom = variances.sum() ** 2 / (variances[0] ** 2 / (a["n_meshes"] - 1) + variances[1] ** 2 / (b["n_meshes"] - 1))
-    half = stats.t.ppf(0.975, freedom) * numpy.sqrt(variances.sum())
-    rise = b["mean"] - a["mean"]
-    n = int(min(a["n_meshes"], b["n_meshes"]))
-    return Finding("", f"n = {int(first)} to {int(second)}", rise, rise - half, rise + half, n)
+    n = numpy.array([a["n_meshes"], b["n_meshes"]])
+    finding = Finding(f"n = {first:.0f} to {second:.0f}", float(b["mean"] - a["mean"]), count=meshes(n.min()), test="Welch, by mesh")
+    variances = numpy.array([a["sd"], b["sd"]]) ** 2 / n
+    if n.min() < 2 or not variances.sum() > 0:
+        return finding
+    freedom = variances.sum() ** 2 / (variances ** 2 / (n - 1)).sum()
+    half, half90 = stats.t.ppf([0.975, 0.95], freedom) * numpy.sqrt(variances.sum())
+    finding.low, finding.high = finding.value - half, finding.value + half
+    finding.low90, finding.high90 = finding.value - half90, finding.value + half90
+    return finding
 
 
 def rises(results, claim):
     finding = step(curve(results, claim), float(claim["a"]), float(claim["b"]))
-    return decide(claim, finding, finding.low > 0 or finding.high < 0, finding.value > 0)
+    finding.verdict = beyond(finding)
+    return finding
 
 
-def flat_beyond(results, claim):
-    """No step from n = a on is significant; the figure is the largest one."""
+def no_rise_beyond(results, claim):
+    """From n = a to none of the later n does the curve rise by the margin."""
     rows = curve(results, claim)
-    beyond = [n for n in rows.index if n >= float(claim["a"])]
-    if len(beyond) < 2:
+    first = float(claim["a"])
+    findings = [step(rows, first, n) for n in rows.index if n > first]
+    if not findings:
         raise Missing(f"the curve ends before {claim['a']} participants")
-    largest = max((step(rows, first, second) for first, second in zip(beyond, beyond[1:])), key=lambda found: found.low)
-    largest.verdict = FAILS if largest.low > 0 else UNDECIDED if few(claim["dataset"], largest.n) else HOLDS
-    return largest
+    for finding in findings:
+        finding.verdict = no_rise(finding, claim["margin"])
+    return combined(findings, lambda finding: -finding.high90)
 
 
-def drop_not_significant(results, claim):
+def same_beyond(results, claim):
+    """From n = a to the end of the curve there is no change."""
     rows = curve(results, claim)
     finding = step(rows, float(claim["a"]), rows.index.max())
-    if finding.low > 0 or finding.high < 0:
-        finding.verdict = FAILS
-    else:
-        finding.verdict = UNDECIDED if few(claim["dataset"], finding.n) else HOLDS if finding.value < 0 else FAILS
+    finding.verdict = equal(finding, claim["margin"])
     return finding
 
 
 def keeps_rising(results, claim):
-    """Every step of the mean is up; the figure is the smallest."""
+    """Every step is up."""
     rows = curve(results, claim)
-    smallest = min((step(rows, first, second) for first, second in zip(rows.index, rows.index[1:])),
-                   key=lambda found: found.value)
-    smallest.verdict = HOLDS if smallest.value > 0 else UNDECIDED if few(claim["dataset"], smallest.n) else FAILS
-    return smallest
+    findings = [step(rows, first, second) for first, second in zip(rows.index, rows.index[1:])]
+    for finding in findings:
+        finding.verdict = beyond(finding)
+    return combined(findings, lambda finding: finding.value)
 
 
 def cumulative(results, claim, model):
@@ -220,15 +269,17 @@ def cumulative(results, claim, model):
     return data["value"].to_numpy(), data[model].to_numpy()
 
 
-def distance(text, first, second, bound):
-    """Kolmogorov and Smirnov's distance of two cumulative distributions, and the claim that it is at most the bound."""
+def distance(text, first, second):
+    """Kolmogorov and Smirnov's distance of two mean distributions, and the verdict that they are near. It has no interval: it
+    is of these shapes."""
     value = float(numpy.abs(first - second).max())
-    return Finding(HOLDS if value <= bound else FAILS, f"{text}: largest distance {value:.3f}, near: up to {bound}", value)
+    verdict = HOLDS if value <= NEAR else FAILS if value >= APART else UNDECIDED
+    return Finding(text, value, test=f"largest distance: near up to {NEAR}, apart from {APART}; no interval", verdict=verdict)
 
 
 def near_uniform(results, claim):
     ends, shares = cumulative(results, claim, claim["a"])
-    return distance(f"{claim['a']} and the uniform distribution", shares, ends, float(claim["b"]))
+    return distance(f"{claim['a']} and the uniform distribution", shares, ends)
 
 
 def near_normal(results, claim):
@@ -237,17 +288,14 @@ def near_normal(results, claim):
     middles, weights = (ends[1:] + ends[:-1]) / 2, numpy.diff(shares)
     mean = (middles * weights).sum()
     deviation = numpy.sqrt(((middles - mean) ** 2 * weights).sum())
-    normal = stats.norm.cdf(ends, mean, deviation)
-    return distance(f"{claim['a']} and a normal distribution", shares, normal, float(claim["b"]))
+    return distance(f"{claim['a']} and a normal distribution", shares, stats.norm.cdf(ends, mean, deviation))
 
 
 def distributions_differ(results, claim):
-    """The two models whose distributions are nearest are still further apart than the bound."""
-    found = {}
-    for model in claim["a"].split():
-        found[model] = cumulative(results, claim, model)[1]
+    """The two models whose distributions are nearest are still apart."""
+    found = {model: cumulative(results, claim, model)[1] for model in claim["a"].split()}
     pairs = [(a, b) for a, b in product(found, found) if a < b]
     a, b = min(pairs, key=lambda pair: numpy.abs(found[pair[0]] - found[pair[1]]).max())
-    finding = distance(f"{a} and {b}, the nearest two", found[a], found[b], float(claim["b"]))
-    finding.verdict = FAILS if finding.verdict == HOLDS else HOLDS
+    finding = distance(f"{a} and {b}, the nearest two", found[a], found[b])
+    finding.verdict = {HOLDS: FAILS, FAILS: HOLDS}.get(finding.verdict, UNDECIDED)
     return finding

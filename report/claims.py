@@ -2,14 +2,16 @@
 """What the paper's text claims, beside our figures."""
 
 from report import checks, paper
-from report.blocks import Cell, Note, Table, cell, count, interval
+from report.blocks import Cell, Note, Table, cell, interval
 from report.names import DATASETS
 from report.results import Missing
 
-CAPTION = ("What the paper's text says of its figures, and what this run finds. Differences with 95 % intervals; verdicts by "
-           "the paper's rank-sum test at 0.05. Without a significant difference a verdict takes nearly as many shapes as the "
-           "paper had.")
-HEADS = ["Section", "The paper", "Data set", "Metric", "Found", "Figure", "95 % interval", "Shapes", "Verdict"]
+CAPTION = ("What the paper's text says of its figures, and what this run finds. Verdict, effect and interval are of one test. A "
+           "difference holds where its 95 % interval lies on the claimed side, and does not where it lies on the other. That two do "
+           "not differ holds where the 90 % interval lies within the margin (two one-sided tests at 0.05), and does not where the "
+           "95 % interval leaves out 0 all the same. Everything else is undecided. A claim about several pairs holds if each of "
+           "them does; shown is the one that decides. Margins are our choice; below each stands its reason, in the paper's means.")
+HEADS = ["Section", "The paper", "Data set", "Metric", "Found", "n", "Effect", "95 % interval", "Margin", "Test", "Verdict"]
 STYLES = {checks.HOLDS: "holds", checks.FAILS: "fails", checks.UNDECIDED: "open"}
 
 
@@ -19,6 +21,10 @@ def find(results, claim):
 
 
 def table(shop):
+    """Verdicts on the paper, which only its data and protocol allow."""
+    reason = paper.other_data(shop.results) or paper.other_protocol(shop.results, shop.protocols)
+    if reason:
+        return Note(f"No verdicts on the paper: {reason}.")
     rows = []
     counts = dict.fromkeys(STYLES, 0)
     for claim in paper.read("claims.csv").to_dict("records"):
@@ -27,16 +33,31 @@ def table(shop):
         try:
             finding = find(shop.results, claim)
         except Missing as reason:
-            rows.append(head + [Cell(f"Missing: {str(reason).rstrip('.')}."), cell(None), cell(None), cell(None),
-                                Cell("no verdict", style="open")])
+            rows.append(head + [Cell(f"Missing: {str(reason).rstrip('.')}."), Cell("–"), cell(None), cell(None), margin_cell(claim),
+                                Cell("–"), Cell("no verdict", style="open")])
             continue
-        verdict = Cell(finding.verdict, style=STYLES[finding.verdict])
-        if shop.results.simulated:
-            verdict = Cell("no verdict", style="open")
         counts[finding.verdict] += 1
-        rows.append(head + [Cell(finding.figure), cell(finding.value), interval(finding.low, finding.high),
-                            count(finding.n) if finding.n else cell(None), verdict])
-    made = Table("claims", CAPTION, HEADS, rows, [False] * 5 + [True] * 3 + [False], filters=[2, 3, 8])
-    if shop.results.simulated:
-        return [Note("No verdicts: the participants are simulated, so that nothing here speaks for or against the paper."), made]
-    return [Note(", ".join(f"{number} {verdict}" for verdict, number in counts.items()) + "."), made]
+        rows.append(head + [Cell(finding.figure, below=finding.others), Cell(finding.count or "–"), cell(finding.value),
+                            interval_cell(claim, finding), margin_cell(claim), Cell(finding.test),
+                            Cell(finding.verdict, style=STYLES[finding.verdict])])
+    lacking = len(rows) - sum(counts.values())
+    said = f"Of {len(rows)} claims: {checks.tally(counts)}" + (f"; {lacking} without the scores that they take." if lacking else ".")
+    return [Note(said + unknown_options(shop)),
+            Table("claims", CAPTION, HEADS, rows, [False] * 6 + [True] * 3 + [False] * 2, filters=[2, 3, 10])]
+
+
+def interval_cell(claim, finding):
+    made = interval(finding.low, finding.high)
+    if claim["margin"] == claim["margin"] and finding.low90 == finding.low90:
+        made.below = f"90 %: {interval(finding.low90, finding.high90).text}"
+    return made
+
+
+def margin_cell(claim):
+    return cell(claim["margin"], below=claim["reason"])
+
+
+def unknown_options(shop):
+    if shop.results.option("protocol") in shop.protocols:
+        return ""
+    return " Whether options of the run differ from the protocol is not known: the built program, which prints them, was not found."

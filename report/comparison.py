@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Two runs side by side: what they were, how their configurations differ, their means, and the differences per shape."""
 
+import numpy
+import pandas
+from scipy import stats
+
 from report import statistics
-from report.blocks import Cell, Note, Table, attempt, cell, count, interval
+from report.blocks import Cell, Note, Table, attempt, cell, interval
 from report.names import DATASETS
-from report.results import Missing, text_of
+from report.results import Missing, flatten, text_of
 from report.score_pages import page_data
-from report.tables import flatten, signed
+from report.tables import signed
+from report.units import HEAD, count_cell
 
 ABSENT = "–"
 
@@ -96,25 +101,34 @@ def pairs_of_scores(results, other):
                 yield dataset, metric, first.loc[shapes, models], second.loc[shapes, models]
 
 
+def paired(difference):
+    """Mean of the differences and its 95 % interval (Student); no interval for fewer than two."""
+    n = len(difference)
+    half = stats.t.ppf(0.975, n - 1) * numpy.std(difference, ddof=1) / n ** 0.5 if n > 1 else float("nan")
+    mean = float(numpy.mean(difference))
+    return mean, mean - half, mean + half
+
+
 def means(shop, other):
     rows, others = [], []
     for dataset, metric, first, second in pairs_of_scores(shop.results, other):
         for model in first:
-            difference = (first[model] - second[model]).dropna().to_numpy()
-            if len(difference) == 0:
+            both = pandas.DataFrame({"first": first[model], "second": second[model]}).dropna()
+            if both.empty:
                 continue
-            half, mean = statistics.student_half_width(difference), difference.mean()
-            both = first[model].notna() & second[model].notna()
-            row = [Cell(DATASETS[dataset]), Cell(model), Cell(shop.results.metric(metric).label), count(len(difference)),
-                   cell(first[model][both].mean()), cell(second[model][both].mean()), signed(mean),
-                   interval(mean - half, mean + half)]
+            units = statistics.by_unit(shop.results, both)
+            mean, low, high = paired((units["first"] - units["second"]).to_numpy())
+            row = [Cell(DATASETS[dataset]), Cell(model), Cell(shop.results.metric(metric).label),
+                   count_cell(shop.results, dataset, len(units), len(both)), cell(units["first"].mean()),
+                   cell(units["second"].mean()), signed(mean), interval(low, high)]
             (rows if metric in shop.results.leading else others).append(row)
     if not rows + others:
         raise Missing("The two runs have no model with scores of the same shape.")
     missing = sorted(set(shop.models) ^ set(statistics.models(other)))
     notes = [Note(f"Models that only one run has are left out: {', '.join(missing)}.")] if missing else []
-    caption = ("Means over the shapes that both runs scored, and the mean of the differences per shape with its 95 % interval.")
-    heads = ["Data set", "Model", "Metric", "Shapes", *names(shop.results, other), "Difference", "95 % interval"]
+    caption = ("Means over the shapes that both runs scored, and the mean difference with its paired 95 % interval over the units "
+               "that n counts.")
+    heads = ["Data set", "Model", "Metric", HEAD, *names(shop.results, other), "Difference", "95 % interval"]
     made = [("compared-means", rows, ""), ("compared-means-others", others, "Other metrics")]
     return notes + [Table(name, caption, heads, part, [False] * 3 + [True] * 5, filters=[0, 1, 2], folded=folded)
                     for name, part, folded in made if part]

@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 from typing import Callable
 
-from report import claims, examples, figures, sensitivity, statistics, tables
+from report import claims, examples, figures, ranking, sensitivity, statistics, tables
 from report.blocks import attempt
 
 
@@ -63,6 +63,7 @@ def participants(shop):
 
 
 ELEMENTS = (
+    Element("ranking", "", "", "Ranking", ranking.tables),
     Element("means", "", "", "Means", tables.means),
     Element("claims", "", "", "What the paper says, checked", claims.table),
     Element("figure-1", "Figure 1", "fig:teaser", "Examples of saliency maps", examples.meshes),

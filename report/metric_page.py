@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of all metrics of a run: what they are, and the tables of those that the other pages leave out, one at a time."""
 
-from report import statistics, tables
-from report.blocks import Cell, Table, attempt, cell, count
+from report import ranking, statistics, tables, units
+from report.blocks import Cell, Table, attempt, cell
 from report.names import spoken
 from report.results import Missing
 
@@ -13,7 +13,7 @@ def others(shop):
 
 def blocks(shop):
     """(title, blocks) of each section."""
-    return [("Means", attempt(means, shop)),
+    return [("Ranking", attempt(ranking.table, shop, "ranking-others", others(shop))), ("Means", attempt(means, shop)),
             *((f"Performance per class on {spoken(dataset)}", attempt(classes, shop, dataset))
               for dataset in statistics.shown(shop.results)),
             ("Pairwise tests", attempt(pairs, shop)), ("Every metric of the run", [listing(shop)])]
@@ -27,9 +27,8 @@ def listing(shop):
 
 
 def means(shop):
-    table = shop.results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
-    return tables.means_table(shop, "means-others", "Means over the shapes. Best of each data set in bold.",
-                              table[table["metric"].isin(others(shop))])
+    table = shop.results.table("summary.csv", *statistics.SUMMARY)
+    return tables.means_table(shop, "means-others", tables.MEANS, table[table["metric"].isin(others(shop))])
 
 
 def pairs(shop):
@@ -44,22 +43,22 @@ def classes(shop, dataset):
             table = statistics.per_class(shop.results, dataset, name)
         except Missing:
             continue
-        rows += class_rows(shop, name, table)
+        rows += class_rows(shop, dataset, name, table)
     if not rows:
         raise Missing(f"There are no scores of {spoken(dataset)} by class.")
     models = shop.models
     return Table(f"classes-{dataset}-others", f"Mean per class on {spoken(dataset)} and half of the 95 % interval, best in bold.",
-                 ["Metric", "Class", "Shapes", *models, "Avg"], rows, [False] * 2 + [True] * (len(models) + 2), filters=[0])
+                 ["Metric", "Class", units.HEAD, *models, "Avg"], rows, [False] * 2 + [True] * (len(models) + 2), filters=[0])
 
 
-def class_rows(shop, name, table):
+def class_rows(shop, dataset, name, table):
     of = shop.results.metric(name)
     by_cell = {(row["class"], row["model"]): row for row in table.to_dict("records")}
     best = tables.best_per_class(of, by_cell)
     rows = []
     for category in dict.fromkeys(table["class"]):
         found = [by_cell.get((category, model)) for model in shop.models]
-        line = [Cell(of.label), Cell(category or "(no class)"), count(max((row["n"] for row in found if row), default=0))]
+        line = [Cell(of.label), Cell(category or "(no class)"), tables.class_count(shop, dataset, found)]
         for row in found + [by_cell.get((category, "Avg"))]:
             line.append(tables.class_cell(row, None, row["model"] in best[category]) if row else cell(None))
         rows.append(line)

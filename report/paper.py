@@ -6,17 +6,23 @@ from pathlib import Path
 import numpy
 import pandas
 
+from report.results import flatten, text_of
+
 FOLDER = Path(__file__).resolve().parent.parent / "configs" / "paper"
 CLASSES = 20
-SHAPES = {"meshes": 400, "scans": 4800}  # each class has 20 meshes, each mesh 12 scans (section 4.1)
+LAYOUTS = ("schelling", "princeton", "gs")  # of SHREC'07 with the ground truth of the Schelling study
+MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
+# Options that scores depend on, beside those of the models.
+OPTIONS = ("scan.", "normals.", "scan_normals.", "surface.", "fpfh.", "scan_fpfh.", "metrics.splits", "metrics.thresholds",
+           "metrics.constant_nss", *(f"models.{model}." for model in MODELS))
 
 
 def read(name):
-    """A table of configs/paper: text, but for the columns mean and ci95."""
+    """A table of configs/paper: text, but for the columns mean, ci95 and margin, which is NaN where there is none."""
     table = pandas.read_csv(FOLDER / name, comment="#", dtype=str, keep_default_na=False)
-    for column in ("mean", "ci95"):
+    for column in ("mean", "ci95", "margin"):
         if column in table:
-            table[column] = table[column].astype(float)
+            table[column] = table[column].replace("", "nan").astype(float)
     return table
 
 
@@ -30,3 +36,27 @@ def mean_auc(model):
     does not have the model."""
     means = [mean for (_, name), (mean, _) in per_class().items() if name == model]
     return float(numpy.mean(means)) if len(means) == CLASSES else None
+
+
+def other_data(results):
+    """Why scores say nothing about the paper's; empty if they are of its shapes and people."""
+    if results.simulated:
+        return "the participants are simulated"
+    if not results.record:
+        return "run.yaml does not say of which data and protocol the scores are"
+    found = results.record.get("data_set")
+    layout = text_of(found.get("layout")) if isinstance(found, dict) else ""
+    if layout not in LAYOUTS:
+        return f"these are not the paper's data, but of the layout {layout or 'unknown'}"
+    return ""
+
+
+def other_protocol(results, protocols):
+    """Why the scores are not made as the paper's; empty if they are, as far as known. protocols: as Workshop.protocols."""
+    name = results.option("protocol")
+    if name is None:
+        return "run.yaml does not name the protocol"
+    own, theirs = flatten(results.record["configuration"]), flatten(protocols.get(name, {}))
+    changed = [f"{path} is {own[path]} and not {value}" for path, value in theirs.items()
+               if path.startswith(OPTIONS) and own.get(path, value) != value]
+    return f"this is not the paper's protocol: {', '.join(changed)}" if changed else ""

@@ -13,7 +13,8 @@ import yaml
 from report import metrics
 
 NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
-TEXT_COLUMNS = ("dataset", "item", "class", "view", "model", "metric", "model_a", "model_b", "node")
+TEXT_COLUMNS = ("dataset", "item", "class", "view", "model", "metric", "model_a", "model_b", "metric_a", "metric_b", "group",
+                "node")
 DATASETS = ("meshes", "scans", "clouds")
 
 
@@ -44,7 +45,7 @@ class Results:
             raise table
         absent = [column for column in columns if column not in table]
         if absent:
-            raise Missing(f"{name} has no column {', '.join(absent)}: an older version of the program wrote it.")
+            raise Missing(f"{name} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench again.")
         return table
 
     def has(self, name):
@@ -56,13 +57,18 @@ class Results:
     def _read(self, name):
         path = self.folder / name
         if not path.is_file():
-            return Missing(f"{name} is not in the results folder.")
+            return Missing(f"{name} is not in the results folder: run salbench again, to its end.")
         try:
             table, remarks = read_table(path)
         except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
             return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
         self.remarks += [remark for remark in remarks if remark not in self.remarks]
         return table
+
+    @property
+    def unit(self):
+        """What counts as one observation in intervals, tests and ranks: "mesh", "class" or "shape"; empty if unknown."""
+        return self.option("statistics.unit") or ""
 
     @cached_property
     def simulated(self):
@@ -117,6 +123,17 @@ class Results:
 
 def text_of(value):
     return value if isinstance(value, str) else ""
+
+
+def flatten(values, prefix=""):
+    """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
+    flat = {}
+    for key, value in values.items():
+        if isinstance(value, dict):
+            flat |= flatten(value, f"{prefix}{key}.")
+        else:
+            flat[f"{prefix}{key}"] = str(value)
+    return flat
 
 
 def number_of(value, otherwise=float("nan")):

@@ -6,8 +6,7 @@ import pandas
 
 from report import style
 from report.blocks import Cell, Note, Table, attempt, cell, count
-from report.results import Missing, number_of, text_of
-from report.tables import flatten
+from report.results import Missing, flatten, number_of, text_of
 
 FACTS = ("program", "results", "host", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
 

@@ -1,21 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether the ranking of the models depends on the convention that the same maps are scored by."""
 
-from collections import Counter
+from dataclasses import dataclass
 
 import pandas
 from scipy import stats
 
 from report import statistics
-from report.blocks import Cell, Note, Table, attempt, cell, count
-from report.metrics import PAPER, family_label, family_of
+from report.blocks import Cell, Note, Table, attempt, cell, interval
+from report.metrics import PAPER, Metric, family_label, family_of
 from report.names import DATASETS, spoken
 from report.results import Missing, write_csv
+from report.units import HEAD, count_cell
 
-CAPTION = ("{}: mean of each model and its rank under each convention, over the shapes that every convention of a family scores "
-           "under every model. Bold: the rank is another than under the first convention of the family, which is the paper's "
-           "where it has one. Tau: Kendall's tau-b of the two rankings, 1 where they agree. A rank may differ by chance: the "
-           "pairwise tests say which differences count.")
+CAPTION = ("{}: mean of each model and its rank under each convention, over the shapes that all models have its score for. Human "
+           "performance and chance are references and have no rank. Bold: the rank is another than under the first convention of "
+           "the family, which is the paper's where it has one. Tau: Kendall's tau-b of the two rankings, 1 where they agree, with "
+           "its 95 % interval over resampled units. A rank may differ by chance: the ranking above says how sure it is.")
 
 
 def tables(shop):
@@ -30,7 +31,7 @@ def matching(shop):
                     "matching out. The conventions of another run, given with --compare, stand beside those of this one.",
                     missing=True)
     return Note(f"Conventions of {shop.other.folder.resolve().name} are those of the run given with --compare, over the shapes "
-                "and models that both runs have.")
+                "and models that both runs have; their taus have no interval.")
 
 
 def families(results):
@@ -41,51 +42,76 @@ def families(results):
     return {family: sorted(names, key=lambda name: name not in PAPER) for family, names in found.items()}
 
 
-def scored(results, dataset, names):
-    """metric -> shapes by models of those metrics that have any score."""
-    found = {}
-    for name in names:
-        try:
-            wide = statistics.scores(results, dataset, name).dropna(axis=1, how="all")
-        except Missing:
-            continue
-        if not wide.empty:
-            found[name] = wide
-    return found
+@dataclass
+class Convention:
+    """One ranking of the models, and how it agrees with that of the first convention of its family."""
+    family: str
+    run: str           # that it is of; empty for the one reported
+    metric: Metric
+    n: int             # units
+    n_shapes: int
+    means: pandas.Series  # over the models, as all that follow
+    ranks: pandas.Series
+    reference: pandas.Series  # their ranks under the first convention
+    tau: float = float("nan")
+    low: float = float("nan")
+    high: float = float("nan")
 
-
-def common(tables):
-    """The tables over the models that all have, and the shapes that all score under each of them."""
-    models = [model for model in tables[0] if all(model in wide for wide in tables)]
-    shapes = None
-    for wide in tables:
-        known = wide[models].dropna().index
-        shapes = known if shapes is None else shapes.intersection(known, sort=False)
-    return [wide.loc[shapes, models] for wide in tables]
+    def changes(self):
+        return self.tau == self.tau and self.tau < 1 - 1e-12
 
 
 def conventions(shop, dataset):
-    """Rows (family, run, Metric, number of shapes, tau, means, ranks), the family's reference first; means and ranks are
-    Series over the models."""
-    rows = []
+    """Those of each family that has several, its reference first."""
+    found = []
     for family, names in families(shop.results).items():
-        found = {("", name): wide for name, wide in scored(shop.results, dataset, names).items()}
-        if shop.other is not None:
-            found |= {(shop.other.folder.resolve().name, name): wide
-                      for name, wide in scored(shop.other, dataset, names).items()}
-        if len(found) < 2 or next(iter(found))[0]:
+        own = own_conventions(shop.results, dataset, family, names)
+        others = others_conventions(shop, dataset, family, own[0], names) if own and shop.other else []
+        if len(own) + len(others) > 1:
+            found += own + others
+    return found
+
+
+def own_conventions(results, dataset, family, names):
+    """From ranking.csv and ranking_agreement.csv."""
+    found = []
+    for name in names:
+        rows = statistics.ranking(results, dataset, name).dropna(subset=["mean", "rank", "n", "n_shapes"]).set_index("model")
+        if rows.empty:
             continue
-        reference = None
-        for (run, name), wide in zip(found, common(list(found.values()))):
-            if wide.empty:
-                continue
-            of = shop.results.metric(name)
-            means = wide.mean()
-            ranks = means.round(12).rank(ascending=of.lower, method="min")
-            reference = ranks if reference is None else reference
-            tau = stats.kendalltau(reference, ranks)[0] if len(ranks) > 1 else float("nan")
-            rows.append((family, run, of, len(wide), tau, means, ranks))
-    return rows
+        first = found[0] if found else None
+        tau = statistics.agreement(results, dataset, first.metric.name, name) if first else ()
+        found.append(Convention(family, "", results.metric(name), int(rows["n"].iloc[0]), int(rows["n_shapes"].iloc[0]),
+                                rows["mean"], rows["rank"], first.ranks if first else rows["rank"], *tau))
+    return found
+
+
+def others_conventions(shop, dataset, family, first, names):
+    """Of the run to compare with, over the shapes and models that both have scores of: no table holds that. The reference is
+    ranked anew over these shapes."""
+    found = []
+    reference = statistics.scores(shop.results, dataset, first.metric.name)
+    for name in names:
+        try:
+            theirs = statistics.scores(shop.other, dataset, name)
+        except Missing:
+            continue
+        models = [model for model in first.means.index if model in theirs and theirs[model].notna().any()]
+        both = pandas.concat({"ours": reference[models], "theirs": theirs[models]}, axis=1, join="inner").dropna()
+        if both.empty:
+            continue
+        means = statistics.by_unit(shop.results, both)
+        of = shop.results.metric(name)
+        ranks = ranks_of(means["theirs"].mean(), of)
+        against = ranks_of(means["ours"].mean(), first.metric)
+        tau = stats.kendalltau(against, ranks)[0] if len(models) > 1 else float("nan")
+        found.append(Convention(family, shop.other.folder.resolve().name, of, len(means), len(both), means["theirs"].mean(), ranks,
+                                against, tau))
+    return found
+
+
+def ranks_of(means, metric):
+    return means.round(12).rank(ascending=metric.lower, method="min")
 
 
 def table(shop, dataset):
@@ -93,41 +119,45 @@ def table(shop, dataset):
     if not rows:
         raise Missing(f"No metric of the {spoken(dataset)} was computed by several conventions: metrics: all in the "
                       "configuration computes every one.")
-    models = [model for model in shop.models if any(model in row[5] for row in rows)]
-    lines, data, references = [], [], {}
-    for family, run, of, shapes, tau, means, ranks in rows:
-        reference = references.setdefault(family, ranks)
-        label = f"{of.label}, {run}" if run else of.label
-        line = [Cell(family_label(family)), Cell(label, below="lower is better" if of.lower else ""), count(shapes), cell(tau, 2)]
+    models = [model for model in shop.models if any(model in row.means for row in rows)]
+    lines, data = [], []
+    for row in rows:
+        of = row.metric
+        label = f"{of.label}, {row.run}" if row.run else of.label
+        tau = cell(row.tau, 2, below=interval(row.low, row.high, 2).text if row.low == row.low else "")
+        line = [Cell(family_label(row.family)), Cell(label, below="lower is better" if of.lower else ""),
+                count_cell(shop.results, dataset, row.n, row.n_shapes), tau]
         for model in models:
-            if model not in means:
+            if model not in row.means:
                 line.append(cell(None))
                 continue
-            differs = ranks[model] != reference[model]
-            below = f"rank {int(ranks[model])}" + (f", not {int(reference[model])}" if differs else "")
-            line.append(cell(means[model], bold=differs, below=below))
-            data.append((family, of.name, run, shapes, tau, model, means[model], int(ranks[model]), int(reference[model])))
+            rank, known = int(row.ranks[model]), row.reference.get(model, float("nan"))
+            differs = known == known and rank != known
+            below = f"rank {rank}" + (f", not {int(known)}" if differs else "")
+            line.append(cell(row.means[model], bold=differs, below=below))
+            data.append((row.family, of.name, row.run, row.n, row.n_shapes, row.tau, row.low, row.high, model, row.means[model],
+                         rank, known))
         lines.append(line)
     name = f"sensitivity-{dataset}"
-    write_csv(pandas.DataFrame(data, columns=["family", "metric", "run", "n", "kendall_tau", "model", "mean", "rank",
-                                              "rank_of_reference"]), shop.file(f"data/{name}.csv"))
+    write_csv(pandas.DataFrame(data, columns=["family", "metric", "run", "n", "n_shapes", "kendall_tau", "ci95_low", "ci95_high",
+                                              "model", "mean", "rank", "rank_of_reference"]), shop.file(f"data/{name}.csv"))
     return [Note(sentence(dataset, rows)),
-            Table(name, CAPTION.format(DATASETS[dataset]), ["Family", "Convention", "Shapes", "Tau", *models], lines,
+            Table(name, CAPTION.format(DATASETS[dataset]), ["Family", "Convention", HEAD, "Tau", *models], lines,
                   [False, False, True, True] + [True] * len(models), filters=[0], files=[("numbers (CSV)", f"data/{name}.csv")])]
 
 
 def sentence(dataset, rows):
-    """How many conventions rank otherwise, and which one most."""
-    first = Counter()
-    others = []
+    """How many conventions order the means otherwise, and which one most."""
+    first, others = set(), []
     for row in rows:
-        if first[row[0]]:
+        if row.family in first:
             others.append(row)
-        first[row[0]] += 1
-    changed = [row for row in others if row[4] == row[4] and row[4] < 1 - 1e-12]
+        first.add(row.family)
+    changed = [row for row in others if row.changes()]
     if not changed:
-        return f"On {spoken(dataset)} none of {len(others)} other conventions changes the ranking of the models."
-    least = min(changed, key=lambda row: row[4])
-    tau = f"{least[4]:.2f}".replace("-", "−")
-    return (f"On {spoken(dataset)} {len(changed)} of {len(others)} other conventions change the ranking of the models; "
-            f"furthest from the first of its family is {least[2].label}, with a tau of {tau}.")
+        return f"On {spoken(dataset)} none of {len(others)} other conventions orders the means of the models otherwise."
+    least = min(changed, key=lambda row: row.tau)
+    tau = f"{least.tau:.2f}".replace("-", "−")
+    sure = f" (95 % interval {interval(least.low, least.high, 2).text})" if least.low == least.low else ""
+    return (f"On {spoken(dataset)} {len(changed)} of {len(others)} other conventions order the means of the models otherwise; "
+            f"furthest from the first of its family is {least.metric.label}, with a tau of {tau}{sure}.")

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the report needs beyond the program's own statistics, computed from results.csv alone."""
+"""Rows of the program's tables, and what pages of single shapes need of results.csv: scores by shape and their ranks."""
 
 import numpy
 import pandas
-from scipy import stats
 
 from report.names import natural
 from report.results import DATASETS, Missing
 
+OF_METRIC = ("dataset", "metric")
+MEAN = ("mean", "ci95_low", "ci95_high")
+RANKING = (*OF_METRIC, "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first", "group")
+SUMMARY = (*OF_METRIC, "model", "n", "sd", *MEAN, "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean")
 
 def datasets(results):
     """The data sets that have scores, in the program's order."""
@@ -90,83 +93,63 @@ def ranks(wide, metric):
 
 def summary(results, dataset, metric):
     """Rows of summary.csv of one metric, best mean first."""
-    table = results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
-    rows = table[(table["dataset"] == dataset) & (table["metric"] == metric)]
+    rows = of_metric(results.table("summary.csv", *SUMMARY), dataset, metric)
     if rows.empty:
         raise Missing(f"summary.csv has no {metric} of {dataset}.")
     lower = results.metric(metric).lower
     return rows.sort_values("mean", ascending=lower, kind="stable", na_position="last").reset_index(drop=True)
 
 
-def student_half_width(values):
-    """Half of the 95 % confidence interval of a mean; NaN for fewer than two values."""
-    n = len(values)
-    return float(stats.t.ppf(0.975, n - 1) * numpy.std(values, ddof=1) / numpy.sqrt(n)) if n > 1 else float("nan")
+def of_metric(table, dataset, metric):
+    return table[(table["dataset"] == dataset) & (table["metric"] == metric)]
+
+
+def ranking(results, dataset, metric):
+    """Rows of ranking.csv of one metric, in its order: best first, without references."""
+    return of_metric(results.table("ranking.csv", *RANKING), dataset, metric).reset_index(drop=True)
+
+
+def agreement(results, dataset, first, second):
+    """Kendall's tau of the rankings by two metrics and its interval, from ranking_agreement.csv; NaN where it has none."""
+    columns = ["tau", "ci95_low", "ci95_high"]
+    table = results.table("ranking_agreement.csv", "dataset", "metric_a", "metric_b", *columns)
+    pairs = zip(table["dataset"], table["metric_a"], table["metric_b"])
+    rows = table[[key in ((dataset, first, second), (dataset, second, first)) for key in pairs]]
+    return tuple(rows[columns].iloc[0]) if len(rows) else (float("nan"),) * 3
 
 
 def per_class(results, dataset, metric):
-    """Columns class, model, n, mean, ci95: of per_class.csv where it has the metric, as of the paper's metrics it has AUC
-    alone; else made from results.csv in the same way. The model "Avg" is the mean over the models' means."""
-    mean, half = f"{metric}_mean", f"{metric}_ci95"
-    needed = (mean, half) if metric == "auc" else ()
-    try:
-        table = results.table("per_class.csv", "dataset", "class", "model", "n", *needed)
-    except Missing:
-        if needed:
-            raise
-        return class_means(results, dataset, metric)
-    if mean not in table or half not in table:
-        return class_means(results, dataset, metric)
-    rows = table[table["dataset"] == dataset].rename(columns={mean: "mean", half: "ci95"})
+    """Rows of per_class.csv of one metric: class, model, n, n_shapes, mean, ci95, half of the interval as the paper prints it.
+    The model "Avg" is the mean over the competitors."""
+    rows = of_metric(results.table("per_class.csv", "class", "model", *OF_METRIC, "n", "n_shapes", *MEAN), dataset, metric)
     if rows.empty:
-        raise Missing(f"per_class.csv has no rows of {dataset}: they have no scores, or no classes.")
-    rows = rows.replace({"model": {"Avg-AUC": "Avg"}})[["class", "model", "n", "mean", "ci95"]].reset_index(drop=True)
-    if next(column for column in table if column.endswith("_mean")) != mean:  # n counts what the first is defined for
-        wide, class_of = scores(results, dataset, metric), classes(results)
-        counts = wide.groupby(wide.index.get_level_values("item").map(class_of)).count()
-        counted = counts.assign(Avg=(counts > 0).sum(axis=1)).stack().to_dict()
-        rows["n"] = [counted.get(key, 0) for key in zip(rows["class"], rows["model"])]
-    return rows
-
-
-def class_means(results, dataset, metric):
-    """What per_class gives, from results.csv."""
-    wide = scores(results, dataset, metric)
-    class_of = classes(results)
-    rows = []
-    for name, group in wide.groupby(wide.index.get_level_values("item").map(class_of), sort=False):
-        means = []
-        for model in wide:
-            values = group[model].dropna().to_numpy()
-            if len(values) == 0:
-                continue
-            means.append(values.mean())
-            rows.append((name, model, len(values), means[-1], student_half_width(values)))
-        if means:
-            rows.append((name, "Avg", len(means), float(numpy.mean(means)), student_half_width(means)))
-    return pandas.DataFrame(rows, columns=["class", "model", "n", "mean", "ci95"])
-
-
-def paired_difference(wide, a, b):
-    """Mean over the shapes of score of a less score of b: n, mean, low and high end of its 95 % interval (Student)."""
-    for model in (a, b):
-        if model not in wide:
-            raise Missing(f"no scores of {model}")
-    difference = (wide[a] - wide[b]).dropna().to_numpy()
-    if len(difference) == 0:
-        raise Missing(f"no shape has scores of both {a} and {b}")
-    half = student_half_width(difference)
-    return len(difference), float(difference.mean()), float(difference.mean() - half), float(difference.mean() + half)
+        raise Missing(f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no classes.")
+    return rows.assign(ci95=(rows["ci95_high"] - rows["ci95_low"]) / 2).reset_index(drop=True)
 
 
 def pair(results, dataset, metric, a, b):
-    """The row of significance.csv of a pair, its differences turned so that they are a less b."""
-    table = results.table("significance.csv", "dataset", "metric", "model_a", "model_b", "mean_difference", "rank_sum_p")
-    rows = table[(table["dataset"] == dataset) & (table["metric"] == metric)]
-    for first, second, sign in ((a, b, 1), (b, a, -1)):
+    """The row of significance.csv of a pair: n, n_shapes, mean_difference, its two intervals and t_p, turned so that the
+    difference is a less b."""
+    signed = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high")
+    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", *signed)
+    rows = of_metric(table, dataset, metric)
+    for first, second, turned in ((a, b, False), (b, a, True)):
         match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
-        if not match.empty:
-            row = match.iloc[0].to_dict()
-            row["mean_difference"] *= sign
-            return row
+        if match.empty:
+            continue
+        row = match.iloc[0].to_dict()
+        if turned:
+            row |= {column: -row[column] for column in signed}
+            for level in ("ci95", "ci90"):
+                row[f"{level}_low"], row[f"{level}_high"] = row[f"{level}_high"], row[f"{level}_low"]
+        return row
     raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")
+
+
+def by_unit(results, values):
+    """Values by shape, a Series or DataFrame with the index (item, view), as means by unit of inference: for what compares
+    two runs, which no table of either holds."""
+    if results.unit == "shape":
+        return values
+    key = values.index.get_level_values("item")
+    return values.groupby(key.map(classes(results)) if results.unit == "class" else key, sort=False).mean()

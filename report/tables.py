@@ -1,44 +1,70 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The report's tables of scores: means, classes, pairwise tests, parameters."""
 
-from report import paper, statistics
-from report.blocks import Cell, Note, Table, cell, count, p_value
+from report import paper, statistics, units
+from report.blocks import Cell, Note, Table, cell, interval, p_value
 from report.latex import write_per_class
-from report.names import DATASETS, spoken
-from report.results import Missing
+from report.names import DATASETS, KIND_NAMES, spoken
+from report.results import Missing, flatten
+from report.units import count_cell, several
 
-LEVEL = 0.05  # of the paper's tests
+LEVEL = 0.05  # of the tests
 
 
-def signed(value, digits=3):
-    return cell(value, digits) if value != value else Cell(f"{value:+.{digits}f}".replace("-", "−"), float(value))
+def signed(value, digits=3, **more):
+    if value != value:
+        return cell(value, digits, **more)
+    return Cell(f"{value:+.{digits}f}".replace("-", "−"), float(value), **more)
 
 
 def means(shop):
     """Means of the leading metrics from summary.csv, beside the paper's where it prints one."""
-    table = shop.results.table("summary.csv", "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high")
+    table = shop.results.table("summary.csv", *statistics.SUMMARY)
     if table.empty:
         raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
-    caption = ("Means over the shapes. Best of each data set and metric in bold. The paper's mean AUC is that of its table of "
-               "classes; it prints no mean of the other metrics.")
-    return means_table(shop, "means", caption, table[table["metric"].isin(shop.results.leading)])
+    caption = MEANS
+    if not paper.other_data(shop.results):
+        caption += " The paper's mean AUC is that of its table of classes; it prints no mean of the other metrics."
+    made = [means_table(shop, "means", caption, table[table["metric"].isin(shop.results.leading)])]
+    return made + [Note(HUMAN)] if (table["model"] == "HS").any() else made
+
+
+MEANS = ("Means over the shapes that all models have a score for, with 95 % intervals of Student and of the bootstrap (BCa) over "
+         "the units that n counts. Best of each data set and metric in bold, which does not say that it differs from the others.")
+HUMAN = ("HS is one participant against all others, and no model. One person picks few points, so that most of such a map has "
+         "the same value: a model, which values every point, may score above it without knowing more than people do together. "
+         "The human curve shows what more participants reach.")
 
 
 def means_table(shop, identifier, caption, table):
-    compare = not shop.results.simulated  # the paper's scores are of people
+    compare = not paper.other_data(shop.results) and (table["metric"] == "auc").any()
     best = {key: shop.results.metric(key[1]).best(dict(zip(part["model"], part["mean"])))
             for key, part in table.groupby(["dataset", "metric"])}
     rows = []
     for row in table.to_dict("records"):
-        printed = compare and (row["dataset"], row["metric"]) == ("meshes", "auc")
-        known = paper.mean_auc(row["model"]) if printed else None
-        rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(row["model"]),
-                     Cell(shop.results.metric(row["metric"]).label), count(row["n"]),
-                     cell(row["mean"], bold=row["model"] in best[row["dataset"], row["metric"]]),
-                     cell(row["ci95_low"]), cell(row["ci95_high"]), cell(row["sd"]), cell(known, 2), signed(row["mean"] - known) if known else cell(None)])
-    return Table(identifier, caption,
-                 ["Data set", "Model", "Metric", "Shapes", "Mean", "95 % low", "95 % high", "SD", "Paper", "Difference"],
-                 rows, [False] * 3 + [True] * 7, filters=[0, 1, 2])
+        dataset = row["dataset"]
+        cells = [Cell(DATASETS.get(dataset, dataset)), Cell(row["model"]), Cell(shop.results.metric(row["metric"]).label),
+                 count_cell(shop.results, dataset, row["n"], row["n_shapes"]),
+                 cell(row["mean"], bold=row["model"] in best[dataset, row["metric"]], below=own_shapes(row)),
+                 cell(row["ci95_low"]), cell(row["ci95_high"]), cell(row["sd"]), interval(row["bca95_low"], row["bca95_high"])]
+        rows.append(cells + (paper_cells(row) if compare else []))
+    heads = ["Data set", "Model", "Metric", units.HEAD, "Mean", "95 % low", "95 % high", "SD", "95 % by bootstrap"]
+    heads += ["Paper", "Difference"] if compare else []
+    return Table(identifier, caption, heads, rows, [False] * 3 + [True] * (len(heads) - 3), filters=[0, 1, 2])
+
+
+def paper_cells(row):
+    """The paper's mean, where it prints one, and the difference."""
+    known = paper.mean_auc(row["model"]) if (row["dataset"], row["metric"]) == ("meshes", "auc") else None
+    return [cell(known, 2), signed(row["mean"] - known) if known else cell(None)]
+
+
+def own_shapes(row):
+    """The mean over all shapes that the model has a score for, where these are others than the compared ones."""
+    if row["n_own_shapes"] == row["n_shapes"] or row["own_mean"] != row["own_mean"]:
+        return ""
+    kind = several(int(row["n_own_shapes"]), KIND_NAMES.get(row["dataset"], "shape"))
+    return f"{row['own_mean']:.3f} over all {kind} that it has a score for".replace("-", "−")
 
 
 def per_class(shop, dataset, metric):
@@ -49,14 +75,13 @@ def per_class(shop, dataset, metric):
     by_cell = {(row["class"], row["model"]): row for _, row in table.iterrows()}
     average = {name: row["mean"] for (name, model), row in by_cell.items() if model == "Avg"}
     order = sorted(dict.fromkeys(table["class"]), key=lambda name: average.get(name, 0) * (1 if of.lower else -1))
-    printed = (dataset, metric) == ("meshes", "auc") and not shop.results.simulated
+    printed = (dataset, metric) == ("meshes", "auc") and not paper.other_data(shop.results)
     known = paper.per_class() if printed else {}
     best = best_per_class(of, by_cell)
     rows = []
     for name in order:
         numbers = [by_cell.get((name, model)) for model in models]
-        shapes = max((row["n"] for row in numbers if row is not None), default=0)
-        cells = [Cell(name or "(no class)"), count(shapes)]
+        cells = [Cell(name or "(no class)"), class_count(shop, dataset, numbers)]
         for row, model in zip(numbers + [by_cell.get((name, "Avg"))], models + ["Avg"]):
             cells.append(class_cell(row, known.get((name, model)), model in best[name]))
         rows.append(cells)
@@ -66,7 +91,13 @@ def per_class(shop, dataset, metric):
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
     return Table(identifier, f"{label} per class on {spoken(dataset)}: mean and half of the 95 % interval, best in bold{remark}.",
-                 ["Class", "Shapes"] + models + [f"Avg-{label}"], rows, [False] + [True] * (len(models) + 2), files=files)
+                 ["Class", units.HEAD] + models + [f"Avg-{label}"], rows, [False] + [True] * (len(models) + 2), files=files)
+
+
+def class_count(shop, dataset, rows):
+    """The number of units and shapes of a class: of the model that has most."""
+    known = [(row["n"], row["n_shapes"]) for row in rows if row is not None]
+    return count_cell(shop.results, dataset, *max(known), within_class=True) if known else cell(None)
 
 
 def best_per_class(metric, by_cell):
@@ -89,34 +120,47 @@ def class_cell(row, known, bold):
 
 
 def pairwise(shop):
-    """The rows of significance.csv of the leading metrics; both tests at 0.05."""
+    """The rows of significance.csv of the leading metrics."""
     table = significance(shop)
     return pairs_table(shop, "pairs", table[table["metric"].isin(shop.results.leading)])
 
 
 def significance(shop):
-    columns = ["dataset", "metric", "model_a", "model_b", "n", "mean_difference", "rank_sum_p", "signed_rank_p_holm"]
+    columns = ["dataset", "metric", "model_a", "model_b", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "d_z",
+               "rank_biserial", "superiority", "superiority_low", "superiority_high", "rank_sum_p", "signed_rank_p_holm", "n_tests"]
     table = shop.results.table("significance.csv", *columns)
     if table.empty:
         raise Missing("significance.csv holds no test: it takes two models and a shape with ground truth.")
     return table
 
 
+PAIRS = ("Every pair of models. The interval and p are those of the paired t-test over the units that n counts, for one pair alone; "
+         "the signed-rank test is corrected by Holm over all pairs of one data set and metric, whose number stands below it. "
+         "Effect: Cohen's d_z, below it the matched-pairs rank-biserial correlation. Higher: on how large a share of the units the "
+         "first model has the higher score. Rank sum: the paper's test, which takes every shape for an independent one. "
+         "Undecided: the test at 0.05 finds no difference, which does not say that there is none.")
+
+
 def pairs_table(shop, identifier, table):
     rows = []
     for row in table.to_dict("records"):
-        rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])),
-                     Cell(shop.results.metric(row["metric"]).label), Cell(f"{row['model_a']} − {row['model_b']}"),
-                     count(row["n"]), signed(row["mean_difference"]), p_value(row["rank_sum_p"]), decided(row["rank_sum_p"]),
-                     p_value(row["signed_rank_p_holm"]), decided(row["signed_rank_p_holm"])])
-    return Table(identifier, f"Every pair of models at level {LEVEL}: the paper's rank-sum test, and the paired signed-rank test "
-                 "with Holm's correction over the pairs.",
-                 ["Data set", "Metric", "Pair", "Shapes", "Mean difference", "Rank sum p", "Differs", "Signed rank p (Holm)",
-                  "Differs (Holm)"], rows, [False] * 3 + [True, True, True, False, True, False], filters=[0, 1, 2])
+        holm = p_value(row["signed_rank_p_holm"])
+        holm.below = f"{int(row['n_tests'])} pairs" if row["n_tests"] == row["n_tests"] else ""
+        rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(shop.results.metric(row["metric"]).label),
+                     Cell(f"{row['model_a']} − {row['model_b']}"),
+                     count_cell(shop.results, row["dataset"], row["n"], row["n_shapes"]), signed(row["mean_difference"]),
+                     interval(row["ci95_low"], row["ci95_high"]), p_value(row["t_p"]), decided(row["t_p"]),
+                     holm, decided(row["signed_rank_p_holm"]),
+                     signed(row["d_z"], 2, below=signed(row["rank_biserial"], 2).text),
+                     cell(row["superiority"], 2, below=interval(row["superiority_low"], row["superiority_high"], 2).text),
+                     p_value(row["rank_sum_p"])])
+    return Table(identifier, PAIRS, ["Data set", "Metric", "Pair", units.HEAD, "Mean difference", "95 % interval", "p (t)", "Differs",
+                                     "Signed rank p (Holm)", "Differs (Holm)", "Effect", "Higher", "Rank sum p"],
+                 rows, [False] * 3 + [True] * 4 + [False, True, False, True, True, True], filters=[0, 1, 2])
 
 
 def decided(p):
-    return cell(None) if p != p else Cell("yes", bold=True) if p < LEVEL else Cell("no")
+    return cell(None) if p != p else Cell("yes", bold=True) if p < LEVEL else Cell("undecided")
 
 
 def participants_worth(shop):
@@ -143,7 +187,8 @@ def participants_worth(shop):
         rows.append(cells)
     if not rows:
         raise Missing("The run has no model to compare with the participants.")
-    return Table("worth", "How many participants a model is worth: where the human curve reaches the model's mean.",
+    return Table("worth", "How many participants a model is worth: where the mean of the human curve reaches the model's mean; how sure "
+                 "that is, no table says.",
                  ["Model"] + [of.label for of in shop.results.leading.values()], rows,
                  [False] + [True] * len(shop.results.leading))
 
@@ -196,14 +241,3 @@ def model_options(configuration):
     """The options that saliency maps depend on, by path."""
     sections = ("models.", "fpfh.", "scan_fpfh.", "normals.", "scan_normals.", "surface.")
     return {path: value for path, value in flatten(configuration).items() if path.startswith(sections)}
-
-
-def flatten(values, prefix=""):
-    """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
-    flat = {}
-    for key, value in values.items():
-        if isinstance(value, dict):
-            flat |= flatten(value, f"{prefix}{key}.")
-        else:
-            flat[f"{prefix}{key}"] = str(value)
-    return flat

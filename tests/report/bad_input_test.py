@@ -6,6 +6,8 @@ import shutil
 import unittest
 from pathlib import Path
 
+import pandas
+
 import fixture
 import support
 
@@ -70,8 +72,8 @@ class BadInput(BadInputTest):
         self.assertEqual([path.name for path in to.iterdir()], ["thesis.tex"])
 
     def test_each_file_may_be_missing(self):
-        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "mean_histograms_meshes.csv",
-                     "mean_histograms_scans.csv", "human_curve.csv", "run.yaml"):
+        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "ranking.csv", "ranking_agreement.csv",
+                     "mean_histograms_meshes.csv", "mean_histograms_scans.csv", "human_curve.csv", "run.yaml"):
             with self.subTest(name):
                 folder = f"without-{name}"
                 (self.small(folder) / name).unlink()
@@ -80,8 +82,8 @@ class BadInput(BadInputTest):
                 self.assertIn(f"{name} is ", run if name == "run.yaml" else index)
 
     def test_each_table_may_be_empty_or_no_table(self):
-        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "human_curve.csv",
-                     "mean_histograms_meshes.csv", "run.yaml"):
+        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "ranking.csv",
+                     "ranking_agreement.csv", "human_curve.csv", "mean_histograms_meshes.csv", "run.yaml"):
             for content in (b"", b"\xff\xfe\x00\x01garbage\n\n,,,\n", b"one,two\n1,2\n"):
                 with self.subTest(name, content=content):
                     (self.small("spoilt") / name).write_bytes(content)
@@ -108,8 +110,8 @@ class BadInput(BadInputTest):
     def test_simulated_participants_have_no_verdicts_and_every_page_says_so(self):
         self.full("simulated", simulated=True)
         index = self.made("simulated")
-        claims = support.rows(index, "claims")
-        self.assertEqual({row[-1] for row in claims}, {"no verdict"})
+        self.assertNotIn("table-claims", index)
+        self.assertIn("No verdicts on the paper: the participants are simulated.", support.section(index, "claims"))
         for path in (self.folder / "simulated-report").rglob("*.html"):
             self.assertIn("Simulated participants", path.read_text(encoding="utf-8"), path)
         tex = (self.folder / "simulated-report/data/classes-meshes-auc.tex").read_text()
@@ -168,7 +170,8 @@ class OddNumbers(BadInputTest):
     figures = support.without_drawing
 
     def test_each_table_may_be_cut_short(self):
-        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "human_curve.csv", "run.yaml"):
+        for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "ranking.csv", "ranking_agreement.csv",
+                     "human_curve.csv", "run.yaml"):
             with self.subTest(name):
                 folder = f"cut-{name}"
                 path = self.small(folder) / name
@@ -182,6 +185,21 @@ class OddNumbers(BadInputTest):
         index = self.made("older")
         self.assertIn("has no column lcc", index)
 
+    def test_tables_from_before_units_of_inference(self):
+        out = self.full("before-units")
+        for name, later in (("summary", ["bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean"]),
+                            ("significance", ["n_shapes", "ci95_low", "ci95_high", "t_p"])):
+            table = pandas.read_csv(out / f"{name}.csv").drop(columns=later)
+            table.to_csv(out / f"{name}.csv", index=False)
+        (out / "per_class.csv").write_text("dataset,class,model,n,auc_mean,auc_ci95\nmeshes,human,LS,2,0.6,0.01\n")
+        for name in ("ranking", "ranking_agreement"):
+            (out / f"{name}.csv").unlink()
+        index = self.made("before-units")
+        for name in ("summary", "significance", "per_class"):
+            self.assertRegex(index, rf"{name}\.csv has no column [a-z0-9_, ]*: an older version of the program wrote it; run salbench")
+        self.assertIn("ranking.csv is not in the results folder: run salbench again", index)
+        self.assertNotIn("run salbench again", support.page(self.folder / "before-units-report", "shapes/1.html"))
+
     def test_one_model(self):
         self.full("one-model", models=("LS",), results=None)
         self.assertIn("it takes two models", self.made("one-model"))
@@ -192,7 +210,7 @@ class OddNumbers(BadInputTest):
 
     def test_no_ground_truth(self):
         out = self.full("no-truth")
-        for name in ("results", "summary", "per_class", "significance"):
+        for name in ("results", "summary", "per_class", "significance", "ranking", "ranking_agreement"):
             path = out / f"{name}.csv"
             path.write_text(path.read_text().splitlines()[0] + "\n")
         index = self.made("no-truth")

@@ -24,7 +24,8 @@ class Comparison(support.ReportTest):
         to = self.report("first", "--compare", self.folder / "second")
         page = support.page(to, "comparison.html")
         means = {tuple(row[:3]): row for row in support.rows(page, "compared-means")}
-        self.assertEqual(means["Meshes", "LS", "AUC"][3], "7")
+        self.assertEqual(means["Meshes", "LS", "AUC"][3], "7 meshes")
+        self.assertEqual(means["Scans", "LS", "AUC"][3], "7 meshes, 84 scans")
         self.assertEqual(means["Meshes", "LS", "AUC"][6:], ["+0.125", "0.125 to 0.125"])
         self.assertEqual(means["Meshes", "CS", "AUC"][6], "+0.000")
         data = json.loads((to / "data/comparison.js").read_text().removeprefix("salbench.scores = ").removesuffix(";\n"))

@@ -6,9 +6,9 @@ from pathlib import Path
 import h5py
 import numpy
 import pandas
-from scipy import stats
 
 import pinhole
+import twin
 
 MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
 METRICS = ("auc", "auc_exact", "nss", "cc", "lcc")
@@ -25,6 +25,8 @@ CONFIGURATION = """configuration:
   seed: 2016
   dataset:
     participants: {participants}
+  statistics:
+    unit: mesh
   fpfh:
     neighbourhood: nearest
     radius: 0.01
@@ -59,10 +61,6 @@ def metric_lines(metrics):
         f'  {metric}: {{unit: "1", better: {"lower" if is_distance(metric) else "higher"}}}\n' for metric in metrics)
 
 
-def metrics_of(results):
-    return [column for column in results if column not in ("dataset", "item", "class", "view", "model", "n_points", "n_picks")]
-
-
 def results_table(items, models=MODELS, views=12, seed=1, datasets=("meshes", "scans")):
     """items: (name, class) pairs. Scans and point clouds have no HS."""
     random = numpy.random.default_rng(seed)
@@ -81,63 +79,6 @@ def results_table(items, models=MODELS, views=12, seed=1, datasets=("meshes", "s
             frame["n_points"], frame["n_picks"] = 2500, 120
             frames.append(frame)
     return pandas.concat(frames, ignore_index=True)
-
-
-def interval(values):
-    n = len(values)
-    half = stats.t.ppf(0.975, n - 1) * numpy.std(values, ddof=1) / n ** 0.5 if n > 1 else numpy.nan
-    return numpy.mean(values) - half, numpy.mean(values) + half, half
-
-
-def summary_table(results):
-    rows = []
-    for (dataset, model), group in results.groupby(["dataset", "model"], sort=False):
-        for metric in metrics_of(results):
-            values = group[metric].dropna().to_numpy()
-            low, high, _ = interval(values) if len(values) else (numpy.nan,) * 3
-            deviation = numpy.std(values, ddof=1) if len(values) > 1 else numpy.nan
-            rows.append((dataset, model, metric, len(values), values.mean() if len(values) else numpy.nan, deviation, low, high))
-    return pandas.DataFrame(rows, columns=["dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high"])
-
-
-def per_class_table(results):
-    """AUC alone for the paper's metrics, else a mean and half an interval per metric."""
-    metrics = metrics_of(results)
-    papers = metrics == list(METRICS)
-    shown = ["auc"] if papers else metrics
-    rows = []
-    for (dataset, name), group in results.groupby(["dataset", "class"], sort=False):
-        means = []
-        for model, part in group.groupby("model", sort=False):
-            values = [part[metric].dropna().to_numpy() for metric in shown]
-            if len(values[0]):
-                means.append([column.mean() for column in values])
-                rows.append((dataset, name, model, len(values[0]), *(x for v in values for x in (v.mean(), interval(v)[2]))))
-        if means:
-            columns = numpy.transpose(means)
-            rows.append((dataset, name, "Avg-AUC" if papers else "Avg", len(means),
-                         *(x for v in columns for x in (v.mean(), interval(v)[2]))))
-    return pandas.DataFrame(rows, columns=["dataset", "class", "model", "n"] + [
-        f"{metric}_{part}" for metric in shown for part in ("mean", "ci95")])
-
-
-def significance_table(results):
-    rows = []
-    for dataset, part in results.groupby("dataset", sort=False):
-        for metric in metrics_of(results):
-            wide = part.pivot(index=["item", "view"], columns="model", values=metric)
-            models = [model for model in part["model"].unique()]
-            for i, a in enumerate(models):
-                for b in models[i + 1:]:
-                    both = wide[[a, b]].dropna()
-                    if len(both) == 0:
-                        continue
-                    z, p = stats.ranksums(both[a], both[b])
-                    signed = stats.wilcoxon(both[a] - both[b]) if len(both) > 1 else (numpy.nan, numpy.nan)
-                    rows.append((dataset, metric, a, b, len(both), (both[a] - both[b]).mean(), z, p, signed[0], signed[1],
-                                 min(1.0, 15 * signed[1])))
-    return pandas.DataFrame(rows, columns=["dataset", "metric", "model_a", "model_b", "n", "mean_difference", "rank_sum_z",
-                                           "rank_sum_p", "signed_rank", "signed_rank_p", "signed_rank_p_holm"])
 
 
 def histograms(models, seed=2):
@@ -179,8 +120,9 @@ def write_results(folder, items, models=MODELS, simulated=False, results=None, *
     folder.mkdir(parents=True, exist_ok=True)
     results = results_table(items, models) if results is None else results
     head = "# SIMULATED participants: these scores say nothing about people.\n" if simulated else ""
-    tables = {"results": results, "summary": summary_table(results), "per_class": per_class_table(results),
-              "significance": significance_table(results), "mean_histograms_meshes": histograms(models),
+    tables = {"results": results, "summary": twin.summary(results), "per_class": twin.per_class(results),
+              "significance": twin.significance(results), "ranking": twin.ranking(results, is_distance),
+              "ranking_agreement": twin.agreement(results, is_distance), "mean_histograms_meshes": histograms(models),
               "mean_histograms_scans": histograms([model for model in models if model != "HS"], 3),
               "human_curve": human_curve()}
     for name, table in tables.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Statistics on the pages equal those of the program's files, which equal SciPy's, on a run of the real program over meshes
+"""Statistics on the pages equal those of the program's files, which equal those of twin.py, on a run of the real program over meshes
 made here with simulated participants. SALBENCH_PROGRAM names the program."""
 
 import os
@@ -8,10 +8,10 @@ import unittest
 
 import numpy
 import pandas
-from scipy import stats
 
 import fixture
 import support
+import twin
 from report.results import read_results
 from report import statistics
 
@@ -20,6 +20,13 @@ CONFIGURATION = """dataset: {layout: schelling, participants: simulated}
 scan: {step_degrees: 1}
 models: {LS: , PS: , RS: }
 """
+
+
+LEADING = {"auc": "AUC", "nss": "NSS", "lcc": "LCC"}
+
+
+def texts(*values):
+    return [f"{value:.3f}".replace("-", "−") for value in values]
 
 
 def write_off(path, points, faces):
@@ -47,47 +54,74 @@ class Statistics(support.ReportTest):
             status, errors = support.make(cls.out, cls.to)
         assert status == 0, errors
         cls.results = read_results(cls.out)
+        cls.scores = cls.results.table("results.csv")
         cls.index = support.page(cls.to)
 
-    def each(self):
-        for dataset in ("meshes", "scans"):
-            for metric in fixture.METRICS:
-                yield dataset, metric, statistics.scores(self.results, dataset, metric)
+    def matched(self, name, expected, keys):
+        """The program's table and the twin's, row by row; the twin's columns end in _twin."""
+        table = self.results.table(name)
+        self.assertEqual(list(table), list(expected))
+        both = table.merge(expected, on=keys, suffixes=("", "_twin"))
+        self.assertEqual([len(both)] * 2, [len(table), len(expected)], name)
+        return both
 
-    def test_means_and_intervals_equal_scipy(self):
-        for dataset, metric, wide in self.each():
-            for row in statistics.summary(self.results, dataset, metric).itertuples():
-                values = wide[row.model].dropna()
-                low, high = stats.t.interval(0.95, len(values) - 1, values.mean(), stats.sem(values))
-                numpy.testing.assert_allclose([row.n, row.mean, row.sd, row.ci95_low, row.ci95_high],
-                                              [len(values), values.mean(), values.std(), low, high], rtol=1e-8, atol=1e-12)
+    def assert_equal_columns(self, both, columns, **tolerance):
+        for column in columns:
+            numpy.testing.assert_allclose(both[column], both[f"{column}_twin"].astype(float), err_msg=column, **tolerance)
 
-    def test_tests_equal_scipy_and_holm(self):
-        table = self.results.table("significance.csv")
-        for dataset, metric, wide in self.each():
-            rows = table[(table["dataset"] == dataset) & (table["metric"] == metric)].reset_index(drop=True)
-            signed = []
-            for row in rows.itertuples():
-                both = wide[[row.model_a, row.model_b]].dropna()
-                z, p = stats.ranksums(both[row.model_a], both[row.model_b])
-                numpy.testing.assert_allclose([row.rank_sum_z, row.rank_sum_p], [z, p], rtol=1e-6, atol=1e-12)
-                difference = (both[row.model_a] - both[row.model_b])
-                signed.append(stats.wilcoxon(difference).pvalue)
-                if len(both) < 25:  # exact there; beyond, versions of SciPy differ in their normal approximation
-                    self.assertAlmostEqual(row.signed_rank_p, signed[-1], places=9)
-            order = rows["signed_rank_p"].to_numpy().argsort(kind="stable")
-            holm = numpy.minimum(1, numpy.maximum.accumulate(
-                rows["signed_rank_p"].to_numpy()[order] * numpy.arange(len(rows), 0, -1)))
-            numpy.testing.assert_allclose(rows["signed_rank_p_holm"].to_numpy()[order], holm, rtol=1e-9)
+    def test_means_intervals_and_tests_equal_scipys_by_mesh(self):
+        exact = {"rtol": 1e-9, "atol": 1e-9}
+        summary = self.matched("summary.csv", twin.summary(self.scores), ["dataset", "model", "metric"])
+        self.assert_equal_columns(summary, ["n", "mean", "sd", "ci95_low", "ci95_high", "n_shapes", "n_own_shapes", "own_mean"],
+                                  **exact)
+        self.assertEqual(set(zip(summary["dataset"], summary["n"], summary["n_shapes"])), {("meshes", 6, 6), ("scans", 6, 72)})
+        classes = self.matched("per_class.csv", twin.per_class(self.scores), ["dataset", "class", "model", "metric"])
+        self.assert_equal_columns(classes, ["n", "n_shapes", "mean", "ci95_low", "ci95_high"], **exact)
+        self.assertEqual(set(classes["class"]), {"human", "cup"})
+        pairs = self.matched("significance.csv", twin.significance(self.scores), ["dataset", "metric", "model_a", "model_b"])
+        self.assert_equal_columns(pairs, [column for column in self.results.table("significance.csv").columns[4:]], **exact)
+
+    def test_resampled_figures_equal_numpys(self):
+        lower, resamples = fixture.is_distance, 10_000
+        for row in self.results.table("summary.csv").itertuples():
+            part = self.scores[self.scores["dataset"] == row.dataset]
+            values = twin.Scores(part, row.metric).compared([row.model])[0][row.model].to_numpy()
+            means = twin.draws(len(values), resamples) @ values
+            for end, level in zip((row.bca95_low, row.bca95_high), twin.bca_levels(values, means)):
+                # Means of six values jump: the level lies between the shares below the end and up to it, but for noise.
+                self.assertLess((means < end - 1e-12).mean(), level + 0.012)
+                self.assertGreater((means < end + 1e-12).mean(), level - 0.012)
+        ranking = self.matched("ranking.csv", twin.ranking(self.scores, lower, resamples=resamples), ["dataset", "metric", "model"])
+        self.assert_equal_columns(ranking, ["n", "n_shapes", "mean", "rank"], rtol=1e-9)
+        self.assert_equal_columns(ranking, ["first"], atol=0.03)
+        self.assertEqual(set(ranking["model"]), {"LS", "PS"}, "chance is no competitor")
+        agreement = self.matched("ranking_agreement.csv", twin.agreement(self.scores, lower, resamples=resamples),
+                                 ["dataset", "metric_a", "metric_b"])
+        self.assert_equal_columns(agreement, ["n", "n_models", "tau"], rtol=1e-9)
 
     def test_pages_show_the_numbers_of_the_files(self):
         rows = {tuple(row[:3]): row for row in support.rows(self.index, "means")}
         for row in self.results.table("summary.csv").itertuples():
-            label = {"auc": "AUC", "nss": "NSS", "lcc": "LCC"}.get(row.metric)
+            label = LEADING.get(row.metric)
             if label:
                 shown = rows[row.dataset.capitalize(), row.model, label]
-                expected = [f"{value:.3f}".replace("-", "−") for value in (row.mean, row.ci95_low, row.ci95_high, row.sd)]
-                self.assertEqual(shown[3:8], [str(int(row.n)), *expected])
+                count = "6 meshes" if row.dataset == "meshes" else "6 meshes, 72 scans"
+                self.assertEqual(shown[3:9], [count, *texts(row.mean, row.ci95_low, row.ci95_high, row.sd),
+                                              " to ".join(texts(row.bca95_low, row.bca95_high))])
+        pairs = {tuple(row[:3]): row for row in support.rows(self.index, "pairs")}
+        for row in self.results.table("significance.csv").itertuples():
+            label = LEADING.get(row.metric)
+            if label:
+                shown = pairs[row.dataset.capitalize(), label, f"{row.model_a} − {row.model_b}"]
+                self.assertEqual(shown[4].removeprefix("+"), *texts(row.mean_difference))
+                self.assertEqual(shown[5], " to ".join(texts(row.ci95_low, row.ci95_high)))
+        classes = {row[0]: row for row in support.rows(self.index, "classes-scans-nss")}
+        table = self.results.table("per_class.csv")
+        for name, at in (("LS", 2), ("Avg", -1)):
+            row = table[(table["dataset"] == "scans") & (table["metric"] == "nss") & (table["model"] == name)
+                        & (table["class"] == "cup")].iloc[0]
+            self.assertEqual(classes["cup"][1], "3 meshes, 36 scans")
+            self.assertEqual(classes["cup"][at], " ± ".join(texts(row["mean"], (row["ci95_high"] - row["ci95_low"]) / 2)))
 
     def test_figures_plot_the_numbers_of_the_files(self):
         for metric in ("auc", "nss", "lcc"):
@@ -101,21 +135,6 @@ class Statistics(support.ReportTest):
             wide = statistics.scores(self.results, "meshes", metric).droplevel("view")
             for model in wide:
                 self.assertEqual(heat[model].to_dict(), wide[model].to_dict())
-
-    def test_classes_of_other_metrics_are_made_as_the_programs(self):
-        """Of AUC the program writes the table; the report's way of making it gives the same."""
-        written = statistics.per_class(self.results, "meshes", "auc")
-        wide = statistics.scores(self.results, "meshes", "auc")
-        class_of = statistics.classes(self.results)
-        self.assertEqual(set(written["class"]), {"human", "cup"})
-        for name in ("human", "cup"):
-            part = wide[[class_of[item] == name for item, _ in wide.index]]
-            rows = written[written["class"] == name].set_index("model")
-            for model in wide:
-                numpy.testing.assert_allclose(rows.loc[model, ["n", "mean", "ci95"]].astype(float),
-                                              [3, part[model].mean(), statistics.student_half_width(part[model].to_numpy())])
-            numpy.testing.assert_allclose(rows.loc["Avg", ["mean", "ci95"]].astype(float),
-                                          [part.mean().mean(), statistics.student_half_width(part.mean().to_numpy())])
 
 
 if __name__ == "__main__":

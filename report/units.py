@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many units an interval or a test is over, and how many shapes there are in them: "19 meshes, 228 scans"."""
+
+from report.blocks import Cell
+from report.names import KIND_NAMES
+
+HEAD = "n"
+
+
+def several(n, name):
+    return f"{n} {name}" if n == 1 else f"{n} {name}es" if name.endswith(("s", "sh")) else f"{n} {name}s"
+
+
+def counted(unit, dataset, n, n_shapes):
+    """unit: "mesh", "class", "shape", or empty where it is not known."""
+    shape = KIND_NAMES.get(dataset, "shape")
+    whole = "point cloud" if dataset == "clouds" else "mesh"
+    name = {"mesh": whole, "class": "class", "shape": shape}.get(unit, shape if n == n_shapes else "unit")
+    text = several(int(n), name)
+    return text if n_shapes != n_shapes or name == shape else f"{text}, {several(int(n_shapes), shape)}"
+
+
+def count_cell(results, dataset, n, n_shapes, within_class=False):
+    """Cell of a column of numbers of units. Within a class the meshes are the units where else the classes are."""
+    if n != n:
+        return Cell("–", "")
+    unit = "mesh" if within_class and results.unit == "class" else results.unit
+    return Cell(counted(unit, dataset, n, n_shapes), int(n))

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The program's tables of statistics made a second time, from results.csv by NumPy and SciPy: fixtures are written with them,
+and statistics_test compares the program's with them. The mesh is the unit: a mesh's score is the mean over its scans."""
+
+from functools import cache, cached_property
+from itertools import combinations
+
+import numpy
+import pandas
+from scipy import stats
+
+REFERENCES = ("HS", "RS")
+LEVEL = 0.05
+NAN = float("nan")
+
+
+@cache
+def draws(n, resamples):
+    """How often each of n units is drawn, resamples x n, as shares."""
+    drawn = numpy.random.default_rng(n).integers(n, size=(resamples, n))
+    return numpy.stack([numpy.bincount(row, minlength=n) for row in drawn]) / n
+
+
+class Scores:
+    """Of one data set and metric: shapes by models, and what is compared of them."""
+
+    def __init__(self, part, metric, lower=False, resamples=400):
+        self.wide = part.pivot(index=["item", "view"], columns="model", values=metric)[list(part["model"].unique())]
+        self.metric, self.lower, self.resamples = metric, lower, resamples
+
+    @cached_property
+    def scored(self):
+        return [model for model in self.wide if self.wide[model].notna().any()]
+
+    @cached_property
+    def competitors(self):
+        return [model for model in self.scored if model not in REFERENCES]
+
+    def compared(self, models):
+        """Units by models, and the number of shapes: those that these models and all competitors have a score for."""
+        known = self.wide.dropna(subset=list(dict.fromkeys([*models, *self.competitors])))[list(models)]
+        return known.groupby(level="item", sort=False).mean(), len(known)
+
+    def own(self, model):
+        known = self.wide[model].dropna()
+        return known.groupby(level="item", sort=False).mean(), len(known)
+
+
+def each(results, lower=lambda metric: False, **options):
+    """(data set, metric, Scores)"""
+    metrics = metrics_of(results)
+    for dataset, part in results.groupby("dataset", sort=False):
+        for metric in metrics:
+            yield dataset, metric, Scores(part, metric, lower(metric), **options)
+
+
+def metrics_of(results):
+    known = ("dataset", "item", "class", "view", "model", "n_points", "n_picks", "key", "content")
+    return [column for column in results if column not in known]
+
+
+def student(values, level=0.95):
+    n = len(values)
+    if n < 2:
+        return NAN, NAN
+    half = stats.t.ppf((1 + level) / 2, n - 1) * stats.sem(values)
+    return numpy.mean(values) - half, numpy.mean(values) + half
+
+
+def bca_levels(values, means):
+    """Which quantiles of the resampled means the interval ends at."""
+    away = values - values.mean()
+    bias = stats.norm.ppf(((means < values.mean()).mean() + (means <= values.mean()).mean()) / 2)
+    acceleration = (away ** 3).sum() / (6 * (away ** 2).sum() ** 1.5)
+    z = bias + stats.norm.ppf([LEVEL / 2, 1 - LEVEL / 2])
+    return stats.norm.cdf(bias + z / (1 - acceleration * z))
+
+
+def bca(values, resamples):
+    if len(values) < 2 or numpy.ptp(values) == 0:
+        return NAN, NAN
+    means = draws(len(values), resamples) @ values
+    return tuple(numpy.quantile(means, bca_levels(values, means)))
+
+
+def summary(results, **options):
+    rows = []
+    for dataset, metric, scores in each(results, **options):
+        for model in scores.wide:
+            units, n_shapes = scores.compared([model])
+            own, n_own = scores.own(model)
+            values = units[model].to_numpy()
+            rows.append((dataset, model, metric, len(values), values.mean() if len(values) else NAN,
+                         values.std(ddof=1) if len(values) > 1 else NAN, *student(values), *bca(values, scores.resamples),
+                         n_shapes, n_own, own.mean() if n_own else NAN))
+    return pandas.DataFrame(rows, columns=[
+        "dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high", "bca95_low", "bca95_high", "n_shapes",
+        "n_own_shapes", "own_mean"])
+
+
+def per_class(results):
+    rows = []
+    for (dataset, name), part in results[results["class"] != ""].groupby(["dataset", "class"], sort=False):
+        for metric in metrics_of(results):
+            scores = Scores(part, metric)
+            for model in [*scores.wide, "Avg"]:
+                units, n_shapes = scores.compared(scores.competitors if model == "Avg" else [model])
+                values = units.mean(axis=1).to_numpy()
+                if len(values):
+                    rows.append((dataset, name, model, metric, len(values), n_shapes, values.mean(), *student(values)))
+    return pandas.DataFrame(rows, columns=["dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"])
+
+
+def wilson(share, n):
+    z = stats.norm.ppf(1 - LEVEL / 2)
+    centre = (share + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * (share * (1 - share) / n + z * z / (4 * n * n)) ** 0.5
+    return max(0, centre - half), min(1, centre + half)
+
+
+def compare(difference):
+    """mean_difference, ci95, t_p, ci90, d_z, rank_biserial, superiority and its interval."""
+    n = len(difference)
+    if n < 2:
+        return (difference.mean() if n else NAN, *(NAN,) * 10)
+    changed = difference[difference != 0]
+    ranks = stats.rankdata(numpy.abs(changed))
+    biserial = (ranks * numpy.sign(changed)).sum() / ranks.sum() if len(changed) else 0
+    superiority = ((difference > 0).mean() + (difference >= 0).mean()) / 2
+    if numpy.ptp(difference) == 0:
+        intervals, p, d_z = (NAN,) * 4, 1.0 if difference[0] == 0 else 0.0, NAN
+    else:
+        intervals = (*student(difference), *student(difference, 0.9))
+        p, d_z = stats.ttest_1samp(difference, 0).pvalue, difference.mean() / difference.std(ddof=1)
+    return difference.mean(), *intervals[:2], p, *intervals[2:], d_z, biserial, superiority, *wilson(superiority, n)
+
+
+def holm(p_values):
+    p_values = numpy.array(p_values, dtype=float)
+    order = p_values.argsort(kind="stable")
+    known = numpy.isfinite(p_values).sum()
+    adjusted = numpy.full(len(p_values), NAN)
+    adjusted[order[:known]] = numpy.minimum(1, numpy.maximum.accumulate(p_values[order[:known]] * numpy.arange(known, 0, -1)))
+    return adjusted, known
+
+
+def significance(results, **options):
+    rows = []
+    for dataset, metric, scores in each(results, **options):
+        found, p_values = [], []
+        for a, b in combinations(scores.scored, 2):
+            units, n_shapes = scores.compared([a, b])
+            difference = (units[a] - units[b]).to_numpy()
+            rank_sum = stats.ranksums(scores.wide[a].dropna(), scores.wide[b].dropna())
+            changed = difference[difference != 0]
+            signed = stats.wilcoxon(changed) if len(changed) else (0.0, 1.0 if len(difference) else NAN)
+            p_values.append(signed[1])
+            found.append((dataset, metric, a, b, len(units), n_shapes, *compare(difference), *rank_sum, *signed))
+        adjusted, n_tests = holm(p_values)
+        rows += [(*row, p, n_tests) for row, p in zip(found, adjusted)]
+    return pandas.DataFrame(rows, columns=[
+        "dataset", "metric", "model_a", "model_b", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low",
+        "ci90_high", "d_z", "rank_biserial", "superiority", "superiority_low", "superiority_high", "rank_sum_z", "rank_sum_p",
+        "signed_rank", "signed_rank_p", "signed_rank_p_holm", "n_tests"])
+
+
+def joint_bound(units, resamples):
+    """Standard errors that bound all differences of pairs together, and the pairs as differences with their errors."""
+    n = len(units)
+    pairs = [(units[a] - units[b]).to_numpy() for a, b in combinations(units, 2)]
+    away = [numpy.abs(draws(n, resamples) @ (d - d.mean())) / stats.sem(d) for d in pairs if numpy.ptp(d) > 0]
+    if not away:
+        return NAN
+    freedom = (n / (n - 1)) ** 0.5 * stats.t.ppf(1 - LEVEL / 2, n - 1) / stats.norm.ppf(1 - LEVEL / 2)
+    return numpy.quantile(numpy.max(away, axis=0), 1 - LEVEL) * freedom
+
+
+def letters(models, apart):
+    """A letter per largest set of models of which no two are apart; models best first."""
+    def together(some):
+        return not any(pair in apart for pair in combinations(some, 2))
+    sets = [set(some) for size in range(len(models), 0, -1) for some in combinations(models, size) if together(some)]
+    largest = [some for some in sets if not any(some < other for other in sets)]
+    largest.sort(key=lambda some: sorted(models.index(model) for model in some))
+    return {model: "".join(chr(97 + at) for at, some in enumerate(largest) if model in some) for model in models}
+
+
+def rank(units, lower, resamples):
+    """Rows (model, mean, rank, rank_low, rank_high, first, group), best first."""
+    means = units.mean()
+    ranks = means.rank(ascending=lower, method="min")
+    order = list(means.sort_values(ascending=lower, kind="stable").index)
+    k, n = len(order), len(units)
+    if n < 2:
+        return [(model, means[model], int(ranks[model]), NAN, NAN, NAN, "") for model in order]
+    bound = joint_bound(units, resamples)
+    apart, low, high = set(), dict.fromkeys(order, 1), dict.fromkeys(order, k)
+    for better, worse in combinations(order, 2):
+        difference = (units[better] - units[worse]).to_numpy()
+        error = stats.sem(difference) if numpy.ptp(difference) > 0 else 0
+        if abs(difference.mean()) > (bound * error if error > 0 else 0):
+            apart.add((better, worse))
+            low[worse] += 1
+            high[better] -= 1
+    resampled = draws(n, resamples) @ units.to_numpy()
+    best = resampled == (resampled.min if lower else resampled.max)(axis=1, keepdims=True)
+    first = dict(zip(units, (best / best.sum(axis=1, keepdims=True)).mean(axis=0)))
+    groups = letters(order, apart)
+    return [(model, means[model], int(ranks[model]), low[model], high[model], first[model], groups[model]) for model in order]
+
+
+def ranking(results, lower, **options):
+    rows = []
+    for dataset, metric, scores in each(results, lower, **options):
+        if not scores.competitors:
+            continue
+        units, n_shapes = scores.compared(scores.competitors)
+        if len(units):
+            rows += [(dataset, metric, model, len(units), n_shapes, *of)
+                     for model, *of in rank(units, scores.lower, scores.resamples)]
+    return pandas.DataFrame(rows, columns=["dataset", "metric", "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high",
+                                           "first", "group"])
+
+
+def signs(units, lower, resamples):
+    """Which of each pair of models is better, in the sample and in each resample: rows x pairs."""
+    means = numpy.vstack([units.mean().to_numpy(), draws(len(units), resamples) @ units.to_numpy()])
+    a, b = numpy.array(list(combinations(range(units.shape[1]), 2))).T
+    return numpy.sign(means[:, a] - means[:, b]) * (-1 if lower else 1)
+
+
+def agreement(results, lower, **options):
+    rows = []
+    for dataset, part in results.groupby("dataset", sort=False):
+        known = {}
+        for metric in metrics_of(results):
+            scores = Scores(part, metric, lower(metric), **options)
+            units = scores.compared(scores.competitors)[0]
+            if len(units) > 1 and units.shape[1] > 1:
+                known[metric] = (units, scores)
+        made = {}
+        for (first, (a, scores)), (second, (b, _)) in combinations(known.items(), 2):
+            items = [item for item in a.index if item in set(b.index)]
+            models = [model for model in a if model in b]
+            if len(models) < 2 or len(items) < 2:
+                continue
+            of = []
+            for metric, units in ((first, a), (second, b)):
+                key = (metric, tuple(items), tuple(models))
+                if key not in made:
+                    made[key] = signs(units.loc[items, models], lower(metric), scores.resamples)
+                of.append(made[key])
+            x, y = of
+            with numpy.errstate(invalid="ignore"):  # all models tie
+                taus = (x * y).sum(axis=1) / numpy.sqrt((x * x).sum(axis=1) * (y * y).sum(axis=1))
+            resampled = taus[1:][numpy.isfinite(taus[1:])]
+            ends = numpy.quantile(resampled, [LEVEL / 2, 1 - LEVEL / 2]) if len(resampled) else (NAN, NAN)
+            rows.append((dataset, first, second, len(items), len(models), taus[0], *ends))
+    return pandas.DataFrame(rows, columns=["dataset", "metric_a", "metric_b", "n", "n_models", "tau", "ci95_low", "ci95_high"])
