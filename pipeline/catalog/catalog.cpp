@@ -199,7 +199,7 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
 
   RowOf<Mesh> mesh;
   if (kinds.meshes) {
-    mesh = catalog.add(Shapes::meshes, {"mesh", 1}, load_mesh, kFiles<Source::shape_file>);
+    mesh = catalog.add(Shapes::meshes, {"mesh", 2}, load_mesh, kFiles<Source::shape_file>);
     meshes.points = mesh;
     meshes.surface = mesh;
     meshes.ground_truth = add_mesh_ground_truth(catalog, config, mesh);
