@@ -14,7 +14,7 @@ namespace {
 
 struct Format {
   std::string_view extension;
-  Mesh (*parse)(std::string_view, std::string_view);
+  Mesh (*parse)(std::string_view, std::string_view, PolygonCounts*);
 };
 
 constexpr std::array kFormats = {Format{".off", parse_off}, Format{".obj", parse_obj},
@@ -31,13 +31,13 @@ const Format* format_of(const std::filesystem::path& path) {
 
 bool has_mesh_extension(const std::filesystem::path& path) { return format_of(path) != nullptr; }
 
-Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path) {
+Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path, PolygonCounts* counts) {
   const Format* format = format_of(path);
   if (format == nullptr)
     throw InputError(
         fmt::format("{}: is not named as a mesh: convert it to .off, .obj or .ply", path.string()));
   if (bytes.empty()) throw InputError(fmt::format("{}: the file is empty, copy it again", path.string()));
-  return format->parse(bytes, path.string());
+  return format->parse(bytes, path.string(), counts);
 }
 
 Mesh read_mesh(const std::filesystem::path& path) { return parse_mesh(read_file(path), path); }

@@ -20,10 +20,6 @@ Vec3 read_point(TextScanner& in) {
   return point;
 }
 
-void append_fan(std::vector<Triangle>& faces, std::span<const std::int32_t> polygon) {
-  for (std::size_t i = 2; i < polygon.size(); ++i) faces.push_back({polygon[0], polygon[i - 1], polygon[i]});
-}
-
 std::string wrong_with_count(std::int64_t count, std::string_view plural) {
   if (count < 0) return fmt::format("{} {}: a count cannot be negative", count, plural);
   if (count > kMaxVertices) return fmt::format("{} {}: at most {} can be read", count, plural, kMaxVertices);

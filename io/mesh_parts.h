@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "io/text_scanner.h"
 #include "stages/core/types.h"
@@ -27,9 +25,6 @@ std::string wrong_with_polygon(std::int64_t n_vertices);
 std::string index_out_of_range(std::int64_t index, std::int64_t first, std::int64_t n_vertices);
 
 Vec3 read_point(TextScanner& in);  // the next three numbers of the line
-
-// Splits a polygon into triangles around its first vertex.
-void append_fan(std::vector<Triangle>& faces, std::span<const std::int32_t> polygon);
 
 // Number of records to reserve memory for: as announced by a header, but no more than `bytes` can hold.
 inline std::size_t room_for(std::int64_t announced, std::size_t bytes) {

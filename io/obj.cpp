@@ -7,6 +7,7 @@
 
 #include "io/mesh_file.h"
 #include "io/mesh_parts.h"
+#include "io/polygons.h"
 #include "io/text_scanner.h"
 
 namespace salbench {
@@ -16,7 +17,7 @@ class ObjParser {
  public:
   ObjParser(std::string_view text, std::string_view name) : in_(text, name, '#') {}
 
-  Mesh parse() {
+  Mesh parse(PolygonCounts& counts) {
     while (in_.next_line()) {
       join_continued_lines();
       const std::string_view record = in_.word();
@@ -27,6 +28,8 @@ class ObjParser {
     }
     check_forward_references();
     if (mesh_.vertices.empty()) in_.fail("the file ends without a vertex (v): expected an OBJ file");
+    counts =
+        polygons_.split(mesh_, [&](std::size_t line, const std::string& why) { in_.fail_at(line, why); });
     return std::move(mesh_);
   }
 
@@ -63,7 +66,7 @@ class ObjParser {
     for (std::string_view corner = in_.word(); !corner.empty(); corner = in_.word())
       polygon_.push_back(vertex_of(corner));
     if (const std::string wrong = wrong_with_polygon(std::ssize(polygon_)); !wrong.empty()) in_.fail(wrong);
-    append_fan(mesh_.faces, polygon_);
+    polygons_.add(polygon_, in_.line_number(), mesh_.faces);
   }
 
   // Reads "v", "v/vt", "v//vn" or "v/vt/vn": 1-based, or negative and counted back from the last vertex.
@@ -83,15 +86,14 @@ class ObjParser {
   // Faces may stand before their vertices, so only the end of the file shows whether these exist.
   void check_forward_references() const {
     for (const auto& [index, line_number] : forward_references_)
-      if (index > n_vertices())
-        throw InputError(
-            fmt::format("{}:{}: {}", in_.name(), line_number, index_out_of_range(index, 1, n_vertices())));
+      if (index > n_vertices()) in_.fail_at(line_number, index_out_of_range(index, 1, n_vertices()));
   }
 
   std::int64_t n_vertices() const { return std::ssize(mesh_.vertices); }
 
   TextScanner in_;
   Mesh mesh_;
+  Polygons polygons_;
   std::vector<std::int32_t> polygon_;
   std::vector<ForwardReference> forward_references_;
   std::string joined_;
@@ -99,6 +101,9 @@ class ObjParser {
 
 }  // namespace
 
-Mesh parse_obj(std::string_view text, std::string_view name) { return ObjParser(text, name).parse(); }
+Mesh parse_obj(std::string_view text, std::string_view name, PolygonCounts* counts) {
+  PolygonCounts found;
+  return ObjParser(text, name).parse(counts == nullptr ? found : *counts);
+}
 
 }  // namespace salbench

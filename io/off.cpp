@@ -10,6 +10,7 @@
 
 #include "io/mesh_file.h"
 #include "io/mesh_parts.h"
+#include "io/polygons.h"
 #include "io/text_scanner.h"
 
 namespace salbench {
@@ -75,28 +76,32 @@ void read_face(TextScanner& in, std::int64_t n_vertices, std::vector<std::int32_
 
 }  // namespace
 
-Mesh parse_off(std::string_view text, std::string_view name) {
+Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* counts) {
   TextScanner in(text, name, '#');
-  const Counts counts = read_counts(in);
+  const Counts announced = read_counts(in);
   Mesh mesh;
-  mesh.vertices.reserve(room_for(counts.vertices, text.size()));
-  mesh.faces.reserve(room_for(counts.faces, text.size()));
+  mesh.vertices.reserve(room_for(announced.vertices, text.size()));
+  mesh.faces.reserve(room_for(announced.faces, text.size()));
 
-  in.begin_records(counts.vertices, "vertices");
-  for (std::int64_t i = 0; i < counts.vertices; ++i) {
+  in.begin_records(announced.vertices, "vertices");
+  for (std::int64_t i = 0; i < announced.vertices; ++i) {
     in.next_record();
     mesh.vertices.push_back(read_point(in));
   }
-  in.begin_records(counts.faces, "faces");
+  in.begin_records(announced.faces, "faces");
+  Polygons polygons;
   std::vector<std::int32_t> polygon;
-  for (std::int64_t i = 0; i < counts.faces; ++i) {
+  for (std::int64_t i = 0; i < announced.faces; ++i) {
     in.next_record();
-    read_face(in, counts.vertices, polygon);
-    append_fan(mesh.faces, polygon);
+    read_face(in, announced.vertices, polygon);
+    polygons.add(polygon, in.line_number(), mesh.faces);
   }
   if (in.next_filled_line())
     in.fail(fmt::format("there is more text after {} vertices and {} faces: the counts at the top are wrong",
-                        counts.vertices, counts.faces));
+                        announced.vertices, announced.faces));
+  const PolygonCounts found =
+      polygons.split(mesh, [&](std::size_t line, const std::string& why) { in.fail_at(line, why); });
+  if (counts != nullptr) *counts = found;
   return mesh;
 }
 

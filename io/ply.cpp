@@ -17,6 +17,7 @@
 #include "io/mesh_file.h"
 #include "io/mesh_parts.h"
 #include "io/ply_header.h"
+#include "io/polygons.h"
 #include "io/text_scanner.h"
 
 namespace salbench {
@@ -56,6 +57,7 @@ class AsciiBody {
     if (in_.next_filled_line()) in_.fail("there is more text after the last element: the header is wrong");
   }
   [[noreturn]] void fail(std::string_view what) const { in_.fail(what); }
+  std::size_t place() const { return in_.line_number(); }  // of the record
 
  private:
   TextScanner in_;
@@ -96,6 +98,7 @@ class BinaryBody {
     throw InputError(fmt::format("{}: {} {} (counted from 1), before byte {}: {}", name_,
                                  singular_of(*element_), records_begun_, file_size_ - bytes_.size(), what));
   }
+  std::size_t place() const { return static_cast<std::size_t>(records_begun_); }
 
  private:
   std::string_view take_bytes(std::size_t n) {
@@ -190,7 +193,7 @@ struct Wanted {
   const Element* face = nullptr;  // null for point clouds
   const Property* corners = nullptr;
   std::function<std::string_view()> end_vertex = {};  // what is wrong with it
-  std::function<void(const std::vector<std::int32_t>& polygon)> end_face = {};
+  std::function<void(const std::vector<std::int32_t>& polygon, std::size_t place)> end_face = {};
 };
 
 // Other elements are passed over, and so are all other properties of these.
@@ -214,7 +217,7 @@ void read_body(Body body, const ply::Header& header, Wanted& wanted) {
       body.end_record();
       if (&element == wanted.vertex.element)
         if (const std::string_view wrong = wanted.end_vertex(); !wrong.empty()) body.fail(wrong);
-      if (&element == wanted.face) wanted.end_face(polygon);
+      if (&element == wanted.face) wanted.end_face(polygon, body.place());
     }
   }
   body.end();
@@ -255,7 +258,7 @@ void check_faces(const TextScanner& in, const ply::Header& header) {
 
 }  // namespace
 
-Mesh parse_ply(std::string_view bytes, std::string_view name) {
+Mesh parse_ply(std::string_view bytes, std::string_view name, PolygonCounts* counts) {
   TextScanner in(bytes, name);
   const ply::Header header = ply::read_header(in);
   check_vertices(in, header, "mesh");
@@ -274,8 +277,16 @@ Mesh parse_ply(std::string_view bytes, std::string_view name) {
     mesh.vertices.push_back(wanted.vertex.triple(0));
     return wrong_with_point(mesh.vertices.back());
   };
-  wanted.end_face = [&](const std::vector<std::int32_t>& polygon) { append_fan(mesh.faces, polygon); };
+  Polygons polygons;
+  wanted.end_face = [&](const std::vector<std::int32_t>& polygon, std::size_t place) {
+    polygons.add(polygon, place, mesh.faces);
+  };
   read_encoded(in, bytes.size(), header, true, wanted);
+  const PolygonCounts found = polygons.split(mesh, [&](std::size_t place, const std::string& why) {
+    if (header.encoding == Encoding::ascii) in.fail_at(place, why);
+    throw InputError(fmt::format("{}: face {} (counted from 1): {}", name, place, why));
+  });
+  if (counts != nullptr) *counts = found;
   return mesh;
 }
 

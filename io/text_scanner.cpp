@@ -100,7 +100,11 @@ std::int64_t TextScanner::integer() { return parsed<std::int64_t>("a whole numbe
 
 void TextScanner::fail(std::string_view what) const {
   if (line_number_ == 0) throw InputError(fmt::format("{}: {}", name_, what));  // nothing there to point at
-  throw InputError(fmt::format("{}:{}: {}", name_, line_number_, what));
+  fail_at(line_number_, what);
+}
+
+void TextScanner::fail_at(std::size_t line_number, std::string_view what) const {
+  throw InputError(fmt::format("{}:{}: {}", name_, line_number, what));
 }
 
 std::string_view without_plus(std::string_view word) {

@@ -40,6 +40,7 @@ class TextScanner {
   const std::string& name() const { return name_; }
 
   [[noreturn]] void fail(std::string_view what) const;  // InputError "NAME:LINE: what"
+  [[noreturn]] void fail_at(std::size_t line_number, std::string_view what) const;
 
  private:
   std::string_view expected_word(std::string_view what);

@@ -157,7 +157,8 @@ RowOf<Descriptors> add_fpfh(Catalog& catalog, const ShapeRows& shape, const Sect
 // same maps. What needs faces takes a partial mesh, as for scans.
 RowOf<PointCloud> add_cloud(Catalog& catalog, const Config& config, const std::optional<Histogram>& given,
                             ShapeRows& clouds) {
-  const auto cloud = catalog.add(Shapes::clouds, {"cloud", 1}, load_cloud, kFiles<Source::shape_file>);
+  const auto cloud =
+      catalog.add(Shapes::clouds, {"cloud", 1}, load_cloud, kFiles<Source::shape_file>, kRemark);
   clouds.points = cloud;
   const RowOf<Normals> normals = catalog.add(Shapes::clouds, {"cloud_normals", 1}, cloud_normals, cloud,
                                              section("scan_normals", config.scan_normals));
@@ -199,7 +200,7 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
 
   RowOf<Mesh> mesh;
   if (kinds.meshes) {
-    mesh = catalog.add(Shapes::meshes, {"mesh", 1}, load_mesh, kFiles<Source::shape_file>);
+    mesh = catalog.add(Shapes::meshes, {"mesh", 2}, load_mesh, kFiles<Source::shape_file>, kRemark);
     meshes.points = mesh;
     meshes.surface = mesh;
     meshes.ground_truth = add_mesh_ground_truth(catalog, config, mesh);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of rows that read the shape of an item from its file. They throw InputError, and warn of what
-// they leave out.
+// Functions of rows that read the shape of an item from its file. They throw InputError, warn of what they
+// leave out, and make a remark on polygons that were split and on an odd scale.
 #pragma once
 
 #include "pipeline/catalog/row.h"
@@ -9,8 +9,8 @@
 
 namespace salbench {
 
-Mesh load_mesh(const FilesOf<Source::shape_file>& file);
-PointCloud load_cloud(const FilesOf<Source::shape_file>& file);
+Mesh load_mesh(const FilesOf<Source::shape_file>& file, const Remark& remark);
+PointCloud load_cloud(const FilesOf<Source::shape_file>& file, const Remark& remark);
 
 Mesh mesh_of(const PointCloud& cloud, Surface surface);
 

@@ -7,8 +7,8 @@
 //                                              section("normals", config.normals));
 //
 // The arguments stand for the function's parameters, one for one: a RowOf<T> for a T, a section for its
-// options, kRandom for a RandomSource, kView for a View, kFiles<source> for a FilesOf<source>. Anything else
-// does not compile.
+// options, kRandom for a RandomSource, kView for a View, kFiles<source> for a FilesOf<source>, kRemark for a
+// Remark. Anything else does not compile.
 #pragma once
 
 #include <array>
@@ -65,6 +65,11 @@ struct FilesOf {
   std::span<const SourceData> data;
 };
 
+// What is odd about an item that can be used, for the record of the run: one line, stored beside the result.
+struct Remark {
+  std::string& text;  // empty: nothing
+};
+
 // The results of another row for every shape of a kind, in their order. Each is loaded when asked for.
 template <class T>
 struct Members {
@@ -81,6 +86,7 @@ struct JobInputs {
   const DatasetItem* source = nullptr;
   RandomSource random = {};  // the seed, and the item's name
   int view = 0;
+  std::string* remark = nullptr;  // set where a row makes one
 };
 
 // --- the row ----------------------------------------------------------------------------------------------
@@ -153,6 +159,8 @@ inline constexpr struct RandomArgument {
 } kRandom;
 inline constexpr struct ViewArgument {
 } kView;
+inline constexpr struct RemarkArgument {
+} kRemark;
 template <Source source>
 struct FilesArgument {};
 template <Source source>
@@ -173,6 +181,8 @@ template <>
 inline constexpr bool kFits<RandomSource, RandomArgument> = true;
 template <>
 inline constexpr bool kFits<View, ViewArgument> = true;
+template <>
+inline constexpr bool kFits<Remark, RemarkArgument> = true;
 template <Source source>
 inline constexpr bool kFits<FilesOf<source>, FilesArgument<source>> = true;
 
@@ -192,6 +202,7 @@ void describe(Row& row, const SectionOf<Options>& section) {
 }
 inline void describe(Row& row, const RandomArgument&) { row.seeded = true; }
 inline void describe(Row& row, const ViewArgument&) { row.per_view = true; }
+inline void describe(Row&, const RemarkArgument&) {}
 template <Source source>
 void describe(Row& row, const FilesArgument<source>&) {
   row.source = source;
@@ -227,6 +238,10 @@ const RandomSource& parameter(const RandomArgument&, const JobInputs& in, std::s
 template <class Parameter>
 View parameter(const ViewArgument&, const JobInputs& in, std::size_t&) {
   return {in.view};
+}
+template <class Parameter>
+Remark parameter(const RemarkArgument&, const JobInputs& in, std::size_t&) {
+  return {*in.remark};
 }
 template <class Parameter, Source source>
 Parameter parameter(const FilesArgument<source>&, const JobInputs& in, std::size_t&) {

@@ -8,6 +8,7 @@
 #include "io/table.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/plan/remark.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -79,12 +80,15 @@ std::size_t add_needed(const Context& context, const Plan& plan, KeepSet& needed
     for (const Item& item : items_of(context, row)) {
       const JobRef ref{row, item};
       const Job& job = plan[ref];
+      const bool may_have_remark = context.row(ref).source == Source::shape_file;
       if (context.row(ref).given) continue;
       if (key_is_unknown(job)) {
         needed.add_every_key(context.row(ref).name, context.name(ref));
+        if (may_have_remark) needed.add_every_key(kRemarkStage, context.name(ref));
         ++unknown;
       } else if (job.verdict != Verdict::not_applicable) {
         needed.add(context.row(ref).name, job.key);  // also of a job to compute: another process may store it
+        if (may_have_remark) needed.add(kRemarkStage, remark_key(context.row(ref).name, job.key));
       }
     }
   return unknown;

@@ -12,6 +12,7 @@
 #include "io/file.h"
 #include "pipeline/catalog/given_maps.h"
 #include "pipeline/config/section.h"
+#include "pipeline/plan/remark.h"
 #include "pipeline/results/timeline.h"
 #include "stages/core/errors.h"
 
@@ -123,6 +124,24 @@ std::string cache_lines(const RunRecord& record) {
   return yaml;
 }
 
+std::string remark_lines(const RunRecord& record) {
+  const Context& context = record.run.context;
+  std::string yaml;
+  for (std::size_t row = 0; row < record.run.plan.jobs.size(); ++row) {
+    if (context.catalog.rows[row].source != Source::shape_file) continue;
+    for (const Item& item : items_of(context, row)) {
+      const Job& job = record.run.plan[{row, item}];
+      if (!job.known()) continue;
+      const std::string remark = load_remark(record.store, context.catalog.rows[row].name, job.key);
+      if (!remark.empty())
+        yaml += fmt::format("  - {{item: {}, remark: {}}}\n", yaml_quoted(context.name(item)),
+                            yaml_quoted(remark));
+    }
+  }
+  return yaml.empty() ? "remarks: []\n"
+                      : "remarks:  # on shapes whose polygons, scale or unit are odd\n" + yaml;
+}
+
 std::string run_yaml(const RunRecord& record) {
   const auto& [config, context, plan, runner] = record.run;
   std::string yaml;
@@ -146,6 +165,7 @@ std::string run_yaml(const RunRecord& record) {
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
   yaml += cache_lines(record);
+  yaml += remark_lines(record);
   const std::vector<Failure> failures = runner.failures();
   yaml += failures.empty() ? "failed: []\n" : "failed:\n";
   for (const Failure& failure : failures)

@@ -13,7 +13,7 @@ namespace salbench {
 
 struct RunRecord {
   RunState run;
-  const FolderStore& store;
+  FolderStore& store;
   int threads = 1;
   Clock::time_point started;
   double seconds = 0;

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include "io/process.h"
+#include "pipeline/plan/remark.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -136,10 +137,12 @@ Value Executor::recompute(const JobRef& job) {
 
 Executor::Result Executor::run(const JobRef& job, std::vector<SourceData> files) {
   const Row& row = context_.row(job);
+  std::string remark;
   JobInputs inputs{.files = std::move(files),
                    .source = &context_.source(job.item),
                    .random = {context_.seed, context_.name(job)},
-                   .view = job.item.view};
+                   .view = job.item.view,
+                   .remark = &remark};
   std::vector<JobRef> members;
   for (std::size_t i = 0; i < row.inputs.size(); ++i)
     for (const JobRef& read : input_jobs(context_, job, i)) {
@@ -153,13 +156,15 @@ Executor::Result Executor::run(const JobRef& job, std::vector<SourceData> files)
 
   const AtWork at_work(running_[job.row]);
   const auto started = Clock::now();
-  Result result{row.run(inputs), started, 0};
-  result.seconds = seconds_since(started);
+  Value value = row.run(inputs);
+  Result result{std::move(value), std::move(remark), started, seconds_since(started)};
   return result;
 }
 
 Digest Executor::store(const JobRef& job, const Recipe& recipe, const Result& result) {
   const ArtefactNote note{context_.name(job), result.seconds, context_.attributes};
+  // First: who finds the result in the cache finds the remark.
+  if (!result.remark.empty()) save_remark(store_, recipe.stage, key_of(recipe), note, result.remark);
   const Digest content = store_.save(recipe, context_.row(job).kind, arrays_from(result.value), note);
   const std::lock_guard lock(mutex_);
   records_[job.row].seconds.push_back(static_cast<float>(result.seconds));

@@ -61,6 +61,7 @@ class Executor {
  private:
   struct Result {
     Value value;
+    std::string remark;
     Clock::time_point started;
     double seconds = 0;
   };

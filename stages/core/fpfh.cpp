@@ -192,7 +192,7 @@ class SimplifiedHistograms {
       count = 0;
     };
     for (const Neighbour& neighbour : found) {
-      if (neighbour.distance_squared == 0) continue;
+      if (neighbour.coincides()) continue;
       others[count++] = neighbour.index;
       if (count == kPairs) look();
     }
@@ -237,7 +237,7 @@ using Filled = std::array<double, kBins>;
 // overflow.
 void combine_published(std::span<const Neighbour> found, const SimplifiedHistograms& spfh, Filled& sum) {
   const auto apart =
-      std::find_if(found.begin(), found.end(), [](const Neighbour& n) { return n.distance_squared > 0; });
+      std::find_if(found.begin(), found.end(), [](const Neighbour& n) { return !n.coincides(); });
   for (auto n = apart; n != found.end(); ++n) {
     const double weight = apart->distance_squared / n->distance_squared;
     const float* row = spfh.of(n->index);
@@ -257,7 +257,7 @@ void combine_text(std::int32_t point, double unit, std::span<const Neighbour> fo
   const double count = divisor(others);
   for (std::size_t b = 0; b < kBins; ++b) sum[b] = static_cast<double>(own[b]);
   for (const Neighbour& n : found) {
-    if (n.distance_squared == 0) continue;
+    if (n.coincides()) continue;
     const double weight = std::min(unit / std::sqrt(n.distance_squared), kMaxWeight) / count;
     const float* row = spfh.of(n.index);
     for (std::size_t b = 0; b < kBins; ++b) sum[b] += weight * static_cast<double>(row[b]);

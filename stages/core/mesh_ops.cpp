@@ -26,20 +26,40 @@ Vec3 centroid(std::span<const Vec3> points) {
   return sum / static_cast<double>(points.size());
 }
 
+bool coincide(std::span<const Vec3> points) {
+  return std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return p == points[0]; });
+}
+
+std::string_view wrong_with_extent(std::span<const Vec3> points) {
+  if (points.empty()) return "the shape has no points";
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) {
+    if (!p.allFinite()) return "the shape has a coordinate that is not finite";
+    box.extend(p);
+  }
+  if (coincide(points)) return "all points are in one place";
+  const double extent = box.diagonal().stableNorm();
+  if (!std::isnormal(extent * extent) || !std::isfinite(box.max().squaredNorm() + box.min().squaredNorm()))
+    return "squares of the coordinates overflow or underflow: scale the points";
+  return {};
+}
+
+// The mean of equal numbers may round to another one, and squares of small ones to 0.
 double bounding_radius(std::span<const Vec3> points) {
+  if (coincide(points)) return 0;
   const Vec3 centre = centroid(points);
   double largest = 0;
   for (const Vec3& p : points) largest = std::max(largest, (p - centre).squaredNorm());
-  return std::sqrt(largest);
+  if (largest > 0) return std::sqrt(largest);
+  for (const Vec3& p : points) largest = std::max(largest, (p - centre).stableNorm());
+  return largest;
 }
 
 std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
-  if (points.empty()) throw InputError("the shape has no points");
+  if (const std::string_view wrong = wrong_with_extent(points); !wrong.empty())
+    throw InputError(std::string(wrong));
   const Vec3 centre = centroid(points);
   const double radius = bounding_radius(points);
-  if (!std::isfinite(radius))
-    throw InputError("the shape has a coordinate that is not finite, or whose square overflows");
-  if (radius == 0) throw InputError("all points of the shape coincide");
   std::vector<Vec3> result;
   result.reserve(points.size());
   for (const Vec3& p : points) result.push_back((p - centre) / radius);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "stages/core/types.h"
@@ -12,11 +13,20 @@ namespace salbench {
 
 Vec3 centroid(std::span<const Vec3> points);  // mean of the points; n > 0
 
-// R of the benchmark: the largest distance of a point to the centroid. [tasse2016]
+// True if all points are in one place: equal in every coordinate. What else may ask whether a shape has an
+// extent has the same answer, since nothing is computed that rounds.
+bool coincide(std::span<const Vec3> points);
+
+// Says why a shape cannot be used, whatever is computed from it: no points, a coordinate that is not finite,
+// all points in one place, or squares that overflow or underflow. Empty if it can.
+std::string_view wrong_with_extent(std::span<const Vec3> points);
+
+// R of the benchmark: the largest distance of a point to the centroid. Of finite points it is 0 if all of
+// them coincide, and only then. [tasse2016]
 double bounding_radius(std::span<const Vec3> points);
 
-// Points relative to the centroid, in units of R. Throws InputError for a shape without points or extent, and
-// for a coordinate that is not finite, or whose square overflows.
+// Points relative to the centroid, in units of R. Points that coincide still do; those that are more than
+// 1e-15 R apart do not. Throws InputError for what wrong_with_extent names.
 std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points);
 
 // Throws InputError for a face whose point does not exist.

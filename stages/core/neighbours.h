@@ -17,6 +17,9 @@ namespace salbench {
 struct Neighbour {
   std::int32_t index;
   double distance_squared;
+
+  // True if it is where the query is: the distance between two points that are not is divided by.
+  bool coincides() const { return distance_squared == 0; }
 };
 
 // The order of what is found; a lambda, which sorting inlines.

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
 
 namespace salbench {
 namespace {
@@ -35,12 +37,8 @@ void check_points(const std::vector<Vec3>& points) {
   if (points.size() < kFewestPoints)
     throw InputError("the point cloud has " + std::to_string(points.size()) +
                      " points with a position: it needs at least " + std::to_string(kFewestPoints));
-  Eigen::AlignedBox3d box;
-  for (const Vec3& point : points) box.extend(point);
-  const double extent = box.diagonal().stableNorm();
-  if (extent == 0) throw InputError("all points are in one place");
-  if (!std::isnormal(extent * extent) || !std::isfinite(box.max().squaredNorm() + box.min().squaredNorm()))
-    throw InputError("squares of the coordinates overflow or underflow: scale the points");
+  if (const std::string_view wrong = wrong_with_extent(points); !wrong.empty())
+    throw InputError(std::string(wrong));
 }
 
 std::string without_normal(const PointCloud& cloud, std::size_t first, std::size_t count) {

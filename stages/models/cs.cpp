@@ -267,7 +267,9 @@ SupportRadius support_of(Points points, const KdTree& tree, double factor) {
   std::vector<Vec3> sample;
   for (const std::int32_t i : tree.even_sample(tree.size()))
     sample.push_back(points[static_cast<std::size_t>(i)]);
-  return grown_support_radius(sample, factor * bounding_radius(points) / bounding_radius(sample));
+  const double of_sample = bounding_radius(sample);
+  if (of_sample == 0) return {};
+  return grown_support_radius(sample, factor * bounding_radius(points) / of_sample);
 }
 
 }  // namespace
@@ -284,7 +286,7 @@ ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& 
   const KdTree tree = points.size() > most ? sampled_tree(points, most) : KdTree(points);
   const SupportRadius support = support_of(points, tree, options.radius);
   const Support described{static_cast<std::int32_t>(std::int64_t{support.neighbours} * 6 / 5), 0};
-  if (support.radius == 0) return ScalarField(points.size(), 0.0);  // all points coincide
+  if (support.radius == 0) return ScalarField(points.size(), 0.0);  // all points that it looks at coincide
   const Descriptors descriptors = fpfh(points, normals, tree, described, FpfhWeighting::published);
 
   const double unit = bounding_radius(points);

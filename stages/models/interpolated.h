@@ -25,7 +25,7 @@ std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree
     std::vector<Neighbour> nearest;
     for (std::size_t i = first; i < last; ++i) {
       tree.nearest(points[i], kInterpolated, nearest);
-      if (nearest.front().distance_squared == 0) nearest.resize(1);
+      if (nearest.front().coincides()) nearest.resize(1);
       result[i] = values[static_cast<std::size_t>(nearest.front().index)];
       if (nearest.size() == 1) continue;
       double weights = 1 / std::sqrt(nearest.front().distance_squared);

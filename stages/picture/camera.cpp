@@ -78,13 +78,15 @@ Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const Pictu
     box.extend(p);
   }
   if (points.empty()) throw InputError(fmt::format("the {} is empty: there is nothing to see", shape));
+  if (coincide(points))
+    throw InputError(fmt::format("all of the {} is in one place: there is nothing to see", shape));
   centre_ = box.center();
   unit_ = 0;
   for (const Vec3& p : points) unit_ = std::max(unit_, (p - centre_).norm());
   if (!std::isfinite(unit_))
     throw InputError(fmt::format("the {}'s coordinates are too large: their squares overflow", shape));
   if (!(unit_ > 0))
-    throw InputError(fmt::format("all of the {} is in one place: there is nothing to see", shape));
+    throw InputError(fmt::format("the {}'s coordinates are too small: their squares underflow", shape));
 
   const double t = tan_half_ * (1 - 2 * options.margin);
   position_.setZero();

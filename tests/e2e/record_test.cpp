@@ -5,11 +5,13 @@
 
 #include "io/file.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
@@ -50,6 +52,65 @@ TEST(Record, TheConfigurationNamesItsFolders) {
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(toy.computed(), 0U);
   EXPECT_EQ(toy.results(), results);
+}
+
+// Two quadrilaterals beside a sphere, an arrow among them, all of it far from the origin.
+// Returns its distance from the origin, in diagonals of its bounding box.
+double write_odd_item(const fs::path& data, const std::string& name) {
+  Mesh mesh = shapes::bumpy_sphere(2, 0.35);
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Vec3& v : {Vec3(2, 0, 0), Vec3(3, 0, 0), Vec3(3, 1, 0), Vec3(2, 1, 0)})
+    mesh.vertices.push_back(v);
+  for (const Vec3& v : {Vec3(4, 0, 0), Vec3(6, 1, 0), Vec3(4, 2, 0), Vec3(5, 1, 0)})
+    mesh.vertices.push_back(v);
+  for (Vec3& v : mesh.vertices) v.y() += 1e5;
+  write_toy_item(data, name, mesh);
+  std::string text = off_text(mesh);
+  const std::string counts = fmt::format("{} {}", mesh.vertices.size(), mesh.faces.size());
+  text.replace(text.find(counts), counts.size(),
+               fmt::format("{} {}", mesh.vertices.size(), mesh.faces.size() + 2));
+  for (const int first : {n, n + 4})
+    text += fmt::format("4 {} {} {} {}\n", first, first + 1, first + 2, first + 3);
+  write_file(data / "Meshes" / (name + ".off"), text);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& v : mesh.vertices) box.extend(v);
+  return box.max().y() / box.diagonal().norm();
+}
+
+TEST(Record, HasOneRemarkPerOddShapeWhetherItWasReadNowOrBefore) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_THAT(lines_with(read_file(toy.out() / "run.yaml"), "remark"), ElementsAre("remarks: []"));
+  EXPECT_THAT(toy.artefacts("remark"), SizeIs(0));
+
+  const double away = write_odd_item(toy.data(), "2");
+  const Outcome run = toy.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const std::string remark = fmt::format(
+      "2 polygons split into triangles, 1 of them concave; coordinates reach {:.3g} diagonals of the "
+      "bounding "
+      "box from the origin: single precision has {:.3g} steps across the shape",
+      away, (1 << 24) / away);
+  EXPECT_THAT(lines_with(run.err, "warning: 2: " + remark), SizeIs(1)) << run.err;
+  const auto expect_remark = [&] {
+    EXPECT_THAT(lines_with(read_file(toy.out() / "run.yaml"), "remark:"),
+                ElementsAre("  - {item: \"2\", remark: \"" + remark + "\"}"));
+  };
+  expect_remark();
+  EXPECT_THAT(toy.artefacts("remark"), SizeIs(1));
+
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0U);
+  expect_remark();
+  const std::string cache = toy.cache().string();
+  ASSERT_EQ(run_process({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(),
+                         "--cache", cache})
+                .status,
+            0);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0U);
+  expect_remark();
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", cache}).status, 0);
 }
 
 }  // namespace

@@ -65,8 +65,9 @@ void check_faces_are_counted(const Mesh& mesh) {
   }
 }
 
-void check_mesh_reader(Mesh (*parse)(std::string_view, std::string_view), std::string_view bytes) {
-  const auto mesh = read_or_refuse([&] { return parse(bytes, kFile); });
+void check_mesh_reader(Mesh (*parse)(std::string_view, std::string_view, PolygonCounts*),
+                       std::string_view bytes) {
+  const auto mesh = read_or_refuse([&] { return parse(bytes, kFile, nullptr); });
   if (!mesh) return;
   check_indices_and_coordinates(*mesh);
   check_inverse(*mesh);

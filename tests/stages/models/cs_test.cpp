@@ -364,5 +364,15 @@ TEST(CsDegenerate, NotFinite) {
   EXPECT_THROW(saliency_of(shape), InputError);
 }
 
+// The search for its support radius had no end.
+TEST(CsSaliency, ASampleInOnePlaceHasAConstantMap) {
+  Shape shape{std::vector<Vec3>(3001, Vec3(0.1, 0.2, 0.3)), Normals(3001, Vec3(0, 0, 1))};
+  shape.points[7] = {5, 5, 5};
+  CsOptions options;
+  options.sample = 1000;
+  const ScalarField map = saliency_of(shape, options);
+  EXPECT_THAT(map, Each(0)) << "none of the sample is the one that is elsewhere";
+}
+
 }  // namespace
 }  // namespace salbench

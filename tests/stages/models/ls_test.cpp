@@ -285,8 +285,8 @@ void expect_input_error(const Shape& shape, const char* words) {
 
 TEST(LsSaliency, NamesWhatIsWrongWithAShape) {
   expect_input_error(Shape({}, {}), "no points");
-  expect_input_error(Shape({{1, 2, 3}}, {{0, 0, 1}}), "coincide");
-  expect_input_error(Shape(std::vector<Vec3>(50, Vec3(1, 2, 3)), Normals(50, Vec3(0, 0, 1))), "coincide");
+  expect_input_error(Shape({{1, 2, 3}}, {{0, 0, 1}}), "in one place");
+  expect_input_error(Shape(std::vector<Vec3>(50, Vec3(1, 2, 3)), Normals(50, Vec3(0, 0, 1))), "in one place");
 
   Shape far = cloud(50, 1);
   far.points[7].y() = std::numeric_limits<double>::infinity();

@@ -267,6 +267,8 @@ TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
   const auto taking = [](Mesh mesh) { return [mesh] { picture_of_mesh(mesh, kSmall, kRandom); }; };
   EXPECT_THAT(taking({}), ThrowsMessage<InputError>(HasSubstr("the mesh is empty")));
   EXPECT_THAT(taking({{{1, 2, 3}}, {{0, 0, 0}}}), ThrowsMessage<InputError>(HasSubstr("in one place")));
+  EXPECT_THAT(taking({{{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}}, {{0, 1, 2}}}),
+              ThrowsMessage<InputError>(HasSubstr("too small")));
   EXPECT_THAT(taking({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}}),
               ThrowsMessage<InputError>(HasSubstr("no pixel shows the mesh")));
   Mesh broken = shapes::tetrahedron();
