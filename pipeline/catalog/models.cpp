@@ -39,7 +39,7 @@ ModelRow only_if_named(ModelRow row) {
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
       model_row("LS", 5, ls_saliency),
-      model_row("CS", 2, cs_saliency),
+      model_row("CS", 3, cs_saliency),
       model_row("PS", 1, ps_saliency),
       model_row("MS", 1, ms_saliency),
       human_row("HS", 1),
