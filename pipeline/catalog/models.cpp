@@ -45,7 +45,7 @@ ModelRow reference(ModelRow row) {
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
       model_row("LS", 5, ls_saliency),
-      model_row("CS", 2, cs_saliency),
+      model_row("CS", 3, cs_saliency),
       model_row("PS", 1, ps_saliency),
       model_row("MS", 1, ms_saliency),
       reference(human_row("HS", 1)),

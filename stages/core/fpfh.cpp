@@ -53,11 +53,13 @@ class Neighbourhoods {
   // i is a neighbour of j where j is one of i.
   bool mutual() const { return k_ == 0 && all_points(); }
 
-  // By (distance, index), the point itself included; valid until `found` is used again.
+  // By (distance, index); valid until `found` is used again. The point itself is among them if the tree
+  // contains it.
   std::span<const Neighbour> of(std::int32_t i, Found& found) const {
     if (k_ > 0) {
-      if (nearest_) return nearest_->of(static_cast<std::size_t>(i));
-      tree_.nearest(at(points_, i), k_, found);
+      const std::size_t k = k_of(i);
+      if (nearest_) return nearest_->of(static_cast<std::size_t>(i)).first(k);
+      tree_.nearest(at(points_, i), k, found);
     } else if (const auto kept = kept_of(i); !kept.empty()) {
       found.assign(kept.begin(), kept.end());
       std::sort(found.begin(), found.end(), closer);
@@ -85,10 +87,7 @@ class Neighbourhoods {
   double radius() const { return support_.radius; }
   // How many of the neighbours of i are other points.
   std::size_t others(std::int32_t i, std::span<const Neighbour> found) const {
-    const bool itself =
-        tree_.size() == points_.size() ||
-        std::any_of(found.begin(), found.end(), [&](const Neighbour& n) { return n.index == i; });
-    return found.size() - (itself ? 1 : 0);
+    return found.size() - (tree_.contains(i) ? 1 : 0);
   }
 
  private:
@@ -97,6 +96,10 @@ class Neighbourhoods {
   struct Kept {
     std::size_t first = 0, count = 0;
   };
+  // A point counts itself among its nearest, found or not.
+  std::size_t k_of(std::int32_t i) const {
+    return tree_.contains(i) ? k_ : std::min(k_, static_cast<std::size_t>(support_.neighbours) - 1);
+  }
   std::span<const Neighbour> kept_of(std::int32_t i) const {
     const Kept& kept = kept_at_[static_cast<std::size_t>(i)];
     return std::span(kept_).subspan(kept.first, kept.count);

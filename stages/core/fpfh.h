@@ -29,9 +29,9 @@ struct EnumNames<FpfhWeighting> {
 };
 
 // The histograms (m x 33) of the points in `subset`, in its order, or of all points. `tree` is over `points`,
-// or over some of them, which alone are neighbours then; normals n x 3, unit. A point without neighbours at a
-// distance has an empty histogram, all 0. Memory O(n) whatever the radius. Throws InputError if a normal is
-// not finite. [rusu2009] [tasse2016]
+// or over some of them: neighbours are then these and the point itself. normals n x 3, unit. A point without
+// neighbours at a distance has an empty histogram, all 0. Memory O(n) whatever the radius. Throws InputError
+// if a normal is not finite. [rusu2009] [tasse2016]
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset);
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,

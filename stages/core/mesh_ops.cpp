@@ -165,8 +165,8 @@ std::vector<std::int32_t> connected_components(const Adjacency& adjacency) {
 EdgeDistances::EdgeDistances(std::span<const Vec3> points, const Adjacency& adjacency)
     : points_(points), adjacency_(adjacency), distance_(points.size(), kFar) {}
 
-std::span<const Reached> EdgeDistances::from(std::int32_t source, double reach) {
-  for (const Reached& r : reached_) distance_[static_cast<std::size_t>(r.index)] = kFar;
+std::span<const ReachedPoint> EdgeDistances::from(std::int32_t source, double reach) {
+  for (const ReachedPoint& r : reached_) distance_[static_cast<std::size_t>(r.index)] = kFar;
   reached_.clear();
 
   // Dijkstra with lazy deletion; the pair order settles equal distances by index.

@@ -62,9 +62,9 @@ Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces);
 // Label 0..c-1 of the connected component of each point, numbered by its lowest point.
 std::vector<std::int32_t> connected_components(const Adjacency& adjacency);
 
-struct Reached {
+struct ReachedPoint {
   std::int32_t index;
-  double distance;
+  double distance;  // length of the shortest path
 };
 
 // Shortest paths along edges from one source, the source included, up to distance <= reach. The workspace is
@@ -73,13 +73,13 @@ class EdgeDistances {
  public:
   EdgeDistances(std::span<const Vec3> points, const Adjacency& adjacency);
   // Ordered by (distance, index); valid until the next call.
-  std::span<const Reached> from(std::int32_t source, double reach);
+  std::span<const ReachedPoint> from(std::int32_t source, double reach);
 
  private:
   std::span<const Vec3> points_;
   const Adjacency& adjacency_;
   std::vector<double> distance_;  // infinity where not reached
-  std::vector<Reached> reached_;
+  std::vector<ReachedPoint> reached_;
 };
 
 }  // namespace salbench

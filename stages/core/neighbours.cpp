@@ -311,6 +311,11 @@ KdTree::~KdTree() = default;
 
 std::size_t KdTree::size() const { return impl_->size(); }
 
+bool KdTree::contains(std::int32_t point) const {
+  const Adaptor& adaptor = impl_->adaptor;
+  return adaptor.all_points || std::ranges::binary_search(adaptor.members, point);
+}
+
 void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const {
   k = std::min(k, size());
   if (k > kMany) {

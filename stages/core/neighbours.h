@@ -71,7 +71,8 @@ class KdTree {
   // How many pairs there are, for two radii in one search; small <= large.
   std::array<std::size_t, 2> count_pairs_within(double small, double large) const;
 
-  std::size_t size() const;  // points that can be found
+  std::size_t size() const;                 // points that can be found
+  bool contains(std::int32_t point) const;  // True if the point can be found. O(log n).
 
   // min(count, size()) of the points, as dense or thin as the shape is there. Ascending.
   std::vector<std::int32_t> even_sample(std::size_t count) const;

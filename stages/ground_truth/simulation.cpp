@@ -75,7 +75,7 @@ ScalarField tops_of(const ScalarField& field, EdgeDistances& distances, double r
     if (field[index(vertex)] == 0) break;
     if (covered[index(vertex)]) continue;
     tops[index(vertex)] = field[index(vertex)];
-    for (const Reached& near : distances.from(vertex, reach)) covered[index(near.index)] = true;
+    for (const ReachedPoint& near : distances.from(vertex, reach)) covered[index(near.index)] = true;
   }
   return tops;
 }
@@ -107,7 +107,7 @@ class Picker {
       }
       failed = 0;
       picks.push_back(vertex);
-      for (const Reached& near : distances_.from(vertex, options_.separation * unit_))
+      for (const ReachedPoint& near : distances_.from(vertex, options_.separation * unit_))
         taken_[index(near.index)] = true;
     }
     return picks;

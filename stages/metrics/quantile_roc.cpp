@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "stages/metrics/reached.h"
+#include "stages/metrics/threshold_table.h"
 
 namespace salbench {
 namespace {
@@ -78,7 +78,7 @@ class Ladder {
   // [threshold]: how many positions a draw has reached that reaches this one, at least.
   const std::vector<std::size_t>& places(std::size_t curve) const { return places_[curve]; }
   std::size_t positions() const { return positions_.size(); }
-  Reached::LookUp reached() const { return reached_.look_up(); }
+  ThresholdTable::LookUp reached() const { return reached_.look_up(); }
 
  private:
   // Most ascend already.
@@ -95,7 +95,7 @@ class Ladder {
   std::vector<SharedRungs> rungs_;                // [curve]
   std::vector<double> positions_;                 // of all curves, ascending
   std::vector<std::vector<std::size_t>> places_;  // [curve]
-  Reached reached_;
+  ThresholdTable reached_;
 };
 
 // Sums of the areas over the splits, of curves over something.

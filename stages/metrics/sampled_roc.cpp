@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "stages/metrics/reached.h"
+#include "stages/metrics/threshold_table.h"
 
 namespace salbench {
 namespace {
@@ -59,8 +59,8 @@ std::span<const std::uint16_t> ValueDraws::reached(std::int32_t thresholds, doub
     thresholds_ = thresholds;
     largest_ = largest;
     reached_.resize(map_.size() - 1);
-    const EvenReached even(even_thresholds(thresholds, largest), largest);
-    const EvenReached::LookUp reached = even.look_up();
+    const EvenThresholds even(even_thresholds(thresholds, largest), largest);
+    const EvenThresholds::LookUp reached = even.look_up();
     for (std::size_t k = 0; k < reached_.size(); ++k)
       reached_[k] = static_cast<std::uint16_t>(
           map_[k + 1] > largest ? static_cast<std::size_t>(thresholds) + 1 : reached(map_[k + 1]));
@@ -82,7 +82,7 @@ void add_split(Curve& curve, std::span<const std::uint32_t> points, const ValueD
     curve.add_split(std::move(negatives), thresholds);
     return;
   }
-  const EvenReached reached(thresholds, largest);
+  const EvenThresholds reached(thresholds, largest);
   Counts counts;
   curve.add_split(curve.true_rates(thresholds),
                   counted<double>(negatives, thresholds.size() + 1, reached.look_up(), counts));

@@ -35,8 +35,9 @@
 namespace salbench {
 namespace {
 
-constexpr int kRings = 3;                 // a point depends on clusters up to so many steps of adjacency away
-constexpr std::size_t kFallbackNear = 9;  // nearest points, used if none is within the radius
+constexpr int kRings = 3;  // a point depends on clusters up to so many steps of adjacency away
+constexpr std::size_t kFallbackNear =
+    9;  // nearest points, itself included, used if none is within the radius
 constexpr std::size_t kClusterGrain = 8;  // clusters that are a task of their own
 constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the affinity of a point to a cluster
 
@@ -55,7 +56,8 @@ Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, d
     std::vector<Neighbour> found;
     for (std::size_t i = first; i < last; ++i) {
       tree.within_unordered(points[i], radius, found);
-      if (found.size() <= 1) tree.nearest(points[i], kFallbackNear, found);
+      const std::size_t itself = tree.contains(static_cast<std::int32_t>(i)) ? 1 : 0;
+      if (found.size() <= itself) tree.nearest(points[i], kFallbackNear - 1 + itself, found);
       std::int32_t previous = clusters.of_point[i];
       for (const Neighbour& neighbour : found) {
         const std::int32_t other = clusters.of_point[static_cast<std::size_t>(neighbour.index)];

@@ -115,8 +115,10 @@ Eigen::VectorXd irregularities(const Eigen::VectorXd& eigenvalues, const MsOptio
   return irregularity;
 }
 
-// s_i = sum over the neighbours j of (B diag(w) B')_ij, weighted; empty if the eigensolve failed.
+// s_i = sum over the neighbours j of (B diag(w) B')_ij, weighted; empty if the eigensolve failed, or if there
+// is no area to divide by.
 ScalarField spectral_saliency(const Mesh& mesh, const Adjacency& adjacency, const MsOptions& options) {
+  if (options.weight == MsWeight::area && surface_area(mesh) == 0) return {};
   const SparseMatrix weights = inverse_square_weights(mesh.vertices, adjacency);
   const SparseMatrix laplacian = graph_laplacian(weights);
   Eigenpairs low = lowest_eigenpairs(laplacian, options.eigenpairs);
@@ -156,7 +158,7 @@ std::vector<Vec3> smoothing_moves(const std::vector<Vec3>& points, const KdTree&
   return moves;
 }
 
-// Sum over the scales of |s(t_k+1) - s(t_k)|; empty if an eigensolve failed. The Gaussians are narrower than
+// Sum over the scales of |s(t_k+1) - s(t_k)|; empty if one of them is. The Gaussians are narrower than
 // the faces of the simplified mesh, so the full mesh is smoothed and the simplified one moves along with it.
 ScalarField multiscale_saliency(const Mesh& full, const Mesh& coarse, const Adjacency& adjacency,
                                 const MsOptions& options) {
@@ -186,6 +188,7 @@ ScalarField logarithm(ScalarField values) {
   return values;
 }
 
+// Empty if the model has no answer.
 ScalarField component_saliency(const Mesh& mesh, const MsOptions& options) {
   const Mesh coarse = simplified(mesh, static_cast<std::size_t>(options.faces));
   if (coarse.vertices.size() < kMsSmallestComponent) return {};
@@ -232,15 +235,14 @@ void check(const MsOptions& options) {
 ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options) {
   check_input(points, surface);
   if (points.empty()) return {};
-  const ScalarField failed(points.size(), 0);
+  const ScalarField no_answer(points.size(), 0);
   const double radius = bounding_radius(points);
   if (!std::isfinite(radius)) throw InputError("coordinates too large: their squares overflow");
-  if (radius == 0) return failed;
+  if (radius == 0) return no_answer;
   const std::vector<Vec3> places = normalised(points, radius);
   const Part part = largest_component(places, surface);
-  if (part.points.size() < kMsSmallestComponent) return failed;
   const ScalarField saliency = component_saliency(part.mesh, options);
-  return saliency.empty() ? failed : on_all_points(places, part, saliency);
+  return saliency.empty() ? no_answer : on_all_points(places, part, saliency);
 }
 
 }  // namespace salbench

@@ -61,9 +61,14 @@ struct MsOptions {
 void check(const MsOptions& options);  // throws OptionError
 
 // The model sees the largest connected component of the surface; every other point takes the value of the
-// nearest vertex of it. All points are 0 if that component has fewer than 20 vertices or the eigensolve
-// fails, and in no other case. Throws InputError for a face whose point does not exist, and for coordinates
-// that are not finite or whose squares overflow. [song2014] [tasse2016]
+// nearest vertex of it. The values are logarithms, of any sign. All points are 0 if the model has no answer:
+// - all points coincide;
+// - the component, simplified, has fewer than 20 vertices, as it has if there are no faces;
+// - the faces of the component have no area, which MsWeight::area divides by;
+// - an eigensolve fails, as it does if all vertices of the component coincide;
+// - no value is positive before the logarithm is taken, as if no smoothing of MsScales::paper moves a vertex.
+// Throws InputError for a face whose point does not exist, and for coordinates that are not finite or whose
+// squares overflow. [song2014] [tasse2016]
 ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options);
 
 }  // namespace salbench

@@ -79,6 +79,8 @@ TEST(KdTree, OfSomePointsFindsOnlyThese) {
   for (std::int32_t i = 3; i < 500; i += 4) members.push_back(i);
   const KdTree tree(cloud, members);
   ASSERT_EQ(tree.size(), members.size());
+  for (std::int32_t i = 0; i < 500; ++i) EXPECT_EQ(tree.contains(i), i % 4 == 3);
+  EXPECT_TRUE(KdTree(cloud).contains(0));
   std::vector<Neighbour> found;
   for (std::size_t i = 0; i < cloud.size(); i += 31) {
     auto expected = all_sorted(cloud, cloud[i]);

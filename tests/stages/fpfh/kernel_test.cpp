@@ -27,10 +27,12 @@ struct Twin {
   const std::vector<Vec3>& normals;
   Support support;
   FpfhWeighting weighting;
+  std::size_t stride = 1;  // of the points that may be neighbours of others
 
   std::vector<std::pair<double, std::size_t>> neighbours_of(std::size_t i) const {
     std::vector<std::pair<double, std::size_t>> all;
-    for (std::size_t j = 0; j < points.size(); ++j) all.emplace_back((points[j] - points[i]).norm(), j);
+    for (std::size_t j = 0; j < points.size(); ++j)
+      if (j == i || j % stride == 0) all.emplace_back((points[j] - points[i]).norm(), j);
     std::sort(all.begin(), all.end());
     if (support.neighbours > 0)
       all.resize(std::min(all.size(), static_cast<std::size_t>(support.neighbours)));
@@ -116,6 +118,26 @@ TEST(FpfhHistogram, OfASubsetAreTheRowsOfTheWhole) {
       ASSERT_EQ(part.size(), subset.size());
       for (std::size_t i = 0; i < subset.size(); ++i)
         EXPECT_TRUE(std::ranges::equal(part.row(i), whole.row(static_cast<std::size_t>(subset[i]))));
+    }
+  }
+}
+
+// A point that the tree does not contain still is a neighbour of its own: it has one fewer others.
+TEST(FpfhHistogram, OverATreeOfSomePointsEqualsTheFormula) {
+  const auto points = shapes::random_cloud(120, 27);
+  const auto normals = shapes::random_normals(120, 28);
+  std::vector<std::int32_t> members;
+  for (std::int32_t i = 0; i < 120; i += 3) members.push_back(i);
+  for (const Support& support : {kNine, Support{1, 0}, Support{500, 0}, Support{0, 0.5}}) {
+    for (const auto weighting : {FpfhWeighting::published, FpfhWeighting::text}) {
+      const Descriptors fast = fpfh(points, normals, KdTree(points, members), support, weighting);
+      const Twin twin{points, normals, support, weighting, 3};
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Row expected = twin.fpfh(i);
+        for (std::size_t b = 0; b < expected.size(); ++b)
+          ASSERT_NEAR(fast.row(i)[b], expected[b], 1e-5 * std::max(1.0, expected[b]))
+              << support.neighbours << " nearest, " << name_of(weighting) << ", point " << i << ", bin " << b;
+      }
     }
   }
 }

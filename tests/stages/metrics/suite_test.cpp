@@ -12,7 +12,7 @@
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/metrics.h"
 #include "stages/metrics/quantile_roc.h"
-#include "stages/metrics/reached.h"
+#include "stages/metrics/threshold_table.h"
 
 namespace salbench {
 namespace {
@@ -230,7 +230,7 @@ TEST(Draws, AreThoseOfTheGenerator) {
     }
 }
 
-TEST(Reached, CountsAsASearchDoes) {
+TEST(ThresholdTable, CountsAsASearchDoes) {
   Rng rng(8, "suite", "");
   for (int repeat = 0; repeat < 200; ++repeat) {
     ScalarField positions(rng.below(50));
@@ -239,8 +239,8 @@ TEST(Reached, CountsAsASearchDoes) {
       position = std::min(1.0, rng.below(2) == 0 ? cell : cell + rng.uniform() / 1000);
     }
     std::ranges::sort(positions);
-    const Reached table(positions, rng.below(600));
-    const Reached::LookUp reached = table.look_up();
+    const ThresholdTable table(positions, rng.below(600));
+    const ThresholdTable::LookUp reached = table.look_up();
     for (int k = 0; k < 500; ++k) {
       const std::uint64_t number = rng.below(4) == 0 ? rng.below(64) << 58U : rng.next();
       ASSERT_EQ(reached(number), std::ranges::upper_bound(positions, uniform_of(number)) - positions.begin());

@@ -79,9 +79,16 @@ TEST(CsOptions, OfTheTextAskForAHundredClusters) {
 class WrittenOut {
  public:
   WrittenOut(const Shape& shape, const CsOptions& options) : shape_(shape) {
-    const KdTree tree(shape.points);
     unit_ = bounding_radius(shape.points);
-    const SupportRadius support = grown_support_radius(shape.points, tree, options.radius);
+    const std::vector<std::int32_t> sample =
+        KdTree(shape.points).even_sample(static_cast<std::size_t>(options.sample));
+    const KdTree tree(shape.points, sample);
+    std::vector<Vec3> sampled;
+    for (const std::int32_t i : sample) sampled.push_back(shape.points[std::size_t(i)]);
+    in_sample_.resize(shape.points.size());
+    for (const std::int32_t i : sample) in_sample_[std::size_t(i)] = true;
+    const SupportRadius support =
+        grown_support_radius(sampled, options.radius * unit_ / bounding_radius(sampled));
     radius_ = support.radius;
     descriptors_ =
         fpfh(shape.points, shape.normals, tree,
@@ -171,43 +178,47 @@ class WrittenOut {
     });
   }
 
+  bool are_neighbours(Eigen::Index i, Eigen::Index q) const { return q != i && in_sample_[std::size_t(q)]; }
+
   // Positive where cluster k is within three steps of cluster j: the third power of the adjacency.
   Eigen::MatrixXd three_rings() const {
     Eigen::MatrixXd adjacent = Eigen::MatrixXd::Identity(count_, count_);
     for (Eigen::Index i = 0; i < n_; ++i) {
       bool alone = true;
       for (Eigen::Index q = 0; q < n_; ++q) {
-        if (q == i || (point(i) - point(q)).squaredNorm() > radius_ * radius_) continue;
+        if (!are_neighbours(i, q) || (point(i) - point(q)).squaredNorm() > radius_ * radius_) continue;
         adjacent(cluster_of(i), cluster_of(q)) = 1;
         alone = false;
       }
       if (!alone) continue;
-      std::vector<Eigen::Index> order(static_cast<std::size_t>(n_));
-      std::iota(order.begin(), order.end(), 0);
+      std::vector<Eigen::Index> order;
+      for (Eigen::Index q = 0; q < n_; ++q)
+        if (are_neighbours(i, q)) order.push_back(q);
       std::ranges::sort(order, {}, [&](Eigen::Index q) { return (point(i) - point(q)).squaredNorm(); });
-      for (std::size_t q = 0; q < 9; ++q) adjacent(cluster_of(i), cluster_of(order[q])) = 1;
+      for (std::size_t q = 0; q < 8; ++q) adjacent(cluster_of(i), cluster_of(order[q])) = 1;  // and itself
     }
     return adjacent * adjacent * adjacent;
   }
 
   const Shape& shape_;
   double unit_ = 0, radius_ = 0;
+  std::vector<bool> in_sample_;
   Descriptors descriptors_;
   Clusters of_;
   GroupMeans clusters_;
   Eigen::Index count_ = 0, n_ = 0;
 };
 
-void expect_written_out(const Shape& shape, std::int32_t clusters) {
-  const ScalarField saliency = saliency_of(shape, options_for(clusters));
-  WrittenOut twin(shape, options_for(clusters));
+void expect_written_out(const Shape& shape, const CsOptions& options) {
+  const ScalarField saliency = saliency_of(shape, options);
+  WrittenOut twin(shape, options);
   EXPECT_TRUE(twin.some_cluster_out_of_reach());
   EXPECT_THAT(saliency, testing::Pointwise(testing::DoubleNear(1e-9), twin.saliency()));
 }
 
 TEST(CsSaliency, EqualsTheFormulasWrittenOut) {
-  expect_written_out(shape_of(shapes::bumpy_sphere(4)), 150);
-  expect_written_out(shape_of(dented_plane(40)), 150);
+  expect_written_out(shape_of(shapes::bumpy_sphere(4)), options_for(150));
+  expect_written_out(shape_of(dented_plane(40)), options_for(150));
 }
 
 TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereTheClusterGraphIsDisconnected) {
@@ -217,14 +228,14 @@ TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereTheClusterGraphIsDisconnected) 
     shape.points.push_back(0.7 * shape.points[i] + Vec3(5, 1, 0));
     shape.normals.push_back(shape.normals[i]);
   }
-  expect_written_out(shape, 60);
+  expect_written_out(shape, options_for(60));
 }
 
 TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereAPointIsAlone) {
   Shape shape = cloud(500, 3);  // random normals: no descriptor is very unlike another
   shape.points.push_back(Vec3(1.7, 0.5, 0.5));
   shape.normals.push_back(Vec3::UnitX());
-  expect_written_out(shape, 60);
+  expect_written_out(shape, options_for(60));
 }
 
 TEST(CsSaliency, OfADentedPlaneIsHighestAtTheDent) {
@@ -256,6 +267,14 @@ TEST(CsSaliency, DoesNotSeeTheSignOfTheNormals) {
 }
 
 // The neighbours of a point are looked for in the sample alone; it is a neighbour of itself either way.
+TEST(CsSample, OfAnyPointEqualsTheFormulasWrittenOut) {
+  CsOptions options = options_for(150);
+  options.sample = 1000;
+  expect_written_out(shape_of(shapes::bumpy_sphere(4)), options);
+  options.clusters = 500;
+  expect_written_out(cloud(2500, 7), options);  // some points have no other within the radius, others one
+}
+
 TEST(CsSample, AsLargeAsTheShapeIsTheShape) {
   const Shape shape = shape_of(shapes::bumpy_sphere(4));  // 2562 points
   const ScalarField whole = saliency_of(shape);

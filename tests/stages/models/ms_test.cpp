@@ -197,6 +197,56 @@ TEST(MsDegenerate, ComponentOfNineteenVertices) {
   EXPECT_FALSE(is_constant(ms(strip)));
 }
 
+// Every three of the points are a face.
+Mesh complete(std::int32_t n) {
+  Mesh mesh{shapes::random_cloud(static_cast<std::size_t>(n), 31), {}};
+  for (std::int32_t a = 0; a < n; ++a)
+    for (std::int32_t b = a + 1; b < n; ++b)
+      for (std::int32_t c = b + 1; c < n; ++c) mesh.faces.push_back({a, b, c});
+  return mesh;
+}
+
+TEST(MsDegenerate, ComponentThatIsSimplifiedToNineteenVertices) {
+  // 120 faces that no collapse can spare, and a strip of 10 that can be collapsed.
+  Mesh mesh = complete(10);
+  for (std::int32_t i = 10; i < 20; ++i) {
+    mesh.vertices.emplace_back(2 + i, i % 2, 0.01 * i * i);
+    mesh.faces.push_back({i - 2, i - 1, i});
+  }
+  MsOptions options;
+  options.faces = 130;
+  EXPECT_FALSE(is_constant(ms(mesh, options)));
+  options.faces = 129;
+  EXPECT_THAT(ms(mesh, options), Each(0));
+}
+
+TEST(MsDegenerate, ConstantMapIsNoZero) {
+  // Every vertex is a neighbour of every other: the means over one-rings are all the same.
+  const ScalarField saliency = ms(complete(20));
+  EXPECT_LT(largest_difference(saliency, ScalarField(20, saliency[0])), 1e-9);
+  EXPECT_GT(std::abs(saliency[0]), 1);
+}
+
+TEST(MsDegenerate, ComponentWithoutArea) {
+  Mesh strip;  // along a line
+  for (std::int32_t i = 0; i < 30; ++i) strip.vertices.emplace_back(i + 0.1 * i * i, 0, 0);
+  for (std::int32_t i = 0; i + 2 < 30; ++i) strip.faces.push_back({i, i + 1, i + 2});
+  EXPECT_THAT(ms(strip), Each(0));
+  MsOptions options;
+  options.weight = MsWeight::inverse_square;  // divides by no area
+  EXPECT_FALSE(is_constant(ms(strip, options)));
+}
+
+TEST(MsDegenerate, ComponentInOnePlaceHasNoSpectrum) {
+  Mesh mesh = shapes::sphere(2);
+  for (Vec3& v : mesh.vertices) v = Vec3(1, 2, 3);
+  mesh.vertices.emplace_back(4, 5, 6);  // so that not all points coincide
+  for (MsOptions options : {MsOptions{}, MsOptions::text()}) {
+    options.weight = MsWeight::inverse_square;
+    EXPECT_THAT(ms(mesh, options), Each(0));
+  }
+}
+
 TEST(MsDegenerate, AllPointsInOnePlaceGiveNothingElseThanZero) {
   Mesh mesh = shapes::sphere(2);
   for (Vec3& v : mesh.vertices) v = Vec3(1, 2, 3);

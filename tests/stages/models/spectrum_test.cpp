@@ -142,5 +142,14 @@ TEST(Spectrum, MatrixOfNothingButZeroHasNoPairsAndDoesNotThrow) {
   EXPECT_EQ(lowest_eigenpairs(SparseMatrix(30, 30), 14).values.size(), 0);
 }
 
+TEST(Spectrum, WeightsThatAreNotFiniteHaveNoPairs) {
+  const std::vector<Vec3> points(40, {1, 2, 3});  // all edges have no length
+  Edges edges;
+  for (int i = 0; i + 1 < 40; ++i) edges.emplace_back(i, i + 1);
+  const SparseMatrix weights = inverse_square_weights(points, adjacency_of(points.size(), edges));
+  EXPECT_TRUE(std::isinf(weights.coeff(0, 1)));
+  EXPECT_EQ(lowest_eigenpairs(graph_laplacian(weights), 14).values.size(), 0);
+}
+
 }  // namespace
 }  // namespace salbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How many of some ascending positions a number has reached, for many numbers: looked up, not searched for.
+// For many numbers: how many thresholds of a sorted list each one reaches. Table look-up instead of search.
 #pragma once
 
 #include <algorithm>
@@ -14,35 +14,35 @@
 
 namespace salbench {
 
-// How many of some ascending positions in [0, 1] a random number has reached, looked up in equal cells of
-// [0, 1): most of them have no position within.
-class Reached {
+// For random numbers, and ascending thresholds in [0, 1] of any spacing. The table divides [0, 1) into equal
+// cells; most cells have no threshold within, and the cell alone gives the count.
+class ThresholdTable {
  public:
-  // Worth its making for so many numbers at a time.
-  Reached(std::vector<double> from, std::size_t numbers)
-      : from_(std::move(from)),
+  // `numbers`: how many will be looked up at a time; the size of the table follows from it.
+  ThresholdTable(std::vector<double> thresholds, std::size_t numbers)
+      : thresholds_(std::move(thresholds)),
         // A power of two: a number's upper bits are its cell.
         in_cell_(std::clamp(std::bit_ceil(4 * numbers), kLeastCells, kMostCells)) {
     const auto cells = static_cast<double>(in_cell_.size());
     std::size_t filled = 0;
-    for (std::size_t reached = 0; reached < from_.size(); ++reached) {
-      // A position on a border has been reached by all of the cell that begins there.
-      const auto begun = static_cast<std::size_t>(from_[reached] * cells);
-      const bool on_border = static_cast<double>(begun) == from_[reached] * cells;
+    for (std::size_t reached = 0; reached < thresholds_.size(); ++reached) {
+      // All numbers of the cell that begins at a threshold reach it.
+      const auto begun = static_cast<std::size_t>(thresholds_[reached] * cells);
+      const bool on_border = static_cast<double>(begun) == thresholds_[reached] * cells;
       const std::size_t cell = on_border ? begun : begun + 1;
       fill(filled, cell, static_cast<std::int32_t>(reached));
       if (cell > filled && !on_border) in_cell_[cell - 1] = -1 - static_cast<std::int32_t>(reached);
       filled = cell;
     }
-    fill(filled, in_cell_.size(), static_cast<std::int32_t>(from_.size()));
-    from_.push_back(std::numeric_limits<double>::infinity());
+    fill(filled, in_cell_.size(), static_cast<std::int32_t>(thresholds_.size()));
+    thresholds_.push_back(std::numeric_limits<double>::infinity());
   }
 
   // A loop that stores to memory takes a copy, so that the compiler need not read these fields again each
   // time.
   struct LookUp {
     const std::int32_t* in_cell;
-    const double* from;
+    const double* thresholds;
     unsigned shift;
 
     // The number is one of Rng::next, and stands for uniform_of(number).
@@ -50,12 +50,13 @@ class Reached {
       const std::int32_t known = in_cell[number >> shift];
       if (known >= 0) return static_cast<std::size_t>(known);
       auto reached = static_cast<std::size_t>(-1 - known);
-      for (const double u = uniform_of(number); from[reached] <= u;) ++reached;
+      for (const double u = uniform_of(number); thresholds[reached] <= u;) ++reached;
       return reached;
     }
   };
   LookUp look_up() const {
-    return {in_cell_.data(), from_.data(), 64 - static_cast<unsigned>(std::countr_zero(in_cell_.size()))};
+    return {in_cell_.data(), thresholds_.data(),
+            64 - static_cast<unsigned>(std::countr_zero(in_cell_.size()))};
   }
 
  private:
@@ -65,14 +66,15 @@ class Reached {
     for (std::size_t cell = first; cell < end; ++cell) in_cell_[cell] = reached;
   }
 
-  std::vector<double> from_;           // and infinity
-  std::vector<std::int32_t> in_cell_;  // -1 - the number at its beginning where it has one within
+  std::vector<double> thresholds_;  // and infinity
+  std::vector<std::int32_t>
+      in_cell_;  // [cell]: count, or -1 - count at its beginning if it has a threshold within
 };
 
-// How many even thresholds up to `largest` > 0 a value from 0 to `largest` reaches.
-class EvenReached {
+// For values from 0 to `largest`, and evenly spaced thresholds from 0 to `largest` > 0.
+class EvenThresholds {
  public:
-  EvenReached(std::vector<double> thresholds, double largest)
+  EvenThresholds(std::vector<double> thresholds, double largest)
       : per_unit_(static_cast<double>(thresholds.size() - 1) / largest), thresholds_(std::move(thresholds)) {
     thresholds_.push_back(std::numeric_limits<double>::infinity());
   }
