@@ -57,6 +57,7 @@ void write_results(Session& session, const RunRecord& record, const Arguments& a
 
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
+  session.runner.prepare();  // before the results of an earlier run are touched
   setup.context.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
   {
     const OrderlyEnd orderly;
