@@ -26,8 +26,8 @@
 namespace salbench {
 namespace {
 
-constexpr std::size_t kKeptOutput = 4096, kKeptLines = 20;  // the end of what a command prints
-constexpr std::chrono::milliseconds kLook(100);  // how often a wait looks at the clock and the flag
+constexpr std::size_t kKept = 4096, kKeptLines = 20;  // the end of what a command prints, of each pipe
+constexpr std::chrono::milliseconds kLook(100);       // how often a wait looks at the clock and the flag
 
 // Globals, since a signal handler has nothing else. A command without a slot is ended by the wait for it.
 std::atomic<bool> ending = false;
@@ -67,8 +67,8 @@ struct StandardFiles {
   ::_exit(127);
 }
 
-// The last lines as one line of text that a terminal can show.
-std::string last_lines(std::string_view output) {
+// The last lines but those that are `answer`, as a terminal can show them.
+std::vector<std::string> last_lines(std::string_view output, std::string_view answer) {
   std::vector<std::string> lines(1);
   for (const char c : output) {
     if (c == '\n' || c == '\r') {
@@ -78,10 +78,9 @@ std::string last_lines(std::string_view output) {
       lines.back() += c == '\t' ? ' ' : byte < ' ' || byte >= 0x7f ? '?' : c;
     }
   }
-  if (lines.back().empty()) lines.pop_back();
-  if (lines.empty()) return "it printed nothing";
-  const auto first = lines.end() - static_cast<long>(std::min(lines.size(), kKeptLines));
-  return fmt::format("its last lines: {}", fmt::join(first, lines.end(), " | "));
+  std::erase_if(lines, [&](const std::string& line) { return line.empty() || line == answer; });
+  lines.erase(lines.begin(), lines.end() - static_cast<long>(std::min(lines.size(), kKeptLines)));
+  return lines;
 }
 
 }  // namespace
@@ -157,7 +156,8 @@ ProcessGroup::~ProcessGroup() {
 void ProcessGroup::send(int signal) const { ::kill(-group_, signal); }
 
 bool ProcessGroup::tell(const std::string& line) {
-  kept_.clear();
+  kept_output_.clear();
+  kept_answers_.clear();
   look_ = kFirstLook;
   return ::write(lines_->writing(), line.data(), line.size()) == static_cast<ssize_t>(line.size());
 }
@@ -170,6 +170,7 @@ bool ProcessGroup::has_ended() {
 
 ProcessGroup::Event ProcessGroup::wait(Clock::time_point deadline, bool until_asked_to_end,
                                        std::string_view answer) {
+  if (!answer.empty()) answer_ = answer;
   while (true) {
     const bool ended = has_ended();
     if (ended) send(SIGKILL);  // what it left in the background
@@ -185,7 +186,12 @@ void ProcessGroup::terminate() {
   wait(Clock::now() + kCommandGrace, false);
 }
 
-std::string ProcessGroup::said() const { return last_lines(kept_); }
+std::string ProcessGroup::said() const {
+  std::vector<std::string> lines = last_lines(kept_answers_, answer_);
+  const std::vector<std::string> errors = last_lines(kept_output_, {});
+  lines.insert(lines.end(), errors.begin(), errors.end());
+  return lines.empty() ? "it printed nothing" : fmt::format("its last lines: {}", fmt::join(lines, " | "));
+}
 
 std::string ProcessGroup::failure() const {
   if (info_.si_code != CLD_EXITED) return fmt::format("the command was killed by signal {}", info_.si_status);
@@ -205,7 +211,7 @@ void ProcessGroup::wait_for_output(Clock::time_point deadline) {
 
 // At most so much at a time: a flood must not keep the wait from the clock.
 template <class Each>
-void ProcessGroup::read_from(Pipe& pipe, const Each& each) {
+void ProcessGroup::read_from(Pipe& pipe, std::string& kept, const Each& each) {
   std::array<char, 1U << 16U> buffer;
   for (int i = 0; i < 16 && pipe.reading() >= 0; ++i) {
     const ssize_t got = ::read(pipe.reading(), buffer.data(), buffer.size());
@@ -213,17 +219,18 @@ void ProcessGroup::read_from(Pipe& pipe, const Each& each) {
     if (got <= 0) return;
     const std::string_view piece(buffer.data(), static_cast<std::size_t>(got));
     each(piece);
-    kept_.append(piece);
-    if (kept_.size() > kKeptOutput) kept_.erase(0, kept_.size() - kKeptOutput);
+    kept.append(piece);
+    if (kept.size() > kKept) kept.erase(0, kept.size() - kKept);
   }
 }
 
-// Whether the answer was in it.
+// Whether the answer was in it. Answers come first: what was said on standard error before one is then there.
 bool ProcessGroup::take_in(std::string_view answer) {
-  read_from(output_, [](std::string_view) {});
   bool answered = false;
   if (answers_)
-    read_from(*answers_, [&](std::string_view piece) { answered |= finder_.find(piece, answer); });
+    read_from(*answers_, kept_answers_,
+              [&](std::string_view piece) { answered |= finder_.find(piece, answer); });
+  read_from(output_, kept_output_, [](std::string_view) {});
   return answered;
 }
 

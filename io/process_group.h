@@ -74,7 +74,9 @@ class ProcessGroup {
   Event wait(Clock::time_point deadline, bool until_asked_to_end, std::string_view answer = {});
   void terminate();  // SIGTERM, and a little time
 
-  std::string said() const;     // the last lines that it printed, as one line of text
+  // The last lines that it printed, as one line of text; of one that serves, those beside its answers, and
+  // then those of its standard error.
+  std::string said() const;
   std::string failure() const;  // why it did not succeed, empty if it did; after it has ended
 
  private:
@@ -84,14 +86,16 @@ class ProcessGroup {
   void wait_for_output(Clock::time_point deadline);
   bool take_in(std::string_view answer);
   template <class Each>
-  void read_from(Pipe& pipe, const Each& each);
+  static void read_from(Pipe& pipe, std::string& kept, const Each& each);
 
   Pipe output_;                          // what it prints; of one that serves, its standard error
   std::optional<Pipe> answers_, lines_;  // standard output and input of one that serves
   LineFinder finder_;
   pid_t group_ = -1;
   std::chrono::milliseconds look_ = kFirstLook;
-  std::string kept_;
+  // The ends of what it prints: two, because nobody knows in which order it wrote into two pipes.
+  std::string kept_output_, kept_answers_;
+  std::string answer_;  // the last one that was waited for
   siginfo_t info_ = {};
 };
 

@@ -57,6 +57,26 @@ TEST(ServingCommand, FindsItsAnswerInWhateverElseIsPrinted) {
   EXPECT_LT(command.last_lines().size(), 5000U);
 }
 
+// Two pipes have no order between them; a flood in the one must not push out what was said in the other.
+TEST(ServingCommand, KeepsTheLastLinesOfItsOutputAndOfItsErrors) {
+  const ScratchFolder folder;
+  const std::string flood = "yes 0123456789 | head -c 3300000";
+  for (const std::string& body :
+       {flood + "; echo; echo at last >&2", "echo at last >&2; " + flood + "; echo"}) {
+    ServingCommand command(for_each_line(body + "; exit 3"), folder.path());
+    EXPECT_THAT(failure_of(command), EndsWith("0123456789 | at last"));
+  }
+}
+
+TEST(ServingCommand, WhatItSaidBeforeItsAnswerIsThereWithIt) {
+  const ScratchFolder folder;
+  ServingCommand command(for_each_line("echo no memory >&2; echo x"), folder.path());
+  for (int i = 0; i < 200; ++i) {
+    EXPECT_EQ(failure_of(command), "");
+    EXPECT_EQ(command.last_lines(), "its last lines: no memory") << "without the answer";
+  }
+}
+
 TEST(ServingCommand, SaysHowItEnded) {
   const ScratchFolder folder;
   const auto failure = [&](const std::string& body) {
