@@ -11,6 +11,7 @@
 
 #include "io/file.h"
 #include "io/process.h"
+#include "io/scratch_folder.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -130,7 +131,7 @@ TEST(ServingCommand, IsInterruptedByTheProgramsEnd) {
       {
         ServingCommand idle(for_each_line("echo x"), "/");
         ServingCommand command("sleep 50", "/");
-        std::signal(SIGALRM, [](int) { end_commands(SIGTERM); });
+        std::signal(SIGALRM, [](int) { end_commands(); });
         ::alarm(1);
         try {
           failure_of(command);
