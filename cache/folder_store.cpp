@@ -63,6 +63,7 @@ struct FolderStore::Impl {
   Access access;
   mutable std::shared_mutex mutex;  // of stages
   std::map<std::string, StageEntries, std::less<>> stages;
+  std::once_flag prepared;
   std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 
   fs::path path(std::string_view stage, const ArtefactName& name) const {
@@ -170,10 +171,8 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
     throw StorageError(
         fmt::format("{}: is not a folder; choose another with --cache", impl_->folder.string()));
   check_format(impl_->folder);
-  if (access == Access::read_write) {
-    prepare_cache(impl_->folder);
+  if (access == Access::read_write)
     visit_abandoned(impl_->folder / kScratchFolder, [&](const fs::path& file) { fs::remove(file, error); });
-  }
   impl_->list_all();
 }
 
@@ -219,6 +218,10 @@ std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& ke
   });
 }
 
+void FolderStore::prepare() {
+  std::call_once(impl_->prepared, [&] { prepare_cache(impl_->folder); });
+}
+
 Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
                          const ArtefactNote& note) {
   const Digest key = key_of(recipe);
@@ -226,6 +229,7 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   const Bytes image = hdf5_image({arrays, describe(recipe, kind, key, content, note)});
   const ArtefactName name{item_label(note.item), key, content, checksum(image), image.size()};
   const fs::path target = impl_->path(recipe.stage, name);
+  prepare();
   std::error_code error;
   if (!fs::exists(impl_->folder / kScratchFolder, error)) prepare_cache(impl_->folder);  // removed meanwhile
   make_folder(target.parent_path(), "choose another cache with --cache");

@@ -20,9 +20,9 @@ enum class Access { read_only, read_write };
 
 class FolderStore final : public Store {
  public:
-  // Lists the folder. read_write creates it, checks that it is writable and removes temporary files of killed
-  // processes; read_only takes a missing folder as empty. Throws StorageError: not a folder, not writable, or
-  // written by a newer program.
+  // Lists the folder; a missing one is empty. read_write removes temporary files of killed processes, and
+  // needs a folder that can be written to from `prepare` or the first `save` on: a complete cache may be
+  // read-only. Throws StorageError: not a folder, or written by a newer program.
   FolderStore(std::filesystem::path folder, Access access);
   ~FolderStore() override;
 
@@ -30,6 +30,7 @@ class FolderStore final : public Store {
   bool has_item(std::string_view stage, std::string_view item) const override;
   std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) override;
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override;
+  void prepare() override;  // creates the folder
   Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
               const ArtefactNote& note) override;
   void sync() override;

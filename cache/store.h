@@ -41,6 +41,8 @@ class Store : public Index {
   // quarantined with a warning that names it, and is a miss from then on. Throws StorageError if the system
   // does not let us read it, which says nothing about the file.
   virtual std::optional<Arrays> load(std::string_view stage, const Digest& key) = 0;
+  // Throws StorageError if nothing can be saved: for the moment before the first computation.
+  virtual void prepare() {}
   // The artefact is complete on return, or does not exist. Throws StorageError.
   virtual Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
                       const ArtefactNote& note) = 0;

@@ -13,6 +13,11 @@ class Descriptor {
   explicit Descriptor(int fd) : fd_(fd) {}  // negative, as of an open that failed: nothing to close
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    close();
+    fd_ = other.release();
+    return *this;
+  }
   ~Descriptor() { close(); }
 
   int get() const { return fd_; }

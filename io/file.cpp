@@ -85,14 +85,6 @@ int lock(int fd) {
 
 bool is_held(int error) { return error == EAGAIN || error == EACCES; }
 
-// 64 bits from the system: host names and process numbers repeat from container to container.
-std::string unfinished_name() {
-  std::uint64_t number = 0;
-  if (::getrandom(&number, sizeof number, 0) != sizeof number)
-    throw StorageError("the system gives no random number: " + system_reason(errno));
-  return fmt::format("{:016x}{}", number, kUnfinished);
-}
-
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
 // Makes a rename in the folder durable. Failure is ignored: not every file system can do this, and the file
@@ -156,7 +148,7 @@ std::optional<Bytes> read_bytes(const fs::path& path) {
 
 UnfinishedFile::UnfinishedFile(const fs::path& folder) {
   for (;;) {
-    path_ = folder / unfinished_name();
+    path_ = folder / fmt::format("{}{}", random_digits(), kUnfinished);
     Descriptor file(open_file(path_, O_RDWR | O_CREAT | O_EXCL));
     if (file.get() < 0 && errno == EEXIST) continue;
     if (file.get() < 0) fail(folder, "written to", errno);
@@ -266,6 +258,13 @@ std::string lower_case_extension(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
+}
+
+std::string random_digits() {
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof number, 0) != sizeof number)
+    throw StorageError("the system gives no random number: " + system_reason(errno));
+  return fmt::format("{:0{}x}", number, kRandomDigits);
 }
 
 void remove_file(const fs::path& path) {

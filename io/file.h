@@ -83,6 +83,10 @@ void make_folder(const std::filesystem::path& folder, std::string_view advice);
 
 std::string lower_case_extension(const std::filesystem::path& path);  // ".ply" of "a.PLY"
 
+// From the system: host names and process numbers repeat from container to container.
+inline constexpr std::size_t kRandomDigits = 16;
+std::string random_digits();  // hexadecimal; throws StorageError
+
 // Removes a file, if there is one. Throws StorageError.
 void remove_file(const std::filesystem::path& path);
 

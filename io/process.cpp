@@ -1,39 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/process.h"
 
-#include <system_error>
-
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include "io/file.h"
-#include "io/process_group.h"
+#include "io/running_command.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 
 namespace fs = std::filesystem;
-using Event = ProcessGroup::Event;
-
-ScratchFolder::ScratchFolder() {
-  std::error_code error;
-  const fs::path root = fs::temp_directory_path(error);
-  std::string name = ((error ? fs::path("/tmp") : root) / "salbench-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw StorageError(fmt::format("{}: the folder cannot be created: {}; set TMPDIR to another", name,
-                                   system_reason(errno)));
-  path_ = name;
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
+using Event = RunningCommand::Event;
 
 void run_command(const std::string& command, const fs::path& folder, std::chrono::duration<double> timeout) {
   if (commands_are_ended()) throw CommandInterrupted("the program ends");
   const auto deadline = deadline_after(timeout);
-  ProcessGroup running(command, folder, ProcessGroup::Serves::no);
+  RunningCommand running(command, folder, RunningCommand::Serves::no);
   const bool in_time = running.wait(deadline, true) == Event::ended;
   if (!in_time) running.terminate();
   if (commands_are_ended()) throw CommandInterrupted("the program ends");

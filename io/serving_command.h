@@ -17,7 +17,7 @@ class ServingCommand {
   ServingCommand(const std::string& command, const std::filesystem::path& folder);
   ServingCommand(const ServingCommand&) = delete;
   ServingCommand& operator=(const ServingCommand&) = delete;
-  // Closes what it reads; two seconds later, or at once after a failure, its whole group is ended.
+  // Closes what it reads; two seconds later, or at once after a failure, all its processes are ended.
   ~ServingCommand();
 
   bool has_ended();

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "io/process.h"
+#include "io/scratch_folder.h"
 #include "io/serving_command.h"
 #include "stages/core/errors.h"
 

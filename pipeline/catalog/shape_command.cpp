@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "io/hdf5_file.h"
 #include "io/process.h"
+#include "io/scratch_folder.h"
 #include "io/shape_file.h"
 #include "io/values_file.h"
 #include "stages/core/errors.h"
@@ -78,6 +79,7 @@ std::string file_of(std::string_view placeholder) {
 ShapeCommand::ShapeCommand(std::string command, std::chrono::duration<double> timeout,
                            std::shared_ptr<DependedFiles> depends)
     : command_(std::move(command)), timeout_(timeout), depends_(std::move(depends)) {
+  prepare_commands();
   if (!has(kListOfMeshes) && !has(kListOfShapes)) return;
   std::string line = command_;
   for (const std::string_view list : {kListOfMeshes, kListOfShapes}) replace_all(line, list, kListFile);

@@ -40,7 +40,7 @@ inline constexpr std::array kStatusMeanings = {
     StatusMeaning{0, "all done"},
     StatusMeaning{1, "some items failed, each was named"},
     StatusMeaning{2, "unusable arguments or configuration"},
-    StatusMeaning{3, "cache or output folder unusable"},
+    StatusMeaning{3, "cache, output folder or standard output unusable"},
     StatusMeaning{70, "a defect of the program, or memory ran out"},
     StatusMeaning{130, "interrupted, the line that resumes was printed"},
 };

@@ -18,7 +18,6 @@ std::string farewell;
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 void on_second_signal(int signal) {
-  end_commands(SIGKILL);
   std::signal(signal, SIG_DFL);
   std::raise(signal);  // delivered when the handler returns
 }
@@ -26,11 +25,11 @@ void on_second_signal(int signal) {
 void on_signal(int signal) {
   if (orderly_ends > 0 && !asked) {
     asked = true;
-    std::signal(signal, on_second_signal);
-    end_commands(SIGTERM);
+    // A terminal that goes says so twice, by the system and by its shell.
+    std::signal(signal, signal == SIGHUP ? SIG_IGN : on_second_signal);
+    end_commands();
     return;
   }
-  end_commands(SIGKILL);
   // Nothing can be done about a standard error that takes no text.
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, farewell.data(), farewell.size());
   ::_exit(kInterrupted);
@@ -42,6 +41,7 @@ void handle_interrupts(const std::string& last_words) {
   farewell = last_words;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
 }
 
 OrderlyEnd::OrderlyEnd() { ++orderly_ends; }

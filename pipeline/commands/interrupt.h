@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ctrl-C and SIGTERM. What is in the cache has its name or is not there, so that a command may end at any
-// moment; only what would leave something half done in the user's folders, or throw running work away, is
-// brought to an orderly end.
+// Ctrl-C, SIGTERM and the SIGHUP of a terminal or a connection that goes. What is in the cache has its name
+// or is not there, so that a command may end at any moment; only what would leave something half done in the
+// user's folders, or throw running work away, is brought to an orderly end.
 #pragma once
 
 #include <atomic>

@@ -5,8 +5,10 @@
 #include <spdlog/spdlog.h>
 
 #include "pipeline/commands/program.h"
+#include "pipeline/commands/standard_streams.h"
 
 int main(int argc, char** argv) {
+  salbench::open_standard_streams();
   spdlog::set_default_logger(spdlog::stderr_color_mt("salbench"));
   spdlog::set_pattern("%^%l%$: %v");
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes then fails the write, as a full disk does

@@ -6,8 +6,12 @@
 
 #include "pipeline/commands/manual.h"
 #include "pipeline/commands/program.h"
+#include "pipeline/commands/standard_streams.h"
+#include "stages/core/errors.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int print_document(int argc, char** argv) {
   const std::string_view what = argc > 1 ? argv[1] : "";
   if (what == "page" && argc == 4) {
     fmt::print("{}", salbench::manual_page(salbench::subcommand_rows(), argv[2], argv[3]));
@@ -18,4 +22,13 @@ int main(int argc, char** argv) {
     return salbench::kUnusableArguments;
   }
   return salbench::kAllDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  return salbench::print_all([&] { return print_document(argc, argv); });
+} catch (const salbench::StorageError& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return salbench::kUnusableStorage;
 }

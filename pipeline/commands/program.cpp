@@ -3,6 +3,8 @@
 
 #include <array>
 #include <filesystem>
+#include <iostream>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "pipeline/commands/help.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/standard_streams.h"
 #include "pipeline/commands/subcommands.h"
 #include "stages/core/errors.h"
 
@@ -65,7 +68,10 @@ int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> 
   try {
     app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kAllDone : kUnusableArguments;
+    std::ostringstream help;  // printed by what reports an output that cannot be written to
+    const int status = app.exit(error, help, std::cerr);
+    fmt::print("{}", help.str());
+    return status == 0 ? kAllDone : kUnusableArguments;
   }
   handle_interrupts(interrupted_text(arguments));
   for (const Subcommand& subcommand : subcommands)
@@ -79,7 +85,7 @@ std::span<const SubcommandRow> subcommand_rows() { return kSubcommands; }
 
 int run_program(int argc, const char* const* argv, std::span<const SubcommandRow> rows) {
   try {
-    return dispatch({argv, static_cast<std::size_t>(argc)}, rows);
+    return print_all([&] { return dispatch({argv, static_cast<std::size_t>(argc)}, rows); });
   } catch (const StorageError& error) {
     spdlog::error("{}", error.what());
     return kUnusableStorage;

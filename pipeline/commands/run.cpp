@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/commands/run.h"
 
+#include <cstdio>
+
 #include <fmt/format.h>
 
 #include "io/file.h"
@@ -50,13 +52,17 @@ void write_results(Session& session, const RunRecord& record, const Arguments& a
   write_record(session.setup.output, record);
   if (!arguments.quiet && !record.interrupted) print_summary(session, conclusions);
   if (record.interrupted)
-    fmt::print(stderr, "\n{}: {}\n", session.setup.output.string(), state_of_results(session.setup.output));
+    std::fputs(
+        fmt::format("\n{}: {}\n", session.setup.output.string(), state_of_results(session.setup.output))
+            .c_str(),
+        stderr);
 }
 
 }  // namespace
 
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
+  session.runner.prepare();  // before the results of an earlier run are touched
   setup.context.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
   {
     const OrderlyEnd orderly;

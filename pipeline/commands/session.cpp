@@ -2,6 +2,7 @@
 #include "pipeline/commands/session.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <thread>
 
 #include <fmt/format.h>
@@ -105,8 +106,9 @@ std::string interrupted_text(const Arguments& arguments) {
                      arguments.command_line);
 }
 
+// Messages take std::fputs in place of fmt::print, which throws if standard error takes no text.
 ExitStatus interrupted_status(const Arguments& arguments) {
-  fmt::print(stderr, "{}", interrupted_text(arguments));
+  std::fputs(interrupted_text(arguments).c_str(), stderr);
   return kInterrupted;
 }
 
@@ -114,10 +116,11 @@ ExitStatus finished_status(const Session& session) {
   const std::vector<Failure> failures = session.runner.failures();
   if (failures.empty()) return kAllDone;
   const Context& context = session.setup.context;
-  fmt::print(stderr, "\n{} failed:\n", failures.size());
+  std::string text = fmt::format("\n{} failed:\n", failures.size());
   for (const Failure& failure : failures)
-    fmt::print(stderr, "  {}: {}: {}\n", context.name(failure.job), context.row(failure.job).name,
-               failure.cause);
+    text += fmt::format("  {}: {}: {}\n", context.name(failure.job), context.row(failure.job).name,
+                        failure.cause);
+  std::fputs(text.c_str(), stderr);
   const bool any_defect =
       std::any_of(failures.begin(), failures.end(), [](const Failure& f) { return f.defect; });
   return any_defect ? kDefect : kSomeFailed;

@@ -37,7 +37,7 @@ struct Setup {
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {},
                           Pictures pictures = Pictures::none);
 
-// A setup with its cache opened for writing, planned, and ready to run.
+// A setup with its cache opened, planned, and ready to run.
 struct Session {
   // Throws as Setup does, and StorageError.
   Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {},

@@ -15,7 +15,7 @@ enum ExitStatus {
   kAllDone = 0,
   kSomeFailed = 1,
   kUnusableArguments = 2,  // or configuration
-  kUnusableStorage = 3,    // cache or output folder
+  kUnusableStorage = 3,    // cache, output folder or standard output
   kDefect = 70,            // of the program, or memory ran out; as in sysexits.h
   kInterrupted = 130,
 };

@@ -58,15 +58,16 @@ class TerminalProgress final : public Progress {
     const std::string left = duration_text(static_cast<double>(items_ - done_) / rate);
     const std::string now = at_work_ ? at_work_() : "";
     const char* unit = at_work_ ? "jobs" : "items";
-    const std::string text = fmt::format("{}: {}/{} {}, {:.1f} {}/s, {} left{}{}", what_, done_, items_, unit,
-                                         rate, unit, left, now.empty() ? "" : "; now ", now);
+    std::string text = fmt::format("{}: {}/{} {}, {:.1f} {}/s, {} left{}{}", what_, done_, items_, unit, rate,
+                                   unit, left, now.empty() ? "" : "; now ", now);
     if (on_terminal_) {
       constexpr std::size_t kWidth = 24;
       const std::size_t filled = items_ == 0 ? kWidth : done_ * kWidth / items_;
-      fmt::print(stderr, "\r[{:-<{}}{: <{}}] {}\033[K", "", filled, "", kWidth - filled, text);
+      text = fmt::format("\r[{:-<{}}{: <{}}] {}\033[K", "", filled, "", kWidth - filled, text);
     } else {
-      fmt::print(stderr, "{}\n", text);
+      text += '\n';
     }
+    std::fputs(text.c_str(), stderr);  // fmt::print throws if standard error takes no text
     std::fflush(stderr);
   }
 

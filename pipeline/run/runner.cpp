@@ -55,6 +55,10 @@ Runner::Runner(const Context& context, Plan& plan, Store& store, Progress& progr
       stop_(stop),
       executor_(context, plan, store) {}
 
+void Runner::prepare() {
+  if (open_jobs(std::vector<bool>(context_.catalog.rows.size(), true)) > 0) store_.prepare();
+}
+
 void Runner::run(int threads) {
   const std::vector<bool> reference = reference_rows(context_.catalog);
   settle("reference", reference, threads, Claimed::left);
@@ -83,6 +87,7 @@ std::size_t Runner::open_jobs(const std::vector<bool>& rows) const {
 void Runner::settle(const std::string& what, const std::vector<bool>& rows, int threads, Claimed claimed) {
   std::size_t open = open_jobs(rows);
   if (open == 0 || stop_) return;
+  store_.prepare();
   progress_.begin(what, open, [this] { return executor_.at_work(); });
   while (open > 0 && !stop_) {
     const std::size_t claimed_by_others = stream_once(rows, threads);

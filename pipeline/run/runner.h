@@ -16,6 +16,9 @@ class Runner {
   // All references must outlive the runner; it brings `plan` up to date as it goes.
   Runner(const Context& context, Plan& plan, Store& store, Progress& progress, const std::atomic<bool>& stop);
 
+  // Throws StorageError if there are jobs to do and their results could not be stored.
+  void prepare();
+
   // Two streams through the graph: what the reference histograms are means of, then everything else. Returns
   // early once `stop` is set. An item's failure is recorded and stops nothing else. Throws StorageError.
   void run(int threads);

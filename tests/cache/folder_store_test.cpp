@@ -150,7 +150,7 @@ TEST_F(FolderStoreTest, ReadOnlyAccessChangesNothing) {
 }
 
 TEST_F(FolderStoreTest, OpeningItRemovesWhatDeadWritersLeftAndNothingThatIsBeingWritten) {
-  { FolderStore store = open(); }
+  open().prepare();
   const UnfinishedFile alive(folder_ / "tmp");
   const fs::path dead = folder_ / "tmp" / "0123456789abcdef.salbench-part";
   std::ofstream(dead) << "x";
@@ -212,12 +212,16 @@ TEST_F(FolderStoreTest, UnusableFoldersAreToldApart) {
   const fs::path file = folder_ / "file";
   std::ofstream(file) << "x";
   EXPECT_THROW(FolderStore(file, Access::read_write), StorageError);
-  EXPECT_THROW(FolderStore(file / "below", Access::read_write), StorageError);
-  EXPECT_THROW(FolderStore("/proc/salbench", Access::read_write), StorageError);  // read-only, also for root
+  for (const fs::path& folder : {file / "below", fs::path("/proc/salbench")}) {  // read-only, also for root
+    FolderStore store(folder, Access::read_write);
+    EXPECT_THROW(store.prepare(), StorageError);
+    EXPECT_THROW(save(store), StorageError);
+    EXPECT_THROW(store.prepare(), StorageError) << "asked again";
+  }
 }
 
 TEST_F(FolderStoreTest, ANewerCacheFormatIsRefused) {
-  { FolderStore store = open(); }
+  open().prepare();
   std::ofstream(folder_ / "CACHEDIR.TAG") << "# salbench cache, format 999\n";
   EXPECT_THAT([&] { open(); }, testing::ThrowsMessage<StorageError>(testing::HasSubstr("newer")));
 }

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A model that is a command: what it computes, when it is run, and what becomes of one that misbehaves.
-#include <chrono>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
-#include <thread>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -15,6 +12,7 @@
 #include "io/file.h"
 #include "io/ground_truth_file.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/processes.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
@@ -41,18 +39,6 @@ std::string counted(const fs::path& log) {
 
 std::size_t lines_of(const fs::path& file) {
   return fs::exists(file) ? lines_with(read_file(file), "run").size() : 0;
-}
-
-// Processes whose command line holds the text.
-std::vector<std::string> processes_with(const std::string& text) {
-  std::vector<std::string> found;
-  for (const auto& entry : fs::directory_iterator("/proc")) {
-    if (entry.path().filename().string().find_first_not_of("0123456789") != std::string::npos) continue;
-    std::ifstream file(entry.path() / "cmdline");
-    const std::string line((std::istreambuf_iterator<char>(file)), {});
-    if (line.find(text) != std::string::npos) found.push_back(line);
-  }
-  return found;
 }
 
 std::vector<std::vector<std::string>> cells_of(const std::string& csv, const std::string& model) {
@@ -170,24 +156,65 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"KillsItself", "sh -c 'sleep 100' '{mark}' & kill -9 $$", "killed by signal 9"}),
     [](const auto& test) { return test.param.name; });
 
-TEST(Command, AnInterruptEndsItsWholeGroupAndTheNextRunGoesOn) {
+// However the program ends, no process of a command is left, and no scratch folder: of one that is kept at
+// work, and of one per shape, in whatever group or session they are.
+class EndOfTheProgram : public testing::TestWithParam<int> {};
+
+TEST_P(EndOfTheProgram, EndsItsCommandsAndTheNextRunGoesOn) {
   const Workspace toy;
-  const std::string mark = (toy / "mark").string();
-  const std::string slow = fmt::format("[ -e '{}' ] || sh -c 'echo; sleep 100' '{}' & wait; {}",
-                                       (toy / "quick").string(), mark, kCount);
-  toy.configure(command_config("command: \"" + slow + "\""));
+  const fs::path mark = toy / "mark";  // a program, so that its processes can be told from others
+  fs::copy("/bin/sleep", mark);
+  fs::create_directory(toy / "tmp");
+  const std::string strays =
+      toy.write("strays.sh", fmt::format(R"sh(trap '' HUP INT TERM
+[ -e '{1}' ] && exit
+'{0}' 100 &
+setsid '{0}' 100 &
+timeout 100 '{0}' 100 &
+(setsid '{0}' 100 > /dev/null 2>&1 &)
+echo started >> '{2}'
+wait
+)sh",
+                                         mark.string(), (toy / "quick").string(), (toy / "started").string()))
+          .string();
+  toy.configure(fmt::format(
+      "dataset: {{scans: false}}\nmodels: {{EACH: {{command: \"sh '{0}'; {1}\", at_once: 1}}, LIST: "
+      "{{command: \"sh '{0}'; /usr/bin/python3 '{2}' {{list.h5}}\", gpu: 1}}}}\n",
+      strays, kCount, SALBENCH_OWN_MODEL));
+  std::vector<std::string> command = toy.command("run");
+  command.insert(command.begin(), {"/usr/bin/env", "TMPDIR=" + (toy / "tmp").string()});
   {
-    Process process(toy.command("run"));
-    ASSERT_TRUE(wait_until(process, [&] { return !processes_with(mark).empty(); }));
-    const auto before = std::chrono::steady_clock::now();
-    process.send(SIGINT);
-    EXPECT_EQ(process.wait().status, 130);
-    EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(20));
+    Process process(command);
+    ASSERT_TRUE(wait_until(process, [&] {
+      return fs::exists(toy / "started") && lines_with(read_file(toy / "started"), "started").size() == 2;
+    }));
+    EXPECT_FALSE(fs::is_empty(toy / "tmp"));
+    process.send(GetParam());
+    const bool orderly = GetParam() == SIGINT || GetParam() == SIGTERM || GetParam() == SIGHUP;
+    EXPECT_EQ(process.wait().status, orderly ? 130 : 128 + GetParam());
+    if (orderly) {
+      EXPECT_THAT(processes_with(mark.string()), IsEmpty()) << "they end before the program does";
+    }
   }
-  EXPECT_THAT(processes_with(mark), IsEmpty());
+  EXPECT_TRUE(soon([&] { return processes_with(mark.string()).empty(); }));
+  EXPECT_TRUE(soon([&] { return fs::is_empty(toy / "tmp"); }));
   toy.write("quick", "");
-  const Outcome resumed = toy.salbench("run");
+  const Outcome resumed = run_process(command);
   EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_TRUE(fs::is_empty(toy / "tmp"));
+}
+INSTANTIATE_TEST_SUITE_P(Command, EndOfTheProgram, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGKILL),
+                         [](const auto& test) { return std::string(::sigabbrev_np(test.param)); });
+
+// Everything at once was killed, as a batch system does.
+TEST(Command, ScratchThatNobodyCouldRemoveIsRemovedByALaterRun) {
+  const Workspace toy(command_config(fmt::format("command: \"{}\"", kCount)));
+  toy.write("tmp/salbench-scratch-00c0ffee00c0ffee/shape.ply", "ply");
+  std::vector<std::string> command = toy.command("run");
+  command.insert(command.begin(), {"/usr/bin/env", "TMPDIR=" + (toy / "tmp").string()});
+  const Outcome run = run_process(command);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(fs::is_empty(toy / "tmp"));
 }
 
 // --- a command that is kept at work ------------------------------------------------------------------------
@@ -273,7 +300,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Hostile{"AnswersAnotherShape", "echo \"$out.npy\"; echo \" $out\"; sleep 100",
                             "longer than its timeout", 2},
                     Hostile{"AnswersWithoutAFile", "echo no memory >&2; echo \"$out\"; continue",
-                            "answered \\(its last lines: no memory .*without a file"},
+                            "answered \\(its last lines: no memory\\) without a file"},
                     Hostile{"WritesTooFew", "seq 7 > \"$out\"; echo \"$out\"; continue",
                             "7 values, but the shape has 162 points"},
                     Hostile{"WritesNaN", "(seq 161; echo nan) > \"$out\"; echo \"$out\"; continue",
@@ -293,28 +320,6 @@ TEST(ListCommand, MayEndWellBetweenShapes) {
     const Outcome run = toy.salbench("run");
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(lines_of(toy / "log"), 3U);
-  }
-}
-
-TEST(ListCommand, ItsGroupEndsWithTheProgramHoweverThatEnds) {
-  for (const int signal : {SIGINT, SIGKILL}) {
-    const Workspace toy;
-    const std::string mark = (toy / "mark").string();
-    toy.configure(command_config(
-        fmt::format("command: \"{}\"",
-                    serving(toy, fmt::format("[ -e '{}' ] || exec sh -c 'while :; do sleep 0.1; done' '{}'",
-                                             (toy / "quick").string(), mark)))));
-    Process process(toy.command("run"));
-    ASSERT_TRUE(wait_until(process, [&] { return !processes_with(mark).empty(); }));
-    process.send(signal);
-    EXPECT_EQ(process.wait().status, signal == SIGINT ? 130 : 128 + SIGKILL);
-    for (int i = 0; i < 100 && !processes_with(mark).empty(); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_THAT(processes_with(mark), IsEmpty());
-    toy.write("quick", "");
-    const Outcome resumed = toy.salbench("run");
-    EXPECT_EQ(resumed.status, 0) << resumed.err;
-    EXPECT_THAT(processes_with((toy / "serve.sh").string()), IsEmpty());
   }
 }
 

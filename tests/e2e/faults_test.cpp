@@ -11,7 +11,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
-#include <sys/mount.h>
 
 #include "cache/folder_store.h"
 #include "cache/layout.h"
@@ -227,26 +226,6 @@ TEST(Faults, TheTimesOfFilesNeverMatter) {
     EXPECT_EQ(toy.computed(), 0);
     EXPECT_EQ(toy.results(), results);
   }
-}
-
-// Root passes every permission, but no read-only mount.
-TEST(Faults, AReadOnlyCacheCanBeReadAndARunSaysThatItCannotWrite) {
-  const Workspace toy;
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  const std::string cache = toy.cache().string();
-  if (::mount(cache.c_str(), cache.c_str(), nullptr, MS_BIND, nullptr) != 0)
-    GTEST_SKIP() << "mounting is not allowed here";
-  if (::mount(nullptr, cache.c_str(), nullptr, MS_REMOUNT | MS_BIND | MS_RDONLY, nullptr) != 0) {
-    ::umount2(cache.c_str(), MNT_DETACH);
-    GTEST_SKIP() << "mounting read-only is not allowed here";
-  }
-  for (const char* verb : {"plan", "status"}) EXPECT_EQ(toy.salbench(verb).status, 0) << verb;
-  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", cache}).status, 0);
-  const Outcome run = toy.salbench("run");
-  ::umount2(cache.c_str(), MNT_DETACH);
-  EXPECT_EQ(run.status, 3);
-  EXPECT_THAT(lines_with(run.err, "error: "), SizeIs(1));
-  EXPECT_THAT(run.err, HasSubstr(cache));
 }
 
 }  // namespace

@@ -118,8 +118,21 @@ TEST_P(Signal, EndsTheRunInOrderAndTheLinePrintedResumesIt) {
   EXPECT_EQ(toy.results(), results);
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
-INSTANTIATE_TEST_SUITE_P(Interruption, Signal, testing::Values(SIGINT, SIGTERM),
-                         [](const auto& test) { return test.param == SIGINT ? "Interrupt" : "Terminate"; });
+INSTANTIATE_TEST_SUITE_P(Interruption, Signal, testing::Values(SIGINT, SIGTERM, SIGHUP),
+                         [](const auto& test) { return std::string(::sigabbrev_np(test.param)); });
+
+TEST(Interruption, WhatIgnoresTheEndOfItsTerminalGoesOn) {
+  const Workspace toy;
+  auto claim = claim_of_second_mesh(toy);
+  std::vector<std::string> command = toy.command("run");
+  command.insert(command.begin(), {"/bin/sh", "-c", "trap '' HUP; exec \"$0\" \"$@\""});  // as nohup
+  Process process(command);
+  ASSERT_TRUE(toy.reached_by(process, 20));
+  process.send(SIGHUP);
+  claim.reset();
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
 
 // Half of the artefacts are there: of the items that were finished the scores are final, and are shown.
 TEST(Interruption, HalfWayThereAreFinalScoresOfTheItemsThatWereFinished) {

@@ -25,6 +25,9 @@ class SmallDisk {
   bool resize(const char* options) const {
     return ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, options) == 0;
   }
+  bool make_read_only() const {
+    return ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY, nullptr) == 0;
+  }
 
  private:
   std::filesystem::path folder_;

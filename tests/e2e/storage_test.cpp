@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Folders that cannot be written to, disks that are full, and files in the cache that rotted.
 #include <fstream>
+#include <optional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "io/file.h"
 #include "tests/e2e/small_disk.h"
@@ -78,6 +80,108 @@ TEST(Storage, ALimitOnFileSizesIsAFullDiskAndNoSignal) {
   EXPECT_THAT(lines_with(run.err, "error: "), AllOf(SizeIs(1), Each(HasSubstr("File too large")))) << run.err;
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
+
+// --- a cache that others may only read -------------------------------------------------------------------
+
+enum class ReadOnly { disk, permissions };
+void PrintTo(ReadOnly how, std::ostream* out) { *out << (how == ReadOnly::disk ? "Disk" : "Permissions"); }
+
+// A complete cache, pictures included, that the program cannot write to.
+class ReadOnlyCache : public testing::TestWithParam<ReadOnly> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == ReadOnly::disk) disk_.emplace(toy_.cache(), "size=30m");
+    if (disk_ && !disk_->mounted()) GTEST_SKIP() << "mounting is not allowed here";
+    ASSERT_EQ(toy_.salbench("run").status, 0);
+    ASSERT_EQ(toy_.salbench("pictures").status, 0);
+    contents_ = toy_.contents();
+    if (disk_)
+      ASSERT_TRUE(disk_->make_read_only());
+    else
+      change_permissions(fs::perm_options::remove);
+  }
+  void TearDown() override {
+    if (!disk_) change_permissions(fs::perm_options::add);
+  }
+
+  void change_permissions(fs::perm_options change) const {
+    std::vector<fs::path> paths = {toy_.cache()};
+    for (const auto& entry : fs::recursive_directory_iterator(toy_.cache())) paths.push_back(entry.path());
+    for (const fs::path& path : paths) fs::permissions(path, fs::perms::owner_write, change);
+  }
+
+  // Permissions do not bind root, unless that capability is dropped.
+  Outcome salbench(const std::string& verb, const std::vector<std::string>& further = {}) const {
+    std::vector<std::string> words = toy_.command(verb, further);
+    if (!disk_ && ::geteuid() == 0)
+      words.insert(words.begin(),
+                   {"/usr/bin/setpriv", "--bounding-set=-dac_override", "--inh-caps=-dac_override"});
+    return run_process(words);
+  }
+
+  Workspace toy_{kMeshesOnly};
+  std::optional<SmallDisk> disk_;
+  std::vector<std::string> contents_;
+};
+
+TEST_P(ReadOnlyCache, ThatIsCompleteIsAllThatIsNeeded) {
+  const std::string results = toy_.results();
+  for (const std::vector<std::string>& call :
+       {std::vector<std::string>{"run"},
+        {"maps", "--to", (toy_ / "maps").string()},
+        {"export", "--to", (toy_ / "all.h5").string()},
+        {"export", "--to", (toy_ / "shapes").string(), "--format", "ply"},
+        {"pictures"},
+        {"plan"},
+        {"status"}}) {
+    const Outcome outcome = salbench(call[0], {call.begin() + 1, call.end()});
+    EXPECT_EQ(outcome.status, 0) << call[0] << ": " << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr(toy_.cache().string()))) << call[0];
+  }
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", toy_.cache().string()}).status, 0);
+  EXPECT_EQ(toy_.computed(), 0U);
+  EXPECT_EQ(toy_.results(), results);
+  EXPECT_EQ(toy_.contents(), contents_);
+}
+
+TEST_P(ReadOnlyCache, ThatSomethingIsToBeAddedToIsNamedBeforeTheWorkBegins) {
+  const std::string results = toy_.results();
+  toy_.configure("dataset: {scans: false}\nmodels: {PS: , RS: , CS: }\n");
+  for (const std::vector<std::string>& call : {std::vector<std::string>{"run"},
+                                               {"run", "--shard", "1/2"},
+                                               {"maps", "--to", (toy_ / "maps").string()},
+                                               {"export", "--to", (toy_ / "all.h5").string()}}) {
+    const Outcome outcome = salbench(call[0], {call.begin() + 1, call.end()});
+    EXPECT_EQ(outcome.status, 3) << call[0];
+    EXPECT_THAT(
+        lines_with(outcome.err, "error: "),
+        AllOf(SizeIs(1), Each(AllOf(HasSubstr(toy_.cache().string()), HasSubstr("cannot be written to"),
+                                    testing::AnyOf(HasSubstr("choose another folder"),
+                                                   HasSubstr("check its permissions"))))))
+        << outcome.err;
+  }
+  EXPECT_EQ(toy_.results(), results);
+  EXPECT_THAT(toy_.salbench("status").out, HasSubstr("(finished)")) << "the results of the run before";
+}
+
+TEST_P(ReadOnlyCache, ThatIsDamagedIsReadAsFarAsItGoes) {
+  const fs::path damaged = toy_.artefacts("map.PS").front();
+  if (disk_) {
+    ASSERT_TRUE(disk_->resize("size=30m"));
+    fs::resize_file(damaged, 100);
+    ASSERT_TRUE(disk_->make_read_only());
+  } else {
+    fs::permissions(damaged, fs::perms::owner_write, fs::perm_options::add);
+    fs::resize_file(damaged, 100);
+  }
+  const Outcome plan = salbench("plan"), run = salbench("run");
+  EXPECT_EQ(plan.status, 0) << plan.err;
+  EXPECT_THAT(plan.out, HasSubstr("damaged: 1"));
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(lines_with(run.err, "error: "), SizeIs(1)) << run.err;
+}
+INSTANTIATE_TEST_SUITE_P(Storage, ReadOnlyCache, testing::Values(ReadOnly::disk, ReadOnly::permissions),
+                         testing::PrintToStringParamName());
 
 void flip_byte(const fs::path& file, std::uintmax_t at) {
   std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/process.h"
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "io/file.h"
+#include "io/scratch_folder.h"
 #include "stages/core/errors.h"
+#include "tests/support/processes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace salbench {
@@ -32,16 +36,9 @@ std::string failure_of(const std::string& command, double timeout = 60) {
   return {};
 }
 
-// The process whose number a command has written there is gone, or is a zombie that nobody has reaped yet.
-bool is_gone(const fs::path& file) {
-  const std::string number = read_file(file);
-  std::string stat;
-  try {
-    stat = read_file("/proc/" + number.substr(0, number.find('\n')) + "/status");
-  } catch (const InputError&) {
-    return true;
-  }
-  return stat.empty() || stat.find("State:\tZ") != std::string::npos;
+// Waits for what nobody has written for, half a minute at most. A shell's line.
+std::string wait_for(const fs::path& file) {
+  return "i=0; while [ ! -s '" + file.string() + "' ] && [ $i -lt 3000 ]; do sleep 0.01; i=$((i+1)); done";
 }
 
 TEST(RunCommand, RunsInItsFolderWithNothingToRead) {
@@ -71,27 +68,109 @@ TEST(RunCommand, KeepsTheLastLinesOfAFlood) {
   EXPECT_LT(failure_of("head -c 30000000 /dev/zero; false").size(), 5000U) << "without a line end";
 }
 
-TEST(RunCommand, EndsTheGroupAtTheTimeoutEvenIfItResists) {
-  const TemporaryFolder kept;
-  const std::string child = (kept / "child").string();
-  const std::string failure = failure_of(
-      "trap '' TERM; sh -c 'trap \"\" TERM; echo $$ > " + child + "; sleep 50' & echo ready; wait", 0.3);
-  EXPECT_EQ(failure,
-            "the command took longer than its timeout of 0.3 s, and was ended; its last lines: ready");
-  EXPECT_TRUE(is_gone(child));
+// Ways to get out of a command's hands, for a process that runs $child.
+struct Stray {
+  const char* name;
+  const char* start;
+};
+void PrintTo(const Stray& stray, std::ostream* out) { *out << stray.name; }
+
+constexpr std::array kStrays = {
+    Stray{"InTheBackground", "sh -c \"$child\" &"},
+    Stray{"InAnotherSession", "setsid sh -c \"$child\" &"},
+    Stray{"InAnotherGroup", "timeout 100 sh -c \"$child\" &"},
+    Stray{"OfADeadParent", "(sh -c \"$child\" &)"},
+    Stray{"OfADeadParentInAnotherSession", "(setsid sh -c \"$child\" > /dev/null 2>&1 &)"},
+    Stray{"Stopped", "sh -c \"${child%exec*}kill -STOP \\$\\$\" &"}};
+
+// A shell's lines that start one, which writes its number and resists. It sleeps for longer than any test,
+// and no longer than a forgotten process may.
+std::string started(const Stray& stray, const fs::path& number_file) {
+  return "child='trap \"\" TERM HUP INT; echo $$ > " + number_file.string() + "; exec sleep 100'\n" +
+         stray.start + "\n";
 }
 
-TEST(RunCommand, LeavesNothingInTheBackgroundAndWaitsForNone) {
+bool has_number(const fs::path& file) { return fs::exists(file) && !read_file(file).empty(); }
+
+bool is_gone_by(const fs::path& number_file) {
+  const std::string number = read_file(number_file);
+  return is_gone(number.substr(0, number.find('\n')));
+}
+
+class StrayProcess : public testing::TestWithParam<Stray> {
+ protected:
+  fs::path number_file() const { return kept_ / "number"; }
+  TemporaryFolder kept_;
+};
+
+TEST_P(StrayProcess, EndsWithItsCommand) {
+  EXPECT_EQ(failure_of(started(GetParam(), number_file()) + wait_for(number_file())), "");
+  EXPECT_TRUE(is_gone_by(number_file()));
+}
+
+TEST_P(StrayProcess, EndsWithAProgramThatIsKilled) {
+  const pid_t program = ::fork();
+  if (program == 0) {
+    failure_of(started(GetParam(), number_file()) + "sleep 100");
+    ::_exit(0);
+  }
+  EXPECT_TRUE(soon([&] { return has_number(number_file()); }));
+  ::kill(program, SIGKILL);
+  ::waitpid(program, nullptr, 0);
+  EXPECT_TRUE(soon([&] { return is_gone_by(number_file()); }));
+}
+INSTANTIATE_TEST_SUITE_P(RunCommand, StrayProcess, testing::ValuesIn(kStrays),
+                         testing::PrintToStringParamName());
+
+TEST(RunCommand, EndsEveryProcessAtTheTimeoutEvenIfItResists) {
   const TemporaryFolder kept;
-  const std::string child = (kept / "child").string();
-  EXPECT_EQ(failure_of("sleep 50 & echo $! > " + child), "");
-  EXPECT_TRUE(is_gone(child));
+  std::string command = "trap '' TERM; echo ready\n";
+  for (const Stray& stray : kStrays) command += started(stray, kept / stray.name);
+  EXPECT_EQ(failure_of(command + "wait; sleep 100", 0.5),
+            "the command took longer than its timeout of 0.5 s, and was ended; its last lines: ready");
+  for (const Stray& stray : kStrays)  // a slow machine may not have come to start all
+    EXPECT_TRUE(!has_number(kept / stray.name) || is_gone_by(kept / stray.name)) << stray.name;
+}
+
+// Each process of a chain starts the next one and ends: there is always one, and never the same.
+TEST(RunCommand, EndsProcessesThatReplaceThemselves) {
+  const TemporaryFolder kept;
+  const std::string link =
+      kept.write("link.sh", "echo x >> \"$0.log\"\n[ $1 -gt 0 ] && sh \"$0\" $(($1-1)) &\n").string();
+  EXPECT_EQ(failure_of("sh " + link + " 20000; " + wait_for(link + ".log")), "");
+  EXPECT_TRUE(processes_with(link).empty());
+}
+
+TEST(RunCommand, GetsNothingOfTheProgramButItsEnvironment) {
+  EXPECT_EXIT(
+      {
+        for (const int signal : {SIGHUP, SIGCHLD, SIGXFSZ}) std::signal(signal, SIG_IGN);
+        const ScratchFolder folder;
+        run_command("ls /proc/self/fd > files; grep SigIgn /proc/self/status > ignored", folder.path(),
+                    std::chrono::seconds(60));
+        const bool none = read_file(folder.path() / "ignored").find("0000000000000000") != std::string::npos;
+        // The last one is what ls lists.
+        ::_exit(none && read_file(folder.path() / "files") == "0\n1\n2\n3\n" ? 7 : 1);
+      },
+      testing::ExitedWithCode(7), "");
+}
+
+TEST(RunCommand, MayHaveALongCommandLine) {
+  EXPECT_EQ(failure_of(": " + std::string(120'000, 'x')), "");
+  EXPECT_THAT(failure_of(": " + std::string(1'000'000, 'x')), HasSubstr("status 127"))
+      << "beyond the system's limit";
+}
+
+TEST(RunCommand, ThatKillsItsKeeperFailsAlone) {
+  EXPECT_EQ(failure_of("echo before; kill -9 $PPID; sleep 100"),
+            "the command was killed by signal 9; its last lines: before");
+  EXPECT_EQ(failure_of("exit 0"), "");
 }
 
 TEST(RunCommand, IsInterruptedByTheProgramsEnd) {
   EXPECT_EXIT(
       {
-        std::signal(SIGALRM, [](int) { end_commands(SIGTERM); });
+        std::signal(SIGALRM, [](int) { end_commands(); });
         ::alarm(1);
         try {
           run_command("sleep 50", "/", std::chrono::seconds(60));
@@ -101,17 +180,6 @@ TEST(RunCommand, IsInterruptedByTheProgramsEnd) {
         ::_exit(1);
       },
       testing::ExitedWithCode(7), "");
-}
-
-TEST(ScratchFolder, IsRemovedWithAllThatIsInIt) {
-  fs::path path;
-  {
-    const ScratchFolder folder;
-    path = folder.path();
-    run_command("mkdir -p a/b; echo x > a/b/c; ln -s / root", path, std::chrono::seconds(60));
-    EXPECT_TRUE(fs::exists(path / "a/b/c"));
-  }
-  EXPECT_FALSE(fs::exists(path));
 }
 
 TEST(ShellQuoted, TheShellReadsTheSameText) {

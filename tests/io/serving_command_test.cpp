@@ -11,6 +11,7 @@
 
 #include "io/file.h"
 #include "io/process.h"
+#include "io/scratch_folder.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -55,6 +56,26 @@ TEST(ServingCommand, FindsItsAnswerInWhateverElseIsPrinted) {
   EXPECT_EQ(read_file(folder.path() / "late"), "") << "neither part of a line nor an error is an answer";
   EXPECT_THAT(command.last_lines(), HasSubstr("loading x | x y | xx"));
   EXPECT_LT(command.last_lines().size(), 5000U);
+}
+
+// Two pipes have no order between them; a flood in the one must not push out what was said in the other.
+TEST(ServingCommand, KeepsTheLastLinesOfItsOutputAndOfItsErrors) {
+  const ScratchFolder folder;
+  const std::string flood = "yes 0123456789 | head -c 3300000";
+  for (const std::string& body :
+       {flood + "; echo; echo at last >&2", "echo at last >&2; " + flood + "; echo"}) {
+    ServingCommand command(for_each_line(body + "; exit 3"), folder.path());
+    EXPECT_THAT(failure_of(command), EndsWith("0123456789 | at last"));
+  }
+}
+
+TEST(ServingCommand, WhatItSaidBeforeItsAnswerIsThereWithIt) {
+  const ScratchFolder folder;
+  ServingCommand command(for_each_line("echo no memory >&2; echo x"), folder.path());
+  for (int i = 0; i < 200; ++i) {
+    EXPECT_EQ(failure_of(command), "");
+    EXPECT_EQ(command.last_lines(), "its last lines: no memory") << "without the answer";
+  }
 }
 
 TEST(ServingCommand, SaysHowItEnded) {
@@ -110,7 +131,7 @@ TEST(ServingCommand, IsInterruptedByTheProgramsEnd) {
       {
         ServingCommand idle(for_each_line("echo x"), "/");
         ServingCommand command("sleep 50", "/");
-        std::signal(SIGALRM, [](int) { end_commands(SIGTERM); });
+        std::signal(SIGALRM, [](int) { end_commands(); });
         ::alarm(1);
         try {
           failure_of(command);

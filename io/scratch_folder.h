@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Folders for files that a command reads and writes.
+#pragma once
+
+#include <filesystem>
+
+#include "io/descriptor.h"
+
+namespace salbench {
+
+// A new folder below TMPDIR, removed with all that is in it. Throws StorageError.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder();
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  Descriptor lock_{-1};  // on the folder; dies with the process
+};
+
+// Removes the folders below TMPDIR whose process is dead, of this user and on any file system that has locks.
+void remove_abandoned_scratch();
+
+}  // namespace salbench
