@@ -93,6 +93,11 @@ class Shape:
         found = self._array(f"{self.places.ground_truth}/picks")
         return numpy.unique(found) if found is not None else numpy.zeros(0, dtype=numpy.int32)
 
+    @property
+    def models(self):
+        stages = (stage.partition(".") for stage in self.group)
+        return [model for kind, _, model in stages if kind in ("map", "matched") and model]
+
     def maps(self):
         """(model, "before" or "after" matching) -> n float64 in [0, 1], models in the order of the file."""
         found = {}
@@ -183,6 +188,11 @@ class Shapes:
         """The scans of a mesh that are there, in the order of their views."""
         found = [shape for shape in self.shapes.values() if shape.view and shape.item == item]
         return sorted(found, key=lambda shape: natural(shape.view))
+
+    @property
+    def models(self):
+        """Every model that a shape has a map of."""
+        return sorted({model for shape in self.shapes.values() for model in shape.models})
 
     @property
     def items(self):
