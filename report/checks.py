@@ -157,7 +157,8 @@ def hardest_class(results, claim):
 
 def curve(results, claim):
     table = results.table("human_curve.csv", "n", "metric", "n_meshes", "mean", "sd")
-    rows = table[table["metric"] == claim["metric"]].sort_values("n").set_index("n")
+    rows = table[table["metric"] == claim["metric"]].dropna(subset=["n", "n_meshes", "mean"])
+    rows = rows.drop_duplicates("n").sort_values("n").set_index("n")
     if len(rows) < 2:
         raise Missing("human_curve.csv has no curve of this metric")
     return rows
@@ -168,17 +169,35 @@ def step(rows, first, second):
     if first not in rows.index or second not in rows.index:
         raise Missing(f"the curve does not reach from {first} to {second} participants")
     a, b = rows.loc[first], rows.loc[second]
-    variances = numpy.array([a["sd"] ** 2 / a["n_meshes"], b["sd"] ** 2 / b["n_meshes"]])
-    freedom = variances.sum() ** 2 / (variances[0] ** 2 / (a["n_meshes"] - 1) + variances[1] ** 2 / (b["n_meshes"] - 1))
-    half = stats.t.ppf(0.975, freedom) * numpy.sqrt(variances.sum())
+    half = welch_half_width([a["sd"], b["sd"]], [a["n_meshes"], b["n_meshes"]])
     rise = b["mean"] - a["mean"]
     n = int(min(a["n_meshes"], b["n_meshes"]))
     return Finding("", f"n = {int(first)} to {int(second)}", rise, rise - half, rise + half, n)
 
 
+def welch_half_width(deviations, counts):
+    """Half of the 95 % interval of the difference of two means; NaN where a deviation is undefined."""
+    deviations, counts = numpy.asarray(deviations, dtype=float), numpy.asarray(counts, dtype=float)
+    if not (counts > 1).all():
+        return float("nan")
+    variances = deviations ** 2 / counts
+    if not variances.sum() > 0:
+        return float(variances.sum())
+    shares = variances / variances.sum()
+    return float(stats.t.ppf(0.975, 1 / (shares ** 2 / (counts - 1)).sum()) * numpy.sqrt(variances.sum()))
+
+
+def undefined(findings):
+    """The first finding without an interval, undecided; None if there is none."""
+    found = next((finding for finding in findings if finding.low != finding.low), None)
+    if found:
+        found.verdict = UNDECIDED
+    return found
+
+
 def rises(results, claim):
     finding = step(curve(results, claim), float(claim["a"]), float(claim["b"]))
-    return decide(claim, finding, finding.low > 0 or finding.high < 0, finding.value > 0)
+    return undefined([finding]) or decide(claim, finding, finding.low > 0 or finding.high < 0, finding.value > 0)
 
 
 def flat_beyond(results, claim):
@@ -187,7 +206,10 @@ def flat_beyond(results, claim):
     beyond = [n for n in rows.index if n >= float(claim["a"])]
     if len(beyond) < 2:
         raise Missing(f"the curve ends before {claim['a']} participants")
-    largest = max((step(rows, first, second) for first, second in zip(beyond, beyond[1:])), key=lambda found: found.low)
+    steps = [step(rows, first, second) for first, second in zip(beyond, beyond[1:])]
+    if undefined(steps):
+        return undefined(steps)
+    largest = max(steps, key=lambda found: found.low)
     largest.verdict = FAILS if largest.low > 0 else UNDECIDED if few(claim["dataset"], largest.n) else HOLDS
     return largest
 
@@ -195,6 +217,8 @@ def flat_beyond(results, claim):
 def drop_not_significant(results, claim):
     rows = curve(results, claim)
     finding = step(rows, float(claim["a"]), rows.index.max())
+    if undefined([finding]):
+        return finding
     if finding.low > 0 or finding.high < 0:
         finding.verdict = FAILS
     else:

@@ -14,7 +14,7 @@ def cumulative_data(results, dataset):
     """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it, per model."""
     name = f"mean_histograms_{dataset}.csv"
     table = results.table(name, "bin_left")
-    columns = [column for column in table if column != "bin_left" and table[column].notna().any()]
+    columns = [column for column in table if column != "bin_left" and table[column].sum() > 0]
     if not columns:
         raise Missing(f"{name} holds no distribution: the run left the {spoken(dataset)} out.")
     density = table[columns].to_numpy()

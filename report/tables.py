@@ -121,7 +121,7 @@ def decided(p):
 
 def participants_worth(shop):
     """For each model and leading metric the smallest n whose human curve reaches the model's mean."""
-    curve = shop.results.table("human_curve.csv", "n", "metric", "mean")
+    curve = shop.results.table("human_curve.csv", "n", "metric", "mean").dropna(subset=["n", "mean"])
     rows = []
     for model in shop.models:
         if model == "HS":
