@@ -33,12 +33,6 @@ struct StageEntries {
 
 constexpr std::size_t kShardGrain = 16;  // shards that are listed by one thread at a time
 
-std::string attribute_inputs(const Recipe& recipe) {
-  std::string text;
-  for (const auto& [name, digest] : recipe.inputs) text += fmt::format("{}: {}\n", name, digest.hex());
-  return text;
-}
-
 Attributes describe(const Recipe& recipe, std::string_view kind, const Digest& key, const Digest& content,
                     const ArtefactNote& note) {
   Attributes attributes = {{"program", fmt::format("salbench {}", SALBENCH_VERSION)},
@@ -48,7 +42,7 @@ Attributes describe(const Recipe& recipe, std::string_view kind, const Digest& k
                            {"stage_version", std::int64_t{recipe.stage_version}},
                            {"options", recipe.options},
                            {"seed", recipe.seed},
-                           {"inputs", attribute_inputs(recipe)},
+                           {"inputs", inputs_text(recipe)},
                            {"key", key.hex()},
                            {"content", content.hex()},
                            {"seconds", note.seconds}};

@@ -2,7 +2,6 @@
 #include "cache/verify.h"
 
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,21 +20,6 @@ std::optional<T> attribute(const Attributes& attributes, std::string_view name) 
   const AttributeValue* value = find_attribute(attributes, name);
   const T* typed = value == nullptr ? nullptr : std::get_if<T>(value);
   return typed == nullptr ? std::nullopt : std::optional(*typed);
-}
-
-// One "name: digest" per line; the digest comes last, so a name may hold anything but a line break.
-std::optional<decltype(Recipe::inputs)> inputs_from(const std::string& text) {
-  constexpr std::string_view kBetween = ": ";
-  decltype(Recipe::inputs) inputs;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t at = line.rfind(kBetween);
-    if (at == std::string::npos) return {};
-    const auto digest = digest_from_hex(std::string_view(line).substr(at + kBetween.size()));
-    if (!digest) return {};
-    inputs.emplace_back(line.substr(0, at), *digest);
-  }
-  return inputs;
 }
 
 // Describes where the content contradicts the name; empty if they agree.
@@ -72,7 +56,7 @@ std::optional<Recipe> recipe_from(const Attributes& attributes) {
   const auto version = attribute<std::int64_t>(attributes, "stage_version");
   const auto options = attribute<std::string>(attributes, "options");
   const auto seed = attribute<std::string>(attributes, "seed");
-  const auto inputs = inputs_from(attribute<std::string>(attributes, "inputs").value_or("?"));
+  const auto inputs = inputs_from_text(attribute<std::string>(attributes, "inputs").value_or("?"));
   if (!stage || !version || !options || !seed || !inputs || !std::in_range<std::int32_t>(*version)) return {};
   return Recipe{*stage, static_cast<std::int32_t>(*version), *options, *seed, *inputs};
 }

@@ -200,7 +200,8 @@ def hardest_class(results, claim):
 
 def curve(results, claim):
     table = results.table("human_curve.csv", "n", "metric", "n_meshes", "mean", "sd")
-    rows = table[table["metric"] == claim["metric"]].dropna(subset=["n", "n_meshes", "mean"]).sort_values("n").set_index("n")
+    rows = table[table["metric"] == claim["metric"]].dropna(subset=["n", "n_meshes", "mean"])
+    rows = rows.drop_duplicates("n").sort_values("n").set_index("n")
     if len(rows) < 2:
         raise Missing("human_curve.csv has no curve of this metric")
     return rows
@@ -218,7 +219,7 @@ def step(rows, first, second):
     variances = numpy.array([a["sd"], b["sd"]]) ** 2 / n
     if n.min() < 2 or not variances.sum() > 0:
         return finding
-    freedom = variances.sum() ** 2 / (variances ** 2 / (n - 1)).sum()
+    freedom = 1 / ((variances / variances.sum()) ** 2 / (n - 1)).sum()
     half, half90 = stats.t.ppf([0.975, 0.95], freedom) * numpy.sqrt(variances.sum())
     finding.low, finding.high = finding.value - half, finding.value + half
     finding.low90, finding.high90 = finding.value - half90, finding.value + half90

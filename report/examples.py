@@ -42,7 +42,7 @@ def thumbnails(shop):
     """(item, path of its painted ground truth) of the meshes and point clouds that have both, in the order of their names."""
     found = scored_pictures(shop, "meshes") + scored_pictures(shop, "clouds")
     painters = sorted(found, key=lambda painter: natural(painter.shape.name))
-    return [(painter.shape.item, painter.paint("ground truth")) for painter in painters if painter.shape.item in shop.pages]
+    return [(painter.shape.item, painter.paint("ground truth")) for painter in painters if painter.shape.item in shop.items]
 
 
 def leading_labels(shop):
@@ -144,7 +144,7 @@ def difficult(shop, dataset, metric, count=3):
             tiles.append(map_tile(shop, painter, name, "after", f"best: {name}"))
     gallery = Gallery(f"The {lowest_scoring}: ground truth, and the map of the model that scores best there, after "
                       f"matching; below: {leading_labels(shop)}.", [("", tiles)])
-    return printed(shop, f"difficult-{dataset}-{metric}", gallery)
+    return printed(shop, f"difficult-{dataset}-{shop.metric_files[metric]}", gallery)
 
 
 def printed(shop, name, gallery):

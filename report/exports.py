@@ -8,7 +8,7 @@ import h5py
 import numpy
 
 from report.names import natural, shape_name
-from report.results import Unusable
+from report.results import LARGEST, Unusable
 
 BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)  # what h5py raises for a damaged or foreign file
 
@@ -29,10 +29,11 @@ class Picture:
     coverage: numpy.ndarray = None  # H x W uint8: part of the pixel that the shape fills; None: all of it
 
     def camera(self):
-        """Its position in the coordinates of the shape, and which axis points up in the picture, "y" or "z"."""
+        """Its position in the coordinates of the shape, None where it is infinitely far, and which axis points up in the
+        picture, "y" or "z"."""
         rows = self.view_projection[[0, 1, 3]]
         eye = numpy.linalg.svd(rows)[2][-1]  # the only point that has no place in the image
-        return eye[:3] / eye[3], "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
+        return eye[:3] / eye[3] if abs(eye[3]) > 1e-12 else None, "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
 
 
 @dataclass(frozen=True)
@@ -69,10 +70,15 @@ class Shape:
         except BROKEN:
             return None
 
+    def _coordinates(self, path):
+        """An array of numbers that can be computed with, or None."""
+        values = self._array(path)
+        return values if values is not None and usable(values) else None
+
     @property
     def points(self):
         """n x 3 float64, or None."""
-        return self._array(self.places.points)
+        return self._coordinates(self.places.points)
 
     @property
     def faces(self):
@@ -93,6 +99,11 @@ class Shape:
         found = self._array(f"{self.places.ground_truth}/picks")
         return numpy.unique(found) if found is not None else numpy.zeros(0, dtype=numpy.int32)
 
+    @property
+    def models(self):
+        stages = (stage.partition(".") for stage in self.group)
+        return [model for kind, _, model in stages if kind in ("map", "matched") and model]
+
     def maps(self):
         """(model, "before" or "after" matching) -> n float64 in [0, 1], models in the order of the file."""
         found = {}
@@ -106,18 +117,19 @@ class Shape:
 
     def seen_from(self):
         """From where the points of a scan or point cloud were seen, or None."""
-        eye = self._array(self.places.eye)
+        eye = self._coordinates(self.places.eye)
         return eye.reshape(-1) if eye is not None and eye.size == 3 else None
 
     def shade(self):
         """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from the camera of the
         picture; None if that or normals are not in the export."""
-        points, normals, camera = self.points, self._array(self.places.normals), self.seen_from()
+        points, normals, camera = self.points, self._coordinates(self.places.normals), self.seen_from()
         camera = self.eye()[0] if camera is None else camera
         if points is None or normals is None or camera is None or len(normals) != len(points):
             return None
         towards = camera - points
-        towards /= numpy.linalg.norm(towards, axis=1, keepdims=True)
+        lengths = numpy.linalg.norm(towards, axis=1, keepdims=True)
+        towards /= numpy.where(lengths > 0, lengths, 1)
         return numpy.clip(numpy.abs((normals * towards).sum(axis=1)), 0, 1)
 
     def eye(self):
@@ -136,15 +148,22 @@ class Shape:
             return None
         if weights.dtype.kind == "u":  # share of the type's range
             weights = weights.astype(numpy.float32) / numpy.iinfo(weights.dtype).max
-        return Picture(primitive, weights, shade, self._array("picture/view_projection"), self._array("picture/depth"),
+        if not usable(weights):
+            return None
+        return Picture(primitive, weights, shade, self._coordinates("picture/view_projection"), self._array("picture/depth"),
                        self._array("picture/coverage"))
+
+
+def usable(values):
+    return bool((numpy.abs(values) <= LARGEST).all())
 
 
 def unit_range(values):
     """Minimum to 0 and maximum to 1; NaN to 0; a constant map becomes 0."""
     values = numpy.nan_to_num(numpy.asarray(values, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
-    low, high = values.min(), values.max()
-    return (values - low) / (high - low) if high > low else numpy.zeros_like(values)
+    halves = values / 2  # whose differences do not overflow
+    low, high = halves.min(), halves.max()
+    return (halves - low) / (high - low) if high > low else numpy.zeros_like(values)
 
 
 class Shapes:
@@ -183,6 +202,11 @@ class Shapes:
         """The scans of a mesh that are there, in the order of their views."""
         found = [shape for shape in self.shapes.values() if shape.view and shape.item == item]
         return sorted(found, key=lambda shape: natural(shape.view))
+
+    @property
+    def models(self):
+        """Every model that a shape has a map of."""
+        return sorted({model for shape in self.shapes.values() for model in shape.models})
 
     @property
     def items(self):

@@ -14,7 +14,7 @@ def cumulative_data(results, dataset):
     """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it, per model."""
     name = f"mean_histograms_{dataset}.csv"
     table = results.table(name, "bin_left")
-    columns = [column for column in table if column != "bin_left" and table[column].notna().any()]
+    columns = [column for column in table if column != "bin_left" and table[column].sum() > 0]
     if not columns:
         raise Missing(f"{name} holds no distribution: the run left the {spoken(dataset)} out.")
     density = table[columns].to_numpy()
@@ -106,7 +106,7 @@ def performance(shop, dataset, metric):
         panels[panel].set_xlim(0.5, len(heat) + 0.5)
         panels[panel].xaxis.get_major_locator().set_params(integer=True)
     draw_ranking(panels["bars"], ranking, shop, of)
-    name = f"performance-{dataset}-{metric}"
+    name = f"performance-{dataset}-{shop.metric_files[metric]}"
     block = shop.plot(name, figure, heat,
                       f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs from "
                       f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
@@ -140,7 +140,7 @@ def human_data(results, metric):
     """Columns n, n_meshes, mean, ci95_low, ci95_high of human_curve.csv."""
     columns = ["n", "n_meshes", "mean", "ci95_low", "ci95_high"]
     table = results.table("human_curve.csv", "metric", *columns)
-    rows = table[table["metric"] == metric][columns].reset_index(drop=True)
+    rows = table[table["metric"] == metric][columns].dropna(subset=["n", "mean"]).reset_index(drop=True)
     if rows.empty:
         raise Missing(f"human_curve.csv has no {results.metric(metric).label}.")
     return rows

@@ -2,7 +2,7 @@
 """Pictures of the report as files, each painted once and named by what it shows."""
 
 from report.exports import BROKEN
-from report.names import KIND_NAMES, file_name
+from report.names import KIND_NAMES
 from report.painting import paint, visible, with_dots
 
 QUALITY, SMALL_QUALITY = 88, 78  # of WebP: no visible blocks; about 5 kB at 400 x 400, 3 kB at half of it
@@ -14,7 +14,7 @@ class Painter:
     def __init__(self, shop, shape):
         self.shop = shop
         self.shape = shape
-        self.folder = f"pictures/{file_name(shape.item)}"
+        self.folder = f"pictures/{shop.shape_files[shape.item]}"
         self.picture = shape.picture()
         self.faces = shape.faces
         self.maps = {("ground truth", "before"): shape.ground_truth, **shape.maps()}
@@ -28,7 +28,7 @@ class Painter:
         if not self.has(what, when):
             return ""
         of = self.shape.view or KIND_NAMES[self.shape.dataset].replace(" ", "-")
-        name = f"{self.folder}/{of}-{file_name(what)}-{when}{'-small' if small else ''}.webp"
+        name = f"{self.folder}/{of}-{self.shop.model_files[what]}-{when}{'-small' if small else ''}.webp"
         if name in self.shop.painted:
             return name
         try:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Names, order and colours of models; names of files and of items."""
 
+import hashlib
 import re
 
 DATASETS = {"meshes": "Meshes", "scans": "Scans", "clouds": "Point clouds"}
@@ -40,13 +41,36 @@ def spoken(dataset):
 
 def natural(name):
     """Sort key: item 9 stands before item 10."""
-    return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in re.split(r"(\d+)", str(name)) if part]
+    return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", str(name)) if part]
 
 
-def file_name(name):
-    """A file name for any item, one-to-one: every character but letters, digits and ".-_" becomes its code between +."""
-    escaped = re.sub(r"[^A-Za-z0-9._-]", lambda match: f"+{ord(match[0]):x}+", str(name))
-    return f"+2e+{escaped[1:]}" if escaped.startswith(".") else escaped
+_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)  # no files on Windows, whatever the extension
+_LONGEST = 200  # a file system takes 255 bytes: this leaves room for extensions and for the names of pictures
+
+
+def _escaped(pattern, text):
+    return re.sub(pattern, lambda match: f"+{ord(match[0]):x}+", text)
+
+
+def file_name(name, with_capitals=True):
+    """A file name for any item, one-to-one: every character but letters, digits and ".-_" becomes its code between +, and
+    so do a "." at either end and the first letter of a device's name. The end of a long one becomes a digest."""
+    text = _escaped(r"[^A-Za-z0-9._-]" if with_capitals else r"[^a-z0-9._-]", str(name))
+    text = _escaped(r"^\.|\.$", text) or "+"
+    if _DEVICES.match(text):
+        text = _escaped("^.", text)
+    if len(text) > _LONGEST:
+        text = f"{text[:_LONGEST - 33]}~{hashlib.md5(str(name).encode('utf-8', 'surrogatepass')).hexdigest()}"
+    return text
+
+
+def file_names(names):
+    """name -> file name, all different also where capitals do not count: on macOS and Windows. In names that would be the
+    same there, capitals become their codes."""
+    alike = {}
+    for name in dict.fromkeys(names):
+        alike.setdefault(file_name(name).lower(), []).append(name)
+    return {name: file_name(name, with_capitals=len(group) == 1) for group in alike.values() for name in group}
 
 
 def shape_name(item, view=""):

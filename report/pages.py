@@ -42,21 +42,21 @@ class Pages:
     def __init__(self, shop, navigation):
         self.shop = shop
         self.templates = environment()
-        self.common = {"results": shop.results, "navigation": navigation, "banners": banners(shop.results),
-                       "program": text_of(shop.results.record.get("program"))}
+        self.common = {"results": shop.results, "navigation": navigation, "program": text_of(shop.results.record.get("program"))}
 
     def write(self, path, template, **values):
         """path: within the report; links in templates start with `root`."""
         root = "../" * path.count("/")
-        text = self.templates.get_template(template).render(path=path, root=root, **self.common, **values)
+        text = self.templates.get_template(template).render(
+            path=path, root=root, banners=banners(self.shop.results), **self.common, **values)
         self.shop.file(path).write_text(text, encoding="utf-8")
 
 
 def banners(results):
-    """What every page says at its top: simulated participants, a run that did not end."""
+    """What every page says at its top: simulated participants, a run that did not end, numbers that cannot be used."""
     said = []
     if results.simulated:
         said.append("Simulated participants: the program made the ground truth. These scores say nothing about people.")
     if results.state != "finished":
         said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
-    return said
+    return said + results.unusable

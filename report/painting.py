@@ -41,10 +41,12 @@ def paint(picture, values, faces):
 
 
 def project(points, view_projection, size):
-    """m x 2 pixel coordinates (x to the right, y down) and m depths of m x 3 points; size: (width, height)."""
+    """m x 2 pixel coordinates (x to the right, y down) and m depths of m x 3 points; NaN where the depth is 0; size: (width,
+    height)."""
     clip = numpy.column_stack([points, numpy.ones(len(points))]) @ numpy.asarray(view_projection).T
-    x, y = (clip[:, :2] / clip[:, 3:]).T
-    return numpy.column_stack([(x + 1) / 2 * size[0], (1 - y) / 2 * size[1]]), clip[:, 3]
+    depth = clip[:, 3]
+    x, y = (clip[:, :2] / numpy.where(depth == 0, numpy.nan, depth)[:, None]).T
+    return numpy.column_stack([(x + 1) / 2 * size[0], (1 - y) / 2 * size[1]]), depth
 
 
 def visible(picture, picks, points):
@@ -54,15 +56,15 @@ def visible(picture, picks, points):
         return numpy.zeros((0, 2))
     height, width = picture.primitive.shape
     at, depth = project(points[picks], picture.view_projection, (width, height))
-    column, row = numpy.floor(at).astype(int).T
-    inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
-    column, row = column.clip(0, width - 1), row.clip(0, height - 1)
-    farthest = numpy.full(len(picks), -numpy.inf)  # of the 3 x 3 pixels about the pick, so that picks on edges count
+    inside = ((at >= 0) & (at < (width, height))).all(axis=1)
+    at, depth = at[inside], depth[inside]
+    column, row = at.astype(int).T
+    farthest = numpy.full(len(at), -numpy.inf)  # of the 3 x 3 pixels about the pick, so that picks on edges count
     for down in (-1, 0, 1):
         for right in (-1, 0, 1):
             near = picture.depth[(row + down).clip(0, height - 1), (column + right).clip(0, width - 1)]
             farthest = numpy.maximum(farthest, numpy.where(numpy.isfinite(near), near, -numpy.inf))
-    return at[inside & (depth <= farthest * (1 + DEPTH_MARGIN))]
+    return at[depth <= farthest * (1 + DEPTH_MARGIN)]
 
 
 def with_dots(image, dots):

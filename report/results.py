@@ -16,6 +16,7 @@ NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv
 TEXT_COLUMNS = ("dataset", "item", "class", "view", "model", "metric", "model_a", "model_b", "metric_a", "metric_b", "group",
                 "node")
 DATASETS = ("meshes", "scans", "clouds")
+LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
 
 class Missing(Exception):
@@ -33,6 +34,7 @@ class Results:
     folder: Path
     record: dict = field(default_factory=dict)    # run.yaml with every scalar as text
     remarks: list = field(default_factory=list)   # lines of '#' at the head of run.yaml and of the tables
+    unusable: list = field(default_factory=list)  # sentences on tables that hold infinite numbers
     pivoted: dict = field(default_factory=dict)   # (data set, metric) -> scores, for statistics.scores
     _tables: dict = field(default_factory=dict)
 
@@ -59,10 +61,13 @@ class Results:
         if not path.is_file():
             return Missing(f"{name} is not in the results folder: run salbench again, to its end.")
         try:
-            table, remarks = read_table(path)
+            table, remarks, unusable = read_table(path)
         except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
             return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
         self.remarks += [remark for remark in remarks if remark not in self.remarks]
+        if unusable:
+            self.unusable.append(f"{name} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
+                                 f"{LARGEST:g}: they count as undefined.")
         return table
 
     @property
@@ -137,11 +142,12 @@ def flatten(values, prefix=""):
 
 
 def number_of(value, otherwise=float("nan")):
-    """A number that run.yaml holds as text."""
+    """A number that run.yaml holds as text; `otherwise` in place of one that is none, infinite or too large."""
     try:
-        return float(value)
+        number = float(value)
     except (TypeError, ValueError):
         return otherwise
+    return number if abs(number) <= LARGEST else otherwise
 
 
 def head_remarks(path):
@@ -156,17 +162,23 @@ def head_remarks(path):
 
 
 def read_table(path):
-    """A table and the remarks at its head. Text columns keep names such as "NA"; all others are float64, NaN where
-    empty. A last line that was cut short is filled with NaN."""
+    """A table, the remarks at its head, and how many of its numbers cannot be used: infinite ones and those beyond LARGEST.
+    Text columns keep names such as "NA"; all others are float64, NaN where empty or unusable. A last line that was cut short
+    is filled with NaN."""
     remarks = head_remarks(path)
     try:
         table = pandas.read_csv(path, skiprows=len(remarks), dtype=str, keep_default_na=False, encoding_errors="replace")
     except pandas.errors.EmptyDataError:
-        return pandas.DataFrame(), remarks
+        return pandas.DataFrame(), remarks, 0
+    unusable = 0
     for column in table:
         values = table[column].fillna("")
         table[column] = values if column in TEXT_COLUMNS else numbers(values)
-    return table, remarks
+        if column not in TEXT_COLUMNS:
+            too_large = table[column].abs() > LARGEST
+            unusable += int(too_large.sum())
+            table[column] = table[column].mask(too_large)
+    return table, remarks, unusable
 
 
 def numbers(values):

@@ -8,6 +8,7 @@ from report import style
 from report.blocks import Cell, Note, Table, attempt, cell, count
 from report.results import Missing, flatten, number_of, text_of
 
+MOST_INTERVALS = 100_000  # of a timeline; the program writes a thousand at most
 FACTS = ("program", "results", "host", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
 
 
@@ -118,6 +119,9 @@ def timeline(shop):
     if table.empty or not width > 0:
         raise Missing("timeline.csv holds no interval: nothing was computed.")
     table = table.dropna(subset=["start", "end", "busy"])
+    table = table[table["end"] > table["start"]]
+    if table["end"].max() > MOST_INTERVALS * width:
+        raise Missing("timeline.csv cannot be drawn: its intervals are too short for its end.")
     cores = (table["busy"] / (table["end"] - table["start"])).rename("cores")
     wide = table.assign(cores=cores).pivot_table(index="start", columns="node", values="cores", aggfunc="sum").fillna(0)
     largest = wide.sum().sort_values(ascending=False, kind="stable").index

@@ -4,7 +4,7 @@
 import json
 
 from report import statistics
-from report.names import DATASETS, file_name
+from report.names import DATASETS
 from report.results import Missing
 
 
@@ -48,7 +48,7 @@ def write_scripts(shop, script, table):
         text = json.dumps(value, separators=(",", ":"), ensure_ascii=True)
         shop.file(path).write_text(f"{name} = {text};\n", encoding="utf-8")
     later = [metric for metric in table["scores"] if metric not in shop.results.leading]
-    table["files"] = {metric: f"{script.removesuffix('.js')}-{file_name(metric)}.js" for metric in later}
+    table["files"] = {metric: f"{script.removesuffix('.js')}-{shop.metric_files[metric]}.js" for metric in later}
     for metric, path in table["files"].items():
         write(path, f"salbench.scores.scores[{json.dumps(metric)}]", table["scores"].pop(metric))
     write(script, "salbench.scores", table)

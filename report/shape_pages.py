@@ -4,7 +4,7 @@
 from report import run_page, statistics
 from report.blocks import Cell, Gallery, Note, Table, Tile, attempt, cell
 from report.gallery import Painter, describe
-from report.names import KIND_NAMES, file_name, natural, spoken
+from report.names import KIND_NAMES, natural, spoken
 from report.results import DATASETS, Missing
 from report.viewer import label_of, write_scripts
 
@@ -64,10 +64,6 @@ def items(results, shapes):
     except Missing:
         pass
     return {item: found[item] for item in sorted(found, key=natural)}
-
-
-def path_of(item):
-    return f"shapes/{file_name(item)}.html"
 
 
 def score_cells(scores, dataset, item, view, model):
@@ -178,6 +174,6 @@ def write_page(shop, pages, scores, item, category):
     if views and not scans:
         scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
-    pages.write(path_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
+    pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
                 entries=entries, second=label_of(first[0], "after") if first else "", own_blocks=own_blocks,
                 scan_blocks=scan_blocks, scans=scans, notes=notes(shop, item, bool(shapes)))

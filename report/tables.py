@@ -86,7 +86,7 @@ def per_class(shop, dataset, metric):
             cells.append(class_cell(row, known.get((name, model)), model in best[name]))
         rows.append(cells)
     label = of.label
-    identifier = f"classes-{dataset}-{metric}"
+    identifier = f"classes-{dataset}-{shop.metric_files[metric]}"
     write_per_class(shop.file(f"data/{identifier}.tex"), order, models, by_cell, best, of, dataset, shop.results.simulated)
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
@@ -165,7 +165,7 @@ def decided(p):
 
 def participants_worth(shop):
     """For each model and leading metric the smallest n whose human curve reaches the model's mean."""
-    curve = shop.results.table("human_curve.csv", "n", "metric", "mean")
+    curve = shop.results.table("human_curve.csv", "n", "metric", "mean").dropna(subset=["n", "mean"])
     rows = []
     for model in shop.models:
         if model == "HS":

@@ -9,7 +9,6 @@ import zlib
 import numpy
 from scipy.spatial import cKDTree
 
-from report.names import file_name
 from report.painting import palette
 
 
@@ -82,7 +81,7 @@ def write_scripts(shop, shapes, titles, maps):
         text = script(shape, labelled, titles[shape.name])
         if text is None:
             continue
-        path = f"{file_name(shape.name)}.js"
+        path = f"{shop.shape_files[shape.name]}.js"
         shop.file(f"shapes/{path}").write_text(text, encoding="utf-8")
         entries.append({"name": shape.name, "title": titles[shape.name], "path": path})
     return entries

@@ -15,7 +15,7 @@ class Workshop:
     folder: Folder
     shapes: object                                # exports.Shapes
     protocols: dict = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
-    pages: dict = field(default_factory=dict)      # item -> path of its page within the report
+    items: dict = field(default_factory=dict)      # item -> class of every shape that has a page
     examples: tuple = ()                          # meshes that the user wants to see
     painted: set = field(default_factory=set)     # pictures that were written
     painters: list = None                         # of the shapes with pictures; made when first needed
@@ -27,6 +27,10 @@ class Workshop:
         self.models = statistics.models(self.results)
         self.colours = names.colours(self.models)
         self.dashes = names.dashes(self.models)
+        # Each name as a part of file names.
+        self.shape_files = names.file_names([*self.items, *(shape.name for shape in self.shapes.shapes.values())])
+        self.model_files = names.file_names(["ground truth", *self.models, *self.shapes.models])
+        self.metric_files = names.file_names(self.results.metrics)
 
     def plot(self, name, figure, data, alt, caption):
         """Writes a figure as SVG and PDF with the plotted numbers beside it."""
@@ -43,4 +47,5 @@ class Workshop:
         return self.folder.file(name)
 
     def page_of(self, item):
-        return self.pages.get(item, "")
+        """The path of the page of an item within the report; empty if it has none."""
+        return f"shapes/{self.shape_files[item]}.html" if item in self.items else ""

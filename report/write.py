@@ -23,20 +23,19 @@ def write_report(options, protocols):
     folder = Folder(out)
     style.apply()
     copy_static(folder)
-    meshes = shape_pages.items(results, shapes)
-    shop = Workshop(results, folder, shapes, protocols, {item: shape_pages.path_of(item) for item in meshes},
+    shop = Workshop(results, folder, shapes, protocols, shape_pages.items(results, shapes),
                     tuple(options.examples.split(",")) if options.examples else (), other=other)
     comparing = [("comparison.html", "Comparison")] if other else []
     metrics = [("metrics.html", "Other metrics")] if metric_page.others(shop) else []
     pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), *metrics, ("run.html", "Run"),
                          *comparing])
     scores = shop.scores = shape_pages.Scores(results)
-    for item, category in meshes.items():
+    for item, category in shop.items.items():
         shape_pages.write_page(shop, pages, scores, item, category)
     score_pages.write_page(
         shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores", heading="Scores of every shape",
         caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.",
-        shapes=shop.pages, thumbnails=examples.thumbnails(shop))
+        shapes={item: shop.page_of(item) for item in shop.items}, thumbnails=examples.thumbnails(shop))
     if other:
         first, second = comparison.names(results, other)
         score_pages.write_page(

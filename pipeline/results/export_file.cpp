@@ -19,12 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kScores = "scores", kMeans = "means";
 
-std::string inputs_text(const Recipe& recipe) {
-  std::string lines;
-  for (const auto& [name, content] : recipe.inputs) lines += fmt::format("{}: {}\n", name, content.hex());
-  return lines;
-}
-
 // Under the names that they have in the artefact.
 Attributes attributes_of(const Recipe& recipe, std::string_view kind, const Job& job) {
   return {{"stage", recipe.stage},     {"stage_version", std::int64_t{recipe.stage_version}},

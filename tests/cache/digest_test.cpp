@@ -49,6 +49,21 @@ TEST(Key, EveryComponentCounts) {
   EXPECT_EQ(key_of(Recipe(base)), key_of(base));
 }
 
+// Names that a mesh's file may have; the text of those without a line break is that of earlier versions.
+TEST(Key, InputsReadBackWhateverTheyAreCalled) {
+  const Digest digest{1, 2};
+  Recipe recipe{"set", 1, {}, {}, {{"a: b", digest}, {"c\\n /d", digest}, {"", digest}}};
+  EXPECT_EQ(inputs_text(recipe),
+            "a: b: " + digest.hex() + "\nc\\n /d: " + digest.hex() + "\n: " + digest.hex() + "\n");
+  for (const char* name : {"line\nbreak", "\n", "\nat the beginning", "at the end\n", "\n\n", "return\r",
+                           "tab\t", "\x1b[31m", "a: 00000000000000010000000000000002\nb", "\xff"})
+    recipe.inputs.emplace_back(name, digest);
+  EXPECT_EQ(inputs_from_text(inputs_text(recipe)), recipe.inputs);
+  EXPECT_EQ(inputs_from_text(""), decltype(Recipe::inputs){});
+  for (const char* wrong : {"a", "a: 1\n", "/", "\n", "a: \n"})
+    EXPECT_EQ(inputs_from_text(wrong), std::nullopt) << wrong;
+}
+
 TEST(Key, FieldsDoNotRunIntoEachOther) {
   EXPECT_NE(key_of({"ab", 1, "c", "", {}}), key_of({"a", 1, "bc", "", {}}));
 }

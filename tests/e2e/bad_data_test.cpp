@@ -46,6 +46,23 @@ struct BadData {
 };
 void PrintTo(const BadData& param, std::ostream* out) { *out << param.name; }
 
+// Sets name their items in their artefacts, line by line.
+TEST(OddNames, OfItemsAreReadBackFromTheCache) {
+  const Workspace toy(kMeshesOnly);
+  const std::vector<std::string> names = {"line\nbreak", "\r\n", "tab\t", "\x1b[31m", "a: b", "C:\\con "};
+  for (const std::string& name : names) write_toy_item(toy.data(), name, shapes::bumpy_sphere(2));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_THAT(scored_items(toy), testing::IsSupersetOf(names));
+  const std::string results = toy.results();
+  const Outcome again = toy.salbench("run");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.err, testing::Not(HasSubstr("warning: "))) << again.err;
+  EXPECT_EQ(toy.computed(), 0U);
+  EXPECT_EQ(toy.results(), results);
+  const Outcome verified = run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()});
+  EXPECT_EQ(verified.status, 0) << verified.out;
+}
+
 class BadItem : public testing::TestWithParam<BadData> {};
 
 TEST_P(BadItem, IsNamedInOneLineAndTheOthersAreScored) {

@@ -31,6 +31,11 @@ def text_of(path, thing, name):
     return value.decode()
 
 
+def lines_of(inputs):
+    """One per input; a line that begins with / goes on with the name of the line before."""
+    return [line.replace("\0", "\n") for line in inputs.replace("\n/", "\0").split("\n")[:-1]]
+
+
 def check_attributes(path, file):
     texts = {name: text_of(path, file, name) for name in TEXTS}
     if texts["stage"] != path.parent.parent.name:
@@ -39,7 +44,7 @@ def check_attributes(path, file):
         fail(path, "another program's file")
     if int(file.attrs["stage_version"]) < 1 or float(file.attrs["seconds"]) < 0:
         fail(path, "stage_version or seconds is impossible")
-    for line in texts["inputs"].splitlines():
+    for line in lines_of(texts["inputs"]):
         name, _, digest = line.rpartition(": ")
         if not name or len(digest) != 32 or set(digest) - set("0123456789abcdef"):
             fail(path, f"'{line}' is no input with its digest")
@@ -86,7 +91,7 @@ def points_of(path, file):
 
 def check_score_table(path, file, results):
     """One row per shape, in the order of the attribute `inputs`."""
-    names = [line.rpartition(": ")[0] for line in text_of(path, file, "inputs").splitlines()]
+    names = [line.rpartition(": ")[0] for line in lines_of(text_of(path, file, "inputs"))]
     expected = results[results["model"] == text_of(path, file, "stage").partition(".")[2]]
     expected = expected.set_index("name").reindex(names)
     if not numpy.array_equal(expected[METRICS].to_numpy(), file["scores"][:], equal_nan=True):

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whatever items and models are called, their files are apart, on macOS and Windows too."""
+
+import html
+import itertools
+import re
+import unittest
+import urllib.parse
+
+import fixture
+import support
+from report.names import file_name, file_names, natural
+
+ALIKE = ["case", "Case", "CASE"]
+ODD = ["con", "CON", "Con.obj", "lpt1", "aux ", "nul.", "com1.", "dot.", "dots..", "space ", ".hidden", "a:b", "a/b", "a\\b", "line\nbreak",
+       "tab\t", "..", ".", "+", "+2b+", "~", "", "a+20+b", "é", "E\u0301", "\u212a", "ß", "\ud800", "²", "x" * 250, "X" * 250, "形" * 60,
+       "形" * 61]
+RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{digit}" for port in ("com", "lpt") for digit in range(10))}
+
+
+class FileNames(unittest.TestCase):
+    def expect_apart_everywhere(self, names):
+        """names: name -> file name."""
+        folded = [name.casefold() for name in names.values()]
+        self.assertEqual(len(set(folded)), len(names), names)
+        for name in names.values():
+            self.assertRegex(name, r"^[A-Za-z0-9._+~-]+$")
+            self.assertNotIn(name.lower().split(".")[0], RESERVED)
+            self.assertFalse(name.startswith(".") or name.endswith("."), name)
+            self.assertLessEqual(len(name), 200)
+
+    def test_of_odd_names_are_apart(self):
+        self.expect_apart_everywhere(file_names(ALIKE + ODD))
+
+    def test_of_all_short_names_are_apart(self):
+        names = ["".join(letters) for n in (1, 2, 3, 4) for letters in itertools.product("aA4+1.", repeat=n)]
+        self.expect_apart_everywhere(file_names(names))
+
+    def test_do_not_depend_on_the_order(self):
+        names = ALIKE + ODD
+        self.assertEqual(file_names(names), file_names(reversed(names)))
+        self.assertEqual(file_names(ALIKE), {"case": "case", "Case": "+43+ase", "CASE": "+43++41++53++45+"})
+
+    def test_are_as_they_were_where_nothing_is_alike(self):
+        for name, known in (("52", "52"), ("52_3", "52_3"), ("LS", "LS"), ("Armadillo.v2", "Armadillo.v2"), ("a b", "a+20+b"),
+                            (".x", "+2e+x"), ("ground truth", "ground+20+truth"), ("console", "console"), ("x" * 200, "x" * 200)):
+            self.assertEqual(file_names([name, "other"])[name], known)
+            self.assertEqual(file_name(name), known)
+
+    def test_any_name_has_its_place_in_the_order(self):
+        self.assertEqual(sorted(["10", "9", "²", "x2"], key=natural), ["9", "10", "x2", "²"])
+
+
+class Files(support.ReportTest):
+    def test_of_a_report_are_apart_and_each_link_leads_to_its_own(self):
+        names = [name for name in ALIKE + ODD if "/" not in name and "\ud800" not in name and name not in ("", ".", "..")]
+        items = [(name, "human") for name in names]
+        models = ("LS", "ls", "RS")
+        out = self.folder / "out"
+        fixture.write_results(out, items, models, results=fixture.results_table(items, models, views=1))
+        fixture.write_export(out / "shapes.h5", items[:8], models, views=1, size=16)
+        with support.without_figures():
+            to = self.report("out")
+        paths = [path.relative_to(to) for path in to.rglob("*")]
+        folded = [str(path).casefold() for path in paths]
+        self.assertEqual(len(set(folded)), len(paths))
+        for part in {part for path in paths for part in path.parts}:
+            self.assertRegex(part, r"^[A-Za-z0-9._+~-]{1,255}$")
+            self.assertNotIn(part.casefold().split(".")[0], RESERVED)
+            self.assertFalse(part.endswith("."), part)
+        for path in to.rglob("*.html"):
+            for link in re.findall(r'(?:href|src)="([^"#:]+)"', path.read_text(encoding="utf-8")):
+                self.assertTrue((path.parent / urllib.parse.unquote(html.unescape(link))).is_file(), f"{path}: {link}")
+        links = dict(re.findall(r'<a href="(shapes/[^"]*)">([^<]*)</a>', support.page(to, "scores.html").split('class="links"')[1]))
+        self.assertEqual(sorted(html.unescape(name) for name in links.values()), sorted(names))
+        for link, name in links.items():
+            self.assertIn(f"<h1>Mesh {name}, human</h1>", support.page(to, link))
+        pictures = {path.parent.name for path in to.glob("pictures/*/*-ls-after.webp")}
+        self.assertEqual(len(pictures), 8)
+        for folder in pictures:
+            ours, theirs = (to / "pictures" / folder / f"mesh-{model}-after.webp" for model in ("+4c++53+", "ls"))
+            self.assertNotEqual(ours.read_bytes(), theirs.read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers that cannot be computed with: infinite, huge or missing ones count as undefined, the report says so, and nothing is
+written to the error stream."""
+
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+import warnings
+from pathlib import Path
+
+import h5py
+import numpy
+import pandas
+
+import fixture
+import support
+from report.exports import unit_range
+from report.results import TEXT_COLUMNS, number_of, read_table
+
+ITEMS = fixture.eight_meshes()[:3]
+MODELS = ("LS", "HS", "RS")
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Numbers(unittest.TestCase):
+    def test_of_a_table_are_counted_where_they_cannot_be_used(self):
+        path = Path(self.enterContext(support.tempfile.TemporaryDirectory())) / "table.csv"
+        path.write_text("item,a,b\ninf,inf,\n1,-inf,\n2,1e150,\n3,-1e151,nan\n4,x,\n")
+        table, _, unusable = read_table(path)
+        self.assertEqual(unusable, 3)
+        self.assertEqual(table["item"].tolist(), ["inf", "1", "2", "3", "4"])
+        self.assertEqual(table["a"].dropna().tolist(), [1e150])
+        self.assertTrue(table["b"].isna().all())
+
+    def test_of_run_yaml(self):
+        self.assertEqual([number_of(text, -1) for text in ("2.5", "inf", "-1e200", "x", None)], [2.5, -1, -1, -1, -1])
+        self.assertNotEqual(number_of("nan"), number_of("nan"))
+
+    def test_the_range_of_a_map_does_not_overflow(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(unit_range([-1.7e308, 0, 1.7e308]).tolist(), [0, 0.5, 1])
+            self.assertEqual(unit_range([5e-324, 5e-324]).tolist(), [0, 0])
+
+
+class OddNumbers(support.ReportTest):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        names = (*fixture.METRICS, "kl", "auc_judd")
+        results = fixture.with_metrics(fixture.results_table(ITEMS, MODELS, views=2), names)
+        cls.whole = cls.folder / "whole"
+        fixture.write_results(cls.whole, ITEMS, MODELS, results=results, extra=fixture.metric_lines(names))
+        fixture.write_timeline(cls.whole)
+
+    def odd(self, name, file, rows, *values):
+        """A copy of the results with these values, in turns, in the rows of every column of numbers."""
+        out = self.folder / name
+        if not out.exists():
+            shutil.copytree(self.whole, out)
+        table = pandas.read_csv(out / file, dtype=str, keep_default_na=False)
+        for place, at in enumerate(range(len(table))[rows]):
+            for column in table:
+                if column not in TEXT_COLUMNS:
+                    table.loc[at, column] = values[place % len(values)]
+        table.to_csv(out / file, index=False)
+        return out
+
+    def expect_quiet(self, name, out):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(support.make(out, self.folder / f"{name}-report"), (0, ""))
+        for path in (self.folder / f"{name}-report").rglob("*.html"):
+            self.assertNotRegex(path.read_text(encoding="utf-8"), r">\s*[-−]?(inf|nan)\b", path)
+        return self.folder / f"{name}-report"
+
+    def test_in_each_table(self):
+        for file in sorted(path.name for path in self.whole.glob("*.csv")):
+            for case, (rows, values) in {"infinite": (slice(None, None, 2), ["inf"]), "huge": (slice(1, None), ["1e308", "-1e308"]),
+                                         "none": (slice(None), [""]), "zeros": (slice(None), ["0"])}.items():
+                with self.subTest(file, case=case), support.without_figures():
+                    name = f"{file}-{case}"
+                    self.expect_quiet(name, self.odd(name, file, rows, *values))
+
+    def test_the_report_says_so_and_shows_a_dash(self):
+        out = self.odd("said", "results.csv", slice(0, 2), "inf")
+        with support.without_figures():
+            to = self.expect_quiet("said", out)
+        cells = len(fixture.METRICS) + 4  # two more metrics and two counts
+        for path in ("index.html", "run.html", "shapes/1.html"):
+            self.assertIn(f"results.csv holds {2 * cells} numbers that are infinite", support.page(to, path))
+        self.assertEqual(support.rows(support.page(to, "shapes/1.html"), "mesh-scores")[0][:2], ["LS", "–"])
+
+    def test_drawn_by_the_command_nothing_is_on_its_error_stream(self):
+        for file in ("results.csv", "summary.csv", "per_class.csv", "human_curve.csv", "mean_histograms_meshes.csv", "timeline.csv"):
+            out = self.odd("drawn", file, slice(0, None, 5), "inf", "", "-1e308")
+        with h5py.File(out / "shapes.h5", "w"):
+            pass
+        fixture.write_export(out / "shapes.h5", ITEMS, MODELS, views=1, size=32)
+        with h5py.File(out / "shapes.h5", "r+") as file:
+            file["1/mesh/vertices"][0] = numpy.inf
+            file["1/map.LS/saliency"][:2] = 1.7e308, -1.7e308
+            file["1_0/scan/points"][0] = file["1_0/scan/camera"][()]
+            file["2/picture/weights"][...] = 0
+            file["2/picture/view_projection"][...] = 0
+            file["2/mesh/vertices"][:2] = [[1.7e308], [-1.7e308]]
+            file["3/ground_truth/saliency"][...] = numpy.nan
+            file["3/picture/view_projection"][3] = 0
+        done = subprocess.run([sys.executable, "-B", "-P", "-W", "error::RuntimeWarning", "-m", "report", out, "--to", self.folder / "drawn-report"],
+                              env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(done.returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
