@@ -14,8 +14,6 @@ namespace salbench {
 // Throws StorageError with errno's reason: the system has none left.
 [[noreturn]] void fail_for_lack(const char* of);
 
-bool commands_are_ended();  // by end_commands (process.h)
-
 struct CommandFiles {
   int output, errors;
   int input = -1;  // -1: nothing to read

@@ -9,10 +9,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "io/kept_command.h"
+#include "io/process.h"
 
 namespace salbench {
 namespace {
@@ -100,6 +102,12 @@ bool RunningCommand::tell(const std::string& line) {
   kept_output_.clear();
   kept_answers_.clear();
   return ::write(lines_->writing(), line.data(), line.size()) == static_cast<ssize_t>(line.size());
+}
+
+std::size_t RunningCommand::unread() const {
+  int bytes = 0;
+  ::ioctl(lines_->reading(), FIONREAD, &bytes);
+  return static_cast<std::size_t>(bytes);
 }
 
 RunningCommand::Event RunningCommand::wait(Clock::time_point deadline, bool until_asked_to_end,

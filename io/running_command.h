@@ -56,6 +56,7 @@ class RunningCommand {
 
   // False if it has left so many lines unread that there is no room. What it printed before is forgotten.
   bool tell(const std::string& line);
+  std::size_t unread() const;  // bytes of what it was told
   void tell_no_more() { lines_->close_writing(); }
 
   bool has_ended() { return kept_.end().has_value(); }

@@ -35,6 +35,7 @@ class ServingCommand::Running {
 
   RunningCommand process;
   bool busy = false;  // with a line
+  bool has_answered = false;
 
  private:
   bool ended_ = false;
@@ -48,6 +49,10 @@ ServingCommand::ServingCommand(const std::string& command, const fs::path& folde
 ServingCommand::~ServingCommand() = default;
 
 bool ServingCommand::has_ended() { return running_->process.has_ended(); }
+
+bool ServingCommand::has_answered() const { return running_->has_answered; }
+
+std::string ServingCommand::failure() { return running_->process.failure(); }
 
 std::string ServingCommand::last_lines() const { return running_->process.said(); }
 
@@ -64,10 +69,11 @@ bool ServingCommand::ask(const std::string& line, const std::string& answer,
     throw InputError(too_late(timeout, process));
   }
   running_->busy = false;
-  if (event == Event::answered) return true;
-  if (const std::string failure = process.failure(); !failure.empty())
-    throw InputError(fmt::format("{}; {}", failure, process.said()));
-  return false;
+  if (event == Event::answered) return running_->has_answered = true;
+  const std::string failure = process.failure();
+  const bool unread = process.unread() == line.size() + 1;
+  if (failure.empty() || (running_->has_answered && unread)) return false;
+  throw InputError(fmt::format("{}; {}", failure, process.said()));
 }
 
 }  // namespace salbench

@@ -21,9 +21,12 @@ class ServingCommand {
   ~ServingCommand();
 
   bool has_ended();
+  bool has_answered() const;  // any line
+  std::string failure();      // why it did not end well, empty if it did; after it has ended
 
   // Writes the line, and waits until the command prints `answer` as a whole line. What else it prints counts
-  // for messages only. False if it ended with status 0 instead. Throws InputError and CommandInterrupted as
+  // for messages only. False if the line is not to blame for its end: it ended with status 0, or, after
+  // other answers, without reading the line. Otherwise throws InputError and CommandInterrupted as
   // run_command does; the command is of no use then.
   bool ask(const std::string& line, const std::string& answer, std::chrono::duration<double> timeout);
 

@@ -167,7 +167,7 @@ Model command_model(const std::string& name, const Section& models) {
   const CommandOptions options = read_options(written);
   const auto depends = std::make_shared<DependedFiles>(options.depends, written);
   const auto command = std::make_shared<ShapeCommand>(
-      options.command, std::chrono::duration<double>(options.timeout), depends);
+      name, options.command, std::chrono::duration<double>(options.timeout), depends);
   return {.name = name,
           .version = options.version,
           .options = command_text(options, false),

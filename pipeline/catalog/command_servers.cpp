@@ -4,7 +4,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include "io/process.h"
 #include "io/scratch_folder.h"
 #include "io/serving_command.h"
 #include "stages/core/errors.h"
@@ -17,11 +19,11 @@ struct CommandServers::Server {
 
   ScratchFolder folder;  // outlives the process
   ServingCommand process;
-  bool has_answered = false;
 };
 
-CommandServers::CommandServers(std::string command, std::function<void(const std::filesystem::path&)> prepare)
-    : command_(std::move(command)), prepare_(std::move(prepare)) {}
+CommandServers::CommandServers(std::string name, std::string command,
+                               std::function<void(const std::filesystem::path&)> prepare)
+    : name_(std::move(name)), command_(std::move(command)), prepare_(std::move(prepare)) {}
 
 CommandServers::~CommandServers() = default;
 
@@ -35,8 +37,18 @@ std::unique_ptr<CommandServers::Server> CommandServers::idle_or_new() {
       idle_.pop_back();
     }
     if (!server->process.has_ended()) return server;
+    warn_of_end(*server);
   }
   return std::make_unique<Server>(command_, prepare_);
+}
+
+void CommandServers::warn_of_end(Server& server) {
+  if (commands_are_ended()) return;  // by us
+  const std::string failure = server.process.failure();
+  const std::lock_guard lock(mutex_);
+  if (failure.empty() || std::exchange(warned_, true)) return;
+  spdlog::warn("models.{}: {} after an answer, which counts; the next shape gets a new process; {}", name_,
+               failure, server.process.last_lines());
 }
 
 std::string CommandServers::ask(const std::string& line, const std::string& answer,
@@ -44,18 +56,18 @@ std::string CommandServers::ask(const std::string& line, const std::string& answ
   while (true) {
     std::unique_ptr<Server> server = idle_or_new();
     if (server->process.ask(line, answer, timeout)) {
-      server->has_answered = true;
       std::string said = server->process.last_lines();
       const std::lock_guard lock(mutex_);
       idle_.push_back(std::move(server));
       return said;
     }
-    // One that ends well after some shapes has had enough of them: this shape is the next one's first.
-    if (!server->has_answered)
+    // One that ends after some shapes has had enough of them: this shape is the next one's first.
+    if (!server->process.has_answered())
       throw InputError(
           fmt::format("the command ended without an answer; when it is done with a line of {{list}} it must "
                       "print the second file of that line; {}",
                       server->process.last_lines()));
+    warn_of_end(*server);
   }
 }
 

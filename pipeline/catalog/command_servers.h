@@ -16,24 +16,28 @@ namespace salbench {
 // object.
 class CommandServers {
  public:
-  // `prepare` fills the folder that one is about to be started in.
-  CommandServers(std::string command, std::function<void(const std::filesystem::path&)> prepare);
+  // The name is for messages; `prepare` fills the folder that one is about to be started in.
+  CommandServers(std::string name, std::string command,
+                 std::function<void(const std::filesystem::path&)> prepare);
   CommandServers(const CommandServers&) = delete;
   CommandServers& operator=(const CommandServers&) = delete;
   ~CommandServers();
 
-  // Has one of them answer a line (ServingCommand::ask), and returns the last lines that it printed. Throws
-  // InputError, after which that one is ended; CommandInterrupted; StorageError.
+  // Has one of them answer a line (ServingCommand::ask), and returns the last lines that it printed. One that
+  // ended after an answer is replaced, with a warning if it did not end well. Throws InputError, after which
+  // the one that was asked is ended; CommandInterrupted; StorageError.
   std::string ask(const std::string& line, const std::string& answer, std::chrono::duration<double> timeout);
 
  private:
   struct Server;
   std::unique_ptr<Server> idle_or_new();
+  void warn_of_end(Server& server);
 
-  std::string command_;
+  std::string name_, command_;
   std::function<void(const std::filesystem::path&)> prepare_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Server>> idle_;
+  bool warned_ = false;  // once for all shapes
 };
 
 }  // namespace salbench

@@ -76,14 +76,15 @@ std::string file_of(std::string_view placeholder) {
 
 }  // namespace
 
-ShapeCommand::ShapeCommand(std::string command, std::chrono::duration<double> timeout,
-                           std::shared_ptr<DependedFiles> depends)
+ShapeCommand::ShapeCommand(const std::string& name, std::string command,
+                           std::chrono::duration<double> timeout, std::shared_ptr<DependedFiles> depends)
     : command_(std::move(command)), timeout_(timeout), depends_(std::move(depends)) {
   prepare_commands();
   if (!has(kListOfMeshes) && !has(kListOfShapes)) return;
   std::string line = command_;
   for (const std::string_view list : {kListOfMeshes, kListOfShapes}) replace_all(line, list, kListFile);
-  servers_.emplace(std::move(line), [files = depends_](const fs::path& folder) { files->link_into(folder); });
+  servers_.emplace(name, std::move(line),
+                   [files = depends_](const fs::path& folder) { files->link_into(folder); });
 }
 
 ScalarField ShapeCommand::map(const ShapeParts& shape) {

@@ -40,7 +40,8 @@ struct ShapeParts {
 // Runs the command for one shape, or with a list, keeps it at work for one after the other.
 class ShapeCommand {
  public:
-  ShapeCommand(std::string command, std::chrono::duration<double> timeout,
+  // The name is the model's, for messages.
+  ShapeCommand(const std::string& name, std::string command, std::chrono::duration<double> timeout,
                std::shared_ptr<DependedFiles> depends);
 
   // The values that it writes, one per point. Several threads may ask. Throws InputError if it fails,

@@ -323,6 +323,25 @@ TEST(ListCommand, MayEndWellBetweenShapes) {
   }
 }
 
+// Each answer counts, and none of the shapes is to blame.
+TEST(ListCommand, ThatEndsBadlyBetweenShapesFailsNoneOfThem) {
+  const Workspace toy;
+  write_toy_item(toy.data(), "3", shapes::bumpy_sphere(3));
+  for (const std::string delay : {"", "sleep 0.3; "}) {  // before the next line is written, and after
+    toy.forget_everything();
+    fs::remove(toy / "log");
+    toy.configure(command_config(
+        fmt::format("gpu: 1, command: \"{}\"", serving(toy, ":", delay + "echo no more >&2; exit 3"))));
+    const Outcome run = toy.salbench("run");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(lines_of(toy / "log"), 3U);
+    EXPECT_THAT(cells_of(toy.results(), "MINE"), SizeIs(3));
+    EXPECT_THAT(lines_with(run.err, "warning: models.MINE: the command ended with status 3 after an answer"),
+                SizeIs(1))
+        << run.err;
+  }
+}
+
 TEST(ListCommand, AChangedFileRerunsItsMaps) {
   const Workspace toy;
   const fs::path weights = toy.write("weights.txt", "1");

@@ -95,6 +95,23 @@ TEST(ServingCommand, SaysHowItEnded) {
       << "asked again, no SIGPIPE";
 }
 
+TEST(ServingCommand, ThatEndsAfterAnAnswerFailsNoLineThatItHasNotRead) {
+  const ScratchFolder folder;
+  for (const std::string ending : {"exit 3", "kill -9 $$"}) {
+    ServingCommand early("read -r line; echo x; " + ending, folder.path());
+    EXPECT_EQ(failure_of(early), "");
+    EXPECT_TRUE(early.has_answered());
+    EXPECT_EQ(failure_of(early), "ended");
+    EXPECT_NE(early.failure(), "");
+    ServingCommand at_fault("read -r line; echo x; read -r line; " + ending, folder.path());
+    EXPECT_EQ(failure_of(at_fault), "");
+    EXPECT_THAT(failure_of(at_fault), StartsWith("the command ")) << "it has read the line";
+    ServingCommand unready(ending, folder.path());
+    EXPECT_THAT(failure_of(unready), StartsWith("the command ")) << "it has never answered";
+    EXPECT_FALSE(unready.has_answered());
+  }
+}
+
 TEST(ServingCommand, IsEndedAtTheTimeoutEvenIfItResists) {
   const ScratchFolder folder;
   ServingCommand command("trap '' TERM; echo ready; while :; do sleep 0.1; done", folder.path());
