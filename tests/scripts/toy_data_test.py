@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scripts that take a folder like the real data's, over one of toys: they run, and print the table that they promise."""
+
+import os
+import random
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import pandas
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+PROGRAM = Path(os.environ["SALBENCH_PROGRAM"])
+PYTHON = ["/usr/bin/python3", "-B"]
+
+
+def make_data(data):
+    """Two meshes with saliency and picks, and what was published of them: tables of made-up numbers."""
+    shapes = data / "SchellingData"
+    subprocess.run([SCRIPTS / "slurm/toy_meshes.py", shapes / "Meshes", "2", "24", "12"], check=True)
+    chance = random.Random(1)
+    for folder in ("Distributions", "RawData"):
+        (shapes / folder).mkdir()
+    for item in (1, 2):
+        (shapes / f"Distributions/{item}.val").write_text("".join(f"{chance.random():.4f}\n" for _ in range(24 * 12)))
+        for participant in range(4):
+            picks = sorted(chance.sample(range(24 * 12), 5))
+            (shapes / f"RawData/{item}_{participant}.pid").write_text("".join(f"{pick}\n" for pick in picks))
+    reference = data / "reference"
+    reference.mkdir()
+    models = ["LS", "CS", "PS", "MS"]
+    bins = [{"bin_left": i / 100, **{model: 1 + chance.random() for model in ("GS", *models)}} for i in range(100)]
+    pandas.DataFrame(bins).to_csv(reference / "mean_histograms_scans.csv", index=False)
+    rows = [{"item": item, "view": view, "model": model, "auc": chance.random(), "nss": chance.random(), "cc": chance.random()}
+            for item in (1, 2) for view in range(12) for model in models]
+    pandas.DataFrame(rows).to_csv(reference / "published_scan_by_scan.csv", index=False)
+
+
+class ToyDataTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory(prefix="toy data ")
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = Path(holder.name)
+        cls.data = cls.folder / "data"
+        make_data(cls.data)
+
+    def printed(self, script, *arguments):
+        """What a script prints about the toys."""
+        done = subprocess.run([*PYTHON, SCRIPTS / script, self.data, *arguments], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+        return done.stdout
+
+    def test_bench(self):
+        config = self.folder / "coarse.yaml"
+        config.write_text("scan: {step_degrees: 2}\n")
+        table = self.printed("bench", "--full", "2", "--rounds", "1", "--config", config, "--work", self.folder / "bench",
+                             "--program", PROGRAM)
+        self.assertRegex(table, r"^meshes 1,2, 1 threads, 1 rounds\n *what +seconds +all meshes\n *wall +[\d.]+ +[\d.]+\n")
+        self.assertRegex(table, r"\n *map\.[A-Z]+ of scans +[\d.]+ +[\d.]+\n")
+        self.assertRegex(table, r"\npeak memory: \d+ MB\n$")
+
+    def test_perf_metrics(self):
+        table = self.printed("perf_metrics", "--items", "1", "--rounds", "1", "--build", PROGRAM.parent)
+        for group in ("people against people, curve", "maps of meshes", "maps of scans", "a full run"):
+            self.assertRegex(table, rf"\n{group} +[\d.]+ +[\d.]+ +-?[\d.]+\n")
+
+    def test_scan_readings(self):
+        table = self.printed("scan_readings", "--every", "400", "--only", "up Y", "--work", self.folder / "readings", "--program", PROGRAM)
+        self.assertRegex(table, r"reading +KS +auc +auc published +r auc +nss .*\n.*up Y +0\.\d+ +[\d.]+ +[\d.]+ +-?[\d.]+ ")
+        self.assertNotIn("NaN", table)
+
+
+if __name__ == "__main__":
+    unittest.main()
