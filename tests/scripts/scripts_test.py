@@ -116,7 +116,7 @@ class CheckTest(unittest.TestCase):
             return subprocess.run([scripts / "check", *names], capture_output=True, text=True, env=environment)
         done = checked("faults", "slurm", "bench", "fuzz")
         self.assertEqual((done.returncode, done.stderr), (1, ""))
-        self.assertEqual([re.sub(" +", " ", re.sub(r" \d+ s", " N s", line)) for line in done.stdout.splitlines()], [
+        self.assertEqual([re.sub(" +", " ", re.sub(r" \d+ s\b", " N s", line)) for line in done.stdout.splitlines()], [
             "passed faults N s", "failed slurm N s exit status 3, build/check/slurm.log: the end",
             "skipped bench - needs real data: SALBENCH_DATA",
             "skipped fuzz - needs packages that cannot be installed: scripts/setup fuzz", "1 passed, 1 failed, 2 skipped in N s"])
