@@ -99,6 +99,14 @@ std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'
 // The coarsest resolution of times that a file system has (FAT).
 constexpr std::int64_t kTimeResolution_ns = 2'000'000'000;
 
+std::string zeros(std::size_t size, const fs::path& path) try {
+  return std::string(size, '\0');
+} catch (const std::exception&) {  // bad_alloc, or length_error beyond what a string may be
+  throw InputError(
+      fmt::format("{}: no memory for its {} bytes; use fewer --threads, or leave it out with --items",
+                  path.string(), size));
+}
+
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
 
 }  // namespace
@@ -121,13 +129,22 @@ std::string system_reason(int error) {
   return found == advice.end() ? reason : fmt::format("{}; {}", reason, found->second);
 }
 
+std::string too_many_bytes(std::uint64_t bytes, std::uint64_t most) {
+  return fmt::format("{} bytes: at most {} can be read", bytes, most);
+}
+
 void require_regular_file(const fs::path& path) {
   check_regular(Descriptor(open_file(path, O_RDONLY | O_NONBLOCK)).get(), path);
 }
 
-std::string read_file(const fs::path& path) {
+// The size is judged before memory is taken: a sparse file costs its writer nothing.
+std::string read_file(const fs::path& path, std::uint64_t most) {
   const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
-  std::string bytes(check_regular(file.get(), path), '\0');
+  const std::size_t size = check_regular(file.get(), path);
+  if (size > most)
+    throw InputError(fmt::format("{}: {}; simplify the shape, or copy the file again if it should be smaller",
+                                 path.string(), too_many_bytes(size, most)));
+  std::string bytes = zeros(size, path);
   if (const int error = read_all(file.get(), bytes); error != 0) fail_input(path, error);
   return bytes;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,9 +20,19 @@ using Bytes = std::vector<std::byte>;
 // Throws as read_file does. For files that another library opens.
 void require_regular_file(const std::filesystem::path& path);
 
-// All bytes of a file that the user named. Throws InputError if it is missing, unreadable or not a regular
-// file (pipes and devices never block), StorageError if the system is out of open files or memory.
-std::string read_file(const std::filesystem::path& path);
+// The most that is read of one file of an item, and of one data set in a file: 2 GiB. As text that is a mesh
+// of 25 million vertices, whose descriptors alone take 3.3 GB; a larger file is damaged, or no shape to
+// compare.
+inline constexpr std::uint64_t kMaxItemBytes = std::uint64_t{1} << 31U;
+
+// All bytes of a file that the user named. Throws InputError if it is missing, unreadable, larger than `most`
+// or memory, or not a regular file (pipes and devices never block), StorageError if the system is out of open
+// files.
+std::string read_file(const std::filesystem::path& path,
+                      std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+
+// "9000000000 bytes: at most 2147483648 can be read"
+std::string too_many_bytes(std::uint64_t bytes, std::uint64_t most);
 
 // All bytes of one of our own files; nothing if there is no such file. Throws StorageError if the system does
 // not let us read it to its end: that says nothing about the bytes.

@@ -7,6 +7,7 @@
 #include "io/hdf5_file.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -139,8 +140,9 @@ ArrayValues read_values(hid_t set, std::size_t count) {
   return values;
 }
 
-// `file`: size of the whole file, bytes.
-Array read_array(hid_t set, const std::string& name, std::uint64_t file) {
+// `file`: size of the whole file, bytes. `most`: bytes of values that are read.
+Array read_array(hid_t set, const std::string& name, std::uint64_t file,
+                 std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
   const Handle type = type_of_set(set);
   if (!is_numeric(type)) refuse("it does not hold numbers");
   const bool real = H5Tget_class(type) == H5T_FLOAT;
@@ -149,6 +151,8 @@ Array read_array(hid_t set, const std::string& name, std::uint64_t file) {
     refuse(fmt::format("its numbers are of {} bytes", size));
   Array array{.name = name, .shape = shape_of(set), .values = {}, .unit = {}, .description = {}};
   check_storage(set, size, array.shape, file);
+  if (const std::uint64_t bytes = bytes_of(size, array.shape); bytes > most)
+    refuse(too_many_bytes(bytes, most));
   const std::size_t count = array.count();
   if (real)
     array.values = size == 8 ? read_values<double>(set, count) : read_values<float>(set, count);
@@ -237,7 +241,7 @@ void Hdf5File::Open::read_all(const std::filesystem::path& path) try {
   const auto lock = library();
   const Open open(path);
   for (const std::string& name : open.arrays()) try {
-      read_array(opened_set(open.file, name), name, open.bytes);
+      read_array(opened_set(open.file, name), name, open.bytes, kMaxItemBytes);
     } catch (const std::exception&) {  // reported when the parent reads it
     }
 } catch (const std::exception&) {  // likewise
@@ -277,7 +281,7 @@ std::vector<std::string> Hdf5File::arrays() const try {
 
 Array Hdf5File::read(const std::string& name) const try {
   const auto lock = library();
-  return read_array(opened_set(open_->file, name), name, open_->bytes);
+  return read_array(opened_set(open_->file, name), name, open_->bytes, kMaxItemBytes);
 } catch (const std::exception& error) {
   throw InputError(fmt::format("{}: data set {}: {}", open_->name, in_quotes(name), error.what()));
 }

@@ -42,7 +42,7 @@ class Hdf5File {
   std::vector<std::string> arrays() const;  // names of the data sets of numbers, sorted. Throws InputError
 
   // One of them, without unit and description. Throws InputError: damaged, values in other files, or larger
-  // than memory.
+  // than kMaxItemBytes or memory.
   Array read(const std::string& name) const;
 
  private:

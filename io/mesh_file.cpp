@@ -40,6 +40,6 @@ Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path, Polyg
   return format->parse(bytes, path.string(), counts);
 }
 
-Mesh read_mesh(const std::filesystem::path& path) { return parse_mesh(read_file(path), path); }
+Mesh read_mesh(const std::filesystem::path& path) { return parse_mesh(read_file(path, kMaxItemBytes), path); }
 
 }  // namespace salbench

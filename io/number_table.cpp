@@ -36,12 +36,6 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(kAround) + 1);
 }
 
-char separator_of(std::string_view line) {
-  for (const char separator : {',', ';', '\t'})
-    if (line.find(separator) != std::string_view::npos) return separator;
-  return kBlanks;
-}
-
 std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
   if (separator == kBlanks) {
@@ -61,6 +55,45 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
   return cells;
 }
 
+// True of "0,5;1" for semicolons: numbers, with a comma within one of them at least.
+bool separates_decimal_commas(char separator, std::string_view line) {
+  const std::vector<std::string_view> cells = cells_of(line, separator);
+  const auto has_comma = [](std::string_view cell) { return !decimal_comma_in(cell).empty(); };
+  return cells.size() > 1 && std::any_of(cells.begin(), cells.end(), has_comma) &&
+         std::all_of(cells.begin(), cells.end(),
+                     [&](std::string_view cell) { return is_number(cell) || has_comma(cell); });
+}
+
+char separator_of(std::string_view line) {
+  for (const char separator : {';', '\t', kBlanks})
+    if (separates_decimal_commas(separator, line)) return separator;
+  for (const char separator : {',', ';', '\t'})
+    if (line.find(separator) != std::string_view::npos) return separator;
+  return kBlanks;
+}
+
+std::size_t count_filled(const std::vector<std::string_view>& cells) {  // without empty ones at the end
+  std::size_t n = cells.size();
+  while (n > 0 && cells[n - 1].empty()) --n;
+  return n;
+}
+
+// True of the two cells of "0,5".
+bool is_one_number(const std::vector<std::string_view>& cells) {
+  return cells.size() == 2 && !decimal_comma_in(fmt::format("{},{}", cells[0], cells[1])).empty();
+}
+
+// "0,05" as two cells: whole numbers, of which one but the first has zeros in front.
+bool look_like_decimal_commas(const std::vector<std::string_view>& cells) {
+  const auto is_whole = [](std::string_view cell) {
+    if (!cell.empty() && (cell[0] == '-' || cell[0] == '+')) cell.remove_prefix(1);
+    return !cell.empty() && is_digits(cell);
+  };
+  return std::all_of(cells.begin(), cells.end(), is_whole) &&
+         std::any_of(cells.begin() + 1, cells.end(),
+                     [](std::string_view cell) { return cell.size() > 1 && cell[0] == '0'; });
+}
+
 // Number from 1 of a column without a header; 0 for a name.
 std::size_t column_number(const std::string& column) {
   std::size_t number = 0;
@@ -71,20 +104,37 @@ std::size_t column_number(const std::string& column) {
 // The cells of a line that the columns name.
 class Columns {
  public:
-  Columns(const TextScanner& in, const std::vector<std::string>& names, std::vector<std::string_view> first)
-      : names_(names) {
-    has_header_ = std::any_of(first.begin(), first.end(),
-                              [](std::string_view word) { return !word.empty() && !is_number(word); });
+  Columns(const TextScanner& in, const std::vector<std::string>& names,
+          const std::vector<std::string_view>& first)
+      : names_(names), size_(first.size()), filled_(count_filled(first)) {
+    has_header_ = std::any_of(first.begin(), first.end(), [](std::string_view word) {
+      return !word.empty() && !is_number(word) && decimal_comma_in(word).empty();
+    });
     for (const std::string& name : names) places_.push_back(place_of(in, name, first));
   }
 
   bool has_header() const { return has_header_; }
 
+  // Throws where a comma that separates is likely to be a decimal one.
+  void check_commas(const TextScanner& in, const std::vector<std::string_view>& cells) const {
+    constexpr std::string_view kAdvice = "write decimal commas, if these are some, as points";
+    const std::size_t filled = count_filled(cells);
+    if (has_header_ ? filled > size_ : cells.size() != size_ && filled != filled_)
+      in.fail(fmt::format("{} columns between commas, but the first line has {}: {}", cells.size(), size_,
+                          kAdvice));
+    if (!has_header_ && look_like_decimal_commas(cells))
+      in.fail(fmt::format(
+          "whole numbers between commas, some with zeros in front: {}, or name the columns in a "
+          "first line",
+          kAdvice));
+  }
+
   std::string_view cell(const TextScanner& in, const std::vector<std::string_view>& cells,
                         std::size_t c) const {
     if (names_[c].empty() && cells.size() > 1)
-      in.fail(fmt::format("the line has {} columns, and the description names none: add `column:`",
-                          cells.size()));
+      in.fail(fmt::format("the line has {} columns, and the description names none: add `column:`{}",
+                          cells.size(),
+                          is_one_number(cells) ? ", or write its decimal comma as a point" : ""));
     if (places_[c] >= cells.size())
       in.fail(fmt::format("the line has {} {}, expected column {}", cells.size(),
                           cells.size() == 1 ? "column" : "columns", described(c)));
@@ -113,12 +163,13 @@ class Columns {
 
   const std::vector<std::string>& names_;
   std::vector<std::size_t> places_;
+  std::size_t size_, filled_;  // cells of the first line; without empty ones at its end
   bool has_header_ = false;
 };
 
 double value_of(const TextScanner& in, std::string_view cell, std::string_view unseen) {
   const std::optional<Number> number = number_in(cell);
-  if (!number) in.fail(fmt::format("{} is not a number", in_quotes(cell)));
+  if (!number) in.fail(fmt::format("{} is not a number{}", in_quotes(cell), decimal_comma_in(cell)));
   if (!number->fits) in.fail(fmt::format("{} does not fit a double", in_quotes(cell)));
   if (is_same_number(number->value, unseen)) return std::numeric_limits<double>::quiet_NaN();
   if (!std::isfinite(number->value)) in.fail(fmt::format("{} is not a finite number", in_quotes(cell)));
@@ -151,6 +202,7 @@ std::vector<ScalarField> parse_columns(std::string_view text, std::string_view n
     const Columns chosen(in, columns, cells);
     for (bool more = !chosen.has_header() || in.next_filled_line(); more; more = in.next_filled_line()) {
       cells = cells_of(in.line(), separator);
+      if (separator == ',') chosen.check_commas(in, cells);
       for (std::size_t c = 0; c < columns.size(); ++c)
         values[c].push_back(value_of(in, chosen.cell(in, cells, c), c == 0 ? unseen : std::string_view()));
     }

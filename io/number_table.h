@@ -20,6 +20,8 @@ struct Elements {
 // The columns named, each by its name in the header or by its number from 1, in the order of `columns`; an
 // empty name is the only column of the text. Commas, semicolons or tabs separate values, whichever the first
 // line has; else blanks do. A first line in which a word is no number is the header. Blank lines are skipped.
+// Decimal commas are refused. Where commas are all that separates, they show in lines of other numbers of
+// columns, or by zeros in front as in 0,05: a header tells such lines from whole numbers.
 //
 // A value of the first column that is `unseen` ("nan" for one that is none) becomes NaN; all others must be
 // finite. Throws InputError, one line "NAME:LINE: what is wrong": also for another number of rows than

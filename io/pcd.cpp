@@ -12,6 +12,7 @@
 #include <lzf.h>
 
 #include "io/cloud_file.h"
+#include "io/file.h"
 #include "io/mesh_parts.h"
 #include "io/pcd_header.h"
 #include "io/text_scanner.h"
@@ -150,6 +151,9 @@ std::vector<char> decompressed(std::string_view& bytes, const Header& header, st
   if (whole > compressed * kMostExpansion)
     throw InputError(fmt::format("{}: {} compressed bytes cannot hold {}: the file is damaged, copy it again",
                                  name, compressed, whole));
+  if (whole > kMaxItemBytes)
+    throw InputError(
+        fmt::format("{}: uncompressed {}; leave points out", name, too_many_bytes(whole, kMaxItemBytes)));
   std::vector<char> body(whole);
   if (lzf_decompress(bytes.data(), compressed, body.data(), whole) != whole)
     throw InputError(fmt::format("{}: the compressed bytes are damaged, copy the file again", name));

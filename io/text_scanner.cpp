@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -84,7 +85,8 @@ Number TextScanner::parsed(std::string_view what, std::string_view type) {
   if (error == std::errc::result_out_of_range)
     fail(fmt::format("{} does not fit {}", in_quotes(found), type));
   if (error != std::errc() || end != digits.data() + digits.size())
-    fail(fmt::format("{} is not {}", in_quotes(found), what));
+    fail(fmt::format("{} is not {}{}", in_quotes(found), what,
+                     std::is_floating_point_v<Number> ? decimal_comma_in(found) : ""));
   return value;
 }
 
@@ -110,6 +112,16 @@ void TextScanner::fail_at(std::size_t line_number, std::string_view what) const 
 std::string_view without_plus(std::string_view word) {
   const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
   return plus ? word.substr(1) : word;
+}
+
+std::string_view decimal_comma_in(std::string_view word) {
+  const std::size_t comma = word.find(',');
+  if (comma == std::string_view::npos || comma + 1 == word.size()) return {};
+  std::string_view before = word.substr(0, comma), after = word.substr(comma + 1);
+  if (!before.empty() && (before[0] == '+' || before[0] == '-')) before.remove_prefix(1);
+  after = after.substr(0, after.find_first_of("eE"));
+  return is_digits(before) && !after.empty() && is_digits(after) ? ": write its decimal comma as a point"
+                                                                 : "";
 }
 
 bool is_digits(std::string_view word) {

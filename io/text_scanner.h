@@ -61,6 +61,9 @@ class TextScanner {
 // A number as std::from_chars takes it: without the plus sign that files do contain.
 std::string_view without_plus(std::string_view word);
 
+// ": write its decimal comma as a point" of a number such as "0,5"; empty for another word.
+std::string_view decimal_comma_in(std::string_view word);
+
 bool is_digits(std::string_view word);  // 0 to 9, or nothing
 
 std::string_view without_byte_order_mark(std::string_view text);

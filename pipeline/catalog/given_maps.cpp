@@ -37,7 +37,7 @@ GivenMaps maps_in_folder(const fs::path& folder) {
   for (const FolderEntry& entry : list_folder(folder))
     if (entry.path.extension() == ".val") maps.items.insert(entry.path.stem().string());
   maps.read = [folder](const std::string& item) -> SourceData {
-    std::string text = read_file(folder / (item + ".val"));
+    std::string text = read_file(folder / (item + ".val"), kMaxItemBytes);
     return {file_digest(text), std::move(text)};
   };
   return maps;

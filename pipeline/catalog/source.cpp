@@ -30,7 +30,7 @@ SourceData read_now(SourceFile& file) {
 
 SourceFile source_file(std::string name, const std::filesystem::path& path, SourceData* data) {
   const auto read = [path]() -> SourceData {
-    std::string text = read_file(path);
+    std::string text = read_file(path, kMaxItemBytes);
     return {file_digest(text), std::move(text)};
   };
   return source_file(std::move(name), path.string(), read, data);

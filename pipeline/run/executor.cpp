@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run/executor.h"
 
+#include <new>
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -71,6 +73,13 @@ void Executor::compute(const JobRef& ref, std::vector<SourceData> files) {
   } catch (const CommandInterrupted&) {  // the job stays open: a later run computes it
   } catch (const InputError& error) {
     fail(ref, error.what());
+  } catch (const std::bad_alloc&) {
+    const SourceFiles& read = sources_of(context_, ref);
+    if (read.empty()) return fail(ref, current_defect(), true);
+    fail(ref,
+         fmt::format("{}{}: no memory for what it holds; use fewer --threads, or leave the item out with "
+                     "--items",
+                     read[0].place, read.size() == 1 ? "" : fmt::format(" and {} more", read.size() - 1)));
   } catch (...) {
     fail(ref, current_defect(), true);
   }

@@ -144,6 +144,26 @@ const BadData kBadData[] = {
        fs::create_symlink("no such file", data / kPicks);
      },
      {"2_1.pid", "cannot be read"}},
+    {"SparseMesh",
+     [](const fs::path& data) { fs::resize_file(data / kMesh, std::uintmax_t{10} << 30U); },
+     {"2.off: 10737418240 bytes: at most 2147483648"}},
+    {"SparseSaliency",
+     [](const fs::path& data) { fs::resize_file(data / kSaliency, std::uintmax_t{10} << 30U); },
+     {"2.val: 10737418240 bytes: at most 2147483648"}},
+    {"SparsePicks",
+     [](const fs::path& data) { fs::resize_file(data / kPicks, std::uintmax_t{10} << 30U); },
+     {"2_1.pid: 10737418240 bytes: at most 2147483648"}},
+    {"DecimalCommaInACoordinate",
+     [](const fs::path& data) { replace_line(data / kMesh, 3, "0,5 0 0"); },
+     {"2.off:3: \"0,5\" is not a number: write its decimal comma as a point"}},
+    {"DecimalCommaInSaliency",
+     [](const fs::path& data) { replace_line(data / kSaliency, 7, "0,5"); },
+     {"2.val:7: \"0,5\" is not a number: write its decimal comma as a point"}},
+    {"PolygonThatCrossesItself",
+     [](const fs::path& data) {
+       write_file(data / kMesh, "OFF 4 1\n0 0 0\n1 1 0\n1 0 0\n0 1 0\n4 0 1 2 3\n");
+     },
+     {"2.off:6: edges 1 and 3 of the face (counted from 1) cross each other"}},
 };
 INSTANTIATE_TEST_SUITE_P(BadData, BadItem, testing::ValuesIn(kBadData),
                          [](const auto& test) { return test.param.name; });

@@ -247,6 +247,13 @@ TEST(Pcd, RefusesCompressedBytesThatAreCutOrDamaged) {
   append_raw(bomb, std::uint32_t{4});
   append_raw(bomb, std::uint32_t{89478485U * 24U});
   expect_refusal(bomb + "abcd", "a.pcd", "4 compressed bytes cannot hold 2147483640");
+  // A little more than can be read, by as many bytes as can hold it.
+  constexpr std::uint32_t kWhole = 89478486U * 24U, kPacked = kWhole / 88 + 1;
+  std::string large = pcd_header(89478486, 1, "binary_compressed");
+  append_raw(large, kPacked);
+  append_raw(large, kWhole);
+  expect_refusal(large + std::string(kPacked, '\0'), "a.pcd",
+                 "a.pcd: uncompressed 2147483664 bytes: at most 2147483648 can be read");
 }
 
 // --- PLY ---------------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <iterator>
 #include <map>
+#include <span>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/child_process.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -28,6 +30,35 @@ TEST(File, ReturnsTheBytesThatWereWritten) {
   EXPECT_EQ(read_file(folder / "x.csv"), bytes);
   write_file(folder / "x.csv", "");
   EXPECT_EQ(read_file(folder / "x.csv"), "");
+}
+
+// Sparse files: they take neither disk nor, since their size is judged first, memory.
+TEST(File, TheSizeIsJudgedBeforeItIsRead) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("1.off", "OFF\n");
+  std::filesystem::resize_file(path, kMaxItemBytes + 1);
+  EXPECT_THAT(
+      [&] { read_file(path, kMaxItemBytes); },
+      ThrowsMessage<InputError>(HasSubstr("1.off: 2147483649 bytes: at most 2147483648 can be read; ")));
+  std::filesystem::resize_file(path, 4);
+  EXPECT_EQ(read_file(path, 4), "OFF\n");
+  EXPECT_THROW(read_file(path, 3), InputError);
+}
+
+TEST(File, ThatMemoryDoesNotHoldIsNamed) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("1.off", "OFF\n");
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 30U);
+  const ChildLimits little = {.processor_time = std::chrono::seconds(60), .memory = 64U << 20U};
+  const ChildResult result = run_in_child(little, [&](const Send& send) {
+    try {
+      read_file(path);
+    } catch (const InputError& error) {
+      send(std::as_bytes(std::span(std::string_view(error.what()))));
+    }
+  });
+  if (result.sent.empty() && !result.failure.empty()) GTEST_SKIP() << "a sanitizer ends the process instead";
+  EXPECT_THAT(result.sent, HasSubstr("1.off: no memory for its 1073741824 bytes; use fewer --threads"));
 }
 
 TEST(File, LeavesNoTemporaryFileBehind) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 #include <unistd.h>
 
 #include "io/hdf5_writer.h"
@@ -192,6 +193,30 @@ int read_damaged(const std::filesystem::path& path) {
 TEST(Hdf5File, DamagedBytesNeverEndTheProgram) {
   const TemporaryFolder folder;
   EXPECT_EXIT(::_exit(read_damaged(folder / "maps.h5")), testing::ExitedWithCode(0), "");
+}
+
+// 3 GB on a disk that need not hold a byte of them.
+void write_sparse(const std::filesystem::path& path) {
+  const hsize_t count = 3'000'000'000;
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(1, &count, nullptr), plan = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_alloc_time(plan, H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(plan, H5D_FILL_TIME_NEVER);
+  H5Dclose(H5Dcreate2(file, "52", H5T_STD_U8LE, space, H5P_DEFAULT, plan, H5P_DEFAULT));
+  H5Pclose(plan);
+  H5Sclose(space);
+  H5Fclose(file);
+}
+
+TEST(Hdf5File, ADataSetLargerThanCanBeReadIsNamed) {
+  const TemporaryFolder folder;
+  write_sparse(folder / "maps.h5");
+  const Hdf5File file(folder / "maps.h5");
+  EXPECT_THAT(file.arrays(), testing::ElementsAre("52"));
+  EXPECT_THAT([&] { file.read("52"); },
+              testing::ThrowsMessage<InputError>(
+                  testing::AllOf(testing::HasSubstr("maps.h5: data set \"52\": "),
+                                 testing::HasSubstr("3000000000 bytes: at most 2147483648 can be read"))));
 }
 
 }  // namespace

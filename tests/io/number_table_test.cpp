@@ -57,7 +57,11 @@ TEST(NumberTable, NamesFileLineAndWhatWasExpected) {
             "a.csv:1: no column \"saliency\": the first line has numbers, not names of columns");
   EXPECT_EQ(error_of("1 2\n3\n", "2"), "a.csv:2: the line has 1 column, expected column 2");
   EXPECT_EQ(error_of("x,s\n1,2\n3\n", "s"), "a.csv:3: the line has 1 column, expected column \"s\"");
-  EXPECT_EQ(error_of("1,2\n", ""),
+  EXPECT_EQ(
+      error_of("1,2\n", ""),
+      "a.csv:1: the line has 2 columns, and the description names none: add `column:`, or write its decimal "
+      "comma as a point");
+  EXPECT_EQ(error_of("1,2.5\n", ""),
             "a.csv:1: the line has 2 columns, and the description names none: add `column:`");
   EXPECT_EQ(error_of("1\nx\n", "1"), "a.csv:2: \"x\" is not a number");
   EXPECT_EQ(error_of("1,\n2,3\n", "2"), "a.csv:1: \"\" is not a number");
@@ -68,6 +72,52 @@ TEST(NumberTable, NamesFileLineAndWhatWasExpected) {
   EXPECT_EQ(error_of("1\n1e999\n", "1"), "a.csv:2: \"1e999\" does not fit a double");
   EXPECT_EQ(error_of("1\n1e-999\n", "1"), "a.csv:2: \"1e-999\" does not fit a double");
   EXPECT_EQ(error_of("1\n+-1\n", "1"), "a.csv:2: \"+-1\" is not a number");
+}
+
+// They had been read as zeros.
+TEST(NumberTable, DecimalCommasAreNamed) {
+  EXPECT_EQ(error_of("saliency\n0,5\n", ""),
+            "a.csv:2: \"0,5\" is not a number: write its decimal comma as a point");
+  EXPECT_EQ(error_of("1\n-0,5e-3\n", "1"),
+            "a.csv:2: \"-0,5e-3\" is not a number: write its decimal comma as a point");
+  for (const char* separator : {";", "\t", " "}) {
+    const auto line = [&](const char* a, const char* b) { return std::string(a) + separator + b + "\n"; };
+    const std::string named = ":1: \"0,5\" is not a number: write its decimal comma as a point";
+    EXPECT_EQ(error_of(line("0,5", "1"), "1"), "a.csv" + named);
+    EXPECT_EQ(error_of(line("1", "0,5") + line("1", "0,7"), "2"), "a.csv" + named);
+    EXPECT_EQ(error_of(line("x", "s") + line("0,5", "7"), "x"),
+              "a.csv:2: \"0,5\" is not a number: write its decimal comma as a point");
+  }
+}
+
+// Commas alone: what stands before one is a column, as far as can be told.
+TEST(NumberTable, CommasThatMayBeDecimalOnesAreNamed) {
+  const std::string zeros =
+      "whole numbers between commas, some with zeros in front: write decimal commas, if these are some, as "
+      "points, "
+      "or name the columns in a first line";
+  for (const char* column : {"1", "2"}) {
+    EXPECT_EQ(error_of("0,5\n0,05\n", column), "a.csv:2: " + zeros);
+    EXPECT_EQ(error_of("0,5\n1\n", column),
+              "a.csv:2: 1 columns between commas, but the first line has 2: write decimal commas, if these "
+              "are some, "
+              "as points");
+    EXPECT_EQ(error_of("x,s\n0,1,0,5\n", column),
+              "a.csv:2: 4 columns between commas, but the first line has 2: write decimal commas, if these "
+              "are some, "
+              "as points");
+  }
+  EXPECT_EQ(error_of("-0,125,1,01,2,5,0,75\n", "4"), "a.csv:1: " + zeros);
+}
+
+TEST(NumberTable, OtherTextsBetweenCommasAreReadAsTheyStand) {
+  EXPECT_THAT(column("0,5\n1,7\n", "2"), ElementsAre(5, 7)) << "whole numbers";
+  EXPECT_THAT(column("id,s\n007,0.5\n1,05\n", "s"), ElementsAre(0.5, 5)) << "with a header";
+  EXPECT_THAT(column("007,0.5\n011,1\n", "2"), ElementsAre(0.5, 1)) << "zeros in front of the first";
+  EXPECT_THAT(column("0.25,007\n1,008.\n", "1"), ElementsAre(0.25, 1)) << "decimal points";
+  EXPECT_THAT(column("x,s\n1,2,\n3,4\n", "s"), ElementsAre(2, 4)) << "an empty cell at the end";
+  EXPECT_THAT(column("1,2,\n3,4\n", "2"), ElementsAre(2, 4));
+  EXPECT_THAT(column("1, 2,3\n4, 5,6\n", "2"), ElementsAre(2, 5)) << "blanks behind commas";
 }
 
 }  // namespace

@@ -162,11 +162,12 @@ TEST(Source, TheDigestIsOfTheBytesThatAreHandedOut) {
 // One stage of every mesh is replaced by a body that throws.
 class Thrown : public EditedDuringARun {
  protected:
-  std::vector<Failure> failures_with(const std::function<Value(const JobInputs&)>& body) {
+  std::vector<Failure> failures_with(const std::function<Value(const JobInputs&)>& body,
+                                     const std::string& stage = "fpfh") {
     ToyRun run(data_.path(), store_, kYaml);
-    run.catalog.rows[run.row("fpfh")].run = body;
+    run.catalog.rows[run.row(stage)].run = body;
     run.run();
-    for (const Failure& failure : run.runner.failures()) EXPECT_EQ(run.context.row(failure.job).name, "fpfh");
+    for (const Failure& failure : run.runner.failures()) EXPECT_EQ(run.context.row(failure.job).name, stage);
     return run.runner.failures();
   }
 };
@@ -189,6 +190,20 @@ TEST_F(Thrown, BadDataIsTheItemsAndEverythingElseADefect) {
     EXPECT_EQ(failures[0].defect, one.defect) << one.said;
     EXPECT_THAT(failures[0].cause, HasSubstr(one.said));
   }
+}
+
+TEST_F(Thrown, AFileThatMemoryDoesNotHoldIsTheItems) {
+  const auto no_memory = [](const JobInputs&) -> Value { throw std::bad_alloc(); };
+  const std::string advice =
+      ": no memory for what it holds; use fewer --threads, or leave the item out with --items";
+  std::vector<Failure> failures = failures_with(no_memory, "mesh");
+  ASSERT_EQ(failures.size(), 2U);
+  EXPECT_FALSE(failures[0].defect);
+  EXPECT_EQ(failures[0].cause, (data_ / "Meshes/1.off").string() + advice);
+  failures = failures_with(no_memory, "ground_truth");
+  ASSERT_EQ(failures.size(), 2U);
+  EXPECT_FALSE(failures[0].defect);
+  EXPECT_EQ(failures[0].cause, (data_ / "Distributions/1.val").string() + " and 4 more" + advice);
 }
 
 }  // namespace
