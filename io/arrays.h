@@ -6,9 +6,12 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "stages/core/types.h"
 
 namespace salbench {
 
@@ -28,6 +31,24 @@ struct Array {
 };
 
 using Arrays = std::vector<Array>;
+
+// The array as one value per point: n numbers, n x 1 or 1 x n. Throws InputError for any other shape, and for
+// a whole number that no double is equal to.
+ScalarField point_values(const Array& array);
+bool is_one_per_point(const std::vector<std::size_t>& shape);
+
+[[noreturn]] void refuse_beyond_doubles(std::string_view number);
+
+// Throws InputError beyond 2^53, where doubles have gaps.
+template <class Number>
+double exact_double(Number number) {
+  if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {
+    constexpr Number kLargest = Number{1} << 53U;
+    if (number > kLargest || (std::is_signed_v<Number> && number < Number{0} - kLargest))
+      refuse_beyond_doubles(std::to_string(number));
+  }
+  return static_cast<double>(number);
+}
 
 const Array* find_array(const Arrays& arrays, std::string_view name);  // nullptr if there is none
 

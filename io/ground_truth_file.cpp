@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "io/mat_file.h"
+#include "io/mesh_parts.h"
 #include "io/text_scanner.h"
 #include "io/values_file.h"
 #include "stages/core/errors.h"
@@ -26,6 +28,11 @@ ScalarField all_values(TextScanner& in) {
     expect_end_of_line(in);
   }
   return values;
+}
+
+// Rows of a value and the coordinates of its point.
+std::string_view wrong_with_sample(std::span<const double> row) {
+  return wrong_with_point({row[1], row[2], row[3]});
 }
 
 TruthValues with_points(const std::vector<ScalarField>& columns) {
@@ -86,11 +93,12 @@ TruthValues parse_truth_values(std::string_view bytes, std::string_view name, co
           fmt::format("{}: values per point stand in columns beside x, y and z: write them as text", name));
     std::vector<std::string> columns = {format.column};
     columns.insert(columns.end(), format.points.begin(), format.points.end());
-    return with_points(parse_columns(bytes, name, columns, format.unseen));
+    return with_points(parse_columns(bytes, name, columns, format.unseen, {}, wrong_with_sample));
   }
   if (!is_npy(bytes) && !is_mat(bytes))
     return {parse_columns(bytes, name, {format.column}, format.unseen, elements)[0], {}};
-  ScalarField values = is_npy(bytes) ? parse_npy(bytes, name) : parse_mat(bytes, name, format.variable);
+  ScalarField values =
+      is_npy(bytes) ? parse_npy(bytes, name) : parse_mat_values(bytes, name, format.variable);
   mask_unseen(values, name, format.unseen);
   if (values.size() != elements.n)
     throw InputError(fmt::format("{}: {}", name, wrong_count(values.size(), elements)));

@@ -29,7 +29,8 @@ struct TruthValues {
   ScalarField values;        // one per vertex, face or point; NaN where not seen
   std::vector<Vec3> points;  // of values per point: where they are
 };
-// As many as there are elements; of values per point any number but 0.
+// As many as there are elements; of values per point any number but 0, at coordinates that meshes may have
+// (wrong_with_point).
 TruthValues parse_truth_values(std::string_view bytes, std::string_view name, const ValuesFormat& format,
                                const Elements& elements);
 

@@ -23,11 +23,55 @@ using namespace hdf5;
 
 constexpr std::uint64_t kMaxInflation = 1032;  // the most that deflate can do
 constexpr int kMaxRank = 8;
-constexpr ChildLimits kLimits = {.processor_time = std::chrono::seconds(600)};
+constexpr ChildLimits kLimits = {.processor_time = std::chrono::seconds(600)},
+                      kLimitsOfOneMap = {.processor_time = std::chrono::seconds(60), .memory = 1U << 30U};
 
 [[noreturn]] void refuse(std::string_view what) { throw std::runtime_error(std::string(what)); }
 
 bool is_numeric(hid_t type) { return H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT; }
+
+bool is_unsigned(hid_t type) {
+  return H5Tget_class(type) == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_NONE;
+}
+
+// Aborts if a value does not fit; by default the library stores the largest that does.
+H5T_conv_ret_t refuse_overflow(H5T_conv_except_t what, hid_t, hid_t, void*, void*, void*) {
+  return what == H5T_CONV_EXCEPT_RANGE_HI || what == H5T_CONV_EXCEPT_RANGE_LOW ? H5T_CONV_ABORT
+                                                                               : H5T_CONV_UNHANDLED;
+}
+
+template <class T>
+ArrayValues read_values(hid_t set, std::size_t count) {
+  std::vector<T> values(count);
+  const Handle transfer = property_list(H5P_DATASET_XFER);
+  must(H5Pset_type_conv_cb(transfer, refuse_overflow, nullptr), "H5Pset_type_conv_cb");
+  if (count > 0 && H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, transfer, values.data()) < 0)
+    refuse(
+        "its values cannot be read: damaged, packed by an unknown filter, or beyond the range of their type");
+  return values;
+}
+
+bool is_within(hid_t real_type, std::size_t exponent_bits, std::size_t mantissa_bits) {
+  std::size_t sign = 0, exponent = 0, exponent_size = 0, mantissa = 0, mantissa_size = 0;
+  must(H5Tget_fields(real_type, &sign, &exponent, &exponent_size, &mantissa, &mantissa_size),
+       "H5Tget_fields");
+  return exponent_size <= exponent_bits && mantissa_size <= mantissa_bits;
+}
+
+using Reader = ArrayValues (*)(hid_t set, std::size_t count);
+
+// Reads numbers of a stored type as the narrowest type of ours that is equal to each, but for unsigned ones
+// of 8 bytes, of which the largest are refused; null if there is none.
+Reader reader_of(hid_t type) {
+  if (H5Tget_class(type) == H5T_FLOAT)
+    return is_within(type, 8, 23)    ? read_values<float>
+           : is_within(type, 11, 52) ? read_values<double>
+                                     : nullptr;
+  const std::size_t size = H5Tget_size(type);
+  if (size == 1 && is_unsigned(type)) return read_values<std::uint8_t>;
+  if (size < 4 || (size == 4 && !is_unsigned(type))) return read_values<std::int32_t>;
+  return size <= 8 ? read_values<std::int64_t> : nullptr;
+}
 
 std::string read_text(hid_t attribute, hid_t type, hid_t space) {
   if (H5Tis_variable_str(type) > 0) {
@@ -50,8 +94,8 @@ AttributeValue read_attribute(hid_t object, const char* name) {
   const H5T_class_t kind = H5Tget_class(type);
   if (H5Sget_simple_extent_type(space) != H5S_SCALAR) refuse(in_quotes(name) + " is not a single value");
   if (kind == H5T_STRING) return read_text(attribute, type, space);
-  if (!is_numeric(type) || H5Tget_size(type) > sizeof(double))
-    refuse(in_quotes(name) + " is neither a text nor a number");
+  if (!is_numeric(type) || reader_of(type) == nullptr || (is_unsigned(type) && H5Tget_size(type) == 8))
+    refuse(in_quotes(name) + " is neither a text nor a number that can be read");
   double real = 0;
   std::int64_t integer = 0;
   must(H5Aread(attribute, kind == H5T_FLOAT ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64,
@@ -123,43 +167,21 @@ void check_storage(hid_t set, std::uint64_t value, const std::vector<std::size_t
   if (!plausible) refuse(fmt::format("it claims {} bytes of values, and {} are stored", claimed, stored));
 }
 
-// Aborts if a value does not fit; by default the library stores the largest that does.
-H5T_conv_ret_t refuse_overflow(H5T_conv_except_t what, hid_t, hid_t, void*, void*, void*) {
-  return what == H5T_CONV_EXCEPT_RANGE_HI || what == H5T_CONV_EXCEPT_RANGE_LOW ? H5T_CONV_ABORT
-                                                                               : H5T_CONV_UNHANDLED;
-}
-
-template <class T>
-ArrayValues read_values(hid_t set, std::size_t count) {
-  std::vector<T> values(count);
-  const Handle transfer = property_list(H5P_DATASET_XFER);
-  must(H5Pset_type_conv_cb(transfer, refuse_overflow, nullptr), "H5Pset_type_conv_cb");
-  if (count > 0 && H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, transfer, values.data()) < 0)
-    refuse(
-        "its values cannot be read: damaged, packed by an unknown filter, or beyond the range of their type");
-  return values;
-}
-
 // `file`: size of the whole file, bytes. `most`: bytes of values that are read.
 Array read_array(hid_t set, const std::string& name, std::uint64_t file,
                  std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
   const Handle type = type_of_set(set);
   if (!is_numeric(type)) refuse("it does not hold numbers");
-  const bool real = H5Tget_class(type) == H5T_FLOAT;
-  const std::size_t size = H5Tget_size(type);
-  if (size == 0 || size > (real ? sizeof(long double) : sizeof(std::int64_t)))
-    refuse(fmt::format("its numbers are of {} bytes", size));
+  const Reader read = reader_of(type);
+  if (read == nullptr)
+    refuse(fmt::format("its numbers of {} bytes are wider than float64 and int64: write them as one of these",
+                       H5Tget_size(type)));
   Array array{.name = name, .shape = shape_of(set), .values = {}, .unit = {}, .description = {}};
+  const std::size_t size = H5Tget_size(type);
   check_storage(set, size, array.shape, file);
   if (const std::uint64_t bytes = bytes_of(size, array.shape); bytes > most)
     refuse(too_many_bytes(bytes, most));
-  const std::size_t count = array.count();
-  if (real)
-    array.values = size == 8 ? read_values<double>(set, count) : read_values<float>(set, count);
-  else if (size == 1 && H5Tget_sign(type) == H5T_SGN_NONE)
-    array.values = read_values<std::uint8_t>(set, count);
-  else
-    array.values = size == 8 ? read_values<std::int64_t>(set, count) : read_values<std::int32_t>(set, count);
+  array.values = read(set, array.count());
   return array;
 }
 
@@ -250,7 +272,8 @@ void Hdf5File::Open::read_all(const std::filesystem::path& path) try {
 // Damaged bytes make the library crash before it can refuse them (1.10.8: within some thousand random
 // changes), so a child process reads everything first.
 void Hdf5File::Open::survive_reading(const std::filesystem::path& path) {
-  const ChildResult result = run_in_child(kLimits, [&](const Send&) { read_all(path); });
+  const ChildResult result = run_in_child(
+      kLimits, [&](const Send&) { read_all(path); }, fork_beside_library);
   if (!result.failure.empty())
     throw InputError(fmt::format("{}: damaged: the HDF5 library that reads it {}; write the file again",
                                  path.string(), result.failure));
@@ -284,6 +307,25 @@ Array Hdf5File::read(const std::string& name) const try {
   return read_array(opened_set(open_->file, name), name, open_->bytes, kMaxItemBytes);
 } catch (const std::exception& error) {
   throw InputError(fmt::format("{}: data set {}: {}", open_->name, in_quotes(name), error.what()));
+}
+
+ScalarField read_hdf5_values(const std::filesystem::path& path, std::string_view name) {
+  const auto read = [&] {
+    const Hdf5File file(path, false);
+    const std::vector<std::string> sets = file.arrays();
+    const auto named = std::find(sets.begin(), sets.end(), "saliency");
+    if (named == sets.end() && sets.size() != 1)
+      throw InputError(
+          fmt::format("it has {} data sets of numbers, expected one, or one called 'saliency'", sets.size()));
+    const std::string& chosen = named == sets.end() ? sets[0] : *named;
+    const Array array = file.read(chosen);
+    try {
+      return point_values(array);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("data set {}: {}", in_quotes(chosen), error.what()));
+    }
+  };
+  return numbers_from_child(kLimitsOfOneMap, name, read, fork_beside_library);
 }
 
 }  // namespace salbench

@@ -35,8 +35,7 @@ Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name
 // A file of another program.
 class Hdf5File {
  public:
-  // A child process reads everything first, since damaged bytes may crash the library: call it before the
-  // program has threads. Throws InputError.
+  // A child process reads everything first, since damaged bytes may crash the library. Throws InputError.
   explicit Hdf5File(const std::filesystem::path& path, bool in_child_first = true);
   ~Hdf5File();
   std::vector<std::string> arrays() const;  // names of the data sets of numbers, sorted. Throws InputError
@@ -49,5 +48,9 @@ class Hdf5File {
   struct Open;
   std::unique_ptr<Open> open_;
 };
+
+// One value per point from the only data set of numbers in a file of another program, or from the one called
+// "saliency". A child process reads it. Throws InputError, whose message begins with `name`.
+ScalarField read_hdf5_values(const std::filesystem::path& path, std::string_view name);
 
 }  // namespace salbench

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace salbench::hdf5 {
 namespace {
@@ -42,6 +43,18 @@ void write_chunks(hid_t set, const PackedChunks& packed) {
   }
 }
 
+// A read-write lock that a child process can let go of; glibc's knows its owner by the number of the thread.
+// A thread that waits to be alone keeps the entrance.
+struct Gate {
+  std::mutex entrance;
+  std::atomic<int> inside = 0;  // threads
+};
+
+Gate& gate() {
+  static Gate the_gate;
+  return the_gate;
+}
+
 struct Visit {
   std::vector<std::string> data_sets;
   std::uint64_t objects_left;  // a file with more objects is damaged, and its links form a cycle
@@ -59,16 +72,26 @@ herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* da
 
 // The library's clean-up at exit is disabled: it loops forever if a disk is full, and every file has been
 // closed by then.
-std::unique_lock<std::mutex> library() {
-  static std::mutex mutex;
+LibraryLock::LibraryLock() {
   static const bool thread_safe = [] {
     hbool_t safe = false;
     return H5dont_atexit() >= 0 && H5is_library_threadsafe(&safe) >= 0 && safe;
   }();
-  std::unique_lock lock(mutex, std::defer_lock);
-  if (!thread_safe) lock.lock();
+  alone_ = std::unique_lock(gate().entrance);
+  ++gate().inside;
+  if (thread_safe) alone_.unlock();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread: failures are exceptions, not text on stderr
-  return lock;
+}
+
+LibraryLock::~LibraryLock() {
+  if (--gate().inside == 0) gate().inside.notify_all();
+}
+
+pid_t fork_beside_library() {
+  auto& [entrance, inside] = gate();
+  const std::lock_guard alone(entrance);
+  for (int threads = inside; threads > 0; threads = inside) inside.wait(threads);
+  return ::fork();
 }
 
 void must(herr_t status, const char* what) {

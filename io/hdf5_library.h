@@ -19,8 +19,22 @@
 
 namespace salbench::hdf5 {
 
-// Lock to hold while calling the library; it locks nothing if the library was built thread-safe.
-std::unique_lock<std::mutex> library();
+// To be held while calling the library; one thread does not take it twice. Others are kept out unless the
+// library was built thread-safe.
+class LibraryLock {
+ public:
+  LibraryLock();
+  LibraryLock(const LibraryLock&) = delete;
+  LibraryLock& operator=(const LibraryLock&) = delete;
+  ~LibraryLock();
+
+ private:
+  std::unique_lock<std::mutex> alone_;
+};
+inline LibraryLock library() { return {}; }
+
+// fork() at a moment when no thread is inside the library, so that the child may call it.
+pid_t fork_beside_library();
 
 // An HDF5 identifier with the function that closes it. Throws if it is negative: the library failed.
 class Handle {

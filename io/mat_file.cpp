@@ -16,6 +16,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "io/arrays.h"
 #include "io/child_process.h"
 #include "io/descriptor.h"
 #include "io/file.h"
@@ -27,7 +28,6 @@ namespace {
 
 constexpr std::size_t kHeader = 128, kVersion = 124;
 constexpr ChildLimits kLimits = {.processor_time = std::chrono::seconds(60), .memory = 1U << 30U};
-constexpr char kNumbers = 'n', kMessage = 'm';  // first byte of what the child sends
 
 // --- in the child -----------------------------------------------------------------------------------------
 
@@ -41,7 +41,7 @@ void append_numbers(const matvar_t& variable, std::size_t count, ScalarField& nu
   for (std::size_t i = 0; i < count; ++i) {
     Number number;
     std::memcpy(&number, static_cast<const char*>(variable.data) + i * sizeof number, sizeof number);
-    numbers.push_back(static_cast<double>(number));
+    numbers.push_back(exact_double(number));
   }
 }
 
@@ -118,8 +118,21 @@ const matvar_t& cell_of(matvar_t& variable, const std::vector<std::string>& cell
   return *found;
 }
 
-ScalarField read_numbers(const std::string& path, const std::string& name,
-                         const std::vector<std::string>& cell) {
+// What is asked of a file.
+struct Wanted {
+  const std::string& variable;
+  std::vector<std::string> cell = {};
+  bool row_or_column = false;
+};
+
+void require_row_or_column(const matvar_t& variable) {
+  const std::vector<std::size_t> shape(variable.dims, variable.dims + variable.rank);
+  if (!is_one_per_point(shape))
+    throw InputError(fmt::format("its shape is ({}), expected a row or a column", fmt::join(shape, ", ")));
+}
+
+ScalarField read_numbers(const std::string& path, const Wanted& wanted) {
+  const auto& [name, cell, row_or_column] = wanted;
   Mat_LogInitFunc("salbench", [](int, char*) {});
   const File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close);
   if (file == nullptr) throw InputError("not a MAT file that can be read");
@@ -130,24 +143,11 @@ ScalarField read_numbers(const std::string& path, const std::string& name,
         fmt::format("no variable {}; the file has {}", in_quotes(name), variables_in(file.get())));
   }
   try {
-    return numbers_of(cell.empty() ? *variable : cell_of(*variable, cell));
+    const matvar_t& chosen = cell.empty() ? *variable : cell_of(*variable, cell);
+    if (row_or_column) require_row_or_column(chosen);
+    return numbers_of(chosen);
   } catch (const InputError& error) {
     throw InputError(fmt::format("variable {}: {}", in_quotes(name), error.what()));
-  }
-}
-
-void read_and_send(const std::string& path, const std::string& variable, const std::vector<std::string>& cell,
-                   const Send& send) {
-  const auto send_as = [&](const char& kind, const void* data, std::size_t size) {
-    send(std::as_bytes(std::span(&kind, 1)));
-    send({static_cast<const std::byte*>(data), size});
-  };
-  try {
-    const ScalarField numbers = read_numbers(path, variable, cell);
-    send_as(kNumbers, numbers.data(), numbers.size() * sizeof(double));
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    send_as(kMessage, message.data(), message.size());
   }
 }
 
@@ -167,13 +167,12 @@ void fill(const Descriptor& file, std::string_view bytes, std::string_view name)
   }
 }
 
-ChildResult read_in_child(std::string_view bytes, std::string_view name, const std::string& variable,
-                          const std::vector<std::string>& cell) {
+ScalarField read_in_child(std::string_view bytes, std::string_view name, const Wanted& wanted) {
   const Descriptor file(::memfd_create("mat", MFD_CLOEXEC));
   if (file.get() < 0) fail_for_lack_of_memory(name);
   fill(file, bytes, name);
   const std::string path = fmt::format("/proc/self/fd/{}", file.get());
-  return run_in_child(kLimits, [&](const Send& send) { read_and_send(path, variable, cell, send); });
+  return numbers_from_child(kLimits, name, [&] { return read_numbers(path, wanted); });
 }
 
 void require_version_5(std::string_view bytes, std::string_view name) {
@@ -189,23 +188,24 @@ void require_version_5(std::string_view bytes, std::string_view name) {
     refuse("its version is unknown; save it with -v7");
 }
 
+ScalarField parsed(std::string_view bytes, std::string_view name, const Wanted& wanted) {
+  require_version_5(bytes, name);
+  if (wanted.variable.empty())
+    throw InputError(fmt::format("{}: a MAT file, and the description names no `variable:` in it", name));
+  return read_in_child(bytes, name, wanted);
+}
+
 }  // namespace
 
 bool is_mat(std::string_view bytes) { return bytes.starts_with("MATLAB "); }
 
+ScalarField parse_mat_values(std::string_view bytes, std::string_view name, const std::string& variable) {
+  return parsed(bytes, name, {.variable = variable, .row_or_column = true});
+}
+
 ScalarField parse_mat(std::string_view bytes, std::string_view name, const std::string& variable,
                       const std::vector<std::string>& cell) {
-  require_version_5(bytes, name);
-  if (variable.empty())
-    throw InputError(fmt::format("{}: a MAT file, and the description names no `variable:` in it", name));
-  const auto [sent, failure] = read_in_child(bytes, name, variable, cell);
-  if (!failure.empty() || sent.empty())
-    throw InputError(fmt::format("{}: damaged: the library that reads it {}; save it again", name,
-                                 failure.empty() ? "ended the process" : failure));
-  if (sent[0] == kMessage) throw InputError(fmt::format("{}: {}", name, sent.substr(1)));
-  ScalarField numbers((sent.size() - 1) / sizeof(double));
-  if (!numbers.empty()) std::memcpy(numbers.data(), sent.data() + 1, numbers.size() * sizeof(double));
-  return numbers;
+  return parsed(bytes, name, {.variable = variable, .cell = cell});
 }
 
 }  // namespace salbench

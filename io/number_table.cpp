@@ -193,8 +193,10 @@ bool is_same_number(double value, std::string_view word) {
 
 std::vector<ScalarField> parse_columns(std::string_view text, std::string_view name,
                                        const std::vector<std::string>& columns, const std::string& unseen,
-                                       const std::optional<Elements>& expected) {
+                                       const std::optional<Elements>& expected,
+                                       const WrongWithRow& wrong_with_row) {
   std::vector<ScalarField> values(columns.size());
+  std::vector<double> row(columns.size());
   TextScanner in(text, name);
   if (in.next_filled_line()) {
     const char separator = separator_of(in.line());
@@ -204,7 +206,10 @@ std::vector<ScalarField> parse_columns(std::string_view text, std::string_view n
       cells = cells_of(in.line(), separator);
       if (separator == ',') chosen.check_commas(in, cells);
       for (std::size_t c = 0; c < columns.size(); ++c)
-        values[c].push_back(value_of(in, chosen.cell(in, cells, c), c == 0 ? unseen : std::string_view()));
+        row[c] = value_of(in, chosen.cell(in, cells, c), c == 0 ? unseen : std::string_view());
+      const std::string_view wrong = wrong_with_row ? wrong_with_row(row) : std::string_view();
+      if (!wrong.empty()) in.fail(wrong);
+      for (std::size_t c = 0; c < columns.size(); ++c) values[c].push_back(row[c]);
     }
   }
   if (expected && values[0].size() != expected->n) in.fail(wrong_count(values[0].size(), *expected));

@@ -2,7 +2,9 @@
 // Columns of a text of numbers, a row per line: CSV, or words between blanks.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +19,9 @@ struct Elements {
   std::string_view shape = "mesh", one = "vertex", plural = "vertices";
 };
 
+// Describes what is wrong with the numbers of one row; empty if nothing.
+using WrongWithRow = std::function<std::string_view(std::span<const double> row)>;
+
 // The columns named, each by its name in the header or by its number from 1, in the order of `columns`; an
 // empty name is the only column of the text. Commas, semicolons or tabs separate values, whichever the first
 // line has; else blanks do. A first line in which a word is no number is the header. Blank lines are skipped.
@@ -25,11 +30,12 @@ struct Elements {
 //
 // A value of the first column that is `unseen` ("nan" for one that is none) becomes NaN; all others must be
 // finite. Throws InputError, one line "NAME:LINE: what is wrong": also for another number of rows than
-// expected, or none.
+// expected, or none, and for what is wrong with a row.
 std::vector<ScalarField> parse_columns(std::string_view text, std::string_view name,
                                        const std::vector<std::string>& columns,
                                        const std::string& unseen = {},
-                                       const std::optional<Elements>& expected = {});
+                                       const std::optional<Elements>& expected = {},
+                                       const WrongWithRow& wrong_with_row = {});
 
 // "the file has 3 values, but the mesh has 4 vertices"
 std::string wrong_count(std::size_t n_values, const Elements& expected);

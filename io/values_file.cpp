@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,19 +38,28 @@ ScalarField numbers_in(std::string_view bytes) {
   return values;
 }
 
-ScalarField read_hdf5(const std::filesystem::path& path, std::string_view name) try {
-  // No child process reads it first: this program has threads by now. The command has just written it.
-  const Hdf5File file(path, false);
-  const std::vector<std::string> sets = file.arrays();
-  const auto named = std::find(sets.begin(), sets.end(), "saliency");
-  if (named == sets.end() && sets.size() != 1)
-    throw InputError(
-        fmt::format("it has {} data sets of numbers, expected one, or one called 'saliency'", sets.size()));
-  const Array array = file.read(named == sets.end() ? sets[0] : *named);
-  return std::visit([](const auto& values) { return ScalarField(values.begin(), values.end()); },
-                    array.values);
-} catch (const InputError& error) {
-  throw InputError(fmt::format("{}: {}", name, error.what()));
+// The text of a key's value in the header of .npy, to the end of the header; empty if it has no such key.
+std::string_view value_of(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  if (at == std::string_view::npos) return {};
+  header.remove_prefix(at + key.size());
+  header.remove_prefix(std::min(header.find_first_not_of(' '), header.size()));
+  return header;
+}
+
+// "642,", "642, 1"; nothing for text that is no such list.
+std::optional<std::vector<std::size_t>> shape_in(std::string_view text) {
+  std::vector<std::size_t> shape;
+  while (!text.empty()) {
+    std::size_t extent = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), extent);
+    if (error != std::errc()) return {};
+    shape.push_back(extent);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (!text.empty() && text[0] != ',') return {};
+    text.remove_prefix(std::min(text.find_first_not_of(", "), text.size()));
+  }
+  return shape;
 }
 
 }  // namespace
@@ -69,21 +81,21 @@ ScalarField parse_npy(std::string_view bytes, std::string_view name) {
   const std::size_t begin = long_header ? 12 : 10;
   if (bytes.size() - begin < length) refuse("it is cut short");
   const std::string_view header = bytes.substr(begin, length), body = bytes.substr(begin + length);
-  const bool is_double = header.find("'<f8'") != std::string_view::npos;
-  if (!is_double && header.find("'<f4'") == std::string_view::npos)
-    refuse("its type is neither float32 nor float64, little-endian");
-  const std::size_t key = header.find("'shape': (");
-  const std::size_t close = header.find(')', std::min(key, header.size()));
-  if (key == std::string_view::npos || close == std::string_view::npos) refuse("its header names no shape");
-  const std::string_view shape = header.substr(key + 10, close - key - 10);  // "642,", "642, 1"
-  const std::size_t comma = std::min(shape.find(','), shape.size());
-  const std::string_view columns = shape.substr(std::min(comma + 1, shape.size()));
-  if (columns.find_first_not_of(' ') != std::string_view::npos && columns != " 1")
-    refuse(fmt::format("its shape is ({}), expected one value per point", shape));
-  ScalarField values = is_double ? numbers_in<double>(body) : numbers_in<float>(body);
-  if (std::to_string(values.size()) != shape.substr(0, comma))
-    refuse(fmt::format("its shape is ({}), and it holds {} values", shape, values.size()));
-  return values;
+  const std::string_view type = value_of(header, "'descr':");
+  const bool is_double = type.starts_with("'<f8'");
+  if (!is_double && !type.starts_with("'<f4'"))
+    refuse(fmt::format("its type is {}, neither float32 nor float64, little-endian",
+                       in_quotes(type.substr(0, type.find(", 'fortran_order'")))));
+  std::string_view text = value_of(header, "'shape': (");
+  text = text.substr(0, text.find(')'));
+  const std::optional<std::vector<std::size_t>> shape = shape_in(text);
+  if (!shape || shape->empty()) refuse("its header names no shape");
+  if (!is_one_per_point(*shape)) refuse(fmt::format("its shape is ({}), expected one value per point", text));
+  const std::size_t count = *std::ranges::max_element(*shape),
+                    size = is_double ? sizeof(double) : sizeof(float);
+  if (body.size() % size != 0 || body.size() / size != count)
+    refuse(fmt::format("its shape is ({}), and it holds {} bytes of values", text, body.size()));
+  return is_double ? numbers_in<double>(body) : numbers_in<float>(body);
 }
 
 ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n) {
@@ -92,7 +104,7 @@ ScalarField read_point_values(const std::filesystem::path& path, std::string_vie
     throw InputError(fmt::format("{}: {} bytes are too many for {} values", name, *size, n));
   const std::string bytes = read_file(path);
   ScalarField values = is_npy(bytes)              ? parse_npy(bytes, name)
-                       : bytes.starts_with(kHdf5) ? read_hdf5(path, name)
+                       : bytes.starts_with(kHdf5) ? read_hdf5_values(path, name)
                                                   : parse_values(bytes, name);
   if (values.size() != n)
     throw InputError(fmt::format("{}: {} values, but the shape has {} points", name, values.size(), n));

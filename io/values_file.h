@@ -10,9 +10,10 @@
 
 namespace salbench {
 
-// Reads text (a number per line, as .val), NumPy's .npy (float32 or float64, n or n x 1) or an HDF5 file with
-// one data set of numbers, or one called "saliency"; the content tells which. `name` stands for the file in
-// messages. Throws InputError: unreadable, another number of values than n, a value that is not finite.
+// Reads text (a number per line, as .val), NumPy's .npy (float32 or float64, n, n x 1 or 1 x n) or an HDF5
+// file with one such data set of numbers, or one called "saliency"; the content tells which. `name` stands
+// for the file in messages. Throws InputError: unreadable, another number of values than n, a value that is
+// not finite.
 ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n);
 
 // .npy alone, from memory: any number of values, finite or not. Throws InputError.

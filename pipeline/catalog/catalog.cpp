@@ -2,6 +2,7 @@
 #include "pipeline/catalog/catalog.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -52,7 +53,9 @@ Histogram mean_over(const Members<T>& members) {
   for (std::size_t i = 0; i < members.size; ++i) {
     const ValuePtr member = members.value(i);
     const auto& values = seen_values(std::get<T>(*member));
-    if (!values.empty()) histograms.push_back(normalised_histogram(values));  // a scan may show nothing known
+    // A scan may show nothing known. An infinite value fails stages of its own item, and nothing here.
+    if (!values.empty() && std::ranges::none_of(values, [](double value) { return std::isinf(value); }))
+      histograms.push_back(normalised_histogram(values));
   }
   return mean_histogram(histograms);
 }

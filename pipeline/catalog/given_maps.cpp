@@ -27,11 +27,6 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, error);
 }
 
-ScalarField as_field(const Array& array) {
-  return std::visit([](const auto& values) { return ScalarField(values.begin(), values.end()); },
-                    array.values);
-}
-
 GivenMaps maps_in_folder(const fs::path& folder) {
   GivenMaps maps{.source = folder};
   for (const FolderEntry& entry : list_folder(folder))
@@ -48,9 +43,13 @@ GivenMaps maps_in_file(const fs::path& path) try {
   const auto file = std::make_shared<const Hdf5File>(path);
   GivenMaps maps{.source = path};
   for (const std::string& name : file->arrays()) maps.items.insert(name);
-  maps.read = [file](const std::string& item) -> SourceData {
+  maps.read = [file, path](const std::string& item) -> SourceData {
     const Array array = file->read(item);
-    return {content_digest({array}), as_field(array)};
+    try {
+      return {content_digest({array}), point_values(array)};
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: data set {}: {}", path.string(), in_quotes(item), error.what()));
+    }
   };
   return maps;
 } catch (const InputError& error) {

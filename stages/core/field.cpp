@@ -3,21 +3,60 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 #include <Eigen/Core>
 
 #include "stages/core/check.h"
+#include "stages/core/errors.h"
 
 namespace salbench {
+
+namespace {
+
+Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> field) {
+  return {field.data(), static_cast<Eigen::Index>(field.size())};
+}
+
+}  // namespace
+
+void require_finite(std::span<const double> field, const char* what, bool may_be_nan) {
+  if (field.empty() || std::isfinite(as_array(field).abs().maxCoeff<Eigen::PropagateNaN>())) return;
+  for (std::size_t i = 0; i < field.size(); ++i)
+    if (!std::isfinite(field[i]) && !(may_be_nan && std::isnan(field[i])))
+      throw InputError(std::string(what) + " is " + std::to_string(field[i]) + " at point " +
+                       std::to_string(i) + " (0-based), expected a finite number");
+}
+
+double scale_against_overflow(std::span<const double> field) {
+  constexpr int kLargestExponent = 480;
+  const double largest = field.empty() ? 0 : as_array(field).abs().maxCoeff<Eigen::PropagateNumbers>();
+  if (!std::isfinite(largest) || largest <= std::ldexp(1, kLargestExponent)) return 1;
+  return std::ldexp(1, kLargestExponent - std::ilogb(largest));
+}
+
+namespace {
+
+// min_max_normalised where the range overflows.
+ScalarField of_huge_values(std::span<const double> field, ScalarField without_nan) {
+  require_finite(field, "the map", true);
+  const double scale = scale_against_overflow(without_nan);
+  for (double& value : without_nan) value *= scale;
+  return min_max_normalised(without_nan);
+}
+
+}  // namespace
 
 ScalarField min_max_normalised(std::span<const double> field) {
   ScalarField result(field.begin(), field.end());
   for (double& value : result)
     if (std::isnan(value)) value = 0;
   if (result.empty()) return result;
-  const Eigen::Map<const Eigen::ArrayXd> values(result.data(), static_cast<Eigen::Index>(result.size()));
-  const double smallest = values.minCoeff(), largest = values.maxCoeff();
-  if (smallest == largest) return result;
+  const double smallest = as_array(result).minCoeff(), largest = as_array(result).maxCoeff();
+  if (smallest == largest && std::isfinite(largest)) return result;
+  if (!std::isfinite(largest - smallest)) return of_huge_values(field, std::move(result));
   const double from = *std::ranges::find(result, smallest);  // of -0 and 0 the first
   const double range = largest - from;
   if (from == 0 && !std::signbit(from) && range == 1) return result;
@@ -37,23 +76,27 @@ ScalarField values_at(std::span<const double> field, std::span<const std::int32_
 }
 
 BinnedDensity binned_density(std::span<const double> field) {
+  constexpr double kLargestMiddle = 1e6;
   CHECK_GT(field.size(), 0U);
   auto [low, high] = [&] {
     const auto [first, last] = std::minmax_element(field.begin(), field.end());
     return std::pair(*first, *last);
   }();
   if (low == high) {
+    if (std::abs(low) > kLargestMiddle) return binned_density(ScalarField(field.size(), 0.0));
     low -= 0.5;
     high += 0.5;
   }
+  CHECK_LT(high - low, std::numeric_limits<double>::infinity());  // false of NaN too
   BinnedDensity result{};
   const double width = (high - low) / kHistogramBins;
   for (std::size_t i = 0; i <= kHistogramBins; ++i) result.edges[i] = low + width * static_cast<double>(i);
   result.edges.back() = high;
   for (const double value : field) {
     // The quotient may land one bin off by rounding: the edges decide.
-    auto bin = static_cast<std::size_t>(
-        std::clamp((value - low) / (high - low) * kHistogramBins, 0.0, kHistogramBins - 1.0));
+    const double place = (value - low) / (high - low) * kHistogramBins;
+    CHECK_LE(0.0, place);
+    auto bin = static_cast<std::size_t>(std::min(place, kHistogramBins - 1.0));
     if (value < result.edges[bin]) --bin;
     if (bin + 1 < kHistogramBins && value >= result.edges[bin + 1]) ++bin;
     result.density[bin] += 1;

@@ -10,7 +10,17 @@
 
 namespace salbench {
 
-// Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. [tasse2016]
+// The value at some point is no finite number, nor NaN unless it may be: throws InputError that begins with
+// `what`, "the map".
+void require_finite(std::span<const double> field, const char* what, bool may_be_nan = false);
+
+// The power of two by which a field is multiplied so that sums over a shape of its values, of their
+// differences and of squares of these cannot overflow: 1 unless a magnitude exceeds 2^480 (3e144). NaN does
+// not count.
+double scale_against_overflow(std::span<const double> field);
+
+// Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. Throws InputError for an infinite
+// value. [tasse2016]
 ScalarField min_max_normalised(std::span<const double> field);
 
 bool is_constant(std::span<const double> field);  // also true of an empty field
@@ -18,8 +28,9 @@ bool is_constant(std::span<const double> field);  // also true of an empty field
 // The values at some points, in the order of the points.
 ScalarField values_at(std::span<const double> field, std::span<const std::int32_t> points);
 
-// Density histogram over the field's own range [min, max]: bin i holds count_i / (n * width_i), the last bin
-// closed on the right. The range of a constant field is [value - 0.5, value + 0.5], as in NumPy.
+// Density histogram over the field's own range [min, max], which is finite: bin i holds count_i / (n *
+// width_i), the last bin closed on the right. The range of a constant field is [value - 0.5, value + 0.5], as
+// in NumPy; of one beyond 1e6, where rounding would spoil the bins, that of 0.
 struct BinnedDensity {
   Histogram density;
   std::array<double, kHistogramBins + 1> edges;

@@ -8,11 +8,13 @@
 #include <array>
 #include <atomic>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include <nanoflann.hpp>
 
 #include "stages/core/check.h"
+#include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 
 namespace salbench {
@@ -93,7 +95,7 @@ class ManyNearestSet {
   double limit() const { return limit_; }
   void take(const Leaf& leaf) {
     for (std::size_t i = 0; i < leaf.count; ++i) {
-      if (leaf.distance_squared[i] > limit_) continue;
+      if (!(leaf.distance_squared[i] <= limit_)) continue;
       best_.push_back({leaf.index[i], leaf.distance_squared[i]});
       if (best_.size() == 2 * k_) keep_the_best();
     }
@@ -139,6 +141,14 @@ class WithinSet {
   std::size_t count_ = 0;
   double radius_squared_;
 };
+
+// A tree has no place for any other.
+std::span<const Vec3> finite(std::span<const Vec3> points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!points[i].allFinite())
+      throw InputError("point " + std::to_string(i) + " (0-based) has a coordinate that is not finite");
+  return points;
+}
 
 }  // namespace
 
@@ -302,9 +312,10 @@ struct KdTree::Impl {
   }
 };
 
-KdTree::KdTree(std::span<const Vec3> points) : impl_(std::make_unique<Impl>(Adaptor{points, {}, true})) {}
+KdTree::KdTree(std::span<const Vec3> points)
+    : impl_(std::make_unique<Impl>(Adaptor{finite(points), {}, true})) {}
 KdTree::KdTree(std::span<const Vec3> points, std::vector<std::int32_t> members)
-    : impl_(std::make_unique<Impl>(Adaptor{points, std::move(members), false})) {}
+    : impl_(std::make_unique<Impl>(Adaptor{finite(points), std::move(members), false})) {}
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 KdTree::~KdTree() = default;
@@ -326,6 +337,7 @@ void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& f
     NearestSet set(found, k);
     if (k > 0) impl_->search(set, query);
   }
+  if (found.size() < k) throw InputError("squared distances between points overflow: scale the coordinates");
 }
 
 std::int32_t KdTree::nearest(const Vec3& query) const {

@@ -44,7 +44,8 @@ class NearestPoints {
 };
 
 // The points must outlive the tree. Results are ordered by (distance, index), so ties never depend on the
-// tree's layout. Searches are const and may run on several threads.
+// tree's layout. Searches are const and may run on several threads. Throws InputError for a point that
+// is not finite, and where squared distances from a query to its nearest points overflow.
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points);

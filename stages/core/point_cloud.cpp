@@ -41,6 +41,11 @@ void check_points(const std::vector<Vec3>& points) {
     throw InputError(std::string(wrong));
 }
 
+void check_viewpoint(const PointCloud& cloud) {
+  if (cloud.viewpoint && !std::isfinite(cloud.viewpoint->squaredNorm()))
+    throw InputError("squares of the viewpoint's coordinates overflow: mend it, or leave it out of the file");
+}
+
 std::string without_normal(const PointCloud& cloud, std::size_t first, std::size_t count) {
   // The number that the point has in the file: those left out before it count.
   auto number = static_cast<std::int32_t>(first);
@@ -78,6 +83,7 @@ CheckedCloud check_cloud(PointCloud cloud) {
   CheckedCloud checked;
   drop_points_without_position(cloud, checked.warnings);
   check_points(cloud.points);
+  check_viewpoint(cloud);
   check_normals(cloud, checked.warnings);
   checked.cloud = std::move(cloud);
   return checked;

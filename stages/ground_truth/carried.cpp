@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/ground_truth/carried.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/core/neighbours.h"
 
 namespace salbench {
 namespace {
 
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLargest = std::numeric_limits<double>::max();
 
 }  // namespace
 
@@ -20,19 +23,20 @@ ScalarField vertex_values_of_faces(Points vertices, Surface faces, std::span<con
   if (values.size() != faces.size())
     throw InputError("there are " + std::to_string(values.size()) + " values for " +
                      std::to_string(faces.size()) + " faces");
+  const double scale = scale_against_overflow(values);
   ScalarField sums(vertices.size()), areas(vertices.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto corner = [&](std::size_t i) { return vertices[static_cast<std::size_t>(faces[f][i])]; };
     const double twice_the_area = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
     for (const std::int32_t vertex : faces[f]) {
       if (std::isnan(values[f])) continue;
-      sums[static_cast<std::size_t>(vertex)] += twice_the_area * values[f];
+      sums[static_cast<std::size_t>(vertex)] += twice_the_area * (values[f] * scale);
       areas[static_cast<std::size_t>(vertex)] += twice_the_area;
     }
   }
   ScalarField result(vertices.size(), kUnseen);
   for (std::size_t i = 0; i < result.size(); ++i)
-    if (areas[i] > 0) result[i] = sums[i] / areas[i];
+    if (areas[i] > 0) result[i] = std::clamp(sums[i] / areas[i] / scale, -kLargest, kLargest);
   return result;
 }
 

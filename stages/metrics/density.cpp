@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "stages/core/check.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 namespace {
@@ -215,6 +216,7 @@ std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measur
   const AllDistributions all = distributions_of(in, measures);
   ScoreSums sums(in, measures, all);
   for (std::size_t i = 0; i < n; i += ScoreSums::kBlock) sums.add(i, std::min(n - i, ScoreSums::kBlock));
+  const bool constant_truth = is_constant(in.saliency) && in.saliency[0] != 0;
   const auto of = [&](std::size_t weighting) {
     const auto k = static_cast<Eigen::Index>(weighting);
     const Measure& measure = measures[static_cast<Weighting>(weighting)];
@@ -224,8 +226,8 @@ std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measur
         .kl_smoothed = all.smoothed.value_if_defined(sums.kl_smoothed[k] / unit, weighting),
         .sim = all.raw.value_if_defined(sums.sim[k] / unit, weighting),
         .sim_of_normalised = all.normalised.value_if_defined(sums.sim_of_normalised[k] / unit, weighting),
-        .mse = sums.squares[k] / total,  // NaN over nothing
-        .mae = sums.magnitudes[k] / total};
+        .mse = constant_truth ? kUndefined : sums.squares[k] / total,  // NaN over nothing
+        .mae = constant_truth ? kUndefined : sums.magnitudes[k] / total};
   };
   return {of(0), of(1)};
 }

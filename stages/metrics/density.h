@@ -43,7 +43,8 @@ struct DensityScores {
   double kl_smoothed;
   // Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
   double sim, sim_of_normalised;
-  // Mean of the squared, or the absolute, difference of the normalised values, which may be negative.
+  // Mean of the squared, or the absolute, difference of the normalised values, which may be of negative ones.
+  // NaN for a constant ground truth, which has no normalised values, unless it is zero.
   double mse, mae;
 };
 std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measures& measures);  // [weighting]

@@ -77,13 +77,16 @@ Order ascending_order(std::span<const double> field) {
   auto sorted = std::make_unique_for_overwrite<std::uint64_t[]>(n);
   Order order(n);
   std::size_t at_smallest = 0, above = 0;
+  bool any_nan = false;
   for (std::size_t i = 0; i < n; ++i) {  // one of the two is overwritten
+    any_nan |= field[i] != field[i];
     order[at_smallest] = static_cast<std::uint32_t>(i);
     entries[above] = i;
     const bool is_smallest = field[i] == smallest;
     at_smallest += is_smallest ? 1 : 0;
     above += is_smallest ? 0 : 1;
   }
+  CHECK_EQ(any_nan, false);
   for (std::uint64_t& entry : std::span(entries.get(), above))
     entry = key_of(field[entry]) << kIndexBits | entry;
   sort_entries(entries, sorted, above);
@@ -107,10 +110,10 @@ MidRanks ranked(std::span<const double> field, const Order& order, const Measure
   for (std::size_t first = 0, end = 0; first < n; first = end) {
     const double value = field[order[first]];
     const PerWeighting below = weight;
-    for (; end < n && field[order[end]] == value; ++end) {
+    do {
       weight += measures.weight(order[end]);
       each(end, value, weight);
-    }
+    } while (++end < n && field[order[end]] == value);
     const PerWeighting middle = below + (weight - below) / 2;
     for (std::size_t k = first; k < end; ++k) {
       mid.by_vertex[order[k]] = middle[0];

@@ -12,7 +12,7 @@
 
 namespace salbench {
 
-// The points by ascending value, equal values by index. No value is NaN.
+// The points by ascending value, equal values by index. No value is NaN, which is checked.
 using Order = std::vector<std::uint32_t>;
 Order ascending_order(std::span<const double> field);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/measure.h"
 
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -11,8 +12,15 @@ namespace salbench {
 Measure vertex_measure(std::size_t n) { return {std::vector<double>(n, 1.0), static_cast<double>(n), 1}; }
 
 Measure area_measure(std::span<const double> areas) {
-  const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
-  return {{areas.begin(), areas.end()}, total, total};
+  Measure measure{{areas.begin(), areas.end()}};
+  const auto sum = [&] { return std::accumulate(measure.weight.begin(), measure.weight.end(), 0.0); };
+  constexpr int kOrdinary = 160;  // exponents
+  if (const double total = sum(); std::isnormal(total) && std::abs(std::ilogb(total)) > kOrdinary) {
+    const double scale = std::ldexp(1, -std::ilogb(total) / 2 * 2);
+    for (double& weight : measure.weight) weight *= scale;
+  }
+  measure.total = measure.unit = sum();
+  return measure;
 }
 
 Measures::Measures(std::size_t n, std::span<const double> areas)

@@ -17,7 +17,7 @@ namespace salbench {
 enum class Weighting : std::uint8_t { vertex, area };
 
 struct Measure {
-  std::vector<double> weight;  // n, >= 0: 1 per vertex, or an area in the shape's unit squared
+  std::vector<double> weight;  // n, >= 0: 1 per vertex, or an area in some unit
   double total = 0;            // sum of the weights
   // What densities are per. One vertex, as published, or the whole surface: a density per area of the whole
   // does not change when a vertex is replaced by two of half its area.
@@ -28,7 +28,9 @@ struct Measure {
 };
 
 Measure vertex_measure(std::size_t n);
-Measure area_measure(std::span<const double> areas);  // n, or none: an empty measure
+// n, or none: an empty measure. Areas that are very large or small are multiplied by a power of four, for
+// which no metric changes: products of three weights would overflow or vanish.
+Measure area_measure(std::span<const double> areas);
 
 // A number per weighting. A sum in the order of the points waits for each addition before the next one; the
 // two of a PerWeighting wait together.

@@ -102,9 +102,9 @@ std::vector<BaseMetric> base_metrics() {
       {{"sim_minmax", "1", "the same after min-max normalisation",
         of_saliency<of_densities<&DensityScores::sim_of_normalised>>}},
       {{"mse", "1", "mean squared difference after min-max normalisation",
-        of_saliency<of_densities<&DensityScores::mse>>, 1, false}},
+        of_saliency<of_densities<&DensityScores::mse>>, 2, false}},
       {{"mae", "1", "mean absolute difference after min-max normalisation",
-        of_saliency<of_densities<&DensityScores::mae>>, 1, false}},
+        of_saliency<of_densities<&DensityScores::mae>>, 2, false}},
   };
   const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
     const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };

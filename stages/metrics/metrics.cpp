@@ -20,6 +20,10 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
+// A constant map counts as this one: halfway between the least and the most salient, where its histogram has
+// it too.
+constexpr double kMiddle = 0.5;
+
 Draws no_draws() { return Draws(Rng(0, "", "")); }  // for what draws nothing
 
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
@@ -39,6 +43,11 @@ std::vector<std::int32_t> picks_with_multiplicity(const GroundTruth& truth) {
     picked.insert(picked.end(), participant.begin(), participant.end());
   std::ranges::sort(picked);
   return picked;
+}
+
+GroundTruth scaled(GroundTruth truth, double scale) {
+  for (double& value : truth.saliency) value *= scale;
+  return truth;
 }
 
 }  // namespace
@@ -105,6 +114,12 @@ Scores score(std::span<const Metric> metrics, const ScalarField& matched, const 
     const Measures of_seen(seen->size(), values_at(measures.area.weight, *seen));
     return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, draws, of_seen);
   }
+  require_finite(matched, "the map");
+  require_finite(truth.saliency, "the ground truth");
+  if (is_constant(matched) && !matched.empty() && matched[0] != kMiddle)
+    return score(metrics, ScalarField(matched.size(), kMiddle), truth, options, draws, measures);
+  if (const double scale = scale_against_overflow(truth.saliency); scale != 1)
+    return score(metrics, matched, scaled(truth, scale), options, draws, measures);
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
   const Comparison comparison({matched, saliency, truth.saliency, measures}, draws);
   Scores scores;

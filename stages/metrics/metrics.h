@@ -95,8 +95,9 @@ bool any_by_area(std::span<const Metric> metrics);  // they read the areas of th
 
 // The metrics of one map, in their order. What the ground truth has nothing for is NaN: metrics of picks
 // without picks, metrics of saliency without saliency values, and metrics by area without areas. Points
-// whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. Throws
-// InputError where the ground truth is not of this shape: picks out of range, or another number of points.
+// whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. A constant map
+// counts as 0.5 everywhere, whichever constant it is. Throws InputError where the ground truth is not of this
+// shape: picks out of range, or another number of points; and for other values that are not finite.
 // The draws may be shared with other maps: each reads them from their beginning.
 Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
              const MetricsOptions& options, Draws& draws, const Measures& measures);

@@ -17,18 +17,18 @@ class TopSums {
     minimum_ = value(first);
   }
 
-  bool at_minimum() const { return value(next_ - 1) <= minimum_; }
+  bool at_minimum() const { return next_ == 0 || value(next_ - 1) <= minimum_; }
   double weight() const { return weight_; }
 
   // Equal values come together.
   void add_next_value() {
     const double shared = value(next_ - 1);
-    for (; next_ > 0 && value(next_ - 1) == shared; --next_) {
-      const std::size_t i = in_.saliency_order[next_ - 1];
+    do {
+      const std::size_t i = in_.saliency_order[--next_];
       weight_ += measure_.weight[i];
       mid_ += measure_.weight[i] * in_.map_distribution.mid[i];
       height_ += measure_.weight[i] * (in_.map[i] - in_.map_moments.mean);
-    }
+    } while (!at_minimum() && value(next_ - 1) == shared);
   }
 
   // Over all points, of which weight^2 / 2 falls to pairs on top: each has one win, and each point a tie with

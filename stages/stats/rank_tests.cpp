@@ -74,11 +74,11 @@ SignedRank signed_rank_test(std::span<const double> x, std::span<const double> y
   std::vector<bool> positive;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::isnan(x[i]) || std::isnan(y[i])) continue;
-    const double difference = x[i] - y[i];
-    if (difference == 0) {
+    if (x[i] == y[i]) {  // also if both are infinite, and have no difference
       ++result.n_equal;
       continue;
     }
+    const double difference = x[i] - y[i];
     sizes.push_back(std::abs(difference));
     positive.push_back(difference > 0);
   }

@@ -12,6 +12,6 @@ struct Ranks {
   double ties = 0;           // sum of t^3 - t over the groups of t equal values; 0 without ties
 };
 
-Ranks midranks(std::span<const double> values);  // none is NaN
+Ranks midranks(std::span<const double> values);  // none is NaN, which is checked
 
 }  // namespace salbench

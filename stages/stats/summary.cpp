@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stages/core/check.h"
+#include "stages/core/field.h"
 #include "stages/stats/distributions.h"
 
 namespace salbench {
@@ -33,18 +34,22 @@ double sample_deviation(std::span<const double> values, double mean) {
 }  // namespace
 
 Summary summarise(std::span<const double> values) {
-  const std::vector<double> sample = defined(values);
+  std::vector<double> sample = defined(values);
+  const double scale = scale_against_overflow(sample);
+  for (double& value : sample) value *= scale;
   Summary summary;
   summary.n = static_cast<std::int64_t>(sample.size());
   summary.n_undefined = static_cast<std::int64_t>(values.size() - sample.size());
   if (sample.empty()) return summary;
-  summary.mean = mean_of(sample);
+  const double mean = mean_of(sample);
+  summary.mean = mean / scale;
   if (sample.size() < 2) return summary;
-  summary.sd = sample_deviation(sample, summary.mean);
+  const double sd = sample_deviation(sample, mean);
+  summary.sd = sd / scale;
   const auto n = static_cast<double>(sample.size());
-  const double half_width = student_upper_quantile((1 - kConfidence) / 2, n - 1) * summary.sd / std::sqrt(n);
-  summary.ci_low = summary.mean - half_width;
-  summary.ci_high = summary.mean + half_width;
+  const double half_width = student_upper_quantile((1 - kConfidence) / 2, n - 1) * sd / std::sqrt(n);
+  summary.ci_low = (mean - half_width) / scale;
+  summary.ci_high = (mean + half_width) / scale;
   return summary;
 }
 

@@ -153,6 +153,20 @@ INSTANTIATE_TEST_SUITE_P(
                 "status 3; .*noise \\| at last"},
         Hostile{"WritesTooFew", "seq 7 > {{out}}; exit 0", "7 values, but the shape has 162 points"},
         Hostile{"WritesNaN", "seq 161 > {{out}}; echo nan >> {{out}}; exit 0", "not a finite number"},
+        Hostile{
+            "WritesHdf5OfAnotherShape",
+            "/usr/bin/python3 -c 'import h5py, numpy, sys; h5py.File(sys.argv[1], \\\"w\\\")[\\\"x\\\"] = "
+            "numpy.zeros((81, 2))' {{out.h5}}; exit 0",
+            "its shape is \\(81, 2\\), expected one value per point"},
+        Hostile{"WritesRubbishAsHdf5",
+                "/usr/bin/python3 -c 'import sys; open(sys.argv[1], \\\"wb\\\").write(bytes([137, 72, 68, "
+                "70, 13, "
+                "10, 26, 10]) + bytes(99))' {{out.h5}}; exit 0",
+                "out.h5.*not a readable HDF5 file"},
+        Hostile{"WritesRecords",
+                "/usr/bin/python3 -c 'import numpy, sys; numpy.save(sys.argv[1], numpy.zeros(162, "
+                "dtype=\\\"f4,i4\\\"))' {{out.npy}}; exit 0",
+                "neither float32 nor float64"},
         Hostile{"KillsItself", "sh -c 'sleep 100' '{mark}' & kill -9 $$", "killed by signal 9"}),
     [](const auto& test) { return test.param.name; });
 

@@ -81,7 +81,10 @@ TEST(ForeignHdf5, AMapThatCannotBeHadIsItsItemsFailure) {
       {"file.create_dataset('1', shape=(162,), dtype='f8', external=[('" + pipe.string() + "', 0, 1296)])",
        "in other files"},
       {"file.create_dataset('1', data=h5py.Empty('f8'))", "no values"},
-      {"file.create_dataset('1', data=numpy.full(162, 1 << 63, dtype='u8'))", "beyond the range"}};
+      {"file.create_dataset('1', data=numpy.full(162, 1 << 63, dtype='u8'))", "beyond the range"},
+      {"file['1'] = numpy.full(162, (1 << 53) + 1)", "whole numbers beyond 2^53"},
+      {"file['1'] = values.astype('longdouble')", "wider than float64"},
+      {"file['1'] = values.reshape(81, 2)", "its shape is (81, 2), expected one value per point"}};
   for (const Bad& bad : all) {
     const Outcome run = evaluate(toy, maps_by_h5py(toy, "  del file['1']\n  " + bad.made_by + "\n"));
     EXPECT_EQ(run.status, 1) << bad.made_by << run.err;

@@ -5,6 +5,7 @@
 #include <array>
 #include <numeric>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,6 +69,19 @@ TEST(GroundTruthFile, PicksMayBeNumberedFromOne) {
   EXPECT_THAT([] { parse_picks("9\n", "9_0.pid", {8}, 1); },
               ThrowsMessage<InputError>(
                   "9_0.pid:1: vertex 9 is out of range: the mesh has 8 vertices, numbered from 1"));
+}
+
+TEST(GroundTruthFile, SamplesLieWhereMeshesMay) {
+  ValuesFormat format;
+  format.per = ValuePer::point;
+  format.column = "4";
+  const auto read = [&](const std::string& text) { return parse_truth_values(text, "9.csv", format, {8}); };
+  EXPECT_THAT(read("1 2 3 0.5\n-1e150 0 0 1e308\n").values, ElementsAre(0.5, 1e308));
+  for (const char* far : {"1e151", "-1e300", "1.7e308"})
+    for (const char* text : {"{} 0 0 1", "0 {} 0 1", "0 0 {} 1"})
+      EXPECT_THAT(
+          [&] { read("x y z s\n\n0 0 0 1\n" + fmt::format(fmt::runtime(text), far) + "\n0 0 0 1\n"); },
+          ThrowsMessage<InputError>("9.csv:4: a coordinate is larger than 1e150: scale the mesh"));
 }
 
 TEST(GroundTruthFile, ReadsTheStudysFiles) {

@@ -64,6 +64,35 @@ TEST_F(MatFile, ReadsACellByRowAndColumn) {
   EXPECT_THAT(numbers("cells", {"2", "2"}), IsEmpty());
 }
 
+TEST_F(MatFile, ValuesAreARowOrAColumnOfNumbersThatDoublesHold) {
+  constexpr std::int64_t kBeyond = (1LL << 53) + 1;
+  {
+    MatWriter file(folder_ / "a.mat");
+    const std::vector<double> numbers = {1, 2, 3, 4};
+    file.write("row", 1, 4, numbers);
+    file.write("column", 4, 1, numbers);
+    file.write("square", 2, 2, numbers);
+    file.write("largest", MAT_C_INT64, MAT_T_INT64, std::vector<std::int64_t>{kBeyond - 1, 1 - kBeyond});
+    file.write("beyond", MAT_C_INT64, MAT_T_INT64, std::vector<std::int64_t>{-kBeyond});
+    file.write("unsigned", MAT_C_UINT64, MAT_T_UINT64, std::vector<std::uint64_t>{std::uint64_t{1} << 63U});
+  }
+  const auto said = [&](const char* variable) {
+    try {
+      parse_mat_values(bytes(), "a.mat", variable);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_THAT(parse_mat_values(bytes(), "a.mat", "row"), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(parse_mat_values(bytes(), "a.mat", "column"), ElementsAre(1, 2, 3, 4));
+  EXPECT_EQ(said("square"), "a.mat: variable \"square\": its shape is (2, 2), expected a row or a column");
+  EXPECT_THAT(numbers("square"), ElementsAre(1, 2, 3, 4)) << "picks may be in any shape";
+  EXPECT_THAT(numbers("largest"), ElementsAre(0x1p53, -0x1p53));
+  EXPECT_THAT(said("beyond"), HasSubstr("it holds -9007199254740993: whole numbers beyond 2^53"));
+  EXPECT_THAT(said("unsigned"), HasSubstr("it holds 9223372036854775808: whole numbers beyond 2^53"));
+}
+
 TEST_F(MatFile, SaysWhatWasExpected) {
   EXPECT_THAT(error_of(bytes(), "value"),
               HasSubstr("a.mat: no variable \"value\"; the file has \"values\", \"bytes\""));

@@ -127,6 +127,16 @@ TEST_F(BadData, PointsFarFromTheMeshAreNoValues) {
                                       HasSubstr("dog.csv:1: the file has no values")));
 }
 
+TEST_F(BadData, APointWhoseSquareOverflowsFailsItsItemAlone) {
+  data_.write("maps/cat.csv", "x,y,z,s\n1,1,1,1\n1e300,0,0,2\n");
+  data_.write("maps/dog.csv", "x,y,z,s\n1,1,1,5\n");
+  run(description(std::string(kMaps) +
+                  "values: {per: point, points: [x, y, z], column: s, max_distance: 100}\n"));
+  EXPECT_THAT(failures(),
+              ElementsAre(place("maps/cat.csv") + ":3: a coordinate is larger than 1e150: scale the mesh"));
+  EXPECT_THAT(truth(1).saliency, ElementsAre(5, 5, 5, 5));
+}
+
 TEST_F(BadData, AParticipantWithoutPicksCountsAndNobodysPicksAreAnError) {
   data_.write("clicks/cat_0.pid", "3\n");
   data_.write("clicks/cat_1.pid", "");

@@ -2,6 +2,8 @@
 // Which metrics are computed, of models and of people, and which table has them.
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -41,6 +43,23 @@ TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
   EXPECT_THAT(run(std::string(kToyConfig) + "metrics: [lcc, cc, nss, auc_exact, auc]\n"), IsEmpty())
       << "the paper's by name are the default";
   EXPECT_EQ(results_, paper_results);
+}
+
+// Readers refuse infinite values; a cache may hold them that an older program filled.
+TEST(MeanHistograms, LeaveOutItemsWithAnInfiniteValue) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Catalog catalog = make_catalog(toy_config());
+  const auto mean = [&](std::string_view row, const std::vector<Value>& members) {
+    JobInputs in;
+    in.members = members.size();
+    in.member = [&](std::size_t i) { return std::make_shared<const Value>(members[i]); };
+    return std::get<Histogram>(catalog.rows[catalog.index(Shapes::meshes, row)].run(in));
+  };
+  const ScalarField sound = {0, 0.2, 1}, huge = {-1.7e308, 0, 1.7e308}, endless = {0, -infinity, 1};
+  const std::vector<Value> maps = {sound, huge, endless};
+  EXPECT_EQ(mean("mean_histogram.PS", maps), mean("mean_histogram.PS", {sound, huge}));
+  const std::vector<Value> truths = {GroundTruth{sound, {}}, GroundTruth{endless, {}}, GroundTruth{huge, {}}};
+  EXPECT_EQ(mean("reference", truths), mean("mean_histogram.PS", {sound, huge}));
 }
 
 TEST_F(RunnerTest, EveryMetricIsFiniteOnMeshesAndScansAndForPeople) {

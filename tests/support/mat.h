@@ -27,6 +27,11 @@ class MatWriter {
   void write(const char* name, std::vector<double> values) {
     write(matrix(name, MAT_C_DOUBLE, MAT_T_DOUBLE, values));
   }
+  // A matrix of doubles, column by column.
+  void write(const char* name, std::size_t rows, std::size_t columns, std::vector<double> values) {
+    std::array<std::size_t, 2> size = {rows, columns};
+    write(Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), values.data(), 0));
+  }
   template <class Number>
   void write(const char* name, matio_classes class_type, matio_types type, std::vector<Number> values) {
     write(matrix(name, class_type, type, values));

@@ -2,17 +2,25 @@
 #include "stages/core/field.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stages/core/errors.h"
 #include "stages/core/rng.h"
 
 namespace salbench {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(MinMaxNormalised, SpansTheUnitIntervalAndTakesNanAsZero) {
   EXPECT_THAT(min_max_normalised(std::vector<double>{-1, std::nan(""), 3}), ElementsAre(0, 0.25, 1));
@@ -21,6 +29,62 @@ TEST(MinMaxNormalised, SpansTheUnitIntervalAndTakesNanAsZero) {
 TEST(MinMaxNormalised, LeavesAConstantFieldAsItIs) {
   EXPECT_THAT(min_max_normalised(std::vector<double>{5, 5, 5}), ElementsAre(5, 5, 5));
   EXPECT_TRUE(min_max_normalised(std::vector<double>{}).empty());
+}
+
+TEST(MinMaxNormalised, IsThatOfAnyMultiple) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  EXPECT_THAT(min_max_normalised(std::vector<double>{-1.7e308, 0, 1.7e308}), ElementsAre(0, 0.5, 1));
+  EXPECT_THAT(min_max_normalised(std::vector<double>{-kLargest, std::nan(""), kLargest, 5e-324}),
+              ElementsAre(0, 0.5, 1, 0.5));
+  EXPECT_THAT(min_max_normalised(std::vector<double>{kLargest, kLargest}), ElementsAre(kLargest, kLargest));
+  Rng rng(2, "field", "");
+  std::vector<double> field(500);
+  for (double& v : field) v = 4 * rng.uniform() - 2;
+  const ScalarField expected = min_max_normalised(field);
+  for (const int power : {-900, 400, 480, 700, 1022, 1023}) {
+    std::vector<double> multiple = field;
+    for (double& v : multiple) v = std::ldexp(v, power);
+    EXPECT_EQ(min_max_normalised(multiple), expected) << power;
+  }
+}
+
+TEST(MinMaxNormalised, RefusesInfiniteValues) {
+  for (const double infinite : {kInfinity, -kInfinity})
+    for (const std::vector<double>& field :
+         {std::vector<double>{0, infinite, 1}, {infinite, infinite}, {std::nan(""), infinite}})
+      EXPECT_THAT([&] { min_max_normalised(field); },
+                  ThrowsMessage<InputError>(AllOf(HasSubstr("inf at point"), HasSubstr("finite number"))));
+  EXPECT_THROW(min_max_normalised(std::vector<double>{-kInfinity, kInfinity}), InputError);
+}
+
+TEST(RequireFinite, NamesTheFirstValueThatIsNot) {
+  EXPECT_NO_THROW(require_finite({}, "the map"));
+  EXPECT_NO_THROW(require_finite(std::vector<double>{-1e308, 0}, "the map"));
+  EXPECT_NO_THROW(require_finite(std::vector<double>{1, std::nan("")}, "the map", true));
+  EXPECT_THAT(
+      [] {
+        require_finite(std::vector<double>{0, 1, std::nan(""), kInfinity}, "the map");
+      },
+      ThrowsMessage<InputError>("the map is nan at point 2 (0-based), expected a finite number"));
+  EXPECT_THAT(
+      [] {
+        require_finite(std::vector<double>{0, std::nan(""), kInfinity}, "the map", true);
+      },
+      ThrowsMessage<InputError>("the map is inf at point 2 (0-based), expected a finite number"));
+}
+
+TEST(ScaleAgainstOverflow, IsAPowerOfTwoForHugeFieldsAlone) {
+  for (const std::vector<double>& ordinary :
+       {std::vector<double>{}, {0, -0.0}, {5e-324}, {-3e144, 1}, {std::nan("")}, {kInfinity}})
+    EXPECT_EQ(scale_against_overflow(ordinary), 1);
+  for (const double huge : {4e144, 1e200, 1.7e308, std::numeric_limits<double>::max()})
+    for (const double sign : {1.0, -1.0}) {
+      const double scale = scale_against_overflow(std::vector<double>{1, std::nan(""), sign * huge, -1e144});
+      int exponent = 0;
+      EXPECT_EQ(std::frexp(scale, &exponent), 0.5);
+      EXPECT_LT(huge * scale, 0x1p481);
+      EXPECT_GE(huge * scale, 0x1p480);
+    }
 }
 
 TEST(BinnedDensity, IntegratesToOneOverItsEdges) {
@@ -45,6 +109,24 @@ TEST(BinnedDensity, ConstantFieldFallsInTheMiddle) {
   const BinnedDensity h = binned_density(std::vector<double>{3, 3, 3});
   EXPECT_DOUBLE_EQ(h.edges.front(), 2.5);
   EXPECT_NEAR(h.density[50], 100, 1e-9);
+}
+
+// Where half a unit beside a value is rounded to the value, there are no bins.
+TEST(BinnedDensity, AConstantFieldFallsInTheMiddleHoweverLargeItIs) {
+  for (const double value : {1e5, -1e7, 1e13, 1e17, -1e300, std::numeric_limits<double>::max()}) {
+    const BinnedDensity h = binned_density(std::vector<double>{value, value});
+    for (std::size_t i = 0; i < kHistogramBins; ++i)
+      EXPECT_NEAR(h.density[i], i == 50 ? 100 : 0, 1e-6) << value;
+  }
+}
+
+TEST(BinnedDensity, RefusesWhatHasNoRange) {
+  for (const std::vector<double>& field : {std::vector<double>{-1.7e308, 1.7e308},
+                                           {0, kInfinity},
+                                           {std::nan("")},
+                                           {0, std::nan(""), 1},
+                                           {0, 1, std::nan("")}})
+    EXPECT_THROW(binned_density(field), std::logic_error);
 }
 
 TEST(PickedPoints, AreDistinctAndAscending) {

@@ -2,9 +2,12 @@
 #include "stages/core/neighbours.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "stages/core/errors.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -169,6 +172,23 @@ TEST(KdTree, AsksForMoreThanThereIs) {
   std::vector<Neighbour> found;
   KdTree(two).nearest(two[0], 9, found);
   EXPECT_EQ(found.size(), 2U);
+}
+
+// Else the search would find nothing, and name a point that there is not.
+TEST(KdTree, RefusesWhereDistancesCannotBeSquared) {
+  const std::vector<Vec3> cloud = shapes::random_cloud(200, 7);
+  const KdTree tree(cloud);
+  std::vector<Neighbour> found;
+  for (const double far : {1e155, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    const Vec3 query(0, far, 0);
+    EXPECT_THROW(tree.nearest(query), InputError) << far;
+    for (const std::size_t k : {1U, 5U, 150U})
+      EXPECT_THROW(tree.nearest(query, k, found), InputError) << far << " " << k;
+    EXPECT_THROW(tree.nearest_of_each(std::vector{query}, 3), InputError) << far;
+  }
+  EXPECT_NO_THROW(tree.nearest(Vec3(0, 1e150, 0)));
+  for (const double nowhere : {std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_THROW(KdTree(std::vector<Vec3>{{0, 0, 0}, {nowhere, 0, 0}}), InputError);
 }
 
 TEST(KdTree, CoincidentPointsComeInOrderOfIndex) {

@@ -30,6 +30,14 @@ void expect_refusal(PointCloud cloud, std::string_view why) {
   EXPECT_THAT([&] { check_cloud(std::move(cloud)); }, ThrowsMessage<InputError>(HasSubstr(why)));
 }
 
+TEST(PointCloud, AViewpointIsWhereDistancesToItCanBeSquared) {
+  for (const double far : {1e155, 1e300, kInfinity, kNan}) {
+    PointCloud cloud = random_cloud(50);
+    cloud.viewpoint = Vec3(0, far, 0);
+    expect_refusal(cloud, "viewpoint");
+  }
+}
+
 TEST(PointCloud, ASoundCloudIsLeftAsItIs) {
   const PointCloud cloud = random_cloud(50);
   const CheckedCloud checked = check_cloud(cloud);

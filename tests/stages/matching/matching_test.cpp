@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/core/rng.h"
 
@@ -41,9 +43,11 @@ TEST(NormalisedHistogram, IsTheDensityOverTheUnitInterval) {
 }
 
 TEST(NormalisedHistogram, OfAConstantFieldIsOneBinInTheMiddle) {
-  const Histogram histogram = normalised_histogram(ScalarField{7, 7, 7, 7});
-  EXPECT_NEAR(histogram[50], 100, 1e-9);
-  EXPECT_NEAR(std::accumulate(histogram.begin(), histogram.end(), 0.0), 100, 1e-9);
+  for (const double value : {0.0, 7.0, -1e13, 1e308}) {
+    const Histogram histogram = normalised_histogram(ScalarField(4, value));
+    EXPECT_NEAR(histogram[50], 100, 1e-9) << value;
+    EXPECT_NEAR(std::accumulate(histogram.begin(), histogram.end(), 0.0), 100, 1e-9) << value;
+  }
 }
 
 TEST(MeanHistogram, IsTheMeanOfEachBin) {
@@ -105,6 +109,21 @@ TEST(Matched, KeepsTheOrderAndIgnoresScaleAndOffset) {
   std::ranges::sort(order, {}, [&](std::size_t i) { return field[i]; });
   for (std::size_t i = 1; i < order.size(); ++i) ASSERT_LE(result[order[i - 1]], result[order[i]]);
   for (std::size_t i = 0; i < field.size(); ++i) ASSERT_NEAR(of_scaled[i], result[i], 1e-9);
+}
+
+TEST(Matched, IsThatOfAnyMultiple) {
+  ScalarField field = skewed_field(1000, 4, 7), huge;
+  for (double& value : field) value -= 0.25;
+  for (const double value : field) huge.push_back(std::ldexp(value, 1024));
+  const Histogram reference = normalised_histogram(skewed_field(3000, 2, 5));
+  EXPECT_EQ(matched(huge, reference), matched(field, reference));
+  EXPECT_EQ(normalised_histogram(huge), normalised_histogram(field));
+}
+
+TEST(Matched, RefusesInfiniteValues) {
+  const ScalarField infinite = {0, 1, -std::numeric_limits<double>::infinity()};
+  EXPECT_THROW(matched(infinite, uniform_reference()), InputError);
+  EXPECT_THROW(normalised_histogram(infinite), InputError);
 }
 
 TEST(Matched, SpansTheUnitIntervalWhateverTheReference) {

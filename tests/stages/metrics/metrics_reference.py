@@ -232,7 +232,9 @@ def reference(case, by_area):
     weights = case["areas"] if by_area else np.ones(len(case["map"]))
     unit = weights.sum() if by_area else 1.0
     map_, truth = case["map"], case["saliency"]
-    normalised_map, normalised_truth = min_max(map_), min_max(truth)
+    normalised_map = np.full_like(map_, 0.5) if len(np.unique(map_)) == 1 else min_max(map_)
+    normalised_truth = min_max(truth)
+    levels = len(np.unique(truth)) > 1 or not truth.any()
     cc = pearson(map_, normalised_truth, weights)
     values = {
         "cc": cc,
@@ -242,8 +244,8 @@ def reference(case, by_area):
         "kl_smoothed": smoothed_divergence(map_, truth, weights, unit),
         "sim": similarity(map_, truth, weights),
         "sim_minmax": similarity(normalised_map, normalised_truth, weights),
-        "mse": sk.mean_squared_error(normalised_truth, normalised_map, sample_weight=weights),
-        "mae": sk.mean_absolute_error(normalised_truth, normalised_map, sample_weight=weights),
+        "mse": sk.mean_squared_error(normalised_truth, normalised_map, sample_weight=weights) if levels else math.nan,
+        "mae": sk.mean_absolute_error(normalised_truth, normalised_map, sample_weight=weights) if levels else math.nan,
     }
     for percent in (20, 10, 5, 1):
         top = on_top(truth, weights, percent) if not constant(truth, weights) else np.zeros(len(truth), bool)

@@ -3,7 +3,9 @@
 // Random cases against other implementations are in metrics_reference.py.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -49,6 +51,22 @@ TEST(Order, AscendsAndKeepsTheIndicesOfEqualValues) {
     EXPECT_EQ(ascending_order(field), expected) << scale;
   }
   EXPECT_TRUE(ascending_order({}).empty());
+}
+
+// A NaN is not equal to itself: loops over equal values must not wait for it to be.
+TEST(Order, RefusesNanAndRanksEndWhateverThereIs) {
+  const double nan = std::nan("");
+  for (const ScalarField& field : {ScalarField{nan}, {nan, 1, 2}, {1, 2, nan, 2}, {nan, nan}})
+    EXPECT_THROW(ascending_order(field), std::logic_error);
+  const ScalarField field = {1, nan, 2, nan};
+  const Order order = {0, 2, 1, 3};
+  EXPECT_EQ(mid_ranks(field, order, Measures(4, {})).by_vertex, (ScalarField{0.5, 2.5, 1.5, 3.5}));
+  const Measures measures(4, {});
+  const ScalarField map = {1, 2, 3, 4};
+  const auto distribution = distributions(map, ascending_order(map), measures)[0];
+  const Moments of_map = moments(map, measures)[0];
+  for (const double auc : top_scores({map, distribution, of_map, field, order}, measures.vertex).auc)
+    EXPECT_TRUE(std::isfinite(auc));
 }
 
 TEST(Order, PutsTheSmallestFirstHoweverManyThereAre) {
@@ -124,8 +142,10 @@ TEST(Suite, ValuesOfASmallExampleByHand) {
 
 TEST(Suite, AConstantMapIsThatOfChanceWhateverItsValue) {
   const GroundTruth truth{{0, 0.5, 1, 0, 0.2}, {{1, 2}, {2}}};
-  for (const double value : {0.0, 1.0, 7.0, -2.0}) {
+  const Values of_zero = all_values(ScalarField(5, 0.0), truth);
+  for (const double value : {0.0, 0.3, 1.0, 7.0, -2.0, 1.7e308, -1.7e308}) {
     const Values v = all_values(ScalarField(5, value), truth);
+    EXPECT_EQ(v, of_zero) << value;
     for (const Metric& metric : metric_table()) {
       const std::string name = metric.name.substr(0, metric.name.find('_'));
       if (name == "auc") {
@@ -137,8 +157,94 @@ TEST(Suite, AConstantMapIsThatOfChanceWhateverItsValue) {
       }
       EXPECT_FALSE(std::isnan(v.at(metric.name))) << metric.name;
     }
-    EXPECT_NEAR(v.at("sim"), 0.2 + 0.2 + 0.2 / 1.7, 1e-12);  // with the uniform distribution
+    EXPECT_NEAR(v.at("sim"), 0.2 + 0.2 + 0.2 / 1.7, 1e-12);                // with the uniform distribution
+    EXPECT_NEAR(v.at("mse"), (0.25 + 0 + 0.25 + 0.25 + 0.09) / 5, 1e-12);  // with 0.5 everywhere
+    EXPECT_NEAR(v.at("mae_area"), (0.5 + 0 + 0.5 + 0.5 + 0.3) / 5, 1e-12);
   }
+}
+
+TEST(Suite, AConstantGroundTruthHasNoErrorsUnlessItIsZero) {
+  const ScalarField map = {0, 0.5, 1};
+  for (const double value : {1e-9, 0.5, 1.0, -3.0, 1.7e308}) {
+    const Values v = all_values(map, {ScalarField(3, value), {{1}}});
+    for (const char* name : {"mse", "mae", "mse_area", "mae_area", "nss_top5"})
+      EXPECT_TRUE(std::isnan(v.at(name))) << name << " of " << value;
+    EXPECT_EQ(v.at("cc"), 0);
+    EXPECT_EQ(v.at("spearman"), 0);
+    EXPECT_EQ(std::isnan(v.at("sim")), value < 0);
+  }
+  EXPECT_NEAR(all_values(map, {ScalarField(3, 0), {}}).at("mse"), 1.25 / 3, 1e-12);
+}
+
+struct Field {
+  ScalarField map, saliency;
+  std::vector<std::int32_t> picks;
+};
+
+Field random_field() {
+  Rng rng(8, "suite", "");
+  Field field{ScalarField(300), ScalarField(300), {}};
+  for (std::size_t i = 0; i < 300; ++i) {
+    field.map[i] = std::round(rng.uniform() * 50) / 50;
+    field.saliency[i] = rng.below(3) == 0 ? 0 : rng.uniform();
+    if (rng.below(8) == 0) field.picks.push_back(static_cast<std::int32_t>(i));
+  }
+  return field;
+}
+
+void multiply(ScalarField& field, int power) {
+  for (double& value : field) value = std::ldexp(value, power);
+}
+
+// 1e-12 is added to values for kl_smoothed, which vanishes beside all of these.
+TEST(Suite, OfAGroundTruthAnyMultipleCounts) {
+  const Field field = random_field();
+  for (const double offset : {0.0, -0.5}) {
+    const auto of_multiple = [&](int power) {
+      GroundTruth truth{field.saliency, {field.picks}};
+      for (double& value : truth.saliency) value = std::ldexp(value + offset, power);
+      return all_values(field.map, truth);
+    };
+    const Values expected = of_multiple(300);
+    for (const int power : {450, 479, 481, 900, 1023, 1024})
+      for (const auto& [name, value] : of_multiple(power)) {
+        EXPECT_TRUE(value == expected.at(name) || (std::isnan(value) && std::isnan(expected.at(name))))
+            << name << " at 2^" << power;
+        EXPECT_TRUE(std::isfinite(value) || offset < 0) << name;
+      }
+  }
+}
+
+TEST(Suite, OfTheAreasAnyMultipleCounts) {
+  const Field field = random_field();
+  const GroundTruth truth{field.saliency, {field.picks}};
+  Rng rng(9, "suite", "");
+  ScalarField areas(field.map.size());
+  for (double& area : areas) area = rng.uniform();
+  const Values expected = values_of(metric_table(), field.map, truth, areas);
+  for (const int power : {-1000, -500, -150, 150, 500, 1000}) {
+    ScalarField multiple = areas;
+    multiply(multiple, power);
+    EXPECT_EQ(values_of(metric_table(), field.map, truth, multiple), expected) << power;
+  }
+}
+
+TEST(Suite, RefusesWhatIsNotFinite) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto said = [](const ScalarField& map, const ScalarField& saliency) -> std::string {
+    try {
+      all_values(map, {saliency, {{0}}});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_EQ(said({0, std::nan(""), 1}, {0, 1, 2}),
+            "the map is nan at point 1 (0-based), expected a finite number");
+  EXPECT_EQ(said({0, 1, -infinity}, {}), "the map is -inf at point 2 (0-based), expected a finite number");
+  EXPECT_EQ(said({0, 0.5, 1}, {0, infinity, 2}),
+            "the ground truth is inf at point 1 (0-based), expected a finite number");
+  EXPECT_EQ(said({0, std::nan(""), 1}, {0, std::nan(""), 2}), "nothing") << "nobody saw the point";
 }
 
 TEST(Suite, WithoutPicksMetricsOfPicksAreUndefined) {

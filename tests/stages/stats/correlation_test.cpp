@@ -36,6 +36,15 @@ TEST(Pearson, OfAConstantIsUndefined) {
   EXPECT_TRUE(std::isnan(pearson(Sample{}, Sample{})));
 }
 
+TEST(Pearson, IsThatOfAnyMultiple) {
+  const Sample x = {1, 2, 3, 4}, y = {1, 3, 1, 3};
+  Sample large_x, large_y;
+  for (const double value : x) large_x.push_back(std::ldexp(value, 1020));
+  for (const double value : y) large_y.push_back(std::ldexp(value - 2, 1023));
+  EXPECT_EQ(pearson(large_x, large_y), pearson(x, y));
+  EXPECT_EQ(spearman(large_x, large_y), spearman(x, y));
+}
+
 TEST(Spearman, SeesOnlyTheOrder) {
   const Sample x = {0.1, 5, 2, 3, 80};
   Sample y;

@@ -2,6 +2,8 @@
 #include "stages/stats/rank_tests.h"
 
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -157,6 +159,17 @@ TEST(SignedRank, EqualAndUndefinedPairsAreLeftOut) {
   EXPECT_FALSE(test.exact);
   EXPECT_EQ(test.statistic, 2);
 }
+
+TEST(SignedRank, PairsOfInfinityAreEqual) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const SignedRank test =
+      signed_rank_test(Sample{infinity, -infinity, 3, infinity}, Sample{infinity, -infinity, 2, 1});
+  EXPECT_EQ(test.n_equal, 2);
+  EXPECT_EQ(test.n, 2);
+  EXPECT_EQ(test.statistic, 0);
+}
+
+TEST(Midranks, RefuseNan) { EXPECT_THROW(midranks(Sample{1, kNan, 2}), std::logic_error); }
 
 TEST(SignedRank, WithoutPairsIsUndefinedAndWithEqualOnesCertain) {
   EXPECT_TRUE(std::isnan(signed_rank_test(Sample{}, Sample{}).p_value));

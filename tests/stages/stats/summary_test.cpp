@@ -27,6 +27,13 @@ TEST(Summarise, TwoValuesHaveTheCauchyInterval) {
   EXPECT_NEAR(s.ci_low, -12.706204736174698, 1e-9);
 }
 
+TEST(Summarise, OfLargeValuesIsFinite) {
+  const Summary s = summarise(std::vector<double>{1e308, 1.2e308, 1.1e308});
+  EXPECT_NEAR(s.mean / 1.1e308, 1, 1e-15);
+  EXPECT_NEAR(s.sd / 1e307, 1, 1e-12);
+  EXPECT_EQ(summarise(std::vector<double>{-1.7e308, 1.7e308}).mean, 0);
+}
+
 TEST(Summarise, CountsAndLeavesOutTheUndefined) {
   const Summary s = summarise(std::vector<double>{kNan, 2, kNan, 4});
   EXPECT_EQ(s.n, 2);
