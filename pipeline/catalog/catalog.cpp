@@ -35,8 +35,8 @@ GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
   return made_up_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
-Scan scan_of(const Mesh& mesh, const View& view, const ScanOptions& options) {
-  return simulate_scan(mesh, view.index, options);
+Scan scan_of(const ScanScene& scene, const View& view, const ScanOptions& options) {
+  return scene.scan(view.index, options);
 }
 
 // Saliency where it is known.
@@ -211,7 +211,8 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
   }
   RowOf<Scan> scan;
   if (on_scans) {
-    scan = catalog.add(Shapes::scans, {"scan", 1}, scan_of, mesh, kView, section("scan", config.scan));
+    scan = catalog.add(Shapes::scans, {"scan", 1}, scan_of, prepared<ScanScene>(mesh), kView,
+                       section("scan", config.scan));
     scans.points = scan;
     scans.ground_truth = catalog.add(Shapes::scans, {"scan_ground_truth", 1}, scan_ground_truth, scan, mesh,
                                      meshes.ground_truth);

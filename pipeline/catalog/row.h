@@ -6,9 +6,9 @@
 //   const RowOf<Normals> normals = catalog.add(Shapes::meshes, {"normals", 1}, mesh_normals, mesh,
 //                                              section("normals", config.normals));
 //
-// The arguments stand for the function's parameters, one for one: a RowOf<T> for a T, a section for its
-// options, kRandom for a RandomSource, kView for a View, kFiles<source> for a FilesOf<source>, kRemark for a
-// Remark. Anything else does not compile.
+// The arguments stand for the function's parameters, one for one: a RowOf<T> for a T, prepared<P>(RowOf<T>)
+// for a P that is made of a T, a section for its options, kRandom for a RandomSource, kView for a View,
+// kFiles<source> for a FilesOf<source>, kRemark for a Remark. Anything else does not compile.
 #pragma once
 
 #include <array>
@@ -25,6 +25,7 @@
 
 #include "io/dataset.h"
 #include "io/value.h"
+#include "pipeline/catalog/preparation.h"
 #include "pipeline/catalog/source.h"
 #include "pipeline/config/option_text.h"
 #include "stages/core/rng.h"
@@ -48,8 +49,6 @@ struct EnumNames<Scope> {
 constexpr Scope scope_of(Shapes shapes) { return static_cast<Scope>(shapes); }
 
 enum class Source : std::uint8_t { none, shape_file, truth_files, map_file };
-
-using ValuePtr = std::shared_ptr<const Value>;
 
 // --- parameters that a row's function may have beside values and options ---------------------------------
 
@@ -87,6 +86,7 @@ struct JobInputs {
   RandomSource random = {};  // the seed, and the item's name
   int view = 0;
   std::string* remark = nullptr;  // set where a row makes one
+  std::shared_ptr<Preparation> preparation = {};  // of the row and family; none: the job's own
 };
 
 // --- the row ----------------------------------------------------------------------------------------------
@@ -114,6 +114,7 @@ struct Row : RowHead {
   Source source = Source::none;
   bool seeded = false;    // draws random numbers: seed and item enter the key
   bool per_view = false;  // the view enters the key
+  bool prepares = false;  // jobs of a family share a Preparation
   bool gathers = false;   // one job for the data set, over all members of its input
   ValuePtr given = {};    // in place of a result: known before the run, and not stored
   std::function<Value(const JobInputs&)> run = {};
@@ -154,6 +155,16 @@ SectionOf<Options> section(std::string path, const Options& options) {
   return {std::move(path), options};
 }
 
+// A parameter that is made of another row's result, once for all jobs of a family that read it.
+template <class T, class Source>
+struct PreparedOf {
+  RowOf<Source> source;
+};
+template <class T, class Source>
+PreparedOf<T, Source> prepared(const RowOf<Source>& source) {
+  return {source};
+}
+
 // Arguments for what comes from the job.
 inline constexpr struct RandomArgument {
 } kRandom;
@@ -175,6 +186,8 @@ template <class Parameter, class T>
 inline constexpr bool kFits<Parameter, RowOf<T>> = kProvides<Parameter, T>;
 template <class T>
 inline constexpr bool kFits<Members<T>, RowOf<T>> = true;
+template <class T, class Source>
+inline constexpr bool kFits<T, PreparedOf<T, Source>> = true;
 template <class Options>
 inline constexpr bool kFits<Options, SectionOf<Options>> = true;
 template <>
@@ -186,6 +199,11 @@ inline constexpr bool kFits<Remark, RemarkArgument> = true;
 template <Source source>
 inline constexpr bool kFits<FilesOf<source>, FilesArgument<source>> = true;
 
+template <class Argument>
+inline constexpr bool kPrepared = false;
+template <class T, class Source>
+inline constexpr bool kPrepared<PreparedOf<T, Source>> = true;
+
 template <class T>
 inline constexpr bool kGathers = false;
 template <class T>
@@ -195,6 +213,11 @@ inline constexpr bool kGathers<Members<T>> = true;
 template <class T>
 void describe(Row& row, const RowOf<T>& input) {
   row.inputs.push_back(input.row);
+}
+template <class T, class Source>
+void describe(Row& row, const PreparedOf<T, Source>& prepared) {
+  describe(row, prepared.source);
+  row.prepares = true;
 }
 template <class Options>
 void describe(Row& row, const SectionOf<Options>& section) {
@@ -227,6 +250,17 @@ decltype(auto) parameter(const RowOf<T>&, const JobInputs& in, std::size_t& valu
     return std::get<Parameter>(*in.values[value++]);
   }
 }
+// What a preparation lends to a job.
+template <class T>
+struct Lent {
+  std::shared_ptr<const T> object;
+  operator const T&() const { return *object; }  // NOLINT: stands for the parameter
+};
+template <class Parameter, class T, class Source>
+Lent<T> parameter(const PreparedOf<T, Source>&, const JobInputs& in, std::size_t& value) {
+  const auto preparation = in.preparation ? in.preparation : std::make_shared<Preparation>();
+  return {preparation->template of<T, Source>(in.values[value++])};
+}
 template <class Parameter, class Options>
 const Options& parameter(const SectionOf<Options>& section, const JobInputs&, std::size_t&) {
   return section.options;
@@ -255,6 +289,7 @@ Row make_row(RowHead head, Shapes shapes, const std::function<Result(Parameters.
   static_assert((kFits<std::decay_t<Parameters>, Arguments> && ...), "each argument fits its parameter");
   Row row{{std::move(head)}, shapes};
   row.kind = kind_of(Value(Result()));
+  static_assert((std::size_t{kPrepared<Arguments>} + ... + 0) <= 1, "a preparation holds one object");
   (describe(row, arguments), ...);
   row.gathers = (kGathers<std::decay_t<Parameters>> || ...);
   row.run = [function, arguments...](const JobInputs& in) -> Value {

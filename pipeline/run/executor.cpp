@@ -104,6 +104,17 @@ void Executor::hold(const JobRef& job, ValuePtr value) {
 
 void Executor::forget(const Item& item) {
   for (const JobRef& job : jobs_of(context_.catalog, item)) hold(job, nullptr);
+  if (item.is_scan()) return;
+  const std::lock_guard lock(mutex_);
+  std::erase_if(preparations_, [&](const auto& entry) { return entry.first.second == item.family; });
+}
+
+std::shared_ptr<Preparation> Executor::preparation(const JobRef& job) {
+  if (!context_.row(job).prepares) return nullptr;
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<Preparation>& kept = preparations_[{job.row, job.item.family}];
+  if (kept == nullptr) kept = std::make_shared<Preparation>();
+  return kept;
 }
 
 // Two rows that ask at the same time may load it twice; neither waits for the other.
@@ -151,7 +162,8 @@ Executor::Result Executor::run(const JobRef& job, std::vector<SourceData> files)
                    .source = &context_.source(job.item),
                    .random = {context_.seed, context_.name(job)},
                    .view = job.item.view,
-                   .remark = &remark};
+                   .remark = &remark,
+                   .preparation = preparation(job)};
   std::vector<JobRef> members;
   for (std::size_t i = 0; i < row.inputs.size(); ++i)
     for (const JobRef& read : input_jobs(context_, job, i)) {

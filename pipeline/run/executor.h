@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cache/store.h"
@@ -51,7 +52,7 @@ class Executor {
   // over the members that are known so far.
   Value recompute(const JobRef& job);
 
-  // Drops the values of an item.
+  // Drops the values of an item; with a mesh or cloud, what was prepared for the jobs of its family.
   void forget(const Item& item);
 
   const std::vector<Failure>& failures() const { return failures_; }   // in no order
@@ -69,6 +70,7 @@ class Executor {
   void hold(const JobRef& job, ValuePtr value);
   ValuePtr input(const JobRef& job);
   ValuePtr restored(const JobRef& job);
+  std::shared_ptr<Preparation> preparation(const JobRef& job);
   Result run(const JobRef& job, std::vector<SourceData> files);
   Digest store(const JobRef& job, const Recipe& recipe, const Result& result);
   void compute(const JobRef& job, std::vector<SourceData> files);
@@ -78,9 +80,11 @@ class Executor {
   Plan& plan_;
   Store& store_;
   Damaged damaged_;
-  mutable std::mutex mutex_;                   // of values_, failures_ and records_; held for moments only
+  mutable std::mutex mutex_;                   // of the containers below; held for moments only
   std::recursive_mutex restoring_;             // a damaged value may need other damaged ones
   std::vector<std::vector<ValuePtr>> values_;  // [row][item]: of families at work, and of sets
+  // By row and family: of families at work.
+  std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<Preparation>> preparations_;
   std::vector<Failure> failures_;
   std::vector<NodeRecord> records_;
   std::vector<std::atomic<int>> running_;  // [row]: jobs being computed

@@ -11,9 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -109,18 +107,10 @@ Window window_of(std::span<const Vec3> local_corners, const Camera& camera, cons
           static_cast<int>(first(seen.min().y())), static_cast<int>(last(seen.max().y()))};
 }
 
-// Much faster than element by element.
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
 using Corners = std::array<Vec3, 3>;  // of a face
 
-// Everything that the views of a mesh share. Each thread keeps it for its last mesh, because building the
-// hierarchy is a large part of one scan.
 struct Traced {
-  Mesh mesh;
+  const Mesh& mesh;
   LocalFrame frame;
   std::vector<Vec3> local_corners;   // the vertices that are corners of faces, once each
   std::vector<Corners> local_faces;  // a copy for each face: its vertices lie far apart in memory
@@ -145,19 +135,7 @@ struct Traced {
     scene = embree::scene_of(embree::triangles(local_vertices, mesh.faces),
                              RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   }
-  bool is_of(const Mesh& other) const {
-    return same_bytes(mesh.vertices, other.vertices) && same_bytes(mesh.faces, other.faces);
-  }
 };
-
-const Traced& traced(const Mesh& mesh) {
-  static thread_local std::unique_ptr<const Traced> last;
-  if (last == nullptr || !last->is_of(mesh)) {
-    last = nullptr;  // frees the former hierarchy before the next is built
-    last = std::make_unique<const Traced>(mesh);
-  }
-  return *last;
-}
 
 struct Candidate {
   std::uint32_t face;
@@ -239,10 +217,23 @@ RTCRayHit float_ray(const Vec3& origin, const Vec3& direction) {
 
 }  // namespace
 
+struct ScanScene::Impl : Traced {
+  using Traced::Traced;
+};
+
+ScanScene::ScanScene(const Mesh& mesh) : impl_(std::make_unique<const Impl>(mesh)) {}
+ScanScene::ScanScene(ScanScene&&) noexcept = default;
+ScanScene& ScanScene::operator=(ScanScene&&) noexcept = default;
+ScanScene::~ScanScene() = default;
+
 Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options) {
+  return ScanScene(mesh).scan(view, options);
+}
+
+Scan ScanScene::scan(int view, const ScanOptions& options) const {
   CHECK_LE(0, view);
   CHECK_LT(view, kViews);
-  const Traced& from = traced(mesh);
+  const Traced& from = *impl_;
   const Camera camera = camera_of_view(view, options);
   const double step = std::tan(options.step_degrees * kRadiansPerDegree);
   const Window window = window_of(from.local_corners, camera, options);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <numbers>
 #include <string_view>
 
@@ -47,12 +48,30 @@ struct ScanOptions {
   }
 };
 
-// The scan of view 0..kViews-1 in the mesh's own coordinates, row by row: rows from top to bottom, in a row
-// from left to right, as the camera sees them. Every point lies on a face, to double precision. Faces are
-// two-sided; vertices without a face do not count.
-//
-// Depends on nothing but its arguments: several threads may scan at once, and x86-64 machines agree.
-// Throws InputError if the surface area is 0 or not finite, or if no ray meets the mesh.
+// A mesh ready to be scanned: what its views share. Building it is a large part of the time of one scan.
+class ScanScene {
+ public:
+  // The mesh must outlive the scene. Throws InputError if the surface area is 0 or not finite.
+  explicit ScanScene(const Mesh& mesh);
+  explicit ScanScene(Mesh&&) = delete;
+  ScanScene(ScanScene&&) noexcept;
+  ScanScene& operator=(ScanScene&&) noexcept;
+  ~ScanScene();
+
+  // The scan of view 0..kViews-1 in the mesh's own coordinates, row by row: rows from top to bottom, in a row
+  // from left to right, as the camera sees them. Every point lies on a face, to double precision. Faces are
+  // two-sided; vertices without a face do not count.
+  //
+  // Depends on nothing but the mesh and the arguments: several threads may scan at once, and x86-64 machines
+  // agree. Throws InputError if no ray meets the mesh.
+  Scan scan(int view, const ScanOptions& options = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+// One view alone.
 Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options = {});
 
 }  // namespace salbench

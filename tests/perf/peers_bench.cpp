@@ -37,14 +37,12 @@ using peers::Work;
 constexpr double kRadius = 0.1;  // in R, of the high level of LS
 const std::size_t kFewFaces = static_cast<std::size_t>(MsOptions().faces);
 
-// Scans are simulated on the hierarchy of the last mesh: another one in between lets it be built each time,
-// as it is once per mesh of a run.
+// The scene is built each time, as it is once per mesh of a run.
 Work our_scans(const Shape& shape, int views) {
   return [&mesh = shape.mesh, views] {
-    static const Mesh other{{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()}, {{0, 1, 2}}};
-    benchmark::DoNotOptimize(simulate_scan(other, 0, {.step_degrees = 10}));
+    const ScanScene scene(mesh);
     std::size_t count = 0;
-    for (int view = 0; view < views; ++view) count += simulate_scan(mesh, view).points.size();
+    for (int view = 0; view < views; ++view) count += scene.scan(view).points.size();
     return count;
   };
 }

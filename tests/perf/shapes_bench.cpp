@@ -71,9 +71,16 @@ void add_of_mesh(const std::string& name, const Source& source) {
       [](const Shape& s) { return vis_saliency(s.mesh.vertices, s.normals, s.mesh.faces, VisOptions{}); });
 }
 
+// All scans of the mesh, with the scene that they share.
+std::size_t count_scanned(const Mesh& mesh) {
+  const ScanScene scene(mesh);
+  std::size_t points = 0;
+  for (int view = 0; view < kViews; ++view) points += scene.scan(view).points.size();
+  return points;
+}
+
 void add_of_scan(const std::string& name, const Source& source) {
-  add(
-      "scan", name, source, [](const Shape& s) { return simulate_scan(s.mesh, 0); }, true);
+  add("scans", source.name, source, [](const Shape& s) { return count_scanned(s.mesh); });
   add(
       "normals", name, source, [](const Shape& s) { return scan_normals(*s.scan); }, true);
   add(

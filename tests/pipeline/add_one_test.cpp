@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // CONTRIBUTING.md, followed: a stage, a model, a metric, a layout and a subcommand that are not in the
 // program are added in one place each, and take part like those that are.
+#include <atomic>
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -162,6 +165,52 @@ TEST(AddAStage, ItIsComputedStoredAndFoundAgain) {
   EXPECT_THAT(computed(1), testing::Contains("heights@1"));
   EXPECT_THAT(computed(1), testing::IsEmpty());
   EXPECT_THAT(computed(2), testing::ElementsAre("heights@1"));
+}
+
+// Made of a mesh for all views of it; counts those that were made and are left.
+struct Sized {
+  static inline std::atomic<int> made = 0, left = 0;
+  std::size_t n;
+
+  explicit Sized(const Mesh& mesh) : n(mesh.vertices.size()) { ++made, ++left; }
+  Sized(const Sized&) = delete;
+  Sized& operator=(const Sized&) = delete;
+  ~Sized() { --left; }
+};
+
+ScalarField of_view(const Sized& mesh, const View& view, const FarOptions&) {
+  return ScalarField(mesh.n, view.index);
+}
+
+TEST(AddAStage, WhatItsViewsShareIsMadeOncePerMeshAndGoesWithIt) {
+  TemporaryFolder data;
+  for (const char* name : {"1", "2", "3"}) write_toy_item(data.path(), name, shapes::bumpy_sphere(2));
+  MemoryStore store;
+  ToyRun toy(data.path(), store);
+  const RowOf<Mesh> mesh(toy.row("mesh"));
+  toy.catalog.add(Shapes::scans, {"of_view", 1}, of_view, prepared<Sized>(mesh), kView,
+                  section("of_view", FarOptions{}));
+  toy.plan = make_plan(toy.context, store);
+  NoProgress progress;
+  Runner runner(toy.context, toy.plan, store, progress, toy.stop);
+  runner.run(1);
+  EXPECT_EQ(Sized::made, 3);
+  EXPECT_EQ(Sized::left, 0);
+  const std::size_t row = toy.row("of_view", Shapes::scans);
+  for (int view = 0; view < kViews; ++view)
+    EXPECT_EQ(std::get<ScalarField>(*runner.result({row, {2, view}})),
+              ScalarField(shapes::bumpy_sphere(2).vertices.size(), view));
+}
+
+TEST(Preparation, ThoseWhoAskAtOnceGetTheSame) {
+  const auto value = std::make_shared<const Value>(shapes::tetrahedron());
+  Preparation preparation;
+  std::vector<std::shared_ptr<const Sized>> got(4);
+  std::vector<std::thread> threads;
+  for (auto& mine : got) threads.emplace_back([&] { mine = preparation.of<Sized, Mesh>(value); });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& mine : got) EXPECT_EQ(mine, got.front());
+  EXPECT_EQ(got.front()->n, 4U);
 }
 
 // --- a metric: its function, and a row of the table ------------------------------------------------------

@@ -75,9 +75,10 @@ int run(const std::filesystem::path& folder) {
   for (const auto& path : evenly_spread_meshes(folder)) {
     const Mesh mesh = read_mesh(path);
     outward.push_back(share_outward(mesh));
+    const ScanScene scene(mesh);
     double lowest = 1;
     for (int view = 0; view < kViews; ++view) {
-      facing.push_back(share_facing(simulate_scan(mesh, view)));
+      facing.push_back(share_facing(scene.scan(view)));
       lowest = std::min(lowest, facing.back());
     }
     fmt::print("{:>10}  outward {:.4f}  lowest scan {:.4f}\n", path.filename().string(), outward.back(),

@@ -217,31 +217,35 @@ TEST(SimulateScan, FollowsTheMeshesUnitExactly) {
 
 TEST(SimulateScan, DoesNotDependOnOtherThreads) {
   const Mesh mesh = two_bodies();
+  const ScanScene scene(mesh);
   std::vector<Scan> alone(kViews), together(kViews);
-  for (int view = 0; view < kViews; ++view) alone[static_cast<std::size_t>(view)] = simulate_scan(mesh, view);
+  for (int view = 0; view < kViews; ++view) alone[static_cast<std::size_t>(view)] = scene.scan(view);
   std::vector<std::thread> threads;
   for (int first = 0; first < 4; ++first) {
     threads.emplace_back([&, first] {
       for (int view = first; view < kViews; view += 4)
-        together[static_cast<std::size_t>(view)] = simulate_scan(mesh, view);
+        together[static_cast<std::size_t>(view)] = scene.scan(view);
     });
   }
   for (std::thread& thread : threads) thread.join();
   for (std::size_t view = 0; view < kViews; ++view) EXPECT_EQ(alone[view].points, together[view].points);
 }
 
-TEST(SimulateScan, WhatAThreadKeepsOfAMeshIsNeverThatOfAnother) {
+TEST(ScanScene, GivesEveryViewTheScanThatItHasAlone) {
+  const Mesh mesh = two_bodies(), other = transformed(mesh, 1.5, {1, 0, 0});
+  const ScanScene scene(mesh), of_other(other);
+  for (int view = kViews - 1; view >= 0; --view) {
+    EXPECT_EQ(scene.scan(view).points, simulate_scan(mesh, view).points);
+    EXPECT_EQ(of_other.scan(view).points, simulate_scan(other, view).points);
+  }
+  EXPECT_NE(scene.scan(6).points, of_other.scan(6).points);
+}
+
+TEST(ScanScene, LeavesNothingBehind) {
   Mesh mesh = two_bodies();
-  const Scan first = simulate_scan(mesh, 6);
-  const Mesh other = transformed(mesh, 1.5, {1, 0, 0});
-  EXPECT_NE(simulate_scan(other, 6).points, first.points);
-  EXPECT_EQ(simulate_scan(mesh, 6).points, first.points);
+  const Scan first = ScanScene(mesh).scan(6);
   mesh.vertices[3] += Vec3(0.4, 0, 0);  // in its place in memory
-  const Scan edited = simulate_scan(mesh, 6);
-  EXPECT_NE(edited.points, first.points);
-  Scan of_new_thread;
-  std::thread([&] { of_new_thread = simulate_scan(mesh, 6); }).join();
-  EXPECT_EQ(of_new_thread.points, edited.points);
+  EXPECT_NE(ScanScene(mesh).scan(6).points, first.points);
 }
 
 TEST(SimulateScan, ADoubledFaceCountsOnce) {

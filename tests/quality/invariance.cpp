@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much scores depend on where a mesh lies, how it is turned, how large it is and how its vertices are
+// numbered:  quality_invariance DATA [TRIALS]
+//
+// DATA holds SchellingData/. Every mesh with ground truth is brought into TRIALS random frames of each kind
+// (default: 3). The maps of all models that draw no random numbers, with their default options, are matched
+// and scored there and as the file has the mesh. Prints two tables: the scores, and how far they move.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/ground_truth_file.h"
+#include "io/mesh_file.h"
+#include "stages/matching/matching.h"
+#include "stages/metrics/metrics.h"
+#include "stages/stats/correlation.h"
+#include "tests/support/mesh_models.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Marked {
+  std::string name;
+  Mesh mesh;
+  ScalarField saliency;
+  std::vector<std::int32_t> picks;  // ascending, each once
+};
+
+std::vector<Marked> marked_meshes(const fs::path& data) {
+  std::vector<Marked> all;
+  for (const auto& entry : fs::directory_iterator(data / "Distributions")) {
+    Marked marked;
+    marked.name = entry.path().stem().string();
+    marked.mesh = read_mesh(data / "Meshes" / (marked.name + ".off"));
+    const Elements elements{marked.mesh.vertices.size()};
+    marked.saliency = parse_saliency(read_file(entry.path()), entry.path().string(), elements);
+    std::set<std::int32_t> picks;
+    for (int k = 0;; ++k) {
+      const fs::path file = data / "RawData" / fmt::format("{}_{}.pid", marked.name, k);
+      if (!fs::exists(file)) break;
+      for (const std::int32_t pick : parse_picks(read_file(file), file.string(), elements))
+        picks.insert(pick);
+    }
+    marked.picks.assign(picks.begin(), picks.end());
+    all.push_back(std::move(marked));
+  }
+  std::sort(all.begin(), all.end(), [](const Marked& a, const Marked& b) { return a.name < b.name; });
+  return all;
+}
+
+// --- scores
+
+enum Score : std::size_t { auc_score, nss_score, lcc_score, kScores };
+using ScoresOf = std::array<double, kScores>;
+
+ScoresOf scores_of(const ScalarField& map, const Histogram& reference, const Marked& marked) {
+  const ScalarField values = matched(map, reference);
+  return {auc_exact(values, marked.picks), nss(values, marked.picks), std::abs(cc(values, marked.saliency))};
+}
+
+struct Moved {
+  ScoresOf sum{}, largest{};           // of the absolute differences
+  std::vector<ScoresOf> sum_of_trial;  // [trial]: of the differences over the items
+  double least_correlation = 1;        // of ranks, between two maps of an item
+
+  void add(std::size_t trial, const ScoresOf& before, const ScoresOf& after) {
+    if (sum_of_trial.size() <= trial) sum_of_trial.resize(trial + 1);
+    for (std::size_t s = 0; s < kScores; ++s) {
+      const double difference = after[s] - before[s];
+      sum[s] += std::abs(difference);
+      largest[s] = std::max(largest[s], std::abs(difference));
+      sum_of_trial[trial][s] += difference;
+    }
+  }
+  double largest_of_sums(std::size_t score) const {
+    double most = 0;
+    for (const ScoresOf& of_trial : sum_of_trial) most = std::max(most, std::abs(of_trial[score]));
+    return most;
+  }
+};
+
+struct Findings {
+  std::array<ScoresOf, kMeshModels.size()> sums{};  // in the file's frame
+  std::array<std::array<Moved, kRandomFrames.size()>, kMeshModels.size()> moved;
+
+  void add(const Marked& marked, const Histogram& reference, std::size_t trials) {
+    const DescribedMesh shape(marked.mesh);
+    std::array<ScalarField, kMeshModels.size()> maps;
+    std::array<ScoresOf, kMeshModels.size()> scores;
+    for (std::size_t m = 0; m < kMeshModels.size(); ++m) {
+      maps[m] = kMeshModels[m].map(shape);
+      scores[m] = scores_of(maps[m], reference, marked);
+      for (std::size_t s = 0; s < kScores; ++s) sums[m][s] += scores[m][s];
+    }
+    for (std::size_t kind = 0; kind < kRandomFrames.size(); ++kind)
+      for (std::size_t trial = 0; trial < trials; ++trial) {
+        const Rng rng(trial, kRandomFrames[kind].name, marked.name);
+        const FramedMesh framed = kRandomFrames[kind].of(marked.mesh, rng);
+        const DescribedMesh there(framed.mesh);
+        for (std::size_t m = 0; m < kMeshModels.size(); ++m) {
+          const ScalarField map = framed.in_order_before(kMeshModels[m].map(there));
+          Moved& of = moved[m][kind];
+          of.add(trial, scores[m], scores_of(map, reference, marked));
+          of.least_correlation = std::min(of.least_correlation, spearman(maps[m], map));
+        }
+      }
+  }
+
+  void print(std::size_t items, std::size_t trials) const {
+    const auto n = static_cast<double>(items);
+    fmt::print("| Model | AUC | NSS | LCC |\n|---|---|---|---|\n");
+    for (std::size_t m = 0; m < kMeshModels.size(); ++m)
+      fmt::print("| {} | {:.4f} | {:.4f} | {:.4f} |\n", kMeshModels[m].name, sums[m][auc_score] / n,
+                 sums[m][nss_score] / n, sums[m][lcc_score] / n);
+    fmt::print(
+        "\n| Model | Frame | AUC | NSS | LCC | mean AUC | mean NSS | mean LCC | rank correlation |\n"
+        "|---|---|---|---|---|---|---|---|---|\n");
+    for (std::size_t m = 0; m < kMeshModels.size(); ++m)
+      for (std::size_t kind = 0; kind < kRandomFrames.size(); ++kind) {
+        const Moved& of = moved[m][kind];
+        fmt::print("| {} | {} |", kMeshModels[m].name, kRandomFrames[kind].name);
+        for (std::size_t s = 0; s < kScores; ++s)
+          fmt::print(" {:.1e}, {:.1e} |", of.sum[s] / (n * static_cast<double>(trials)), of.largest[s]);
+        for (std::size_t s = 0; s < kScores; ++s) fmt::print(" {:.1e} |", of.largest_of_sums(s) / n);
+        fmt::print(" {:.4f} |\n", of.least_correlation);
+      }
+  }
+};
+
+void measure(const fs::path& data, std::size_t trials) {
+  const std::vector<Marked> all = marked_meshes(data);
+  if (all.empty()) throw std::runtime_error(data.string() + ": no mesh has ground truth");
+  std::vector<Histogram> histograms;
+  for (const Marked& marked : all) histograms.push_back(normalised_histogram(marked.saliency));
+  const Histogram reference = mean_histogram(histograms);
+  Findings findings;
+  for (const Marked& marked : all) findings.add(marked, reference, trials);
+  findings.print(all.size(), trials);
+}
+
+}  // namespace
+}  // namespace salbench
+
+int main(int argc, char** argv) {
+  const std::string given = argc == 3 ? argv[2] : "3";
+  std::size_t trials = 0;
+  const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), trials);
+  if (argc < 2 || argc > 3 || error != std::errc() || end != given.data() + given.size() || trials == 0) {
+    fmt::print(stderr, "usage: quality_invariance DATA [TRIALS]\n");
+    return 2;
+  }
+  try {
+    salbench::measure(std::filesystem::path(argv[1]) / "SchellingData", trials);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "quality_invariance: {}\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of a map depends on where the shape lies, how it is turned, how large it is and how its points are
+// numbered: nothing, but for what is said here. docs/invariance.md has the same for real meshes, in scores.
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/field.h"
+#include "tests/support/mesh_models.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+// Hills without symmetry over a square, open at its border. 2^12 vertices whose coordinates are multiples of
+// 2^-16: their centroid is exact, and stays so if they are shifted by whole numbers. More faces than MS
+// keeps.
+Mesh landscape() {
+  Mesh mesh = shapes::grid(63);
+  for (Vec3& v : mesh.vertices) {
+    v.z() = 0.1 * std::sin(9 * v.x() + 0.3) * std::sin(7 * v.y() + 1.1) +
+            0.05 * std::sin(23 * v.x() * v.y()) + 0.03 * v.x();
+    v = (65536 * v).array().round() / 65536;
+  }
+  return mesh;
+}
+
+using Maps = std::array<ScalarField, kMeshModels.size()>;
+
+Maps maps_of(const Mesh& mesh) {
+  const DescribedMesh described(mesh);
+  Maps maps;
+  for (std::size_t m = 0; m < maps.size(); ++m) maps[m] = kMeshModels[m].map(described);
+  return maps;
+}
+
+template <class Place>
+Maps maps_where(const Place& place) {
+  return maps_of(FramedMesh(landscape(), place).mesh);
+}
+
+// CS lays a grid from the origin of coordinates along their axes.
+bool has_a_grid(std::string_view model) { return model == "CS"; }
+// VIS looks in directions that do not turn with the shape.
+bool has_directions(std::string_view model) { return model == "VIS"; }
+
+TEST(Invariance, ScaleByAPowerOfTwoIsExact) {
+  const Maps maps = maps_of(landscape());
+  for (const double factor : {1.0 / 128, 4096.0}) {
+    const Maps scaled = maps_where([&](const Vec3& v) { return Vec3(factor * v); });
+    for (std::size_t m = 0; m < maps.size(); ++m)
+      EXPECT_EQ(scaled[m], maps[m]) << kMeshModels[m].name << " times " << factor;
+  }
+}
+
+TEST(Invariance, ShiftByWholeNumbersIsExact) {
+  const Maps maps = maps_of(landscape());
+  const Maps shifted = maps_where([&](const Vec3& v) { return Vec3(v + Vec3(2, -3, 50)); });
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    if (has_a_grid(kMeshModels[m].name)) continue;
+    EXPECT_EQ(shifted[m], maps[m]) << kMeshModels[m].name;
+  }
+}
+
+TEST(Invariance, HalfTurnsAboutTheAxesAreExact) {
+  const Maps maps = maps_of(landscape());
+  for (const Vec3& signs : {Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}) {
+    const Maps turned = maps_where([&](const Vec3& v) { return Vec3(v.cwiseProduct(signs)); });
+    for (std::size_t m = 0; m < maps.size(); ++m) {
+      const std::string_view model = kMeshModels[m].name;
+      if (has_a_grid(model) || has_directions(model)) continue;
+      if (model != "LVJ") {
+        EXPECT_EQ(turned[m], maps[m]) << model;
+        continue;
+      }
+      // Sums in the order of the search tree, which is mirrored.
+      for (std::size_t i = 0; i < maps[m].size(); ++i) ASSERT_NEAR(turned[m][i], maps[m][i], 1e-12);
+    }
+  }
+}
+
+// Mean difference between min-max-normalised maps. [model][frame], in the order of the tables.
+using Tolerances = std::array<double, kRandomFrames.size()>;
+constexpr std::array<Tolerances, kMeshModels.size()> kTolerances = {{
+    {1e-7, 1e-12, 1e-12, 1e-4},    // LS: of equally similar points, the number decides which one counts
+    {0.05, 5e-3, 0.05, 5e-3},      // CS: some points lie on borders of the grid
+    {1e-12, 1e-12, 1e-12, 1e-12},  // PS
+    {1e-9, 1e-9, 1e-9, 1e-9},      // MS: this shape has no repeated eigenvalues
+    {1e-12, 1e-12, 1e-12, 1e-12},  // MC
+    {0.1, 1e-12, 1e-12, 1e-12},    // LVJ: the unit is the diagonal of the bounding box
+    {1e-12, 1e-12, 1e-12, 1e-12},  // LCE
+    {1e-12, 1e-12, 1e-12, 1e-12},  // CB
+    {0.05, 1e-12, 1e-12, 1e-12},   // VIS
+}};
+
+double mean_difference(const ScalarField& a, const ScalarField& b) {
+  const ScalarField u = min_max_normalised(a), v = min_max_normalised(b);
+  double sum = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) sum += std::abs(u[i] - v.at(i));
+  return sum / static_cast<double>(u.size());
+}
+
+TEST(Invariance, InRandomFramesMapsStayWithinTheirTolerance) {
+  const Mesh mesh = landscape();
+  const Maps maps = maps_of(mesh);
+  for (std::size_t frame = 0; frame < kRandomFrames.size(); ++frame)
+    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+      const FramedMesh framed = kRandomFrames[frame].of(mesh, Rng(seed, kRandomFrames[frame].name, ""));
+      const Maps there = maps_of(framed.mesh);
+      for (std::size_t m = 0; m < maps.size(); ++m)
+        EXPECT_LE(mean_difference(framed.in_order_before(there[m]), maps[m]), kTolerances[m][frame])
+            << kMeshModels[m].name << ", " << kRandomFrames[frame].name << " " << seed;
+    }
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The models that draw no random numbers, from a mesh to its map, with the default options of everything; and
+// the same mesh in other frames: turned, scaled, shifted, renumbered.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "stages/core/mesh_ops.h"
+#include "stages/core/rng.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/models/cb.h"
+#include "stages/models/cs.h"
+#include "stages/models/lce.h"
+#include "stages/models/ls.h"
+#include "stages/models/lvj.h"
+#include "stages/models/mc.h"
+#include "stages/models/ms.h"
+#include "stages/models/ps.h"
+#include "stages/models/vis.h"
+#include "stages/normals/normals.h"
+
+namespace salbench {
+
+// The mesh must outlive it.
+struct DescribedMesh {
+  const Mesh& mesh;
+  Normals normals;
+  Descriptors descriptors;
+
+  explicit DescribedMesh(const Mesh& of)
+      : mesh(of), normals(mesh_normals(of)), descriptors(fpfh(of.vertices, normals, FpfhOptions{})) {}
+  explicit DescribedMesh(Mesh&&) = delete;
+
+  Points points() const { return mesh.vertices; }
+};
+
+struct MeshModel {
+  std::string_view name;
+  ScalarField (*map)(const DescribedMesh&);
+};
+
+inline constexpr std::array kMeshModels = {
+    MeshModel{"LS",
+              [](const DescribedMesh& m) { return ls_saliency(m.points(), m.normals, m.descriptors, {}); }},
+    MeshModel{"CS", [](const DescribedMesh& m) { return cs_saliency(m.points(), m.normals, {}); }},
+    MeshModel{"PS", [](const DescribedMesh& m) { return ps_saliency(m.points(), m.descriptors, {}); }},
+    MeshModel{"MS", [](const DescribedMesh& m) { return ms_saliency(m.points(), m.mesh.faces, {}); }},
+    MeshModel{"MC", [](const DescribedMesh& m) { return mc_saliency(m.points(), m.mesh.faces, {}); }},
+    MeshModel{"LVJ", [](const DescribedMesh& m) { return lvj_saliency(m.points(), m.mesh.faces, {}); }},
+    MeshModel{"LCE", [](const DescribedMesh& m) { return lce_saliency(m.points(), m.mesh.faces, {}); }},
+    MeshModel{"CB", [](const DescribedMesh& m) { return cb_saliency(m.points(), {}); }},
+    MeshModel{"VIS",
+              [](const DescribedMesh& m) { return vis_saliency(m.points(), m.normals, m.mesh.faces, {}); }},
+};
+
+// A mesh elsewhere.
+struct FramedMesh {
+  Mesh mesh;
+  std::vector<std::int32_t> number;  // [vertex before]: its number here
+
+  explicit FramedMesh(Mesh before) : mesh(std::move(before)), number(mesh.vertices.size()) {
+    std::iota(number.begin(), number.end(), 0);
+  }
+  template <class Place>
+  FramedMesh(Mesh before, const Place& place) : FramedMesh(std::move(before)) {
+    for (Vec3& v : mesh.vertices) v = place(v);
+  }
+
+  ScalarField in_order_before(const ScalarField& map) const {
+    ScalarField values;
+    for (const std::int32_t i : number) values.push_back(map[static_cast<std::size_t>(i)]);
+    return values;
+  }
+};
+
+inline Vec3 random_direction(Rng& rng) {
+  const double x = rng.normal(), y = rng.normal(), z = rng.normal();
+  return Vec3(x, y, z).normalized();
+}
+
+inline FramedMesh randomly_turned(const Mesh& mesh, Rng rng) {
+  const Vec3 axis = random_direction(rng);
+  // Uniform over all rotations: the angle of a random unit quaternion.
+  const double w = rng.normal(), length = std::hypot(rng.normal(), rng.normal(), rng.normal());
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2 * std::atan2(length, w), axis).toRotationMatrix();
+  return {mesh, [&](const Vec3& v) { return Vec3(turn * v); }};
+}
+
+// By up to a thousand, up or down; all magnitudes are equally likely.
+inline FramedMesh randomly_scaled(const Mesh& mesh, Rng rng) {
+  const double factor = std::pow(10, 6 * rng.uniform() - 3);
+  return {mesh, [&](const Vec3& v) { return Vec3(factor * v); }};
+}
+
+// By up to ten R.
+inline FramedMesh randomly_shifted(const Mesh& mesh, Rng rng) {
+  const double distance = 10 * rng.uniform() * bounding_radius(mesh.vertices);
+  const Vec3 shift = distance * random_direction(rng);
+  return {mesh, [&](const Vec3& v) { return Vec3(v + shift); }};
+}
+
+inline FramedMesh randomly_numbered(const Mesh& mesh, Rng rng) {
+  FramedMesh framed(mesh);
+  for (std::size_t i = framed.number.size(); i > 1; --i)
+    std::swap(framed.number[i - 1], framed.number[rng.below(i)]);
+  for (std::size_t i = 0; i < framed.number.size(); ++i)
+    framed.mesh.vertices[static_cast<std::size_t>(framed.number[i])] = mesh.vertices[i];
+  for (Triangle& face : framed.mesh.faces)
+    for (std::int32_t& v : face) v = framed.number[static_cast<std::size_t>(v)];
+  return framed;
+}
+
+struct RandomFrame {
+  std::string_view name;
+  FramedMesh (*of)(const Mesh&, Rng);
+};
+inline constexpr std::array kRandomFrames = {
+    RandomFrame{"rotation", randomly_turned}, RandomFrame{"scale", randomly_scaled},
+    RandomFrame{"translation", randomly_shifted}, RandomFrame{"order", randomly_numbered}};
+
+}  // namespace salbench
