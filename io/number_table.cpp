@@ -123,10 +123,10 @@ class Columns {
       in.fail(fmt::format("{} columns between commas, but the first line has {}: {}", cells.size(), size_,
                           kAdvice));
     if (!has_header_ && look_like_decimal_commas(cells))
-      in.fail(fmt::format(
-          "whole numbers between commas, some with zeros in front: {}, or name the columns in a "
-          "first line",
-          kAdvice));
+      in.fail(
+          fmt::format("whole numbers between commas, some with zeros in front: {}, or name the columns in a "
+                      "first line",
+                      kAdvice));
   }
 
   std::string_view cell(const TextScanner& in, const std::vector<std::string_view>& cells,

@@ -85,7 +85,7 @@ struct JobInputs {
   const DatasetItem* source = nullptr;
   RandomSource random = {};  // the seed, and the item's name
   int view = 0;
-  std::string* remark = nullptr;  // set where a row makes one
+  std::string* remark = nullptr;                  // set where a row makes one
   std::shared_ptr<Preparation> preparation = {};  // of the row and family; none: the job's own
 };
 
