@@ -63,7 +63,7 @@ def own_shapes(row):
     """The mean over all shapes that the model has a score for, where these are others than the compared ones."""
     if row["n_own_shapes"] == row["n_shapes"] or row["own_mean"] != row["own_mean"]:
         return ""
-    kind = several(int(row["n_own_shapes"]), KIND_NAMES.get(row["dataset"], "shape"))
+    kind = several(row["n_own_shapes"], KIND_NAMES.get(row["dataset"], "shape"))
     return f"{row['own_mean']:.3f} over all {kind} that it has a score for".replace("-", "−")
 
 

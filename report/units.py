@@ -8,16 +8,19 @@ HEAD = "n"
 
 
 def several(n, name):
+    n = int(n)
     return f"{n} {name}" if n == 1 else f"{n} {name}es" if name.endswith(("s", "sh")) else f"{n} {name}s"
 
 
 def counted(unit, dataset, n, n_shapes):
-    """unit: "mesh", "class", "shape", or empty where it is not known."""
+    """unit: "mesh", "class", "shape", or empty where it is not known. NaN is a number that the table does not have."""
+    if n != n:
+        return "–"
     shape = KIND_NAMES.get(dataset, "shape")
     whole = "point cloud" if dataset == "clouds" else "mesh"
     name = {"mesh": whole, "class": "class", "shape": shape}.get(unit, shape if n == n_shapes else "unit")
-    text = several(int(n), name)
-    return text if n_shapes != n_shapes or name == shape else f"{text}, {several(int(n_shapes), shape)}"
+    text = several(n, name)
+    return text if n_shapes != n_shapes or name == shape else f"{text}, {several(n_shapes, shape)}"
 
 
 def count_cell(results, dataset, n, n_shapes, within_class=False):

@@ -101,7 +101,7 @@ TEST(StandardOutput, IsTheLastThingThatARunNeeds) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(run_after("exec > /dev/full", toy.command("run")).status, 3);
   const std::string results = toy.results();
-  EXPECT_THAT(toy.salbench("status").out, HasSubstr("(finished)"));
+  EXPECT_THAT(toy.salbench("status").out, HasSubstr("last run: finished"));
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0U);
   EXPECT_EQ(toy.results(), results);

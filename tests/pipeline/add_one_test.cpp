@@ -184,7 +184,11 @@ ScalarField of_view(const Sized& mesh, const View& view, const FarOptions&) {
 
 TEST(AddAStage, WhatItsViewsShareIsMadeOncePerMeshAndGoesWithIt) {
   TemporaryFolder data;
-  for (const char* name : {"1", "2", "3"}) write_toy_item(data.path(), name, shapes::bumpy_sphere(2));
+  for (const int size : {1, 2, 3}) {  // equal meshes would have equal keys, and be computed once
+    Mesh mesh = shapes::bumpy_sphere(2);
+    for (Vec3& vertex : mesh.vertices) vertex *= size;
+    write_toy_item(data.path(), std::to_string(size), mesh);
+  }
   MemoryStore store;
   ToyRun toy(data.path(), store);
   const RowOf<Mesh> mesh(toy.row("mesh"));
