@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -121,9 +122,19 @@ TEST(EdgeDistances, FollowEdgesAndStopAtTheReach) {
     EXPECT_NEAR(reached[1].distance, 0.1, 1e-12);
     EXPECT_NEAR(reached[3].distance, std::sqrt(0.02), 1e-12);
   }
+  const double side = distances.from(0, 0.15)[1].distance;
+  EXPECT_EQ(distances.from(0, side).size(), 3U);  // those at the reach count
+
+  // Diagonals run along (1, 1) alone: the shortest path takes as many as it can.
   const auto everything = distances.from(0, 10);
-  EXPECT_EQ(everything.size(), mesh.vertices.size());
-  EXPECT_NEAR(everything.back().distance, 2 - 0.0, 2.0 - 10 * std::sqrt(0.02) + 1e-9);
+  ASSERT_EQ(everything.size(), mesh.vertices.size());
+  for (const auto& [index, distance] : everything) {
+    const auto [near, far] =
+        std::minmax({mesh.vertices[std::size_t(index)].x(), mesh.vertices[std::size_t(index)].y()});
+    EXPECT_NEAR(distance, far - near + std::sqrt(2) * near, 1e-12);
+  }
+  EXPECT_TRUE(
+      std::ranges::is_sorted(everything, {}, [](const auto& r) { return std::pair(r.distance, r.index); }));
 }
 
 }  // namespace

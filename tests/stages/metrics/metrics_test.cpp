@@ -78,10 +78,15 @@ double auc_exact_by_pairs(const Example& example) {
 TEST(Auc, EqualsTheProtocolByCounting) {
   for (const int levels : {4, 1000}) {
     const Example example = random_example(400, levels, 61);
-    for (const MetricsOptions& options : {MetricsOptions{}, MetricsOptions{7, 2}}) {
-      const Rng rng(1, "score", "x");
-      EXPECT_NEAR(auc(example.map, example.picked, options, rng), auc_by_counting(example, options, rng),
-                  1e-12);
+    Example of_both_signs = example, negative = example, low = example;
+    for (double& value : of_both_signs.map) value -= 0.5;
+    for (double& value : negative.map) value -= 2;
+    low.picked = {static_cast<std::int32_t>(std::ranges::min_element(low.map) - low.map.begin())};
+    for (const Example& each : {example, of_both_signs, negative, low}) {
+      for (const MetricsOptions& options : {MetricsOptions{}, MetricsOptions{7, 2}}) {
+        const Rng rng(1, "score", "x");
+        EXPECT_NEAR(auc(each.map, each.picked, options, rng), auc_by_counting(each, options, rng), 1e-12);
+      }
     }
   }
 }
@@ -269,6 +274,7 @@ TEST(MetricsOptions, RefusesNoSplitsAndASingleThreshold) {
   EXPECT_NO_THROW(check(MetricsOptions{1, 2}));
   EXPECT_THROW(check(MetricsOptions{0, 20}), OptionError);
   EXPECT_THROW(check(MetricsOptions{100, 1}), OptionError);
+  EXPECT_THROW(score({1, 2}, {{1, 2}, {{0}}}, MetricsOptions{0, 20}, Rng(1, "score", "x")), OptionError);
 }
 
 }  // namespace

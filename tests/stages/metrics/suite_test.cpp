@@ -354,6 +354,42 @@ TEST(ThresholdTable, CountsAsASearchDoes) {
   }
 }
 
+TEST(Comparison, AreasAreThoseOfTheSplitsAskedFor) {
+  ScalarField map(50);
+  Rng rng(10, "suite", "");
+  for (double& value : map) value = rng.uniform();
+  const std::vector<std::int32_t> picked = {3, 8, 30};
+  const Measures measures(map.size(), {});
+  Draws draws(rng);
+  const Comparison fresh({.map = map, .measures = measures}, draws), used = fresh;
+  const Splits few{3, 2}, many{100, 20};
+  const double area = used.sampled_auc(picked, many), tenths = used.quantile_areas(picked, many).tenths[0];
+  EXPECT_NE(used.sampled_auc(picked, few), area);
+  EXPECT_EQ(used.sampled_auc(picked, few), fresh.sampled_auc(picked, few));
+  EXPECT_NE(used.quantile_areas(picked, few).tenths[0], tenths);
+  EXPECT_EQ(used.quantile_areas(picked, few).tenths[0], fresh.quantile_areas(picked, few).tenths[0]);
+}
+
+TEST(EvenReached, CountsAsASearchDoes) {
+  Rng rng(11, "suite", "");
+  for (const double largest : {5e-324, 1e-300, 0.3, 1.0, 1e300}) {
+    for (const std::int32_t count : {2, 3, 20, 1000}) {
+      const std::vector<double> thresholds = even_thresholds(count, largest);
+      const EvenReached table(thresholds, largest);
+      ScalarField values = {0, largest};
+      for (int k = 0; k < 200; ++k) {
+        const double threshold = thresholds[rng.below(thresholds.size())];
+        for (const double value : {largest * rng.uniform(), threshold, std::nextafter(threshold, 0.0),
+                                   std::min(std::nextafter(threshold, 2 * largest), largest)})
+          values.push_back(value);
+      }
+      for (const double value : values)
+        ASSERT_EQ(table.look_up()(value), std::ranges::upper_bound(thresholds, value) - thresholds.begin())
+            << value << " of " << largest;
+    }
+  }
+}
+
 TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
   Rng rng(7, "suite", "");
   for (const double shift : {0.0, -2.0}) {  // below zero, thresholds do not ascend
