@@ -370,12 +370,12 @@ TEST(Comparison, AreasAreThoseOfTheSplitsAskedFor) {
   EXPECT_EQ(used.quantile_areas(picked, few).tenths[0], fresh.quantile_areas(picked, few).tenths[0]);
 }
 
-TEST(EvenReached, CountsAsASearchDoes) {
+TEST(EvenThresholds, CountAsASearchDoes) {
   Rng rng(11, "suite", "");
   for (const double largest : {5e-324, 1e-300, 0.3, 1.0, 1e300}) {
     for (const std::int32_t count : {2, 3, 20, 1000}) {
       const std::vector<double> thresholds = even_thresholds(count, largest);
-      const EvenReached table(thresholds, largest);
+      const EvenThresholds table(thresholds, largest);
       ScalarField values = {0, largest};
       for (int k = 0; k < 200; ++k) {
         const double threshold = thresholds[rng.below(thresholds.size())];
