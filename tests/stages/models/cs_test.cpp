@@ -215,7 +215,8 @@ void expect_written_out(const Shape& shape, const CsOptions& options) {
   const ScalarField saliency = saliency_of(shape, options);
   WrittenOut twin(shape, options);
   EXPECT_TRUE(twin.some_cluster_out_of_reach());
-  EXPECT_THAT(saliency, testing::Pointwise(testing::DoubleNear(1e-9), twin.saliency(options.distribution_weight)));
+  EXPECT_THAT(saliency,
+              testing::Pointwise(testing::DoubleNear(1e-9), twin.saliency(options.distribution_weight)));
 }
 
 TEST(CsSaliency, EqualsTheFormulasWrittenOut) {
