@@ -35,15 +35,20 @@ inline bool is_gone(std::string_view number) {
   return status.empty() || status.find("State:\tZ") != std::string::npos;
 }
 
-// Numbers of the living processes whose command line holds the text.
-inline std::vector<std::string> processes_with(std::string_view text) {
+// Numbers of the processes one of whose files holds the text.
+inline std::vector<std::string> processes_with(std::string_view text, std::string_view file = "cmdline") {
   std::vector<std::string> found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     const std::string number = entry.path().filename().string();
     if (number.find_first_not_of("0123456789") != std::string::npos) continue;
-    if (process_file(number, "cmdline").find(text) != std::string::npos) found.push_back(number);
+    if (process_file(number, file).find(text) != std::string::npos) found.push_back(number);
   }
   return found;
+}
+
+// Zombies too.
+inline std::vector<std::string> own_children() {
+  return processes_with("PPid:\t" + std::to_string(::getpid()) + "\n", "status");
 }
 
 // For ends that nobody waits for, such as those of a killed program's commands. False after half a minute.
