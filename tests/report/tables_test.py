@@ -29,6 +29,19 @@ class Tables(support.ReportTest):
             best = max(float(key) for key, _ in models)
             self.assertEqual([float(key) for key, bold in models if bold], [best])
 
+    def test_models_are_compared_where_all_have_scores_and_their_own_mean_stands_beside(self):
+        results = self.results[self.results["dataset"] == "meshes"].copy()
+        results.loc[(results["model"] == "MS") & results["item"].isin(["1", "2", "3"]), "auc"] = float("nan")
+        fixture.write_results(self.folder / "failing", [], results=results)
+        with support.without_figures():
+            rows = {tuple(row[1:3]): row for row in support.rows(support.page(self.report("failing")), "means")}
+        own = results[results["model"] == "LS"]["auc"]
+        self.assertEqual(rows["LS", "AUC"][3], "5 meshes")
+        self.assertEqual(" ".join(rows["LS", "AUC"][4].split()),
+                         f"{own.iloc[3:].mean():.3f} {own.mean():.3f} over all 8 meshes that it has a score for")
+        self.assertEqual(rows["MS", "AUC"][3:5], ["5 meshes", f"{results[results['model'] == 'MS']['auc'].mean():.3f}"])
+        self.assertEqual(rows["LS", "NSS"][3], "8 meshes")
+
     def test_the_papers_value_and_the_difference_stand_below_ours(self):
         row = next(row for row in support.rows(self.index, "classes-meshes-auc") if row[0] == "teddy")
         ours = float(row[2].split()[0])
