@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the scores say: how good each model is, which differ, which is best, and how sure all of that is. The
+// Conclusions from scores: how good each model is, which differ, which is best, and how sure that is. The
 // tables are functions of one value, so that they speak of the same units, shapes and resamples.
 #pragma once
 

@@ -37,11 +37,11 @@ class DatasetScores {
   std::vector<std::size_t> scored(std::size_t metric) const;
   std::vector<std::size_t> competitors(std::size_t metric) const;
 
-  // Of some models, over the shapes that they and all competitors have a score for. So all means, tests and
-  // ranks are about the same shapes, and a model gains nothing by failing on hard ones. References may have
-  // fewer: they bound nobody else's shapes.
+  // Scores of some models on the shapes that they and all competitors have a score for. So all means, tests
+  // and ranks are about the same shapes, and a model gains nothing by failing on hard ones. References may
+  // have fewer: they bound nobody else's shapes.
   UnitScores compared(std::size_t metric, std::span<const std::size_t> models) const;
-  // Of one model, over all shapes that it has a score for.
+  // Scores of one model on all shapes that it has a score for.
   UnitScores own(std::size_t metric, std::size_t model) const;
 
   std::vector<std::size_t> units_of_shapes() const;  // [shape]
