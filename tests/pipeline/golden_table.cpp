@@ -109,6 +109,17 @@ std::vector<GoldenRow> golden_rows(const Table& table) {
   return rows;
 }
 
+std::vector<GoldenRow> updated(std::span<const GoldenRow> now, std::span<const GoldenRow> golden) {
+  std::map<std::string, Fingerprint> before;
+  for (const GoldenRow& row : golden) before.emplace(row.subject(), row.fingerprint);
+  std::vector<GoldenRow> rows(now.begin(), now.end());
+  for (GoldenRow& row : rows) {
+    const auto found = before.find(row.subject());
+    if (found != before.end() && agree(row.fingerprint, found->second)) row.fingerprint = found->second;
+  }
+  return rows;
+}
+
 std::vector<GoldenChange> golden_changes(std::span<const GoldenRow> now, std::span<const GoldenRow> golden,
                                          std::span<const std::pair<std::string, std::string>> inputs) {
   std::map<std::string, GoldenRow> before;

@@ -47,6 +47,10 @@ bool agree(const Fingerprint& a, const Fingerprint& b);  // to 1e-6 of the value
 Table golden_table(std::span<const GoldenRow> rows);
 std::vector<GoldenRow> golden_rows(const Table& table);  // the inverse; throws InputError
 
+// `now` with the fingerprints of `golden` where the two agree: the last digits of another machine are no
+// news.
+std::vector<GoldenRow> updated(std::span<const GoldenRow> now, std::span<const GoldenRow> golden);
+
 struct GoldenChange {
   std::string what;        // one line
   bool forbidden = false;  // the output changed, and nothing says so: neither version, options nor an input
