@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 from typing import Callable
 
-from report import claims, examples, figures, ranking, sensitivity, statistics, tables
+from report import claims, examples, figures, ranking, sensitivity, statements, statistics, tables
 from report.blocks import attempt
 
 
@@ -64,6 +64,7 @@ def participants(shop):
 
 ELEMENTS = (
     Element("ranking", "", "", "Ranking", ranking.tables),
+    Element("statements", "", "", "What the paper says of significance, on its own scores", statements.table),
     Element("means", "", "", "Means", tables.means),
     Element("claims", "", "", "What the paper says, checked", claims.table),
     Element("figure-1", "Figure 1", "fig:teaser", "Examples of saliency maps", examples.meshes),

@@ -12,6 +12,7 @@ Subcommand evaluate_subcommand(Arguments& arguments);
 Subcommand export_subcommand(Arguments& arguments);
 Subcommand pictures_subcommand(Arguments& arguments);
 Subcommand conclusions_subcommand(Arguments& arguments);
+Subcommand power_subcommand(Arguments& arguments);
 Subcommand plan_subcommand(Arguments& arguments);
 Subcommand graph_subcommand(Arguments& arguments);
 Subcommand explain_subcommand(Arguments& arguments);

@@ -2,34 +2,15 @@
 #include "pipeline/results/conclusions.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
 
 #include "io/file.h"
+#include "pipeline/results/metric_rows.h"
 #include "pipeline/results/statistics.h"
-#include "stages/core/parallel.h"
-#include "stages/stats/multiple.h"
-#include "stages/stats/paired.h"
-#include "stages/stats/rank_tests.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
 namespace {
-
-// The rows that `each` makes of every metric of every data set; metrics in parallel, rows in their order.
-template <class Each>
-Table rows_by_metric(const Conclusions& conclusions, std::vector<std::string> columns, const Each& each) {
-  Table table{.columns = std::move(columns), .rows = {}};
-  for (const DatasetConclusions& dataset : conclusions.datasets) {
-    std::vector<std::vector<std::vector<Cell>>> rows(dataset.metrics.size());
-    parallel_ranges(rows.size(), 1, [&](std::size_t m, std::size_t) {
-      rows[m] = each(dataset, dataset.metrics[m], conclusions.metrics[m].name);
-    });
-    for (auto& of_metric : rows) std::ranges::move(of_metric, std::back_inserter(table.rows));
-  }
-  return table;
-}
 
 std::size_t place_of(const std::vector<std::size_t>& numbers, std::size_t number) {
   return static_cast<std::size_t>(std::ranges::find(numbers, number) - numbers.begin());
@@ -63,54 +44,6 @@ std::vector<Cell> summary_row(const DatasetScores& scores, std::size_t model, co
           compared.n_shapes,
           own.n_shapes,
           summarise(own.scores.values).mean};
-}
-
-std::vector<Cell> significance_row(const DatasetScores& scores, std::size_t metric, std::size_t a,
-                                   std::size_t b) {
-  const std::array pair{a, b};
-  const UnitScores both = scores.compared(metric, pair);
-  const std::vector<double> of_a = both.scores.column(0), of_b = both.scores.column(1);
-  const PairedComparison found = compare_paired(of_a, of_b);
-  const RankSum rank_sum = rank_sum_test(scores.by_shape(metric, a), scores.by_shape(metric, b));
-  const SignedRank signed_rank = signed_rank_test(of_a, of_b);
-  return {found.n,
-          both.n_shapes,
-          found.mean_difference,
-          found.interval.low,
-          found.interval.high,
-          found.t_p,
-          found.equivalence_interval.low,
-          found.equivalence_interval.high,
-          found.d_z,
-          found.rank_biserial,
-          found.superiority,
-          found.superiority_interval.low,
-          found.superiority_interval.high,
-          rank_sum.z,
-          rank_sum.p_value,
-          signed_rank.statistic,
-          signed_rank.p_value};
-}
-
-std::vector<std::vector<Cell>> significance_rows(const DatasetScores& scores, std::size_t metric,
-                                                 const std::string& name) {
-  std::vector<std::vector<Cell>> rows;
-  std::vector<double> p_values;
-  const std::vector<std::size_t> models = scores.scored(metric);
-  for (std::size_t i = 0; i < models.size(); ++i)
-    for (std::size_t j = i + 1; j < models.size(); ++j) {
-      std::vector<Cell>& row = rows.emplace_back(
-          std::vector<Cell>{scores.dataset(), name, scores.models()[models[i]], scores.models()[models[j]]});
-      std::ranges::move(significance_row(scores, metric, models[i], models[j]), std::back_inserter(row));
-      p_values.push_back(std::get<double>(row.back()));
-    }
-  const std::vector<double> adjusted = holm_adjusted(p_values);
-  const auto n_tests = std::ranges::count_if(p_values, [](double p) { return !std::isnan(p); });
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    rows[k].emplace_back(adjusted[k]);
-    rows[k].emplace_back(static_cast<std::int64_t>(n_tests));
-  }
-  return rows;
 }
 
 // A rank that is not known is an empty cell.
@@ -190,37 +123,6 @@ Table overview_table(const Conclusions& conclusions) {
                               student.high, rank_cell(rank.rank), rank.letters});
       }
   return table;
-}
-
-Table significance_table(const Conclusions& conclusions) {
-  return rows_by_metric(
-      conclusions,
-      {"dataset",
-       "metric",
-       "model_a",
-       "model_b",
-       "n",
-       "n_shapes",
-       "mean_difference",
-       "ci95_low",
-       "ci95_high",
-       "t_p",
-       "ci90_low",
-       "ci90_high",
-       "d_z",
-       "rank_biserial",
-       "superiority",
-       "superiority_low",
-       "superiority_high",
-       "rank_sum_z",
-       "rank_sum_p",
-       "signed_rank",
-       "signed_rank_p",
-       "signed_rank_p_holm",
-       "n_tests"},
-      [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
-        return significance_rows(dataset.scores, ranked.metric, metric);
-      });
 }
 
 Table ranking_table(const Conclusions& conclusions) {

@@ -50,6 +50,7 @@ PairedComparison compare_paired(std::span<const double> a, std::span<const doubl
   result.n = summary.n;
   result.mean_difference = summary.mean;
   if (summary.n < 2) return result;
+  result.deviation = summary.sd;
   const SignedRank signed_rank = signed_rank_test(a, b);
   const double all_ranks = static_cast<double>(signed_rank.n) * (static_cast<double>(signed_rank.n) + 1) / 2;
   result.rank_biserial = all_ranks > 0 ? 2 * signed_rank.sum_positive / all_ranks - 1 : 0;

@@ -15,6 +15,7 @@ namespace salbench {
 struct PairedComparison {
   std::int64_t n = 0;  // units
   double mean_difference = std::numeric_limits<double>::quiet_NaN();
+  double deviation = std::numeric_limits<double>::quiet_NaN();  // of the differences, by n - 1
   Interval interval = {};                                 // Student, 95 %; none if all agree
   double t_p = std::numeric_limits<double>::quiet_NaN();  // two-sided; below .05 where the
                                                           // interval leaves out 0

@@ -60,6 +60,32 @@ TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
       run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv", "--unit", "view"}).status, 2);
 }
 
+TEST(Results, StatementsStandBesideWhatTheScoresSay) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  write_file(
+      toy / "said.csv",
+      "section,claim,word,dataset,metric,check,a,b,margin\n4,as written,better,meshes,auc,above,PS,RS,\n");
+  const Outcome concluded = run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv",
+                                         "--statements", toy / "said.csv", "--out", toy / "concluded"});
+  ASSERT_EQ(concluded.status, 0) << concluded.err;
+  EXPECT_THAT(text_column(read_csv(toy / "concluded/statements.csv"), "model_b"), ElementsAre("RS"));
+}
+
+TEST(Results, PowerIsReadFromTheResultsOfARun) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const Outcome power =
+      run_process({SALBENCH_PROGRAM, "power", toy.out(), "--to", (toy / "power.csv").string()});
+  ASSERT_EQ(power.status, 0) << power.err;
+  EXPECT_THAT(power.out, HasSubstr("n_to_detect"));
+  const Table table = read_csv(toy / "power.csv");
+  ASSERT_EQ(table.rows.size(), read_csv(toy.out() / "significance.csv").rows.size());
+  EXPECT_EQ(number_column(table, "mean_difference"),
+            number_column(read_csv(toy.out() / "significance.csv"), "mean_difference"));
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "power", toy / "nothing"}).status, 2);
+}
+
 TEST(Results, ASecondRunComputesNothingAndSaysTheSame) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a text says of pairs of models, and what scores say of it.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/results/conclusions.h"
+
+namespace salbench {
+
+enum class Relation { above, same, differ };  // a is better than b; the two do not differ; they differ
+
+template <>
+struct EnumNames<Relation> {
+  static constexpr std::array<std::string_view, 3> names = {"above", "same", "differ"};
+};
+
+// A statement about every model of `a` against every one of `b`.
+struct Statement {
+  std::string section, text, word;  // word: how the text puts it
+  std::string dataset, metric;
+  Relation relation = Relation::above;
+  std::vector<std::string> a, b;
+  double margin = 0;  // differences below it count as none; NaN: no margin is given
+};
+
+// The statements about pairs in a CSV file like configs/paper/claims.csv: columns section, claim, word,
+// dataset, metric, check, a, b, margin; rows with another check, and those without a word, are left out.
+// Throws InputError with the line of a data set that there is none of, or of a margin that is not above 0.
+std::vector<Statement> read_statements(const std::filesystem::path& path);
+
+// section, claim, word, dataset, metric, check, model_a, model_b: a row per pair; then twice what it is
+// worth: n_shapes, rank_sum_z, rank_sum_p, by_shapes: "holds" where the paper's rank-sum test over shapes, at
+// 0.05, says what the text does, "same" being what it does not reject; n (units), mean_difference, ci95_low,
+// ci95_high, ci90_low, ci90_high, margin, by_units: above and differ hold where the 95 % interval of the
+// paired difference leaves out 0 on the side claimed, same where the 90 % interval lies within the margins;
+// "does not hold" where the interval says the contrary; else "undecided"; signed_rank_p_holm: of the
+// signed-rank test over units, corrected for all pairs of the metric. Empty where a model has no scores.
+// Statements about data sets and metrics without conclusions have no row. [schuirmann1987] [lakens2017]
+Table statements_table(const Conclusions& conclusions, const std::vector<Statement>& statements);
+
+}  // namespace salbench
