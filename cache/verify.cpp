@@ -89,9 +89,9 @@ Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop,
     if (stop) break;
     std::string fault = fault_of(file, folder, result);
     if (fault.empty()) {
-      const auto [first, fresh] = sound.try_emplace({file.stage, file.name.key}, &file);
-      if (!fresh && first->second->name.content != file.name.content)
-        fault = "another content under the key of " + first->second->path.filename().string();
+      const ArtefactFile* first = sound.try_emplace({file.stage, file.name.key}, &file).first->second;
+      if (first->name.content != file.name.content)
+        fault = "another content under the key of " + first->path.filename().string();
     }
     if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
     progress.item_done();

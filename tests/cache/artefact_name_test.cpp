@@ -24,6 +24,19 @@ TEST(ArtefactName, OtherFilesAreNoArtefacts) {
     EXPECT_FALSE(parse_artefact_name(bad)) << bad;
 }
 
+TEST(ArtefactName, NoneOfItsNumbersMayBeOtherText) {
+  const std::string key = Digest{1, 2}.hex(), content = Digest{3, 4}.hex();
+  const auto read = [](const std::string& key_text, const std::string& content_text, const std::string& sum,
+                       const std::string& size) {
+    return parse_artefact_name("52." + key_text + "." + content_text + "." + sum + "." + size + ".h5");
+  };
+  EXPECT_TRUE(read(key, content, "5", "6"));
+  EXPECT_FALSE(read("key", content, "5", "6"));
+  EXPECT_FALSE(read(key, "content", "5", "6"));
+  EXPECT_FALSE(read(key, content, "sum", "6"));
+  EXPECT_FALSE(read(key, content, "5", "size"));
+}
+
 TEST(ArtefactName, LabelsHoldNothingThatAFileSystemMinds) {
   EXPECT_EQ(item_label("my mesh/v1.2 ü"), "my_mesh_v1_2___");
   EXPECT_EQ(item_label(std::string(200, 'x')).size(), 60U);

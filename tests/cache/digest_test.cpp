@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/digest.h"
 
+#include <initializer_list>
+#include <set>
+#include <string_view>
+
 #include <gtest/gtest.h>
 
 #include "cache/key.h"
@@ -14,6 +18,18 @@ TEST(Digest, HexReadsBack) {
   EXPECT_EQ(digest_from_hex(digest.hex()), digest);
   EXPECT_FALSE(digest_from_hex("0123"));
   EXPECT_FALSE(digest_from_hex("0123456789abcdef00000000000000zz"));
+}
+
+TEST(Hasher, TextsDoNotRunIntoEachOther) {
+  const auto hashed = [](std::initializer_list<std::string_view> texts) {
+    Hasher hasher;
+    for (const std::string_view text : texts) hasher.add(text);
+    return hasher.digest();
+  };
+  const std::set<Digest> digests = {hashed({"ab", "c"}), hashed({"a", "bc"}), hashed({"abc"}),
+                                    hashed({"abc", ""}), hashed({"", "abc"}), hashed({"a", "b", "c"})};
+  EXPECT_EQ(digests.size(), 6U);
+  EXPECT_EQ(hashed({"ab", "c"}), hashed({"ab", "c"}));
 }
 
 TEST(ContentDigest, SeesNamesShapesTypesAndValuesButNoProse) {

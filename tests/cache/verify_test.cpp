@@ -142,6 +142,16 @@ TEST_F(VerifyTest, TwoContentsUnderOneKeyAreNamed) {
   EXPECT_THAT(fault(), HasSubstr("another content"));
 }
 
+// Two processes may compute the same job at the same time: the files differ in the seconds they note.
+TEST_F(VerifyTest, TheSameContentTwiceUnderOneKeyIsSound) {
+  FolderStore store(folder_.path(), Access::read_write);
+  store.save(recipe(0), "field", {{"saliency", {2}, std::vector<double>{0, 1}, "1", "two values"}},
+             {.item = "52", .seconds = 0.75, .attributes = {}});
+  const Verification result = verify();
+  EXPECT_EQ(result.artefacts, 4U);
+  EXPECT_THAT(result.faults, IsEmpty());
+}
+
 TEST_F(VerifyTest, AFolderThatIsNoCacheIsRefused) {
   TemporaryFolder other;
   EXPECT_THROW(verify_cache(other.path(), kGoOn, progress), StorageError);
@@ -160,7 +170,11 @@ TEST_F(VerifyTest, AReadOnlyStoreLeavesADamagedArtefactWhereItIs) {
   Bytes bytes = *read_bytes(path);
   bytes.back() ^= std::byte{1};
   rewrite(path, bytes);
+  testing::internal::CaptureStdout();
   EXPECT_FALSE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key_of(recipe(0))));
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              AllOf(HasSubstr(path.filename().string()), HasSubstr("checksum mismatch"),
+                    HasSubstr("a run will compute it again")));
   EXPECT_TRUE(fs::exists(path));
   EXPECT_FALSE(fs::exists(folder_ / "damaged"));
 }

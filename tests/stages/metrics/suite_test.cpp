@@ -5,16 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/metrics/distribution.h"
 #include "stages/metrics/metrics.h"
-#include "stages/metrics/quantile_roc.h"
-#include "stages/metrics/threshold_table.h"
 
 namespace salbench {
 namespace {
@@ -33,68 +29,6 @@ Values values_of(std::span<const Metric> metrics, const ScalarField& map, const 
 
 Values all_values(const ScalarField& map, const GroundTruth& truth) {
   return values_of(metric_table(), map, truth, ScalarField(map.size(), 0.5));
-}
-
-TEST(Order, AscendsAndKeepsTheIndicesOfEqualValues) {
-  Rng rng(1, "order", "");
-  for (const double scale : {1e-300, 1e-9, 1.0, 1e300}) {
-    ScalarField field(3000);
-    for (double& v : field)
-      v = (rng.below(3) == 0 ? std::floor(rng.uniform() * 4) : rng.uniform() - 0.5) * scale;
-    for (std::size_t i = 0; i < 500; ++i)
-      field[i] = 1 + static_cast<double>(rng.below(100)) * 1e-15;  // one key
-    field[7] = -0.0;
-    field[9] = 0.0;
-    Order expected(field.size());
-    for (std::uint32_t i = 0; i < expected.size(); ++i) expected[i] = i;
-    std::ranges::stable_sort(expected, {}, [&](std::uint32_t i) { return field[i]; });
-    EXPECT_EQ(ascending_order(field), expected) << scale;
-  }
-  EXPECT_TRUE(ascending_order({}).empty());
-}
-
-// A NaN is not equal to itself: loops over equal values must not wait for it to be.
-TEST(Order, RefusesNanAndRanksEndWhateverThereIs) {
-  const double nan = std::nan("");
-  for (const ScalarField& field : {ScalarField{nan}, {nan, 1, 2}, {1, 2, nan, 2}, {nan, nan}})
-    EXPECT_THROW(ascending_order(field), std::logic_error);
-  const ScalarField field = {1, nan, 2, nan};
-  const Order order = {0, 2, 1, 3};
-  EXPECT_EQ(mid_ranks(field, order, Measures(4, {})).by_vertex, (ScalarField{0.5, 2.5, 1.5, 3.5}));
-  const Measures measures(4, {});
-  const ScalarField map = {1, 2, 3, 4};
-  const auto distribution = distributions(map, ascending_order(map), measures)[0];
-  const Moments of_map = moments(map, measures)[0];
-  for (const double auc : top_scores({map, distribution, of_map, field, order}, measures.vertex).auc)
-    EXPECT_TRUE(std::isfinite(auc));
-}
-
-TEST(Order, PutsTheSmallestFirstHoweverManyThereAre) {
-  Rng rng(2, "order", "");
-  for (const std::size_t n : {1U, 2U, 600U, 3000U})
-    for (const double zeros : {0.0, 0.5, 0.9, 1.0}) {
-      ScalarField field(n);
-      for (double& v : field) v = rng.uniform() < zeros ? 0 : 1 + std::floor(rng.uniform() * 1000);
-      Order expected(n);
-      for (std::uint32_t i = 0; i < n; ++i) expected[i] = i;
-      std::ranges::stable_sort(expected, {}, [&](std::uint32_t i) { return field[i]; });
-      EXPECT_EQ(ascending_order(field), expected) << n << " points, zeros: " << zeros;
-    }
-}
-
-TEST(Distribution, CountsWeightBelowAndAtEachValue) {
-  const ScalarField field = {2, 1, 2, 5};
-  const Measures measures(4, ScalarField{1, 4, 2, 3});
-  const auto [per_vertex, d] = distributions(field, ascending_order(field), measures);
-  EXPECT_EQ(per_vertex.mid, (ScalarField{2, 0.5, 2, 3.5}));
-  EXPECT_EQ(d.mid, (ScalarField{5.5, 2, 5.5, 8.5}));
-  EXPECT_EQ(d.weight_below(2), 4);
-  EXPECT_EQ(d.weight_below(2.5), 7);
-  EXPECT_EQ(d.weight_below(9), 10);
-  EXPECT_EQ(d.quantile(0), 1);
-  EXPECT_EQ(d.quantile(0.39), 1);
-  EXPECT_EQ(d.quantile(0.41), 2);
-  EXPECT_EQ(d.quantile(0.99), 5);
 }
 
 TEST(Suite, APerfectMapHasTheBestValues) {
@@ -301,133 +235,6 @@ TEST(Suite, NoMetricDependsOnWhichOthersAreComputed) {
   for (const Metric& metric : metric_table())
     EXPECT_EQ(values_of({&metric, 1}, map, truth, areas).at(metric.name), together.at(metric.name))
         << metric.name;
-}
-
-TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
-  Rng rng(6, "suite", "");
-  ScalarField map(500);
-  for (double& value : map) value = rng.uniform();
-  const std::vector<std::int32_t> picked = {3, 40, 44, 100, 171, 300, 420};
-  ScalarField positives;
-  for (const std::int32_t i : picked) positives.push_back(map[static_cast<std::size_t>(i)]);
-  Draws draws(Rng(1, "scores", "x"));
-  const Measures measures(map.size(), {});
-  const Comparison comparison({.map = map, .measures = measures}, draws);
-  const Distribution& all = comparison.map_distribution(Weighting::vertex);
-  double probability = 0;
-  for (const std::int32_t i : picked) probability += all.mid[static_cast<std::size_t>(i)] / 500 / 7;
-  const std::vector<QuantileCurve> curves = {{all, Thresholds::even}, {all, Thresholds::tenths}};
-  const std::vector<double> areas = quantile_aucs(curves, positives, draws, {3000, 400});
-  EXPECT_NEAR(areas[0], probability, 0.005);
-  EXPECT_NEAR(areas[1], probability, 0.03);  // ten steps
-}
-
-TEST(Draws, AreThoseOfTheGenerator) {
-  const Rng rng(9, "suite", "");
-  Draws draws(rng);
-  for (const std::size_t count : {3U, 10U, 4U, 500U})
-    for (const std::uint32_t bound : {7U, 4000000000U}) {
-      Rng below = rng, next = rng, uniform = rng;
-      for (const std::uint32_t drawn : draws.below(bound, count)) ASSERT_EQ(drawn, below.below(bound));
-      for (const std::uint64_t number : draws.numbers(count)) {
-        ASSERT_EQ(number, next.next());
-        ASSERT_EQ(uniform_of(number), uniform.uniform());
-      }
-    }
-}
-
-TEST(ThresholdTable, CountsAsASearchDoes) {
-  Rng rng(8, "suite", "");
-  for (int repeat = 0; repeat < 200; ++repeat) {
-    ScalarField positions(rng.below(50));
-    for (double& position : positions) {  // on borders of cells, equal, close together, at the ends
-      const double cell = static_cast<double>(rng.below(65)) / 64;
-      position = std::min(1.0, rng.below(2) == 0 ? cell : cell + rng.uniform() / 1000);
-    }
-    std::ranges::sort(positions);
-    const ThresholdTable table(positions, rng.below(600));
-    const ThresholdTable::LookUp reached = table.look_up();
-    for (int k = 0; k < 500; ++k) {
-      const std::uint64_t number = rng.below(4) == 0 ? rng.below(64) << 58U : rng.next();
-      ASSERT_EQ(reached(number), std::ranges::upper_bound(positions, uniform_of(number)) - positions.begin());
-    }
-  }
-}
-
-TEST(Comparison, AreasAreThoseOfTheSplitsAskedFor) {
-  ScalarField map(50);
-  Rng rng(10, "suite", "");
-  for (double& value : map) value = rng.uniform();
-  const std::vector<std::int32_t> picked = {3, 8, 30};
-  const Measures measures(map.size(), {});
-  Draws draws(rng);
-  const Comparison fresh({.map = map, .measures = measures}, draws), used = fresh;
-  const Splits few{3, 2}, many{100, 20};
-  const double area = used.sampled_auc(picked, many), tenths = used.quantile_areas(picked, many).tenths[0];
-  EXPECT_NE(used.sampled_auc(picked, few), area);
-  EXPECT_EQ(used.sampled_auc(picked, few), fresh.sampled_auc(picked, few));
-  EXPECT_NE(used.quantile_areas(picked, few).tenths[0], tenths);
-  EXPECT_EQ(used.quantile_areas(picked, few).tenths[0], fresh.quantile_areas(picked, few).tenths[0]);
-}
-
-TEST(EvenThresholds, CountAsASearchDoes) {
-  Rng rng(11, "suite", "");
-  for (const double largest : {5e-324, 1e-300, 0.3, 1.0, 1e300}) {
-    for (const std::int32_t count : {2, 3, 20, 1000}) {
-      const std::vector<double> thresholds = even_thresholds(count, largest);
-      const EvenThresholds table(thresholds, largest);
-      ScalarField values = {0, largest};
-      for (int k = 0; k < 200; ++k) {
-        const double threshold = thresholds[rng.below(thresholds.size())];
-        for (const double value : {largest * rng.uniform(), threshold, std::nextafter(threshold, 0.0),
-                                   std::min(std::nextafter(threshold, 2 * largest), largest)})
-          values.push_back(value);
-      }
-      for (const double value : values)
-        ASSERT_EQ(table.look_up()(value), std::ranges::upper_bound(thresholds, value) - thresholds.begin())
-            << value << " of " << largest;
-    }
-  }
-}
-
-TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
-  Rng rng(7, "suite", "");
-  for (const double shift : {0.0, -2.0}) {  // below zero, thresholds do not ascend
-    ScalarField map(400), areas;
-    for (double& value : map) value = std::pow(rng.uniform(), 4) + shift;
-    for (std::size_t i = 0; i < map.size(); ++i) areas.push_back(rng.uniform());
-    const ScalarField picks = {map[7], map[9], map[9], map[255]};
-    Draws draws(Rng(1, "scores", "x"));
-    const Measures measures(map.size(), areas);
-    const Comparison comparison({.map = map, .measures = measures}, draws);
-    const std::vector<QuantileCurve> curves = {
-        {comparison.map_distribution(Weighting::vertex), Thresholds::tenths},
-        {comparison.map_distribution(Weighting::area), Thresholds::even},
-        {comparison.map_distribution(Weighting::area), Thresholds::tenths}};
-    const std::vector<double> together = quantile_aucs(curves, picks, draws, {100, 20});
-    for (std::size_t c = 0; c < curves.size(); ++c)
-      EXPECT_EQ(quantile_aucs({&curves[c], 1}, picks, draws, {100, 20}).front(), together[c]);
-  }
-}
-
-TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
-  MetricsOptions options;
-  options.names = {"kl", "nss", "auc_judd_area"};
-  std::vector<std::string> names;
-  for (const Metric& metric : chosen_metrics(options)) names.push_back(metric.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"nss", "kl", "auc_judd_area"}));
-  EXPECT_TRUE(any_by_area(chosen_metrics(options)));
-  EXPECT_FALSE(any_by_area(chosen_metrics({})));
-  options.names = {"nss", "no_such"};
-  EXPECT_THROW(chosen_metrics(options), OptionError);
-}
-
-TEST(MetricTable, LowerIsBetterForDistancesAlone) {
-  std::vector<std::string> lower;
-  for (const Metric& metric : metric_table())
-    if (!metric.higher_is_better) lower.push_back(metric.name);
-  EXPECT_EQ(lower, (std::vector<std::string>{"kl", "kl_smoothed", "mse", "mae", "kl_area", "kl_smoothed_area",
-                                             "mse_area", "mae_area"}));
 }
 
 }  // namespace
