@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "io/file.h"
+#include "pipeline/results/human_share.h"
 #include "pipeline/results/statistics.h"
 #include "stages/core/parallel.h"
 #include "stages/stats/multiple.h"
@@ -243,6 +244,7 @@ void write_conclusions(const std::filesystem::path& folder, const std::vector<Re
   write("ranking_agreement.csv", agreement_table(conclusions));
   write("significance.csv", significance_table(conclusions));
   write("per_class.csv", per_class_table(rows, conclusions.metrics, conclusions.unit));
+  write("human_share.csv", human_share_table(conclusions));
 }
 
 }  // namespace salbench
