@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "io/file.h"
+#include "pipeline/results/human_share.h"
 #include "pipeline/results/metric_rows.h"
 #include "pipeline/results/statistics.h"
 #include "stages/stats/summary.h"
@@ -145,6 +146,7 @@ void write_conclusions(const std::filesystem::path& folder, const std::vector<Re
   write("ranking_agreement.csv", agreement_table(conclusions));
   write("significance.csv", significance_table(conclusions));
   write("per_class.csv", per_class_table(rows, conclusions.metrics, conclusions.unit));
+  write("human_share.csv", human_share_table(conclusions));
 }
 
 }  // namespace salbench

@@ -64,7 +64,8 @@ Table ranking_table(const Conclusions& conclusions);
 // rankings by two metrics over the units that both are defined for, with percentiles over resampled units.
 Table agreement_table(const Conclusions& conclusions);
 
-// summary.csv, ranking.csv, ranking_agreement.csv, significance.csv and per_class.csv, each below `head`.
+// summary.csv, ranking.csv, ranking_agreement.csv, significance.csv, per_class.csv and human_share.csv, each
+// below `head`.
 // Throws StorageError.
 void write_conclusions(const std::filesystem::path& folder, const std::vector<ResultRow>& rows,
                        const Conclusions& conclusions, const std::string& head);

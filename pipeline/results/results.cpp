@@ -8,6 +8,7 @@
 
 #include "io/file.h"
 #include "pipeline/results/conclusions.h"
+#include "pipeline/results/human_curves.h"
 #include "pipeline/results/statistics.h"
 #include "stages/core/check.h"
 
@@ -101,9 +102,7 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
     else
       write(name, mean_histogram_table(run, shapes));
   }
-  const auto curves = collect_human_curves(run);
-  remove_file(folder / "human_curve.csv");
-  if (!curves.empty()) write("human_curve.csv", human_curve_table(curves, metrics));
+  write_human_curves(folder, collect_human_curves(run), rows, conclusions, head);
 }
 
 }  // namespace salbench

@@ -62,34 +62,6 @@ Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics
   return table;
 }
 
-Table human_curve_table(const std::vector<HumanCurve>& curves, const Metrics& metrics) {
-  Table table{.columns = {"n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"}, .rows = {}};
-  std::size_t longest = 0;
-  for (const HumanCurve& curve : curves) longest = std::max(longest, curve.size());
-  for (std::size_t i = 0; i < longest; ++i) {
-    for (std::size_t m = 0; m < metrics.size(); ++m) {
-      std::vector<double> values;
-      for (const HumanCurve& curve : curves)
-        if (i < curve.size()) values.push_back(curve[i].values.at(m));
-      const Summary summary = summarise(values);
-      table.rows.push_back({static_cast<std::int64_t>(i + 1), metrics[m].name, summary.n, summary.mean,
-                            summary.sd, summary.ci_low, summary.ci_high});
-    }
-  }
-  return table;
-}
-
-std::vector<HumanCurve> collect_human_curves(const RunState& run) {
-  std::vector<HumanCurve> curves;
-  for (std::size_t row = 0; row < run.plan.jobs.size(); ++row) {
-    if (run.context.catalog.rows[row].kind != "human_curve") continue;
-    for (const Item& item : items_of(run.context, row))
-      if (run.plan[{row, item}].known())
-        curves.push_back(std::get<HumanCurve>(*run.runner.result({row, item})));
-  }
-  return curves;
-}
-
 Table mean_histogram_table(const RunState& run, Shapes shapes) {
   Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
   for (std::size_t bin = 0; bin < kHistogramBins; ++bin)

@@ -16,13 +16,6 @@ namespace salbench {
 Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}),
                       Unit unit = Unit::mesh);
 
-// Human curves of the meshes that HS was computed for, in their order.
-std::vector<HumanCurve> collect_human_curves(const RunState& run);
-
-// n, metric, n_meshes, mean, sd, 95 % confidence interval of the mean: how well n people predict n others,
-// over the meshes that have 2n participants; n_meshes counts those where the metric is defined. [tasse2016]
-Table human_curve_table(const std::vector<HumanCurve>& curves, const Metrics& metrics = chosen_metrics({}));
-
 // bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
 // unmatched, min-max-normalised maps. [tasse2016]
 Table mean_histogram_table(const RunState& run, Shapes shapes);

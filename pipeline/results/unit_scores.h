@@ -41,6 +41,9 @@ class DatasetScores {
   // and ranks are about the same shapes, and a model gains nothing by failing on hard ones. References may
   // have fewer: they bound nobody else's shapes.
   UnitScores compared(std::size_t metric, std::span<const std::size_t> models) const;
+  // Scores of some models on the shapes that they and those of `required` have a score for.
+  UnitScores averaged(std::size_t metric, std::span<const std::size_t> models,
+                      std::span<const std::size_t> required) const;
   // Scores of one model on all shapes that it has a score for.
   UnitScores own(std::size_t metric, std::size_t model) const;
 
@@ -56,8 +59,6 @@ class DatasetScores {
   };
 
   double value(const Shape& shape, std::size_t metric, std::size_t model) const;
-  UnitScores averaged(std::size_t metric, std::span<const std::size_t> models,
-                      std::span<const std::size_t> required) const;
 
   std::string dataset_;
   std::vector<std::string> models_;

@@ -102,4 +102,20 @@ Interval bca_interval(std::span<const double> sample, std::span<const double> re
   return {end_at(kTail), end_at(1 - kTail)};
 }
 
+Interval percentile_interval(std::vector<double> resampled, std::size_t units) {
+  const bool known = std::ranges::none_of(resampled, [](double value) { return std::isnan(value); });
+  if (units < kMinUnitsOfPercentiles || resampled.empty() || !known) return {};
+  const auto n = static_cast<double>(units);
+  const double z = std::sqrt(n / (n - 1)) * student_upper_quantile((1 - kConfidence) / 2, n - 1);
+  const double position = normal_cdf(-z) * static_cast<double>(resampled.size() - 1);
+  const auto value_at = [&](std::size_t place) {
+    const auto at = resampled.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(resampled.begin(), at, resampled.end());
+    return *at;
+  };
+  const auto below = static_cast<std::size_t>(position);
+  const Interval interval{value_at(below), value_at(resampled.size() - 1 - below)};
+  return interval.low == interval.high && std::isfinite(interval.low) ? Interval{} : interval;
+}
+
 }  // namespace salbench

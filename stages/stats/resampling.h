@@ -33,4 +33,14 @@ Columns resampled_means(const Columns& columns, std::uint64_t seed, std::size_t 
 // fewer than two values, or for equal ones. [efron1987]
 Interval bca_interval(std::span<const double> sample, std::span<const double> resampled_means);
 
+// With fewer units, all of them lie on one side of a mean more often than in one of twenty samples, and so do
+// all resamples, whatever percentiles are taken.
+inline constexpr std::size_t kMinUnitsOfPercentiles = 6;
+
+// 95 % interval of any function of the means of `units` units, from its values in their resamples:
+// percentiles at the levels that give a mean of normal values Student's interval. Ends are among the values,
+// which may be infinite. None for fewer than kMinUnitsOfPercentiles units, where a value is NaN, or for equal
+// finite values. [hesterberg2015]
+Interval percentile_interval(std::vector<double> resampled, std::size_t units);
+
 }  // namespace salbench

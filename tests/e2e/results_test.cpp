@@ -2,6 +2,8 @@
 // What a run leaves behind: the tables, and a cache that makes the next run nothing to do.
 #include "pipeline/results/results.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,9 +14,11 @@
 namespace salbench {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 TEST(Results, TheTablesHaveTheDocumentedColumnsAndARowForEverythingScored) {
@@ -53,7 +57,8 @@ TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
       run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv", "--out", toy / "concluded"});
   ASSERT_EQ(concluded.status, 0) << concluded.err;
   for (const char* table :
-       {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv", "per_class.csv"})
+       {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv", "per_class.csv",
+        "human_share.csv"})
     EXPECT_EQ(read_file(toy / "concluded" / table), read_file(toy.out() / table)) << table;
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "timeline.csv"}).status, 2);
   EXPECT_EQ(
@@ -84,6 +89,49 @@ TEST(Results, PowerIsReadFromTheResultsOfARun) {
   EXPECT_EQ(number_column(table, "mean_difference"),
             number_column(read_csv(toy.out() / "significance.csv"), "mean_difference"));
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "power", toy / "nothing"}).status, 2);
+}
+
+// Two meshes of four participants, of whom two predict two others at most.
+TEST(Results, TablesOfPeopleHaveTheDocumentedColumnsAndRows) {
+  const Workspace toy("dataset: {scans: false}\nmodels: {PS: , HS: , RS: }\n");
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const auto table = [&](const char* name) { return read_csv(toy.out() / name); };
+  const std::size_t n_metrics = chosen_metrics({}).size();
+
+  const Table curves = table("human_curve_by_mesh.csv");
+  EXPECT_THAT(curves.columns, ElementsAre("item", "class", "n", "metric", "value", "reliability"));
+  EXPECT_THAT(curves.rows, SizeIs(2 * 2 * n_metrics));
+  const Table differences = table("human_curve_differences.csv");
+  EXPECT_THAT(differences.columns,
+              ElementsAre("metric", "from_participants", "to_participants", "n", "n_shapes",
+                          "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high"));
+  EXPECT_THAT(differences.rows, SizeIs(n_metrics));
+  const auto value = number_column(curves, "value");  // of mesh 1: auc of one, ..., of two; then of mesh 2
+  EXPECT_NEAR(number_column(differences, "mean_difference")[0],
+              (value[n_metrics] - value[0] + value[3 * n_metrics] - value[2 * n_metrics]) / 2, 1e-12);
+
+  const Table equivalents = table("human_equivalents.csv");
+  EXPECT_THAT(equivalents.columns,
+              ElementsAre("dataset", "metric", "model", "n", "n_shapes", "largest_group", "mean", "k",
+                          "ci95_low", "ci95_high", "k_bound", "low_bound", "high_bound", "crossings",
+                          "remark"));
+  EXPECT_THAT(equivalents.rows, SizeIs(3 * n_metrics));
+  EXPECT_THAT(text_column(equivalents, "remark"), Each("no interval: fewer than 6 units"));
+  const auto k = number_column(equivalents, "k");
+  const auto bounds = text_column(equivalents, "k_bound");
+  for (std::size_t row = 0; row < k.size(); ++row)
+    EXPECT_EQ(std::isnan(k[row]), bounds[row] == "<1" || bounds[row] == ">2") << row;
+
+  const Table shares = table("human_share.csv");
+  EXPECT_THAT(shares.columns, ElementsAre("dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs",
+                                          "mean_hs", "share", "ci95_low", "ci95_high", "remark"));
+  EXPECT_THAT(text_column(shares, "model"), Each("PS"));
+  EXPECT_THAT(text_column(shares, "remark"), Each(Not("")));
+  const Table reliability = table("human_reliability.csv");
+  EXPECT_THAT(reliability.columns,
+              ElementsAre("metric", "n", "n_shapes", "fewest_participants", "most_participants",
+                          "split_half", "mean", "sd", "ci95_low", "ci95_high"));
+  EXPECT_THAT(text_column(reliability, "most_participants"), ElementsAre("4"));
 }
 
 TEST(Results, ASecondRunComputesNothingAndSaysTheSame) {

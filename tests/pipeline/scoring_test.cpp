@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/results/conclusions.h"
-#include "pipeline/results/statistics.h"
+#include "pipeline/results/human_curves.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
@@ -23,6 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
+using testing::UnorderedElementsAre;
 
 TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
   run();
@@ -108,7 +109,7 @@ TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   toy.run();
   const auto curves = collect_human_curves(toy.state());
   ASSERT_THAT(curves, SizeIs(2));
-  const Table table = human_curve_table(curves);
+  const Table table = human_curve_table(curves, chosen_metrics({}));
   EXPECT_THAT(table.columns, ElementsAre("n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"));
   const std::size_t n_metrics = chosen_metrics({}).size();
   ASSERT_THAT(table.rows, SizeIs(2 * n_metrics));  // four participants: 1 and 2 against as many
@@ -117,21 +118,28 @@ TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
   EXPECT_EQ(cc_of_two[1], Cell("cc"));
   EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));
   EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]),
-                   (value_of(curves[0][1], "cc") + value_of(curves[1][1], "cc")) / 2);
+                   (value_of(curves[0].curve[1], "cc") + value_of(curves[1].curve[1], "cc")) / 2);
+  EXPECT_EQ(curves[0].item, "1");
+  EXPECT_EQ(curves[0].category, "human");
 }
 
-TEST_F(RunnerTest, AHumanCurveOfAnEarlierRunIsNotLeftBehind) {
+TEST_F(RunnerTest, HumanCurvesOfAnEarlierRunAreNotLeftBehind) {
   TemporaryFolder out;
   const auto run_and_write = [&](const std::string& yaml) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run();
     const std::vector<ResultRow> rows = toy.results();
     write_tables(out.path(), toy.state(), rows, conclude(rows, chosen_metrics({}), {}, 1), {});
-    return std::filesystem::exists(out / "human_curve.csv");
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(out.path()))
+      if (entry.path().filename().string().starts_with("human_")) found.push_back(entry.path().stem());
+    return found;
   };
-  EXPECT_TRUE(run_and_write(kWithPeople));
+  EXPECT_THAT(run_and_write(kWithPeople),
+              UnorderedElementsAre("human_curve", "human_curve_by_mesh", "human_curve_differences",
+                                   "human_equivalents", "human_reliability", "human_share"));
   EXPECT_THAT(read_file(out / "human_curve.csv"), HasSubstr("n,metric,n_meshes,mean,"));
-  EXPECT_FALSE(run_and_write(kToyConfig));
+  EXPECT_THAT(run_and_write(kToyConfig), ElementsAre("human_share"));
 }
 
 TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {

@@ -235,7 +235,7 @@ class Rows(unittest.TestCase):
         """The paper prints no table of the other metrics."""
         margins = paper.read("claims.csv").groupby("metric")["margin"].unique()
         self.assertEqual([list(values[values > 0]) for values in margins[["auc", "nss", "lcc"]]], [[0.009, 0.013], [0.095], [0.045, 0.025]])
-        self.assertAlmostEqual(margins["auc"][-1], (paper.mean_auc("HS") - paper.mean_auc("RS")) / 10, places=3)
+        self.assertAlmostEqual(min(values for values in margins["auc"] if values > 0), (paper.mean_auc("HS") - paper.mean_auc("RS")) / 10, places=3)
 
 
 class Table(support.ReportTest):

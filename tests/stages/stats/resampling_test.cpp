@@ -65,5 +65,40 @@ TEST(Bca, FollowsTheSkewOfTheSample) {
   EXPECT_GT(interval.high - mean, 1.2 * (mean - interval.low));
 }
 
+// Of a mean, and of whatever rises with it.
+TEST(Percentiles, AreStudentsForNormalValues) {
+  Rng rng(2, "columns", "");
+  Columns columns{1, std::vector<double>(19)};
+  for (double& value : columns.values) value = rng.normal();
+  const Interval student = student_interval(summarise(columns.values));
+  std::vector<double> means = resampled_means(columns, 1).values;
+  const Interval found = percentile_interval(means, 19);
+  const double width = student.high - student.low;
+  EXPECT_NEAR(found.low, student.low, .05 * width);
+  EXPECT_NEAR(found.high, student.high, .05 * width);
+  for (double& mean : means) mean = std::exp(mean);
+  EXPECT_EQ(percentile_interval(means, 19).low, std::exp(found.low));
+  EXPECT_EQ(percentile_interval(means, 19).high, std::exp(found.high));
+}
+
+TEST(Percentiles, EndsMayBeInfinite) {
+  std::vector<double> values(1000, 2);
+  std::fill_n(values.begin(), 100, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(percentile_interval(values, 50).low, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(percentile_interval(values, 50).high, 2);
+}
+
+TEST(Percentiles, NoneForFewUnitsEqualValuesAndUndefinedOnes) {
+  const auto none = [](std::vector<double> values, std::size_t units) {
+    const Interval interval = percentile_interval(std::move(values), units);
+    return std::isnan(interval.low) && std::isnan(interval.high);
+  };
+  EXPECT_TRUE(none({1, 2, 3, 4}, 5));
+  EXPECT_FALSE(none({1, 2, 3, 4}, 6));
+  EXPECT_TRUE(none({2, 2, 2, 2}, 6));
+  EXPECT_TRUE(none({1, 2, 3, std::nan("")}, 6));
+  EXPECT_TRUE(none({}, 6));
+}
+
 }  // namespace
 }  // namespace salbench

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/results/human_share.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "stages/core/parallel.h"
+#include "stages/stats/human_scale.h"
+#include "stages/stats/paired.h"
+
+namespace salbench {
+namespace {
+
+constexpr const char *kChance = "RS", *kPeople = "HS";  // of the references, those that have a scale between
+constexpr double kLevel = 1 - kConfidence;
+
+// The models, chance and people under one metric, on the same units.
+struct Scale {
+  UnitScores scores = {};  // columns: competitors, chance, people
+  std::vector<double> means = {};
+  std::vector<Share> shares = {};  // [competitor]; empty if `remark` says why
+  std::string remark = {};
+};
+
+bool is_clearly_better(const Columns& scores, std::size_t a, std::size_t b, bool higher_is_better) {
+  const PairedComparison found = compare_paired(scores.column(a), scores.column(b));
+  return found.t_p < kLevel && (higher_is_better ? found.mean_difference > 0 : found.mean_difference < 0);
+}
+
+Scale scale_of(const DatasetScores& scores, const RankedMetric& ranked, bool higher_is_better,
+               std::uint64_t seed) {
+  const std::vector<std::size_t> scored = scores.scored(ranked.metric);
+  std::vector<std::size_t> columns = ranked.scores.models;
+  for (const char* name : {kChance, kPeople}) {
+    const auto found =
+        std::ranges::find_if(scored, [&](std::size_t model) { return scores.models()[model] == name; });
+    if (found == scored.end()) return {.remark = std::string("no scores of ") + name};
+    columns.push_back(*found);
+  }
+  Scale scale{.scores = scores.compared(ranked.metric, columns)};
+  const Columns& compared = scale.scores.scores;
+  const std::size_t n_models = columns.size() - 2;
+  if (scale.scores.units.empty()) return {.remark = "no shape has scores of HS, RS and all models"};
+  scale.means = compared.means();
+  if (scale.scores.units.size() < 2)
+    scale.remark = "one unit: it does not show that HS is better than RS";
+  else if (!is_clearly_better(compared, n_models + 1, n_models, higher_is_better))
+    scale.remark = "HS is not clearly better than RS";
+  else
+    scale.shares = shares_of_people(compared, resampled_means(compared, seed));
+  return scale;
+}
+
+std::string remark_on(const Interval& interval, std::size_t units) {
+  if (units < kMinUnitsOfPercentiles)
+    return "no interval: fewer than " + std::to_string(kMinUnitsOfPercentiles) + " units";
+  if (std::isnan(interval.low)) return "no interval: the shares do not vary";
+  const bool ends = std::isfinite(interval.low) && std::isfinite(interval.high);
+  return ends ? "" : "no interval: HS is too near RS in the resamples";
+}
+
+std::vector<Cell> row_of(const DatasetScores& scores, const std::string& metric, const Scale& scale,
+                         std::size_t model, std::size_t place) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const bool scored = place < scale.means.size();
+  const Share share = scored && !scale.shares.empty() ? scale.shares[place] : Share{};
+  std::string remark = scale.remark;
+  if (remark.empty()) remark = scored ? remark_on(share.interval, scale.scores.units.size()) : "no scores";
+  const bool has_interval = remark.empty();
+  return {scores.dataset(),
+          metric,
+          scores.models()[model],
+          cell_of(scored ? scale.scores.units.size() : 0),
+          scored ? scale.scores.n_shapes : 0,
+          scored ? scale.means[place] : kNone,
+          scored ? scale.means.end()[-2] : kNone,
+          scored ? scale.means.back() : kNone,
+          share.value,
+          has_interval ? share.interval.low : kNone,
+          has_interval ? share.interval.high : kNone,
+          remark};
+}
+
+std::vector<std::vector<Cell>> rows_of(const DatasetScores& scores, const RankedMetric& ranked,
+                                       const Metric& metric, std::uint64_t seed) {
+  const Scale scale = scale_of(scores, ranked, metric.higher_is_better, seed);
+  std::vector<std::vector<Cell>> rows;
+  for (std::size_t model = 0; model < scores.models().size(); ++model) {
+    if (scores.is_reference(model)) continue;
+    const auto place = std::ranges::find(ranked.scores.models, model);
+    rows.push_back(row_of(scores, metric.name, scale, model,
+                          place == ranked.scores.models.end()
+                              ? scale.means.size()
+                              : static_cast<std::size_t>(place - ranked.scores.models.begin())));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Table human_share_table(const Conclusions& conclusions) {
+  Table table{.columns = {"dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs", "mean_hs",
+                          "share", "ci95_low", "ci95_high", "remark"},
+              .rows = {}};
+  for (const DatasetConclusions& dataset : conclusions.datasets) {
+    std::vector<std::vector<std::vector<Cell>>> rows(dataset.metrics.size());
+    parallel_ranges(rows.size(), 1, [&](std::size_t m, std::size_t) {
+      rows[m] = rows_of(dataset.scores, dataset.metrics[m], conclusions.metrics[m], conclusions.seed);
+    });
+    for (auto& of_metric : rows) std::ranges::move(of_metric, std::back_inserter(table.rows));
+  }
+  return table;
+}
+
+}  // namespace salbench
