@@ -56,8 +56,10 @@ Agreement agreement_of(const Orders& x, const Orders& y) {
   if (rows == 1) return found;
   std::vector<double> taus(rows - 1);
   for (std::size_t row = 1; row < rows; ++row) taus[row - 1] = tau(x, y, row);
+  std::erase_if(taus, [](double value) { return std::isnan(value); });  // all models level
+  if (taus.empty()) return found;
   constexpr double kTail = (1 - kConfidence) / 2;
-  found.interval = {quantile(taus, kTail), quantile(taus, 1 - kTail)};
+  found.interval = {quantile_in_place(taus, kTail), quantile_in_place(taus, 1 - kTail)};
   return found;
 }
 

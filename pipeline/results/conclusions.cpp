@@ -66,6 +66,18 @@ std::vector<std::vector<Cell>> ranking_rows(const DatasetScores& scores, const R
   return rows;
 }
 
+void resample(std::vector<RankedMetric>& ranked, std::uint64_t seed) {
+  std::vector<RankedMetric*> of_several;
+  std::vector<const Columns*> scores;
+  for (RankedMetric& one : ranked) {
+    if (one.scores.units.size() < 2) continue;
+    of_several.push_back(&one);
+    scores.push_back(&one.scores.scores);
+  }
+  std::vector<Columns> resampled = resampled_together(scores, seed);
+  for (std::size_t i = 0; i < of_several.size(); ++i) of_several[i]->resampled = std::move(resampled[i]);
+}
+
 }  // namespace
 
 Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
@@ -78,9 +90,8 @@ Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
     for (std::size_t m = 0; m < metrics.size(); ++m) {
       ranked[m].metric = m;
       ranked[m].scores = scores.compared(m, scores.competitors(m));
-      if (ranked[m].scores.units.size() >= 2)
-        ranked[m].resampled = resampled_means(ranked[m].scores.scores, seed);
     }
+    resample(ranked, seed);
     parallel_ranges(metrics.size(), 1, [&](std::size_t m, std::size_t) {
       ranked[m].ranking =
           rank_models(ranked[m].scores.scores, ranked[m].resampled, metrics[m].higher_is_better);

@@ -29,6 +29,11 @@ inline constexpr std::size_t kResamples = 10000;
 // on the seed, the number of units and the values alone.
 Columns resampled_means(const Columns& columns, std::uint64_t seed, std::size_t resamples = kResamples);
 
+// The same of several tables, which cost little more than one where they have as many units: those share
+// their draws. A table without units has no means.
+std::vector<Columns> resampled_together(std::span<const Columns* const> tables, std::uint64_t seed,
+                                        std::size_t resamples = kResamples);
+
 // 95 % interval of the mean of a sample, bias-corrected and accelerated, from its resampled means; none for
 // fewer than two values, or for equal ones. [efron1987]
 Interval bca_interval(std::span<const double> sample, std::span<const double> resampled_means);

@@ -58,15 +58,18 @@ Interval student_interval(const Summary& summary) {
 }
 
 double quantile(std::span<const double> values, double q) {
+  std::vector<double> sample = defined(values);
+  return sample.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile_in_place(sample, q);
+}
+
+double quantile_in_place(std::span<double> sample, double q) {
   CHECK_LE(0.0, q);
   CHECK_LE(q, 1.0);
-  std::vector<double> sample = defined(values);
-  if (sample.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(sample.begin(), sample.end());
   const double position = q * static_cast<double>(sample.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, sample.size() - 1);
-  return std::lerp(sample[below], sample[above], position - std::floor(position));
+  const auto at = sample.begin() + static_cast<std::ptrdiff_t>(position);
+  std::nth_element(sample.begin(), at, sample.end());
+  const double share = position - std::floor(position);
+  return share == 0 ? *at : std::lerp(*at, *std::min_element(at + 1, sample.end()), share);
 }
 
 double median(std::span<const double> values) { return quantile(values, 0.5); }

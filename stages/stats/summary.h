@@ -34,6 +34,7 @@ Interval student_interval(const Summary& summary);
 // The value below which a fraction q of the defined values lies, 0 <= q <= 1, linear between the values at
 // q (n - 1); NaN if no value is defined. [hyndman1996, definition 7]
 double quantile(std::span<const double> values, double q);
+double quantile_in_place(std::span<double> sample, double q);  // of values that are not NaN; reorders them
 double median(std::span<const double> values);
 
 }  // namespace salbench
