@@ -8,9 +8,9 @@ from report.results import Missing
 from report.tables import HUMAN, signed
 from report.units import HEAD, count_cell, counted
 
-REACHES, ABOVE = "reaches HS", "above HS"
+NOT_BELOW, ABOVE = "not shown below HS", "above HS"
 SHARE = ("Of HS: which share of the way from chance to human performance the model goes, with its 95 % interval. "
-         f"“{REACHES}”: the interval contains 1, and these data do not show that the model is behind one participant; "
+         f"“{NOT_BELOW}”: the interval contains 1, and these data cannot tell the model from one participant; "
          f"“{ABOVE}”: it lies beyond 1.")
 
 
@@ -29,8 +29,8 @@ def share_cell(row):
     low, high = row["ci95_low"], row["ci95_high"]
     if low != low or high != high:
         return cell(row["share"], 2, below=row["remark"])
-    mark = ABOVE if low > 1 else REACHES if high >= 1 else ""
-    return cell(row["share"], 2, bold=bool(mark), below=", ".join(filter(None, [interval(low, high, 2).text, mark])))
+    mark = ABOVE if low > 1 else NOT_BELOW if high >= 1 else ""
+    return cell(row["share"], 2, bold=mark == ABOVE, below=", ".join(filter(None, [interval(low, high, 2).text, mark])))
 
 
 def reliability(shop):

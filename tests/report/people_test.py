@@ -18,7 +18,7 @@ def shown(row):
     """A row of human_share.csv as the ranking shows it."""
     if row["share"] != row["share"]:
         return "–" if row["remark"].startswith("no scores") else f"– {row['remark']}"
-    mark = ", above HS" if row["ci95_low"] > 1 else ", reaches HS" if row["ci95_high"] >= 1 else ""
+    mark = ", above HS" if row["ci95_low"] > 1 else ", not shown below HS" if row["ci95_high"] >= 1 else ""
     text = f"{row['share']:.2f} {row['ci95_low']:.2f} to {row['ci95_high']:.2f}{mark}"
     return text.replace("-", "−")
 
@@ -30,8 +30,8 @@ class Shares(unittest.TestCase):
 
     def test_a_model_is_marked_where_the_data_do_not_show_it_behind_one_participant(self):
         self.assertEqual(self.cell(0.7, 0.5, 0.9), ("0.70", "0.50 to 0.90", False))
-        self.assertEqual(self.cell(0.9, 0.7, 1.1), ("0.90", "0.70 to 1.10, reaches HS", True))
-        self.assertEqual(self.cell(1.1, 0.9, 1.0), ("1.10", "0.90 to 1.00, reaches HS", True))
+        self.assertEqual(self.cell(0.9, 0.7, 1.1), ("0.90", "0.70 to 1.10, not shown below HS", False))
+        self.assertEqual(self.cell(1.1, 0.9, 1.0), ("1.10", "0.90 to 1.00, not shown below HS", False))
         self.assertEqual(self.cell(2.1, 1.6, 2.5), ("2.10", "1.60 to 2.50, above HS", True))
 
     def test_without_an_interval_there_is_no_mark(self):
