@@ -198,64 +198,51 @@ def hardest_class(results, claim):
     return finding
 
 
-def curve(results, claim):
-    table = results.table("human_curve.csv", "n", "metric", "n_meshes", "mean", "sd")
-    rows = table[table["metric"] == claim["metric"]].dropna(subset=["n", "n_meshes", "mean"])
-    rows = rows.drop_duplicates("n").sort_values("n").set_index("n")
-    if len(rows) < 2:
-        raise Missing("human_curve.csv has no curve of this metric")
+def steps(results, table, test):
+    """Findings, without verdicts, of rows of human_curve_differences.csv."""
+    return [Finding(f"n = {row.from_participants:.0f} to {row.to_participants:.0f}", row.mean_difference, row.ci95_low, row.ci95_high,
+                    row.ci90_low, row.ci90_high, counted(results.unit, "meshes", row.n, row.n_shapes), f"{test}{by(results)}")
+            for row in table.itertuples()]
+
+
+def beyond_first(results, claim):
+    """Rows of human_curve_differences.csv from n = a to every later n."""
+    table = statistics.human_differences(results, claim["metric"])
+    rows = table[table["from_participants"] == float(claim["a"])]
+    if rows.empty:
+        raise Missing(f"the human curve does not go beyond {claim['a']} participants")
     return rows
 
 
-def step(rows, first, second):
-    """Rise of the curve from one number of participants to another, by Welch's test [welch1947]. It takes the two for
-    independent, although they are over the same meshes: where meshes that score high at one do so at the other, the interval
-    is wider than it need be."""
-    if first not in rows.index or second not in rows.index:
-        raise Missing(f"the curve does not reach from {first:.0f} to {second:.0f} participants")
-    a, b = rows.loc[first], rows.loc[second]
-    n = numpy.array([a["n_meshes"], b["n_meshes"]])
-    finding = Finding(f"n = {first:.0f} to {second:.0f}", float(b["mean"] - a["mean"]), count=meshes(n.min()), test="Welch, by mesh")
-    variances = numpy.array([a["sd"], b["sd"]]) ** 2 / n
-    if n.min() < 2 or not variances.sum() > 0:
-        return finding
-    freedom = 1 / ((variances / variances.sum()) ** 2 / (n - 1)).sum()
-    half, half90 = stats.t.ppf([0.975, 0.95], freedom) * numpy.sqrt(variances.sum())
-    finding.low, finding.high = finding.value - half, finding.value + half
-    finding.low90, finding.high90 = finding.value - half90, finding.value + half90
-    return finding
-
-
 def rises(results, claim):
-    finding = step(curve(results, claim), float(claim["a"]), float(claim["b"]))
+    rows = beyond_first(results, claim)
+    rows = rows[rows["to_participants"] == float(claim["b"])]
+    if rows.empty:
+        raise Missing(f"the human curve does not reach {claim['b']} participants")
+    finding = steps(results, rows, "paired t")[0]
     finding.verdict = beyond(finding)
     return finding
 
 
 def no_rise_beyond(results, claim):
     """From n = a to none of the later n does the curve rise by the margin."""
-    rows = curve(results, claim)
-    first = float(claim["a"])
-    findings = [step(rows, first, n) for n in rows.index if n > first]
-    if not findings:
-        raise Missing(f"the curve ends before {claim['a']} participants")
+    findings = steps(results, beyond_first(results, claim), "one-sided t")
     for finding in findings:
         finding.verdict = no_rise(finding, claim["margin"])
     return combined(findings, lambda finding: -finding.high90)
 
 
 def same_beyond(results, claim):
-    """From n = a to the end of the curve there is no change."""
-    rows = curve(results, claim)
-    finding = step(rows, float(claim["a"]), rows.index.max())
-    finding.verdict = equal(finding, claim["margin"])
-    return finding
+    """From n = a to each of the later n there is no change."""
+    findings = steps(results, beyond_first(results, claim), "two one-sided t")
+    for finding in findings:
+        finding.verdict = equal(finding, claim["margin"])
+    return combined(findings, lambda finding: -max(abs(finding.low90), abs(finding.high90)))
 
 
 def keeps_rising(results, claim):
     """Every step is up."""
-    rows = curve(results, claim)
-    findings = [step(rows, first, second) for first, second in zip(rows.index, rows.index[1:])]
+    findings = steps(results, statistics.one_more(statistics.human_differences(results, claim["metric"])), "paired t")
     for finding in findings:
         finding.verdict = beyond(finding)
     return combined(findings, lambda finding: finding.value)

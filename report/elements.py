@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 from typing import Callable
 
-from report import claims, examples, figures, ranking, sensitivity, statements, statistics, tables
+from report import claims, examples, figures, people, ranking, sensitivity, statements, statistics, tables
 from report.blocks import attempt
 
 
@@ -59,7 +59,7 @@ def clouds(shop):
 
 
 def participants(shop):
-    return attempt(figures.human_curves, shop) + attempt(tables.participants_worth, shop)
+    return attempt(figures.human_curves, shop) + people.tables(shop)
 
 
 ELEMENTS = (

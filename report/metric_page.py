@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of all metrics of a run: what they are, and the tables of those that the other pages leave out, one at a time."""
 
-from report import ranking, statistics, tables, units
+from report import people, ranking, statistics, tables, units
 from report.blocks import Cell, Table, attempt, cell
 from report.names import spoken
 from report.results import Missing
@@ -16,6 +16,7 @@ def blocks(shop):
     return [("Ranking", attempt(ranking.table, shop, "ranking-others", others(shop))), ("Means", attempt(means, shop)),
             *((f"Performance per class on {spoken(dataset)}", attempt(classes, shop, dataset))
               for dataset in statistics.shown(shop.results)),
+            ("How many participants a model is worth", attempt(people.worth, shop, "worth-others", others(shop))),
             ("Pairwise tests", attempt(pairs, shop)), ("Every metric of the run", [listing(shop)])]
 
 

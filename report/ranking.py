@@ -3,7 +3,7 @@
 
 import re
 
-from report import statistics
+from report import people, statistics
 from report.blocks import Cell, Note, Table, attempt, cell, interval
 from report.names import DATASETS, spoken
 from report.results import Missing
@@ -12,15 +12,21 @@ from report.units import HEAD, count_cell
 CAPTION = ("Models by their mean. Ranks have joint 95 % intervals: all pairs of models under one metric are compared at once. First: "
            "in how large a share of the resamples the model has the best mean. Group: two models without a letter in common differ; "
            "two with one cannot be told apart, which does not say that they are equal. Means have 95 % intervals of their own "
-           "(Student). HS and RS, human performance and chance, are references: they have no rank.")
-HEADS = ["Data set", "Metric", "Model", "Rank", "95 % ranks", "First", "Group", "Mean", "95 % interval", HEAD]
+           f"(Student). HS and RS, human performance and chance, are references: they have no rank. {people.SHARE}")
+HEADS = ["Data set", "Metric", "Model", "Rank", "95 % ranks", "First", "Group", "Mean", "95 % interval", "Of HS", HEAD]
 
 
 def tables(shop):
     """A sentence per data set, and the table of the leading metrics."""
     shop.results.table("ranking.csv", *statistics.RANKING)
     notes = [Note(said) for dataset in statistics.shown(shop.results) if (said := said_of(shop.results, dataset))]
-    return notes + attempt(table, shop, "ranking", list(shop.results.leading))
+    return notes + attempt(lacking, shop) + attempt(table, shop, "ranking", list(shop.results.leading))
+
+
+def lacking(shop):
+    """No blocks, but Missing where the column "Of HS" has no file."""
+    shop.results.table("human_share.csv", *statistics.SHARES)
+    return []
 
 
 def said_of(results, dataset):
@@ -32,7 +38,7 @@ def table(shop, identifier, metrics):
     rows = [row for dataset in statistics.shown(shop.results) for metric in metrics for row in rows_of(shop, dataset, metric)]
     if not rows:
         raise Missing("ranking.csv ranks no model: none has scores.")
-    return Table(identifier, CAPTION, HEADS, rows, [False] * 3 + [True] * 3 + [False] + [True] * 3, filters=[0, 1])
+    return Table(identifier, CAPTION, HEADS, rows, [False] * 3 + [True] * 3 + [False] + [True] * 4, filters=[0, 1])
 
 
 def rows_of(shop, dataset, metric):
@@ -42,11 +48,12 @@ def rows_of(shop, dataset, metric):
         means = {row["model"]: row for row in statistics.summary(shop.results, dataset, metric).to_dict("records")}
     except Missing:
         means = {}
+    shares = statistics.human_shares(shop.results, dataset, metric)
     rows = []
     for row in statistics.ranking(shop.results, dataset, metric).to_dict("records"):
         known = means.pop(row["model"], {})
-        rows.append(head + [Cell(row["model"]), cell(row["rank"], 0), interval(row["rank_low"], row["rank_high"], 0),
-                            cell(row["first"], 2), Cell(row["group"] or "–")] + mean_cells(shop, dataset, row, known))
+        ranks = [cell(row["rank"], 0), interval(row["rank_low"], row["rank_high"], 0), cell(row["first"], 2), Cell(row["group"] or "–")]
+        rows.append(head + [Cell(row["model"]), *ranks] + mean_cells(shop, dataset, row, known, shares.get(row["model"])))
     for model, row in means.items():
         if row["n"] > 0:
             rows.append(head + [Cell(model), cell(None), cell(None), cell(None), Cell("reference")]
@@ -54,10 +61,10 @@ def rows_of(shop, dataset, metric):
     return rows
 
 
-def mean_cells(shop, dataset, row, known):
-    """known: the row of summary.csv, which has the interval; empty if there is none."""
+def mean_cells(shop, dataset, row, known, share=None):
+    """known: the row of summary.csv, which has the interval; empty if there is none. share: that of human_share.csv."""
     return [cell(row["mean"]), interval(known.get("ci95_low", float("nan")), known.get("ci95_high", float("nan"))),
-            count_cell(shop.results, dataset, row["n"], row["n_shapes"])]
+            people.share_cell(share), count_cell(shop.results, dataset, row["n"], row["n_shapes"])]
 
 
 def sentence(dataset, rankings):

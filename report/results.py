@@ -14,7 +14,7 @@ from report import metrics
 
 NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
 TEXT_COLUMNS = ("dataset", "item", "class", "view", "model", "metric", "model_a", "model_b", "metric_a", "metric_b", "group",
-                "node")
+                "node", "remark", "k_bound", "low_bound", "high_bound")
 DATASETS = ("meshes", "scans", "clouds")
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 

@@ -10,6 +10,9 @@ from report.results import DATASETS, Missing
 OF_METRIC = ("dataset", "metric")
 MEAN = ("mean", "ci95_low", "ci95_high")
 RANKING = (*OF_METRIC, "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first", "group")
+DIFFERENCES = ("from_participants", "to_participants", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low",
+               "ci90_high")
+SHARES = (*OF_METRIC, "model", "share", "ci95_low", "ci95_high", "remark")
 SUMMARY = (*OF_METRIC, "model", "n", "sd", *MEAN, "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean")
 
 def datasets(results):
@@ -125,6 +128,29 @@ def per_class(results, dataset, metric):
     if rows.empty:
         raise Missing(f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no classes.")
     return rows.assign(ci95=(rows["ci95_high"] - rows["ci95_low"]) / 2).reset_index(drop=True)
+
+
+def human_differences(results, metric):
+    """Rows of human_curve_differences.csv of one metric: what more participants add, over the meshes that have both numbers."""
+    table = results.table("human_curve_differences.csv", "metric", *DIFFERENCES)
+    rows = table[(table["metric"] == metric) & (table["n"] > 0)].dropna(subset=["from_participants", "to_participants"])
+    if rows.empty:
+        raise Missing(f"human_curve_differences.csv has no {results.metric(metric).label}: it takes four participants of a mesh.")
+    return rows.reset_index(drop=True)
+
+
+def one_more(table):
+    """The rows of human_differences from each number of participants to the next."""
+    return table[table["to_participants"] == table["from_participants"] + 1]
+
+
+def human_shares(results, dataset, metric):
+    """model -> its row of human_share.csv; empty where there are none."""
+    try:
+        table = results.table("human_share.csv", *SHARES)
+    except Missing:
+        return {}
+    return {row["model"]: row for row in of_metric(table, dataset, metric).to_dict("records")}
 
 
 def pair(results, dataset, metric, a, b):

@@ -163,36 +163,6 @@ def decided(p):
     return cell(None) if p != p else Cell("yes", bold=True) if p < LEVEL else Cell("undecided")
 
 
-def participants_worth(shop):
-    """For each model and leading metric the smallest n whose human curve reaches the model's mean."""
-    curve = shop.results.table("human_curve.csv", "n", "metric", "mean").dropna(subset=["n", "mean"])
-    rows = []
-    for model in shop.models:
-        if model == "HS":
-            continue
-        cells = [Cell(model)]
-        for metric, of in shop.results.leading.items():
-            summary = statistics.summary(shop.results, "meshes", metric)
-            mean = summary.loc[summary["model"] == model, "mean"]
-            part = curve[curve["metric"] == metric].sort_values("n")
-            sign = -1 if of.lower else 1
-            reached = part[sign * part["mean"] >= sign * mean.iloc[0]] if len(mean) else part.iloc[:0]
-            if not len(mean) or part.empty or mean.iloc[0] != mean.iloc[0]:
-                cells.append(cell(None))
-            elif reached.empty:
-                cells.append(Cell(f"more than {int(part['n'].max())}", float(part["n"].max()) + 1))
-            else:
-                first = int(reached["n"].iloc[0])
-                cells.append(Cell("1 or fewer" if first == 1 else f"{first - 1} to {first}", first))
-        rows.append(cells)
-    if not rows:
-        raise Missing("The run has no model to compare with the participants.")
-    return Table("worth", "How many participants a model is worth: where the mean of the human curve reaches the model's mean; how sure "
-                 "that is, no table says.",
-                 ["Model"] + [of.label for of in shop.results.leading.values()], rows,
-                 [False] + [True] * len(shop.results.leading))
-
-
 def parameters(shop):
     """Table 1: the paper's parameters and where each protocol puts them; then every option of the models."""
     ours = shop.results.option("protocol")

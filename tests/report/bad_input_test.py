@@ -13,6 +13,7 @@ import support
 
 ITEMS = fixture.eight_meshes()[:4]
 SCORES = fixture.results_table(ITEMS, views=2)
+PEOPLE = ("human_curve_differences.csv", "human_equivalents.csv", "human_share.csv", "human_reliability.csv")
 NASTY = 'a <b>&"\'c d'
 
 
@@ -73,7 +74,7 @@ class BadInput(BadInputTest):
 
     def test_each_file_may_be_missing(self):
         for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "ranking.csv", "ranking_agreement.csv",
-                     "mean_histograms_meshes.csv", "mean_histograms_scans.csv", "human_curve.csv", "run.yaml"):
+                     "mean_histograms_meshes.csv", "mean_histograms_scans.csv", "human_curve.csv", *PEOPLE, "run.yaml"):
             with self.subTest(name):
                 folder = f"without-{name}"
                 (self.small(folder) / name).unlink()
@@ -83,7 +84,7 @@ class BadInput(BadInputTest):
 
     def test_each_table_may_be_empty_or_no_table(self):
         for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "ranking.csv",
-                     "ranking_agreement.csv", "human_curve.csv", "mean_histograms_meshes.csv", "run.yaml"):
+                     "ranking_agreement.csv", "human_curve.csv", *PEOPLE, "mean_histograms_meshes.csv", "run.yaml"):
             for content in (b"", b"\xff\xfe\x00\x01garbage\n\n,,,\n", b"one,two\n1,2\n"):
                 with self.subTest(name, content=content):
                     (self.small("spoilt") / name).write_bytes(content)
@@ -171,7 +172,7 @@ class OddNumbers(BadInputTest):
 
     def test_each_table_may_be_cut_short(self):
         for name in ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "ranking.csv", "ranking_agreement.csv",
-                     "human_curve.csv", "run.yaml"):
+                     "human_curve.csv", *PEOPLE, "run.yaml"):
             with self.subTest(name):
                 folder = f"cut-{name}"
                 path = self.small(folder) / name

@@ -25,7 +25,7 @@ SHOWS = {
     "table-1": ["table-parameters", "r_low", "epsilon"],
     "figure-4": [f"figures/{name}.svg" for metric in PAPER
                  for name in (f"performance-meshes-{metric}", f"difficult-meshes-{metric}")],
-    "figure-5": ["figures/human-curves.svg", "table-worth"],
+    "figure-5": ["figures/human-curves.svg", "table-worth", "table-more-participants"],
     "table-2": [f"table-classes-meshes-{metric}" for metric in PAPER] + ["data/classes-meshes-auc.tex"],
     "figure-6": ["figures/ranking-scans.svg"],
     "figure-7": ["figures/examples-scans.pdf", "Scan "],

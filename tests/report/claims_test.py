@@ -3,6 +3,7 @@
 
 import dataclasses
 import html
+import itertools
 import unittest
 from pathlib import Path
 
@@ -12,7 +13,7 @@ import pandas
 import fixture
 import support
 import twin
-from report import checks, claims, paper
+from report import checks, claims, paper, statistics
 from report.results import Missing, Results, read_results
 
 HOLDS, FAILS, OPEN = checks.HOLDS, checks.FAILS, checks.UNDECIDED
@@ -44,9 +45,12 @@ def classes(rows, n=20):
         columns=["dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"])}
 
 
-def human_curve(means, sd=0.01, n=20):
-    return {"human_curve.csv": pandas.DataFrame({"n": [float(i + 1) for i in range(len(means))], "metric": "auc", "n_meshes": float(n),
-                                                 "mean": means, "sd": sd})}
+def human_curve(means, half=0.01, n=20):
+    """human_curve_differences.csv of a curve with these means, the half of each 95 % interval, and of its 90 % one 0.84 of that."""
+    rows = [("auc", float(a + 1), float(b + 1), n, n, means[b] - means[a], means[b] - means[a] - half, means[b] - means[a] + half, 0.5,
+             means[b] - means[a] - 0.84 * half, means[b] - means[a] + 0.84 * half)
+            for a, b in itertools.combinations(range(len(means)), 2)]
+    return {"human_curve_differences.csv": pandas.DataFrame(rows, columns=["metric", *statistics.DIFFERENCES])}
 
 
 def distributions(**densities):
@@ -159,6 +163,9 @@ class Verdicts(unittest.TestCase):
     def test_rises(self):
         cases = {HOLDS: human_curve([0.5, 0.6]), FAILS: human_curve([0.6, 0.5]), OPEN: human_curve([0.5, 0.505])}
         self.expect("rises", cases, a="1", b="2")
+        finding = verdict("rises", human_curve([0.5, 0.6, 0.7]), "1", "2")
+        numpy.testing.assert_allclose([finding.value, finding.low, finding.high], [0.1, 0.09, 0.11])
+        self.assertEqual((finding.figure, finding.count, finding.test), ("n = 1 to 2", "20 meshes", "paired t by mesh"))
 
     def test_no_rise_beyond(self):
         cases = {HOLDS: human_curve([0.5, 0.6, 0.6, 0.595]), FAILS: human_curve([0.5, 0.6, 0.6, 0.65]),
@@ -167,38 +174,51 @@ class Verdicts(unittest.TestCase):
 
     def test_no_rise_beyond_looks_at_all_later_numbers(self):
         """No step is large; together they are."""
-        slow = human_curve([0.5, 0.6, 0.606, 0.612, 0.618, 0.624])
+        slow = human_curve([0.5, 0.6, 0.604, 0.608, 0.612, 0.616])
         finding = verdict("no_rise_beyond", slow, "2", margin=0.009)
         self.assertEqual((finding.verdict, finding.figure), (FAILS, "n = 2 to 6"))
 
     def test_same_beyond(self):
-        cases = {HOLDS: human_curve([0.5, 0.6, 0.599]), FAILS: human_curve([0.5, 0.6, 0.57]), OPEN: human_curve([0.5, 0.6, 0.594])}
+        cases = {HOLDS: human_curve([0.5, 0.6, 0.6005, 0.5997]), FAILS: human_curve([0.5, 0.6, 0.6, 0.57]),
+                 OPEN: human_curve([0.5, 0.6, 0.599, 0.594])}
         self.expect("same_beyond", cases, a="2", margin=0.009)
+
+    def test_same_beyond_looks_at_all_later_numbers(self):
+        """A curve that turns is not flat because it ends where it was."""
+        finding = verdict("same_beyond", human_curve([0.5, 0.6, 0.65, 0.6]), "2", margin=0.009)
+        self.assertEqual((finding.verdict, finding.figure, finding.others), (FAILS, "n = 2 to 3", "of 2: 1 holds, 1 does not"))
 
     def test_keeps_rising(self):
         cases = {HOLDS: human_curve([0.5, 0.52, 0.54]), FAILS: human_curve([0.5, 0.52, 0.5]), OPEN: human_curve([0.5, 0.52, 0.523])}
         self.expect("keeps_rising", cases)
 
     def test_a_rise_whose_interval_contains_0_does_not_hold(self):
-        finding = verdict("keeps_rising", human_curve([0.5, 0.52, 0.54, 0.56], sd=0.1))
+        finding = verdict("keeps_rising", human_curve([0.5, 0.52, 0.54, 0.56], half=0.03))
         self.assertLess(finding.low, 0)
         self.assertEqual(finding.verdict, OPEN)
 
-    def test_the_interval_of_a_step_is_welchs(self):
-        finding = verdict("rises", human_curve([0.5, 0.6], sd=[0.05, 0.2]), "1", "2")
+    def test_meshes_that_differ_much_do_not_hide_a_rise_within_each(self):
+        """Means of 0.5 and 0.51 with a deviation of 0.1 each: two samples would show nothing."""
         random = numpy.random.default_rng(1)
-        samples = [mean + sd * (values - values.mean()) / values.std(ddof=1)
-                   for mean, sd, values in ((0.5, 0.05, random.normal(size=20)), (0.6, 0.2, random.normal(size=20)))]
-        freedom = 20 * 0.0425 ** 2 / 20 * 19 / (0.05 ** 4 + 0.2 ** 4)
-        half = twin.stats.t.ppf(0.975, freedom) * ((0.05 ** 2 + 0.2 ** 2) / 20) ** 0.5
-        numpy.testing.assert_allclose([finding.low, finding.high], [0.1 - half, 0.1 + half])
-        p = twin.stats.ttest_ind(*samples, equal_var=False).pvalue
-        self.assertEqual(p < 0.05, finding.low > 0)
+        level, rows = 0.1 * random.normal(size=20), []
+        for item in range(20):
+            for n in (1, 2):
+                rows.append((item, n, "auc", 0.49 + 0.01 * n + level[item] + 0.002 * random.normal()))
+        curves = pandas.DataFrame(rows, columns=["item", "n", "metric", "value"])
+        self.assertGreater(twin.stats.ttest_ind(*curves.groupby("n")["value"].apply(list)).pvalue, 0.5)
+        finding = verdict("rises", {"human_curve_differences.csv": twin.human_differences(curves)}, "1", "2")
+        self.assertEqual(finding.verdict, HOLDS)
 
     def test_a_curve_over_one_mesh_or_without_spread_decides_nothing(self):
-        for tables in (human_curve([0.5, 0.6], sd=NAN, n=1), human_curve([0.5, 0.6], sd=0.0)):
-            for check in ("rises", "no_rise_beyond", "same_beyond", "keeps_rising"):
-                self.expect(check, {OPEN: tables}, a="1", b="2", margin=0.009)
+        for check in ("rises", "no_rise_beyond", "same_beyond", "keeps_rising"):
+            self.expect(check, {OPEN: human_curve([0.5, 0.6], half=NAN, n=1)}, a="1", b="2", margin=0.009)
+
+    def test_a_curve_that_ends_before_is_missing(self):
+        for check, a, b in (("rises", "1", "4"), ("rises", "3", "4"), ("no_rise_beyond", "3", ""), ("same_beyond", "4", "")):
+            with self.assertRaisesRegex(Missing, "the human curve does not"):
+                verdict(check, human_curve([0.5, 0.6, 0.7]), a, b, margin=0.009)
+        with self.assertRaisesRegex(Missing, "takes four participants"):
+            verdict("keeps_rising", human_curve([0.5]))
 
     def test_near_uniform(self):
         cases = {HOLDS: distributions(RS=numpy.ones_like), FAILS: distributions(RS=lambda x: x),

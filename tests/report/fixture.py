@@ -100,6 +100,19 @@ def human_curve():
     return pandas.DataFrame(rows, columns=["n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"])
 
 
+def curves_by_mesh(items, seed=5):
+    """Each mesh has a level of its own, beside which more participants add much the same."""
+    random = numpy.random.default_rng(seed)
+    table, rows = human_curve(), []
+    for item, category in items:
+        level = 0.04 * random.standard_normal()
+        for row in table.itertuples():
+            value = row.mean + level + 0.01 * random.standard_normal()
+            reliability = 2 * max(value, 0) / (1 + max(value, 0)) if row.metric == "cc" else numpy.nan
+            rows.append((item, category, row.n, row.metric, value, reliability))
+    return pandas.DataFrame(rows, columns=["item", "class", "n", "metric", "value", "reliability"])
+
+
 def run_yaml(models, simulated, failed=(), extra=""):
     sections = "".join(f"    {model}:\n" if model == "RS" else f"    {model}: {{radius: 0.02}}\n" for model in models)
     failures = "failed: []\n" if not failed else "failed:\n" + "".join(
@@ -120,11 +133,15 @@ def write_results(folder, items, models=MODELS, simulated=False, results=None, *
     folder.mkdir(parents=True, exist_ok=True)
     results = results_table(items, models) if results is None else results
     head = "# SIMULATED participants: these scores say nothing about people.\n" if simulated else ""
+    of_meshes = results[results["dataset"] == "meshes"].drop_duplicates("item")
+    curves = curves_by_mesh(list(zip(of_meshes["item"], of_meshes["class"])))
     tables = {"results": results, "summary": twin.summary(results), "per_class": twin.per_class(results),
               "significance": twin.significance(results), "ranking": twin.ranking(results, is_distance),
               "ranking_agreement": twin.agreement(results, is_distance), "mean_histograms_meshes": histograms(models),
               "mean_histograms_scans": histograms([model for model in models if model != "HS"], 3),
-              "human_curve": human_curve()}
+              "human_curve": human_curve(), "human_curve_by_mesh": curves, "human_curve_differences": twin.human_differences(curves),
+              "human_equivalents": twin.human_equivalents(curves, results, is_distance),
+              "human_share": twin.human_shares(results, is_distance), "human_reliability": twin.human_reliability(curves)}
     for name, table in tables.items():
         (folder / f"{name}.csv").write_text(head + table.to_csv(index=False), encoding="utf-8")
     (folder / "run.yaml").write_text(run_yaml(models, simulated, **options), encoding="utf-8")

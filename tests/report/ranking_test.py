@@ -6,6 +6,7 @@ import unittest
 import pandas
 
 import fixture
+import people_test
 import support
 from report import ranking
 
@@ -75,13 +76,15 @@ class Ranking(support.ReportTest):
         shown = {tuple(row[:3]): row[3:] for row in support.rows(index, "ranking")}
         table = pandas.read_csv(self.folder / "run/ranking.csv")
         means = pandas.read_csv(self.folder / "run/summary.csv").set_index(["dataset", "metric", "model"])
+        shares = pandas.read_csv(self.folder / "run/human_share.csv").set_index(["dataset", "metric", "model"])
         labels = {"auc": "AUC", "nss": "NSS", "lcc": "LCC"}
         expected = 0
         for row in table[table["metric"].isin(labels)].itertuples():
             mean = means.loc[row.dataset, row.metric, row.model]
-            cells = shown[row.dataset.capitalize(), labels[row.metric], row.model]
+            cells = [" ".join(cell.split()) for cell in shown[row.dataset.capitalize(), labels[row.metric], row.model]]
             self.assertEqual(cells[:4], [str(row.rank), f"{row.rank_low:.0f} to {row.rank_high:.0f}", f"{row.first:.2f}", row.group])
             self.assertEqual(cells[4:], [f"{row.mean:.3f}", f"{mean['ci95_low']:.3f} to {mean['ci95_high']:.3f}",
+                                         people_test.shown(shares.loc[row.dataset, row.metric, row.model]),
                                          "8 meshes" if row.dataset == "meshes" else "8 meshes, 96 scans"])
             expected += 1
         self.assertEqual(expected, 2 * 3 * 4)

@@ -18,7 +18,8 @@ from report import statistics
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
 CONFIGURATION = """dataset: {layout: schelling, participants: simulated}
 scan: {step_degrees: 1}
-models: {LS: , PS: , RS: }
+models: {LS: , PS: , HS: , RS: }
+metrics: [auc, auc_exact, nss, cc, lcc, kl, nss_multiplicity]
 """
 
 
@@ -98,6 +99,52 @@ class Statistics(support.ReportTest):
         agreement = self.matched("ranking_agreement.csv", twin.agreement(self.scores, lower, resamples=resamples),
                                  ["dataset", "metric_a", "metric_b"])
         self.assert_equal_columns(agreement, ["n", "n_models", "tau"], rtol=1e-9)
+
+    def test_curves_by_mesh_differences_and_reliability_equal_scipys(self):
+        curves = self.results.table("human_curve_by_mesh.csv")
+        exact = {"rtol": 1e-9, "atol": 1e-9}
+        means = self.results.table("human_curve.csv")
+        grouped = curves.groupby(["n", "metric"])["value"]
+        expected = means.assign(mean=[grouped.get_group((row.n, row.metric)).mean() for row in means.itertuples()])
+        numpy.testing.assert_allclose(means["mean"], expected["mean"], **exact)
+        differences = self.matched("human_curve_differences.csv", twin.human_differences(curves),
+                                   ["metric", "from_participants", "to_participants"])
+        self.assert_equal_columns(differences, list(self.results.table("human_curve_differences.csv"))[3:], **exact)
+        reliability = self.matched("human_reliability.csv", twin.human_reliability(curves), ["metric"])
+        self.assert_equal_columns(reliability, list(self.results.table("human_reliability.csv"))[1:], **exact)
+        halves = curves[curves["metric"] == "cc"]
+        numpy.testing.assert_allclose(halves["reliability"], 2 * halves["value"] / (1 + halves["value"]))
+
+    def assert_end(self, resampled, end, level):
+        """`level` of the resampled values lie below that end of an interval, but for noise and for values that tie."""
+        self.assertLess((resampled < end).mean(), level + 0.01)
+        self.assertGreater((resampled <= end).mean(), level - 0.01)
+
+    def test_participants_and_shares_equal_numpys(self):
+        curves, lower = self.results.table("human_curve_by_mesh.csv"), fixture.is_distance
+        expected = twin.human_equivalents(curves, self.scores, lower, resamples=10_000)
+        both = self.matched("human_equivalents.csv", expected, ["dataset", "metric", "model"])
+        self.assert_equal_columns(both, ["n", "n_shapes", "largest_group", "mean", "k", "crossings"], rtol=1e-9)
+        self.assertEqual(both["k_bound"].tolist(), both["k_bound_twin"].tolist())
+        table = self.results.table("human_equivalents.csv").set_index(["metric", "model"])
+        tail = float(twin.stats.norm.cdf(-(6 / 5) ** 0.5 * twin.stats.t.ppf(0.975, 5)))
+        ends = 0
+        for metric, model, n, _, _, _, resampled, _ in twin.human_places(curves, self.scores, lower, resamples=10_000):
+            row = table.loc[metric, model]
+            for end, level in (("low", tail), ("high", 1 - tail)):
+                value = {"<": -numpy.inf, ">": numpy.inf}.get(row[f"{end}_bound"][:1], row[f"ci95_{end}"])
+                if value == value:
+                    self.assert_end(resampled, value, level)
+                    ends += 1
+        self.assertGreater(ends, 40)
+        shares = self.matched("human_share.csv", twin.human_shares(self.scores, lower, resamples=10_000), ["dataset", "metric", "model"])
+        self.assert_equal_columns(shares, ["n", "n_shapes", "mean", "mean_rs", "mean_hs", "share"], rtol=1e-9)
+        self.assertEqual(shares["remark"].tolist(), shares["remark_twin"].tolist())
+        width = (shares["ci95_high"] - shares["ci95_low"]).to_numpy()
+        self.assertGreater(numpy.isfinite(width).sum(), 5)
+        for end in ("ci95_low", "ci95_high"):
+            away = ((shares[end] - shares[f"{end}_twin"]).abs() / width).dropna()
+            self.assertLess(away.max(), 0.15)
 
     def test_pages_show_the_numbers_of_the_files(self):
         rows = {tuple(row[:3]): row for row in support.rows(self.index, "means")}

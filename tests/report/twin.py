@@ -111,6 +111,120 @@ def per_class(results):
     return pandas.DataFrame(rows, columns=["dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"])
 
 
+def human_differences(curves):
+    """human_curve_differences.csv. curves: human_curve_by_mesh.csv."""
+    rows = []
+    for metric in curves["metric"].unique():
+        wide = curves[curves["metric"] == metric].pivot(index="item", columns="n", values="value")
+        for fewer, more in combinations(wide, 2):
+            both = wide[[fewer, more]].dropna()
+            mean, low, high, p, low90, high90, *_ = compare((both[more] - both[fewer]).to_numpy())
+            rows.append((metric, fewer, more, len(both), len(both), mean, low, high, p, low90, high90))
+    return pandas.DataFrame(rows, columns=["metric", "from_participants", "to_participants", "n", "n_shapes", "mean_difference",
+                                           "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high"])
+
+
+def human_reliability(curves):
+    """human_reliability.csv"""
+    last = curves[curves["metric"] == "cc"].dropna(subset=["value"]).groupby("item", sort=False).last()
+    r = last["value"].to_numpy()
+    values = 2 * numpy.maximum(r, 0) / (1 + numpy.maximum(r, 0))
+    rows = [("cc", len(r), len(r), 2 * last["n"].min(), 2 * last["n"].max(), r.mean(), values.mean(),
+             values.std(ddof=1) if len(r) > 1 else NAN, *student(values))] if len(r) else []
+    return pandas.DataFrame(rows, columns=["metric", "n", "n_shapes", "fewest_participants", "most_participants", "split_half", "mean",
+                                           "sd", "ci95_low", "ci95_high"])
+
+
+FEWEST = 6  # units of an interval by percentiles
+
+
+def percentiles(values, n):
+    """The levels that make the interval of a mean Student's, and the interval of these resampled values at them."""
+    if n < FEWEST or (values == values[0]).all() and numpy.isfinite(values[0]):
+        return NAN, NAN
+    place = int(stats.norm.cdf(-(n / (n - 1)) ** 0.5 * stats.t.ppf(1 - LEVEL / 2, n - 1)) * (len(values) - 1))
+    values = numpy.sort(values)
+    return values[place], values[len(values) - 1 - place]
+
+
+def reached(curve, level, lower):
+    """Where curves, one per row, first are as good as the level of their row."""
+    ahead = (curve - level[:, None]) * (-1 if lower else 1)
+    places = numpy.full(len(ahead), numpy.inf)
+    for i in range(ahead.shape[1] - 1, -1, -1):
+        step = ahead[:, i] - ahead[:, i - 1] if i else 1.0
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            places = numpy.where(ahead[:, i] >= 0, i + 1 - (ahead[:, i] / step if i else 0), places)
+    return numpy.where(ahead[:, 0] > 0, -numpy.inf, places)
+
+
+def human_places(curves, results, lower, resamples=400):
+    """(metric, model, n, largest group, mean, place, resampled places, crossings), over meshes with the whole curve that all
+    models of a metric have scores for."""
+    part = results[results["dataset"] == "meshes"]
+    for metric in metrics_of(results):
+        scores = Scores(part, metric)
+        curve = curves[curves["metric"] == metric].pivot(index="item", columns="n", values="value").dropna()
+        for model in scores.wide:
+            units = scores.compared([model])[0].join(curve, how="inner")
+            if units.empty:
+                yield metric, model, 0, curve.shape[1], NAN, NAN, numpy.array([]), 0
+                continue
+            means = numpy.vstack([units.mean().to_numpy(), draws(len(units), resamples) @ units.to_numpy()])
+            places = reached(means[:, 1:], means[:, 0], lower(metric))
+            sides = numpy.sign(means[0, 1:] - means[0, 0])
+            sides = sides[sides != 0]
+            yield metric, model, len(units), curve.shape[1], means[0, 0], places[0], places[1:], int((sides[1:] != sides[:-1]).sum())
+
+
+def bound(place, largest):
+    return "<1" if place == -numpy.inf else f">{largest}" if place == numpy.inf else ""
+
+
+def human_equivalents(curves, results, lower, **options):
+    """human_equivalents.csv, without the remark on HS."""
+    rows = []
+    for metric, model, n, largest, mean, place, resampled, crossings in human_places(curves, results, lower, **options):
+        places = (place, *(percentiles(resampled, n) if n else (NAN, NAN)))
+        remark = "no scores" if n == 0 else f"no interval: fewer than {FEWEST} units" if n < FEWEST else ""
+        rows.append(("meshes", metric, model, n, n, largest, mean, *(one if numpy.isfinite(one) else NAN for one in places),
+                     *(bound(one, largest) for one in places), crossings, remark))
+    return pandas.DataFrame(rows, columns=["dataset", "metric", "model", "n", "n_shapes", "largest_group", "mean", "k", "ci95_low",
+                                           "ci95_high", "k_bound", "low_bound", "high_bound", "crossings", "remark"])
+
+
+def human_shares(results, lower, resamples=400):
+    """human_share.csv"""
+    rows = []
+    for dataset, metric, scores in each(results, lower, resamples=resamples):
+        lacking = [model for model in ("RS", "HS") if model not in scores.scored]
+        for model in scores.wide:
+            if model in REFERENCES:
+                continue
+            if lacking or model not in scores.scored:
+                remark = f"no scores of {lacking[0]}" if lacking else "no scores"
+                rows.append((dataset, metric, model, 0, 0, *(NAN,) * 6, remark))
+                continue
+            units, n_shapes = scores.compared([*scores.competitors, "RS", "HS"])
+            rows.append((dataset, metric, model, len(units), n_shapes, *share(units, model, scores.lower, resamples)))
+    return pandas.DataFrame(rows, columns=["dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs", "mean_hs", "share",
+                                           "ci95_low", "ci95_high", "remark"])
+
+
+def share(units, model, lower, resamples):
+    """Means of the model, RS and HS, the share with its interval, and the remark."""
+    n, means = len(units), units[[model, "RS", "HS"]].mean()
+    if n < 2:
+        return *means, NAN, NAN, NAN, "one unit: it does not show that HS is better than RS"
+    ahead = (units["HS"] - units["RS"]).to_numpy() * (-1 if lower else 1)
+    if ahead.mean() <= 0 or numpy.ptp(ahead) > 0 and stats.ttest_1samp(ahead, 0).pvalue >= LEVEL:
+        return *means, NAN, NAN, NAN, "HS is not clearly better than RS"
+    resampled = draws(n, resamples) @ units[[model, "RS", "HS"]].to_numpy()
+    low, high = percentiles((resampled[:, 0] - resampled[:, 1]) / (resampled[:, 2] - resampled[:, 1]), n)
+    remark = f"no interval: fewer than {FEWEST} units" if n < FEWEST else ""
+    return *means, (means[model] - means["RS"]) / (means["HS"] - means["RS"]), low, high, remark
+
+
 def wilson(share, n):
     z = stats.norm.ppf(1 - LEVEL / 2)
     centre = (share + z * z / (2 * n)) / (1 + z * z / n)
