@@ -132,6 +132,13 @@ def class_row(table, name, model="Avg"):
     return table.loc[(name, model)]
 
 
+def averages(table):
+    """Rows of the mean over the competitors by class; a run of references alone has none."""
+    if "Avg" not in table.index.get_level_values("model"):
+        raise Missing("no scores of a model, only of references")
+    return table.xs("Avg", level="model")
+
+
 def around(text, value, half, count, test):
     """A finding with an interval of half that width, and the verdict that it is above 0."""
     finding = Finding(text, float(value), float(value - half), float(value + half), count=count, test=test)
@@ -172,7 +179,7 @@ def class_above(results, claim):
 def classes_above_mean(results, claim):
     """Each class of a is above the mean of the classes, which it is one of."""
     table = classes_of(results, claim)
-    rows = table.xs("Avg", level="model")
+    rows = averages(table)
     findings = []
     for name in claim["a"].split():
         row = class_row(table, name)
@@ -187,7 +194,7 @@ def hardest_class(results, claim):
     table = classes_of(results, claim)
     name = claim["a"]
     lowest = class_row(table, name)
-    rows = table.xs("Avg", level="model")
+    rows = averages(table)
     if len(rows) < 2:
         raise Missing("no scores of another class")
     finding = combined([around(f"{other} − {name}", row["mean"] - lowest["mean"], numpy.hypot(row["ci95"], lowest["ci95"]),

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/results/pairs.h"
 #include "stages/core/rng.h"
 #include "stages/stats/summary.h"
 
@@ -131,17 +132,18 @@ void add_equal_models(Rates& rates, const std::vector<ResultRow>& rows, std::uin
     all &= covers;
   }
   rates.add("intervals of all ranks", kConfidence, all);
-  rates.add_intervals("unit shape: interval of a difference",
-                      significance_table(conclude(rows, kOneMetric, {.unit = Unit::shape}, seed)), "ci95", 0);
+  for (const ModelPair& pair : model_pairs(DatasetScores(rows, "scans", Unit::shape), 0))
+    rates.add("unit shape: interval of a difference", kConfidence,
+              pair.by_unit.interval.low <= 0 && 0 <= pair.by_unit.interval.high);
   rates.add_tests("unit shape: rank-sum test", pairs, "rank_sum_p");
 }
 
 // Two models that differ by exactly the margin, which half of the tests would find equal if they took no
 // care.
-void add_equivalence(Rates& rates, const std::vector<ResultRow>& rows, double margin, std::uint64_t seed) {
-  const Table pairs = significance_table(conclude(rows, kOneMetric, {}, seed));
-  const std::vector<double> low = numbers(pairs, "ci90_low"), high = numbers(pairs, "ci90_high");
-  rates.add("equivalence at its margin", 1 - kConfidence, -margin < low[0] && high[0] < margin);
+void add_equivalence(Rates& rates, const std::vector<ResultRow>& rows, double margin) {
+  const DatasetScores scores(rows, "scans", Unit::mesh);
+  const Interval interval = compare_models(scores, 0, 0, 1).by_unit.equivalence_interval;
+  rates.add("equivalence at its margin", 1 - kConfidence, -margin < interval.low && interval.high < margin);
 }
 
 }  // namespace
@@ -191,7 +193,7 @@ std::vector<Rate> calibrate(const ScoreModel& model, std::size_t data_sets, std:
   for (std::size_t i = 0; i < data_sets; ++i) {
     Rng rng(seed, "calibrate", std::to_string(i));
     add_equal_models(rates, scores.draw(rng), seed + i);
-    add_equivalence(rates, pair.draw(rng, margin), margin, seed + i);
+    add_equivalence(rates, pair.draw(rng, margin), margin);
   }
   return rates.take();
 }

@@ -205,6 +205,13 @@ class OddNumbers(BadInputTest):
         self.full("one-model", models=("LS",), results=None)
         self.assertIn("it takes two models", self.made("one-model"))
 
+    def test_references_alone(self):
+        """The mean over the competitors has no row, where there is none of them."""
+        out = self.full("references", models=("RS",), results=None)
+        table = pandas.read_csv(out / "per_class.csv")
+        table[table["model"] != "Avg"].to_csv(out / "per_class.csv", index=False)
+        self.assertIn("only of references", self.made("references"))
+
     def test_one_shape(self):
         fixture.write_results(self.folder / "one-shape", [("7", "teddy")])
         self.made("one-shape")
