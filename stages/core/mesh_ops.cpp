@@ -146,7 +146,7 @@ std::vector<std::int32_t> connected_components(const Adjacency& adjacency) {
   for (std::size_t start = 0; start < label.size(); ++start) {
     if (label[start] >= 0) continue;
     label[start] = next;
-    open.assign(1, start);
+    open.push_back(start);
     while (!open.empty()) {
       const std::size_t i = open.back();
       open.pop_back();

@@ -77,6 +77,17 @@ TEST(MeshCheck, CollinearIsJudgedAgainstTheRoundingOfTheCoordinates) {
   }
 }
 
+// The longest edge is 1, and so is the largest coordinate: a height up to 4 epsilon is rounding.
+TEST(MeshCheck, CollinearDoesNotDependOnWhichCornerComesFirst) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  for (const auto& [height, degenerate] : {std::pair(3 * kEpsilon, 1), {5 * kEpsilon, 0}})
+    for (const Triangle& face : {Triangle{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}) {
+      const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5, height, 0}, {0, 1, 0}}, {face, {0, 1, 3}}};
+      EXPECT_EQ(check_mesh(mesh).report.degenerate_faces, degenerate)
+          << height << ": " << face[0] << face[1] << face[2];
+    }
+}
+
 TEST(MeshCheck, DropsDuplicatesInAnyOrderOfTheirVerticesAndKeepsTheFirst) {
   Mesh mesh = shapes::tetrahedron();
   const auto [a, b, c] = mesh.faces[1];

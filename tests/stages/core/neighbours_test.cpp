@@ -167,6 +167,13 @@ TEST(KdTree, PairsOfSomePointsAreOfTheseAlone) {
   EXPECT_EQ(pairs, 150U * 149 / 2);
 }
 
+TEST(KdTree, FindsNothingWhereNothingIsAskedFor) {
+  const auto cloud = shapes::random_cloud(100, 4);
+  std::vector<Neighbour> found = {{7, 1.0}};
+  KdTree(cloud).nearest(cloud[0], 0, found);
+  EXPECT_TRUE(found.empty());
+}
+
 TEST(KdTree, AsksForMoreThanThereIs) {
   const std::vector<Vec3> two = {{0, 0, 0}, {1, 0, 0}};
   std::vector<Neighbour> found;

@@ -92,7 +92,7 @@ void expect_near(const Descriptors& actual, const Descriptors& expected, double 
 TEST(FpfhHistogram, EqualsTheFormula) {
   const auto points = shapes::random_cloud(120, 21);
   const auto normals = shapes::random_normals(120, 22);
-  for (const Support& support : {kNine, Support{30, 0}, Support{0, 0.3}}) {
+  for (const Support& support : {kNine, Support{30, 0}, Support{0, 0.3}, Support{1, 0.3}}) {
     for (const auto weighting : {FpfhWeighting::published, FpfhWeighting::text}) {
       const Descriptors fast = fpfh(points, normals, KdTree(points), support, weighting);
       const Twin twin{points, normals, support, weighting};
@@ -280,6 +280,16 @@ TEST(PairBins, AreThoseOfTheFeatures) {
       expect_bins_of_features(points[i], normals[i], points[i + 1], other);
     expect_bins_of_features(points[i], normals[i], points[i] + 0.1 * normals[i], normals[i + 1]);
   }
+}
+
+// Only phi is near an edge here: a product of kBlockBins rounds to another side of it than a comparison does.
+TEST(PairBins, WithinRoundingOfAnEdgeOfPhiAreThoseOfTheFeatures) {
+  for (int bin = 0; bin <= 11; ++bin)
+    for (int steps = -8; steps <= 8; ++steps) {
+      const double height = std::clamp(bin / 11.0 + steps * 0x1p-54, 0.0, 1.0);
+      const Vec3 up(height, std::sqrt(1 - height * height), 0);
+      expect_bins_of_features({0, 0, 0}, up, {1, 0, 0}, Vec3(0.48, 0.6, 0.64));
+    }
 }
 
 TEST(PairBins, OnTheEdgesOfBinsAreThoseOfTheFeatures) {

@@ -32,6 +32,20 @@ TEST(MeanNeighbourCounts, EqualBruteForce) {
   EXPECT_EQ(mean_neighbour_counts(cloud, KdTree(cloud), 0, 0)[1], 0);
 }
 
+TEST(MedianSpacing, IsTheDistanceToTheNearestOther) {
+  std::vector<Vec3> row;  // gaps 1, 2, 4, 8, 16
+  for (const double x : {0, 1, 3, 7, 15, 31}) row.emplace_back(x, 0, 0);
+  const auto spacing = [](const std::vector<Vec3>& points, std::size_t k) {
+    return median_spacing(KdTree(points).nearest_of_each(points, k));
+  };
+  EXPECT_EQ(spacing(row, 2), 4);  // the upper one of 1, 1, 2, 4, 8, 16 in the middle
+  EXPECT_EQ(spacing(row, 4), 4);
+  row.pop_back();
+  EXPECT_EQ(spacing(row, 2), 2);
+  EXPECT_EQ(spacing({{1, 2, 3}}, 2), 0);
+  EXPECT_EQ(spacing({}, 2), 0);
+}
+
 TEST(GrownSupportRadius, IsTheFirstPowerThatHoldsSix) {
   for (const auto& points : {shapes::random_cloud(400, 5), shapes::bumpy_sphere(3).vertices}) {
     const SupportRadius support = grown_support_radius(points, 0.01);

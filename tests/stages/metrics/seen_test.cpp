@@ -106,6 +106,12 @@ TEST(MeanOfSeen, IsFiniteHoweverLargeTheValuesAre) {
     EXPECT_NEAR(mean[static_cast<std::size_t>(i)] / expected, 1, 1e-15) << i;
 }
 
+TEST(MeanOfSeen, OfLargeValuesThatCancelIsZero) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  const std::vector<ScalarField> maps = {{kLargest}, {kLargest}, {-kLargest}, {-kLargest}};
+  EXPECT_THAT(mean_of_seen(maps, std::vector<std::size_t>{0, 1, 2, 3}), ElementsAre(0));
+}
+
 TEST(MeanOfSeen, IsOverThoseThatSawThePoint) {
   const std::vector<ScalarField> maps = {{1, kUnseen, kUnseen}, {100, 100, 100}, {3, 4, kUnseen}};
   for (const std::vector<std::size_t>& members : {std::vector<std::size_t>{0, 2}, {2, 0}})
