@@ -85,35 +85,40 @@ RowOf<ScalarField> add_given_map(Catalog& catalog, const ShapeRows& shape, const
       shape.points, kFiles<Source::map_file>);
 }
 
+// Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
+// scores are found whatever these are.
 void add_scores(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model,
-                RowOf<ScalarField> matched_map) {
+                RowOf<FieldView> map, RowOf<FieldView> matched_map) {
   const std::string name = "scores." + model.name;
-  const std::vector<Metric> metrics = chosen_metrics(config.metrics);
-  const RowHead head{name, scores_version(metrics)};
-  const auto options = section("metrics", config.metrics);
-  if (!any_by_area(metrics)) {
-    catalog.add(
-        shape.shapes, head,
-        [name](const ScalarField& map, const GroundTruth& truth, const MetricsOptions& chosen,
-               const RandomSource& random) { return score(map, truth, chosen, random.rng(name)); },
-        matched_map, shape.ground_truth, options, kRandom);
-    return;
-  }
-  // Only what needs areas reads the surface: other scores are found whatever it is.
+  const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
+  const auto only_if = []<class T>(bool needed, RowOf<T> row) {
+    return needed ? std::optional(row) : std::nullopt;
+  };
+  const bool by_area = any_by_area(metrics->all());
   catalog.add(
-      shape.shapes, head,
-      [name](const ScalarField& map, const GroundTruth& truth, Points points, Surface surface,
-             const MetricsOptions& chosen, const RandomSource& random) {
-        return score(map, truth, chosen, random.rng(name), barycentric_areas(points, surface));
+      shape.shapes, {name, scores_version(metrics->all())},
+      [name, metrics](FieldView matched_values, FieldView values, const GroundTruth& truth, Points points,
+                      Surface surface, const MetricsOptions& options, const RandomSource& random) {
+        Draws draws(random.rng(name));
+        const Measures measures(std::max(matched_values.size(), values.size()),
+                                barycentric_areas(points, surface));
+        return metrics->score([&](std::span<const Metric> of_part, Matching read) {
+          return read == Matching::histogram
+                     ? score(of_part, matched_values, truth, options, draws, measures)
+                     : score(of_part, min_max_normalised(values), truth, options, draws, measures);
+        });
       },
-      matched_map, shape.ground_truth, shape.points, shape.surface, options, kRandom);
+      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any(Matching::none), map),
+      shape.ground_truth, only_if(by_area, shape.points), only_if(by_area, shape.surface),
+      section("metrics", config.metrics), kRandom);
 }
 
 void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model) {
   const RowHead map_head{"map." + model.name, model.version};
   const RowHead matched_head{"matched." + model.name, 1};
   if (model.given && model.given->matched) {
-    add_scores(catalog, shape, config, model, add_given_map(catalog, shape, model, matched_head));
+    const RowOf<ScalarField> given = add_given_map(catalog, shape, model, matched_head);
+    add_scores(catalog, shape, config, model, given, given);
     return;
   }
   const RowOf<ScalarField> map =
@@ -121,7 +126,7 @@ void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, c
   const auto match = [](const ScalarField& values, const Histogram& reference) {
     return matched(values, reference);
   };
-  add_scores(catalog, shape, config, model,
+  add_scores(catalog, shape, config, model, map,
              catalog.add(shape.shapes, matched_head, match, map, shape.reference));
   catalog.add(shape.shapes, {"mean_histogram." + model.name, 1}, mean_over<ScalarField>, map);
 }

@@ -42,24 +42,47 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   return models;
 }
 
+std::vector<std::string_view> known_metrics() {
+  std::vector<std::string_view> known;
+  for (const Metric& metric : metric_table()) known.push_back(metric.name);
+  return known;
+}
+
+void require_metric(const std::string& name, const Section& section, std::string_view key) {
+  const std::vector<std::string_view> known = known_metrics();
+  if (name == kEveryName || std::ranges::find(known, name) != known.end()) return;
+  const std::string nearest = nearest_word(name, known);
+  const std::string hint =
+      nearest.empty() ? "the README has a table of them" : fmt::format("did you mean '{}'?", nearest);
+  section.fail(key, fmt::format("has no metric '{}'; {}", name, hint));
+}
+
 // The metrics named, in the order of the table: the order in a file is no other choice, and must make no
 // other key.
 Words metrics_named(const Words& written, const Section& section, std::string_view key) {
-  std::vector<std::string_view> known;
-  for (const Metric& metric : metric_table()) known.push_back(metric.name);
-  if (std::ranges::find(written, "all") != written.end()) return {known.begin(), known.end()};
-  for (const std::string& name : written) {
-    if (std::ranges::find(known, name) != known.end()) continue;
-    const std::string nearest = nearest_word(name, known);
-    const std::string hint =
-        nearest.empty() ? "the README has a table of them" : fmt::format("did you mean '{}'?", nearest);
-    section.fail(key, fmt::format("has no metric '{}'; {}", name, hint));
-  }
+  const std::vector<std::string_view> known = known_metrics();
+  for (const std::string& name : written) require_metric(name, section, key);
+  if (std::ranges::find(written, kEveryName) != written.end()) return {known.begin(), known.end()};
   if (written.empty()) section.fail(key, "names no metric; leave the key out for the paper's");
   Words named;
   for (const std::string_view name : known)
     if (std::ranges::find(written, name) != written.end()) named.emplace_back(name);
   return named;
+}
+
+// Matching of the metrics chosen where it is not the usual one.
+ByName<Matching> matching_of(const MetricsOptions& written, const Section& section) {
+  for (const auto& [name, matching] : written.matching) require_metric(name, section, "matching");
+  MetricsOptions usual = written;
+  usual.matching.clear();
+  ByName<Matching> chosen;
+  for (const Metric& metric : chosen_metrics(usual)) {
+    auto found = written.matching.find(metric.name);
+    if (found == written.matching.end()) found = written.matching.find(kEveryName);
+    const Matching matching = found == written.matching.end() ? metric.matching : found->second;
+    if (matching != metric.matching) chosen[metric.name] = matching;
+  }
+  return chosen;
 }
 
 // `metrics: [auc, nss]` stands for `metrics: {names: [auc, nss]}`.
@@ -70,6 +93,7 @@ void read_metrics(const Section& root, MetricsOptions& metrics) {
   const std::string_view key = brief ? "metrics" : "names";
   if (!brief) section.read(metrics);
   if (section.has(key)) metrics.names = metrics_named(section.words(key), section, key);
+  metrics.matching = matching_of(metrics, section);
 }
 
 std::string indented(std::string_view lines, std::string_view by) {

@@ -16,32 +16,39 @@
 namespace salbench {
 namespace {
 
-ScalarField matched_where_seen(const ScalarField& map, const Histogram& reference) {
+template <class Normalised>
+ScalarField where_seen(const ScalarField& map, const Normalised& normalised) {
   const auto seen = seen_points(map);
-  if (!seen) return matched(map, reference);
+  if (!seen) return normalised(map);
   ScalarField result = map;
-  const ScalarField values = matched(values_at(map, *seen), reference);
+  const ScalarField values = normalised(values_at(map, *seen));
   for (std::size_t i = 0; i < values.size(); ++i) result[static_cast<std::size_t>((*seen)[i])] = values[i];
   return result;
 }
 
-// A group's map is matched like a model's, and so is the map of the others, which stands for the ground
-// truth. What either group has not seen is not compared.
+// For metrics that read matched maps, a group's map is matched like a model's, and so is the map of the
+// others, which stands for the ground truth; for others both are as people marked them. What either group has
+// not seen is not compared.
 GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const MetricsOptions& options,
                          const Rng& rng) {
-  const std::vector<Metric> metrics = chosen_metrics(options);
+  const auto metrics = std::make_shared<const MetricsByMatching>(options);
   // The same for every pair of groups.
   const auto measures = std::make_shared<const Measures>(
       mesh.vertices.size(),
-      any_by_area(metrics) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{});
+      any_by_area(metrics->all()) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{});
   const auto draws = std::make_shared<Draws>(rng);
-  return {metrics.size(), [=](const ScalarField& map, const GroundTruth& others) {
-            const ScalarField matched_map = matched_where_seen(map, reference);
-            GroundTruth matched_others{matched_where_seen(others.saliency, reference), others.picks,
-                                       others.simulated};
-            for (std::size_t i = 0; i < matched_map.size(); ++i)
-              if (std::isnan(matched_map[i])) matched_others.saliency[i] = matched_map[i];
-            return score(metrics, matched_map, matched_others, options, *draws, *measures);
+  return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
+            return metrics->score([&](std::span<const Metric> of_part, Matching matching) {
+              const bool as_marked = matching == Matching::none;
+              const auto match = [&](const ScalarField& values) { return matched(values, reference); };
+              const ScalarField of_group =
+                  as_marked ? where_seen(map, min_max_normalised) : where_seen(map, match);
+              GroundTruth truth{as_marked ? others.saliency : where_seen(others.saliency, match),
+                                others.picks, others.simulated};
+              for (std::size_t i = 0; i < of_group.size(); ++i)
+                if (std::isnan(of_group[i])) truth.saliency[i] = of_group[i];
+              return score(of_part, of_group, truth, options, *draws, *measures);
+            });
           }};
 }
 

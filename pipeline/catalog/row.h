@@ -7,14 +7,16 @@
 //                                              section("normals", config.normals));
 //
 // The arguments stand for the function's parameters, one for one: a RowOf<T> for a T, prepared<P>(RowOf<T>)
-// for a P that is made of a T, a section for its options, kRandom for a RandomSource, kView for a View,
-// kFiles<source> for a FilesOf<source>, kRemark for a Remark. Anything else does not compile.
+// for a P that is made of a T, an optional RowOf<V> for a view V, which is empty where the row does not read
+// it, a section for its options, kRandom for a RandomSource, kView for a View, kFiles<source> for a
+// FilesOf<source>, kRemark for a Remark. Anything else does not compile.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -127,6 +129,7 @@ namespace binding {
 template <class Parameter, class T>
 inline constexpr bool kProvides =
     std::is_same_v<Parameter, T> ||
+    (std::is_same_v<Parameter, FieldView> && std::is_same_v<T, ScalarField>) ||
     (std::is_same_v<Parameter, Points> &&
      (std::is_same_v<T, Mesh> || std::is_same_v<T, Scan> || std::is_same_v<T, PointCloud>)) ||
     (std::is_same_v<Parameter, Surface> && (std::is_same_v<T, Mesh> || std::is_same_v<T, Faces>));
@@ -184,6 +187,8 @@ template <class Parameter, class Argument>
 inline constexpr bool kFits = false;
 template <class Parameter, class T>
 inline constexpr bool kFits<Parameter, RowOf<T>> = kProvides<Parameter, T>;
+template <class View>
+inline constexpr bool kFits<View, std::optional<RowOf<View>>> = std::is_trivially_copyable_v<View>;
 template <class T>
 inline constexpr bool kFits<Members<T>, RowOf<T>> = true;
 template <class T, class Source>
@@ -213,6 +218,10 @@ inline constexpr bool kGathers<Members<T>> = true;
 template <class T>
 void describe(Row& row, const RowOf<T>& input) {
   row.inputs.push_back(input.row);
+}
+template <class View>
+void describe(Row& row, const std::optional<RowOf<View>>& input) {
+  if (input) describe(row, *input);
 }
 template <class T, class Source>
 void describe(Row& row, const PreparedOf<T, Source>& prepared) {
@@ -246,9 +255,15 @@ decltype(auto) parameter(const RowOf<T>&, const JobInputs& in, std::size_t& valu
     const Value& shape = *in.values[value++];
     const auto* mesh = std::get_if<Mesh>(&shape);
     return mesh != nullptr ? Surface(mesh->faces) : Surface(std::get<Faces>(shape));
+  } else if constexpr (std::is_same_v<Parameter, FieldView>) {
+    return FieldView(std::get<ScalarField>(*in.values[value++]));
   } else {
     return std::get<Parameter>(*in.values[value++]);
   }
+}
+template <class Parameter, class View>
+Parameter parameter(const std::optional<RowOf<View>>& input, const JobInputs& in, std::size_t& value) {
+  return input ? parameter<Parameter>(*input, in, value) : Parameter{};
 }
 // What a preparation lends to a job.
 template <class T>

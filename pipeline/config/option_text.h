@@ -50,6 +50,11 @@ bool parse_option(std::string_view text, Enum& value) {
 }
 
 template <class Value>
+inline constexpr bool kIsByName = false;
+template <class Enum>
+inline constexpr bool kIsByName<ByName<Enum>> = true;
+
+template <class Value>
 std::string expected_of() {
   if constexpr (std::is_same_v<Value, bool>) return "true or false";
   if constexpr (std::is_floating_point_v<Value>) return "a finite number";
@@ -79,6 +84,11 @@ template <class Value>
 std::string option_text(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
     return std::string(name_of(value));
+  } else if constexpr (kIsByName<Value>) {
+    std::string list;
+    for (const auto& [name, choice] : value)
+      list += fmt::format("{}{}: {}", list.empty() ? "" : ", ", name, name_of(choice));
+    return "{" + list + "}";
   } else if constexpr (std::is_same_v<Value, Words>) {
     return fmt::format("[{}]", fmt::join(value, ", "));
   } else if constexpr (std::is_same_v<Value, std::string>) {
@@ -93,6 +103,8 @@ template <class Value>
 std::string option_note(const OptionHelp& help) {
   std::string accepted = help.range.text();
   if constexpr (std::is_enum_v<Value>) accepted = fmt::format("{}", fmt::join(EnumNames<Value>::names, ", "));
+  if constexpr (kIsByName<Value>)
+    accepted = fmt::format("{}", fmt::join(EnumNames<typename Value::mapped_type>::names, ", "));
   if (help.unit.empty() && accepted.empty()) return std::string(help.text);
   const char* separator = help.unit.empty() || accepted.empty() ? "" : "; ";
   return fmt::format("{} ({}{}{})", help.text, help.unit, separator, accepted);

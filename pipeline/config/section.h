@@ -15,6 +15,8 @@
 
 namespace salbench {
 
+inline constexpr std::string_view kEveryName = "all";
+
 class Section {
  public:
   // The root of a file. Throws ConfigError: unreadable, not YAML, not a mapping, a key given twice.
@@ -41,6 +43,14 @@ class Section {
   }
   void read_value(std::string_view key, Words& value) const {
     if (has(key)) value = words(key);
+  }
+  template <class Enum>  // a mapping of names, or one value, which is that of the name kEveryName
+  void read_value(std::string_view key, ByName<Enum>& value) const {
+    if (!has(key)) return;
+    value.clear();
+    if (!has_mapping(key)) return read_value(key, value[std::string(kEveryName)]);
+    const Section named = child(key);
+    for (const std::string& name : named.keys()) named.read_value(name, value[name]);
   }
 
   // Overwrites the fields that the section names; the others keep their defaults.

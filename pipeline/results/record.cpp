@@ -75,8 +75,9 @@ std::string node_line(const Row& row, const NodeRecord& node, std::size_t items,
 std::string metric_lines(const Metrics& metrics) {
   std::string yaml = "metrics:  # columns of the tables\n";
   for (const Metric& metric : metrics)
-    yaml += fmt::format("  {}: {{unit: {}, better: {}}}\n", metric.name, yaml_quoted(metric.unit),
-                        metric.higher_is_better ? "higher" : "lower");
+    yaml +=
+        fmt::format("  {}: {{unit: {}, better: {}, matching: {}}}\n", metric.name, yaml_quoted(metric.unit),
+                    metric.higher_is_better ? "higher" : "lower", name_of(metric.matching));
   return yaml;
 }
 

@@ -13,11 +13,13 @@
 //     }
 //   };
 //
-// A field is a bool, std::int32_t, std::uint64_t, double, std::string or an enum with EnumNames. Conditions
-// between fields are an overload: void check(const XsOptions& options) { check_ranges(options); ... }
+// A field is a bool, std::int32_t, std::uint64_t, double, std::string, an enum with EnumNames, or ByName of
+// such an enum. Conditions between fields are an overload: void check(const XsOptions& options) {
+// check_ranges(options); ... }
 #pragma once
 
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -33,6 +35,10 @@ requires std::is_enum_v<Enum>
 constexpr std::string_view name_of(Enum value) {
   return EnumNames<Enum>::names[static_cast<std::size_t>(value)];
 }
+
+// An enum's value for each of some names.
+template <class Enum>
+using ByName = std::map<std::string, Enum, std::less<>>;
 
 // Numbers that an option accepts; any finite number if there is no bound.
 struct Range {

@@ -33,7 +33,8 @@ struct Scan {
 using Normals = std::vector<Vec3>;    // n x 3, unit length, outward or towards the camera
 using Faces = std::vector<Triangle>;  // f x 3, the partial mesh: a surface over the points of a scan
 
-// Views of a shape that may be a mesh or a scan. The caller keeps the storage alive.
+// Views of a field, and of a shape that may be a mesh or a scan. The caller keeps the storage alive.
+using FieldView = std::span<const double>;  // n
 using Points = std::span<const Vec3>;       // n x 3: the vertices of a mesh, or the points of a scan
 using Surface = std::span<const Triangle>;  // f x 3: the faces of a mesh, or the partial mesh of a scan
 

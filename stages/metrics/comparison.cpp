@@ -58,6 +58,12 @@ const DensityScores& Comparison::density_scores(Weighting weighting) const {
   })[index(weighting)];
 }
 
+const Errors& Comparison::errors(Weighting weighting) const {
+  return once(errors_, [&] {
+    return salbench::errors(normalised_map(), compared_.saliency, compared_.measures);
+  })[index(weighting)];
+}
+
 const TopScores& Comparison::top_scores(Weighting weighting) const {
   return once(top_scores_[index(weighting)], [&] {
     return salbench::top_scores({compared_.map, map_distribution(weighting), map_moments(weighting),

@@ -42,6 +42,7 @@ class Comparison {
   const Density& map_density(Weighting weighting) const;
   // These need saliency values.
   const DensityScores& density_scores(Weighting weighting) const;
+  const Errors& errors(Weighting weighting) const;
   const TopScores& top_scores(Weighting weighting) const;
   double cc(Weighting weighting) const;
   double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
@@ -82,6 +83,7 @@ class Comparison {
   mutable Both<PairMoments> with_saliency_;  // of map and saliency
   mutable Both<Density> map_densities_;
   mutable Both<DensityScores> density_scores_;
+  mutable Both<Errors> errors_;
   mutable std::array<std::optional<TopScores>, 2> top_scores_;
   mutable Both<double> spearman_;
   mutable std::deque<OfPicks> of_picks_;

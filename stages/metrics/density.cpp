@@ -144,14 +144,12 @@ class ScoreSums {
   }
 
   static constexpr std::size_t kBlock = 256;
-  PerWeighting kl{0, 0}, kl_smoothed{0, 0}, sim{0, 0}, sim_of_normalised{0, 0}, squares{0, 0},
-      magnitudes{0, 0};
+  PerWeighting kl{0, 0}, kl_smoothed{0, 0}, sim{0, 0}, sim_of_normalised{0, 0};
 
  private:
   // Terms of one point in each sum, before they are multiplied by its weight.
   struct Terms {
     PerWeighting g, log_ratio, smoothed_g, smoothed_log_ratio, common, normalised_common;
-    double square, magnitude;
   };
 
   PerWeighting ratio(double map, double saliency) const {
@@ -172,17 +170,13 @@ class ScoreSums {
   }
 
   Terms terms_of(std::size_t i, std::size_t in_block) const {
-    const double map_to_1 = in_.normalised_map[i], saliency_to_1 = in_.normalised_saliency[i];
-    const double difference = map_to_1 - saliency_to_1;
     const PerWeighting g = all_.raw.g(in_.saliency[i]);
     return {g,
             log_ratios_[in_block],
             all_.smoothed.g(in_.saliency[i]),
             smoothed_log_ratios_[in_block],
             all_.raw.p(in_.map[i]).min(g),
-            all_.normalised.p(map_to_1).min(all_.normalised.g(saliency_to_1)),
-            difference * difference,
-            std::abs(difference)};
+            all_.normalised.p(in_.normalised_map[i]).min(all_.normalised.g(in_.normalised_saliency[i]))};
   }
 
   void add(const PerWeighting& weight, const Terms& terms) {
@@ -190,8 +184,6 @@ class ScoreSums {
     kl_smoothed += weight * terms.smoothed_g * terms.smoothed_log_ratio;
     sim += weight * terms.common;
     sim_of_normalised += weight * terms.normalised_common;
-    squares += weight * terms.square;
-    magnitudes += weight * terms.magnitude;
   }
 
   const DensityInput& in_;
@@ -216,20 +208,35 @@ std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measur
   const AllDistributions all = distributions_of(in, measures);
   ScoreSums sums(in, measures, all);
   for (std::size_t i = 0; i < n; i += ScoreSums::kBlock) sums.add(i, std::min(n - i, ScoreSums::kBlock));
-  const bool constant_truth = is_constant(in.saliency) && in.saliency[0] != 0;
   const auto of = [&](std::size_t weighting) {
     const auto k = static_cast<Eigen::Index>(weighting);
-    const Measure& measure = measures[static_cast<Weighting>(weighting)];
-    const double unit = measure.unit, total = measure.total;
+    const double unit = measures[static_cast<Weighting>(weighting)].unit;
     return DensityScores{
         .kl = all.raw.value_if_defined(sums.kl[k] / unit, weighting),
         .kl_smoothed = all.smoothed.value_if_defined(sums.kl_smoothed[k] / unit, weighting),
         .sim = all.raw.value_if_defined(sums.sim[k] / unit, weighting),
-        .sim_of_normalised = all.normalised.value_if_defined(sums.sim_of_normalised[k] / unit, weighting),
-        .mse = constant_truth ? kUndefined : sums.squares[k] / total,  // NaN over nothing
-        .mae = constant_truth ? kUndefined : sums.magnitudes[k] / total};
+        .sim_of_normalised = all.normalised.value_if_defined(sums.sim_of_normalised[k] / unit, weighting)};
   };
   return {of(0), of(1)};
+}
+
+std::array<Errors, 2> errors(std::span<const double> normalised_map,
+                             std::span<const double> normalised_saliency, const Measures& measures) {
+  PerWeighting squares{0, 0}, magnitudes{0, 0};
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const double difference = normalised_map[i] - normalised_saliency[i];
+    squares += measures.weight(i) * (difference * difference);
+    magnitudes += measures.weight(i) * std::abs(difference);
+  }
+  // A constant field stays as it is when it is normalised.
+  const bool constant_truth = is_constant(normalised_saliency) && normalised_saliency[0] != 0;
+  const auto of = [&](Weighting weighting) {
+    const auto k = static_cast<Eigen::Index>(weighting);
+    const double total = measures[weighting].total;
+    return constant_truth ? Errors{kUndefined, kUndefined}
+                          : Errors{squares[k] / total, magnitudes[k] / total};  // NaN over nothing
+  };
+  return {of(Weighting::vertex), of(Weighting::area)};
 }
 
 double information_gain(std::span<const double> map, const Density& density,

@@ -43,11 +43,16 @@ struct DensityScores {
   double kl_smoothed;
   // Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
   double sim, sim_of_normalised;
-  // Mean of the squared, or the absolute, difference of the normalised values, which may be of negative ones.
-  // NaN for a constant ground truth, which has no normalised values, unless it is zero.
-  double mse, mae;
 };
 std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measures& measures);  // [weighting]
+
+// Mean of the squared, or the absolute, difference of the normalised values, which may be of negative ones.
+// NaN for a constant ground truth, which has no normalised values, unless it is zero.
+struct Errors {
+  double mse, mae;
+};
+std::array<Errors, 2> errors(std::span<const double> normalised_map,
+                             std::span<const double> normalised_saliency, const Measures& measures);
 
 // Information gain over the uniform distribution, in bits per pick: mean over the picks of
 // log2(eps + p) - log2(eps + u/W), W the total weight. 0 for a constant map, NaN without picks.

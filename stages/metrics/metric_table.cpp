@@ -53,6 +53,11 @@ double of_densities(const MetricInput& in) {
   return in.comparison.density_scores(in.weighting).*value;
 }
 
+template <double Errors::*value>
+double of_errors(const MetricInput& in) {
+  return in.comparison.errors(in.weighting).*value;
+}
+
 double pearson(const MetricInput& in) { return in.comparison.cc(in.weighting); }
 double pearson_magnitude(const MetricInput& in) { return std::abs(in.comparison.cc(in.weighting)); }
 double of_ranks(const MetricInput& in) { return in.comparison.spearman(in.weighting); }
@@ -75,6 +80,12 @@ struct BaseMetric {
   bool of_picks = false;  // picks have a multiplicity
 };
 
+// Its literature scores maps as models make them.
+BaseMetric unmatched(BaseMetric row) {
+  row.metric.matching = Matching::none;
+  return row;
+}
+
 constexpr const char* kDeviations = "standard deviations";
 
 std::vector<BaseMetric> base_metrics() {
@@ -91,20 +102,22 @@ std::vector<BaseMetric> base_metrics() {
       {{"auc_borji", "1", "area under the ROC curve with sampled negatives and thresholds at every tenth",
         borji},
        true},
-      {{"ig", "bits per pick", "information gain over the uniform map", gain}, true},
+      unmatched({{"ig", "bits per pick", "information gain over the uniform map", gain}, true}),
       {{"spearman", "1", "rank correlation with the saliency of the ground truth", of_saliency<of_ranks>}},
-      {{"kl", "nats", "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-        of_saliency<of_densities<&DensityScores::kl>>, 1, false}},
-      {{"kl_smoothed", "nats", "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-        of_saliency<of_densities<&DensityScores::kl_smoothed>>, 1, false}},
-      {{"sim", "1", "intersection of map and ground truth as distributions",
-        of_saliency<of_densities<&DensityScores::sim>>}},
-      {{"sim_minmax", "1", "the same after min-max normalisation",
-        of_saliency<of_densities<&DensityScores::sim_of_normalised>>}},
+      unmatched(
+          {{"kl", "nats", "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
+            of_saliency<of_densities<&DensityScores::kl>>, 1, false}}),
+      unmatched(
+          {{"kl_smoothed", "nats", "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
+            of_saliency<of_densities<&DensityScores::kl_smoothed>>, 1, false}}),
+      unmatched({{"sim", "1", "intersection of map and ground truth as distributions",
+                  of_saliency<of_densities<&DensityScores::sim>>}}),
+      unmatched({{"sim_minmax", "1", "the same after min-max normalisation",
+                  of_saliency<of_densities<&DensityScores::sim_of_normalised>>}}),
       {{"mse", "1", "mean squared difference after min-max normalisation",
-        of_saliency<of_densities<&DensityScores::mse>>, 2, false}},
+        of_saliency<of_errors<&Errors::mse>>, 2, false}},
       {{"mae", "1", "mean absolute difference after min-max normalisation",
-        of_saliency<of_densities<&DensityScores::mae>>, 2, false}},
+        of_saliency<of_errors<&Errors::mae>>, 2, false}},
   };
   const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
     const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };

@@ -24,6 +24,9 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 // it too.
 constexpr double kMiddle = 0.5;
 
+constexpr std::int32_t kUnmatchedSince =
+    3;  // version of `scores` with which metrics could read maps unmatched
+
 Draws no_draws() { return Draws(Rng(0, "", "")); }  // for what draws nothing
 
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
@@ -89,13 +92,20 @@ std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
     if (std::ranges::find(table, name, &Metric::name) == table.end())
       throw OptionError("names", "has no metric '" + name + "'");
   std::vector<Metric> chosen;
-  for (const Metric& metric : table)
-    if (std::ranges::find(options.names, metric.name) != options.names.end()) chosen.push_back(metric);
+  for (const Metric& metric : table) {
+    if (std::ranges::find(options.names, metric.name) == options.names.end()) continue;
+    chosen.push_back(metric);
+    if (const auto matching = options.matching.find(metric.name); matching != options.matching.end())
+      chosen.back().matching = matching->second;
+  }
   return chosen;
 }
 
 std::int32_t scores_version(std::span<const Metric> metrics) {
-  return std::ranges::max_element(metrics, {}, &Metric::since)->since;
+  std::int32_t version = 1;
+  for (const Metric& metric : metrics)
+    version = std::max({version, metric.since, metric.matching == Matching::none ? kUnmatchedSince : 1});
+  return version;
 }
 
 bool any_by_area(std::span<const Metric> metrics) {
@@ -103,47 +113,68 @@ bool any_by_area(std::span<const Metric> metrics) {
                              [](const Metric& metric) { return metric.weighting == Weighting::area; });
 }
 
-Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
              const MetricsOptions& options, Draws& draws, const Measures& measures) {
   check(options);
   const std::vector<std::int32_t> picked = picked_points(truth), every_pick = picks_with_multiplicity(truth);
-  check_fits(matched.size(), truth, picked);
-  CHECK_EQ(measures.size(), matched.size());
+  check_fits(map.size(), truth, picked);
+  CHECK_EQ(measures.size(), map.size());
   if (const auto seen = seen_points(truth.saliency)) {
     if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
     const Measures of_seen(seen->size(), values_at(measures.area.weight, *seen));
-    return score(metrics, values_at(matched, *seen), truth_at(truth, *seen), options, draws, of_seen);
+    return score(metrics, values_at(map, *seen), truth_at(truth, *seen), options, draws, of_seen);
   }
-  require_finite(matched, "the map");
+  require_finite(map, "the map");
   require_finite(truth.saliency, "the ground truth");
-  if (is_constant(matched) && !matched.empty() && matched[0] != kMiddle)
-    return score(metrics, ScalarField(matched.size(), kMiddle), truth, options, draws, measures);
+  if (is_constant(map) && !map.empty() && map[0] != kMiddle)
+    return score(metrics, ScalarField(map.size(), kMiddle), truth, options, draws, measures);
   if (const double scale = scale_against_overflow(truth.saliency); scale != 1)
-    return score(metrics, matched, scaled(truth, scale), options, draws, measures);
+    return score(metrics, map, scaled(truth, scale), options, draws, measures);
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
-  const Comparison comparison({matched, saliency, truth.saliency, measures}, draws);
+  const Comparison comparison({map, saliency, truth.saliency, measures}, draws);
   Scores scores;
   for (const Metric& metric : metrics) {
     const bool without_areas = metric.weighting == Weighting::area && measures.area.empty();
     scores.values.push_back(
         without_areas ? kUndefined
-                      : metric.value({matched, metric.picks == PickCount::once ? picked : every_pick,
-                                      saliency, options, draws.rng(), metric.weighting, comparison}));
+                      : metric.value({map, metric.picks == PickCount::once ? picked : every_pick, saliency,
+                                      options, draws.rng(), metric.weighting, comparison}));
   }
-  scores.n_points = static_cast<std::int64_t>(matched.size());
+  scores.n_points = static_cast<std::int64_t>(map.size());
   scores.n_picks = static_cast<std::int64_t>(picked.size());
   return scores;
 }
 
-Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+Scores score(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
              const MetricsOptions& options, const Rng& rng, std::span<const double> areas) {
   Draws draws(rng);
-  return score(metrics, matched, truth, options, draws, Measures(matched.size(), areas));
+  return score(metrics, map, truth, options, draws, Measures(map.size(), areas));
 }
 
-Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
+Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
              std::span<const double> areas) {
-  return score(chosen_metrics(options), matched, truth, options, rng, areas);
+  return score(chosen_metrics(options), map, truth, options, rng, areas);
+}
+
+MetricsByMatching::MetricsByMatching(const MetricsOptions& options) : all_(chosen_metrics(options)) {
+  for (std::size_t m = 0; m < all_.size(); ++m) {
+    Part& part = parts_[static_cast<std::size_t>(all_[m].matching)];
+    part.metrics.push_back(all_[m]);
+    part.places.push_back(m);
+  }
+}
+
+Scores MetricsByMatching::score(const ScorePart& score_part) const {
+  Scores scores{std::vector<double>(all_.size(), kUndefined)};
+  for (const Matching matching : {Matching::histogram, Matching::none}) {
+    if (!any(matching)) continue;
+    const Scores of_part = score_part(part(matching).metrics, matching);
+    for (std::size_t m = 0; m < of_part.values.size(); ++m)
+      scores.values[part(matching).places[m]] = of_part.values[m];
+    scores.n_points = of_part.n_points;
+    scores.n_picks = of_part.n_picks;
+  }
+  return scores;
 }
 
 double value_of(const Scores& scores, std::string_view metric, const MetricsOptions& options) {

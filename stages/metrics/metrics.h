@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Agreement of a saliency map with what people marked. `map` is a histogram-matched map with one finite value
-// per point; `picked` are point indices, ascending. [tasse2016]
+// Agreement of a saliency map with what people marked. `map` has one finite value per point, and its
+// histogram is matched or it is min-max-normalised, as the metric reads it; `picked` are point indices,
+// ascending. [tasse2016]
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,11 +19,19 @@
 
 namespace salbench {
 
+// What a metric reads of a map: the map as the model made it, min-max-normalised, or histogram-matched.
+enum class Matching : std::uint8_t { none, histogram };
+template <>
+struct EnumNames<Matching> {
+  static constexpr std::array<std::string_view, 2> names{"none", "histogram"};
+};
+
 struct MetricsOptions {
   std::int32_t splits = 100;
   std::int32_t thresholds = 20;
   double constant_nss = 0;
   std::vector<std::string> names = {"auc", "auc_exact", "nss", "cc", "lcc"};
+  ByName<Matching> matching = {};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -31,6 +42,8 @@ struct MetricsOptions {
     visit("constant_nss", self.constant_nss, {"NSS of a constant map", "standard deviations", {}, "0"});
     visit("names", self.names,
           {"metrics, or all: the README has a table of them", "", {}, "[auc, auc_exact, nss, cc, lcc]"});
+    visit("matching", self.matching,
+          {"matching of the maps, one for all metrics or by name; else as the README has it", "", {}, "{}"});
   }
 };
 
@@ -78,6 +91,7 @@ struct Metric {
   bool higher_is_better = true;
   Weighting weighting = Weighting::vertex;
   PickCount picks = PickCount::once;
+  Matching matching = Matching::histogram;  // unless the options say otherwise
 };
 
 // The table of metrics: a new one is a function and a row at the end of its part. A metric whose values
@@ -85,10 +99,12 @@ struct Metric {
 // metrics chosen.
 std::span<const Metric> metric_table();
 
-// Those that the options name, in the order of the table. Throws OptionError for a name that is not in it.
+// Those that the options name, with the matching that these choose, in the order of the table. Throws
+// OptionError for a name that is not in it.
 std::vector<Metric> chosen_metrics(const MetricsOptions& options);
 
-// Version of the stage `scores` for these metrics: the largest `since`.
+// Version of the stage `scores` for these metrics: the largest `since`, and at least 3 where one of them
+// reads maps without matching.
 std::int32_t scores_version(std::span<const Metric> metrics);
 
 bool any_by_area(std::span<const Metric> metrics);  // they read the areas of the points
@@ -99,13 +115,37 @@ bool any_by_area(std::span<const Metric> metrics);  // they read the areas of th
 // counts as 0.5 everywhere, whichever constant it is. Throws InputError where the ground truth is not of this
 // shape: picks out of range, or another number of points; and for other values that are not finite.
 // The draws may be shared with other maps: each reads them from their beginning.
-Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
              const MetricsOptions& options, Draws& draws, const Measures& measures);
-Scores score(std::span<const Metric> metrics, const ScalarField& matched, const GroundTruth& truth,
+Scores score(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
              const MetricsOptions& options, const Rng& rng, std::span<const double> areas = {});
 // Those that the options name.
-Scores score(const ScalarField& matched, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
+Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
              std::span<const double> areas = {});
+
+// The metrics chosen, apart by their matching. Each part is scored on its own, and the scores are put
+// together in the order of the table.
+class MetricsByMatching {
+ public:
+  explicit MetricsByMatching(const MetricsOptions& options);
+
+  const std::vector<Metric>& all() const { return all_; }
+  bool any(Matching matching) const { return !part(matching).metrics.empty(); }
+
+  // Calls `score_part` for each matching that any metric has.
+  using ScorePart = std::function<Scores(std::span<const Metric> metrics, Matching matching)>;
+  Scores score(const ScorePart& score_part) const;
+
+ private:
+  struct Part {
+    std::vector<Metric> metrics;
+    std::vector<std::size_t> places;  // in all_
+  };
+  const Part& part(Matching matching) const { return parts_[static_cast<std::size_t>(matching)]; }
+
+  std::vector<Metric> all_;
+  std::array<Part, 2> parts_;
+};
 
 // Value of one metric of those that the options name. Throws std::out_of_range for another one.
 double value_of(const Scores& scores, std::string_view metric, const MetricsOptions& options = {});

@@ -35,6 +35,20 @@ Outcome evaluate(const Workspace& toy, const fs::path& maps, std::vector<std::st
   return toy.salbench("evaluate", further);
 }
 
+std::vector<std::vector<double>> scores_of(const Workspace& toy, const std::string& model,
+                                           const std::vector<std::string>& metrics) {
+  const Table table = read_csv(toy.out() / "results.csv");
+  const std::vector<std::string> models = text_column(table, "model");
+  std::vector<std::vector<double>> scores;
+  for (const std::string& metric : metrics) {
+    const std::vector<double> column = number_column(table, metric);
+    std::vector<double>& of_model = scores.emplace_back();
+    for (std::size_t row = 0; row < column.size(); ++row)
+      if (models[row] == model) of_model.push_back(column[row]);
+  }
+  return scores;
+}
+
 void replace_first_line(const fs::path& file, const std::string& by) {
   const std::string text = read_file(file);
   write_file(file, by + text.substr(text.find('\n')));
@@ -49,16 +63,7 @@ std::vector<std::string> rows_of(const std::string& csv, const std::string& mode
 
 // The scores of an item are seeded by the model's name in the splits of `auc` alone.
 std::vector<std::vector<double>> seedless_scores(const Workspace& toy, const std::string& model) {
-  const Table table = read_csv(toy.out() / "results.csv");
-  const std::vector<std::string> models = text_column(table, "model");
-  std::vector<std::vector<double>> scores;
-  for (const char* metric : {"auc_exact", "nss", "cc", "lcc", "n_points", "n_picks"}) {
-    const std::vector<double> column = number_column(table, metric);
-    std::vector<double>& of_model = scores.emplace_back();
-    for (std::size_t row = 0; row < column.size(); ++row)
-      if (models[row] == model) of_model.push_back(column[row]);
-  }
-  return scores;
+  return scores_of(toy, model, {"auc_exact", "nss", "cc", "lcc", "n_points", "n_picks"});
 }
 
 TEST(Evaluate, MapsThatTheProgramWroteScoreAsTheyDidInside) {
@@ -191,6 +196,27 @@ TEST(Evaluate, NamesAndFoldersThatWillNotDo) {
   EXPECT_THAT(complaint("empty", "OWN"), AllOf(HasSubstr("--maps"), HasSubstr("1.val")));
   EXPECT_THAT(complaint("nowhere", "OWN"), AllOf(HasSubstr("nowhere"), HasSubstr("cannot be read")));
   EXPECT_THAT(complaint("no.h5", "OWN"), AllOf(HasSubstr("no.h5"), HasSubstr("HDF5")));
+}
+
+// Scores of matched maps are those of before metrics could read others: a matched map, given as it stands,
+// has the same scores as the map that it was made of.
+TEST(Evaluate, MatchingByNameIsThatOfTheMapsThemselves) {
+  const std::vector<std::string> names = {"ig", "kl", "kl_smoothed", "sim", "sim_minmax", "mse"};
+  const auto with = [&](const std::string& matching) {
+    return fmt::format(
+        "dataset: {{scans: false}}\nmodels: {{PS: }}\nmetrics: {{names: [{}], matching: {}}}\n",
+        fmt::join(names, ", "), matching);
+  };
+  const Workspace toy(with("histogram"));
+  const fs::path matched = write_maps(toy, {"--matched"});
+  ASSERT_EQ(evaluate(toy, matched, {"--matched"}).status, 0);
+  const auto of_matched = scores_of(toy, "OWN", names);
+  EXPECT_EQ(scores_of(toy, "PS", names), of_matched);
+  toy.configure(with("none"));
+  ASSERT_EQ(evaluate(toy, write_maps(toy)).status, 0);
+  const auto of_map = scores_of(toy, "PS", names);
+  EXPECT_EQ(scores_of(toy, "OWN", names), of_map);
+  for (std::size_t i = 0; i < of_map.size(); ++i) EXPECT_NE(of_map[i], of_matched[i]) << names[i];
 }
 
 }  // namespace

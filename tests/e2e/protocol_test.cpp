@@ -82,5 +82,74 @@ TEST(Protocol, AGivenReferenceReplacesTheDataSetsOwn) {
   EXPECT_EQ(toy.computed(), 0);
 }
 
+// --- matching by metric ------------------------------------------------------------------------------------
+
+constexpr const char* kPeopleAndModels = "dataset: {scans: false}\nmodels: {PS: , HS: {draws: 2}, RS: }\n";
+
+std::vector<std::vector<double>> columns_of(const std::string& results,
+                                            const std::vector<std::string>& names) {
+  const Table table = parse_csv(results, "results.csv");
+  std::vector<std::vector<double>> columns;
+  for (const std::string& name : names) columns.push_back(number_column(table, name));
+  return columns;
+}
+
+std::string results_with(const Workspace& toy, const std::string& metrics,
+                         const std::vector<std::string>& further = {}) {
+  toy.configure(kPeopleAndModels + metrics);
+  const Outcome run = toy.salbench("run", further);
+  EXPECT_EQ(run.status, 0) << run.err;
+  return toy.results();
+}
+
+TEST(MatchingByMetric, ThePapersMetricsKeepTheirScoresAndTheirKeys) {
+  const std::vector<std::string> papers = {"auc", "auc_exact", "nss", "cc", "lcc"};
+  const Workspace toy;
+  const std::string results = results_with(toy, "");
+  const auto contents = toy.contents();
+  EXPECT_EQ(columns_of(results_with(toy, "metrics: all\n"), papers), columns_of(results, papers));
+  EXPECT_EQ(results_with(toy, "metrics: {matching: histogram}\n"), results);
+  EXPECT_EQ(toy.computed(), 0);
+  EXPECT_THAT(toy.contents(), testing::IsSupersetOf(contents));
+  for (const std::filesystem::path& scores : toy.artefacts("scores.PS"))
+    if (read_file(scores).find("matching: ") == std::string::npos) return;
+  FAIL() << "the paper's scores name a matching in their keys";
+}
+
+// The metrics that read maps as they are do not see the reference histogram.
+TEST(MatchingByMetric, WithoutMatchingTheReferenceDoesNotCount) {
+  const Workspace toy;
+  std::string flat = "GS\n", falling = "GS\n";
+  for (int i = 0; i < 100; ++i) {
+    flat += "1\n";
+    falling += std::to_string(100 - i) + "\n";
+  }
+  const auto with = [&](const std::string& csv, const std::string& metrics) {
+    return results_with(toy, metrics, {"--reference", toy.write("reference.csv", csv).string()});
+  };
+  const std::vector<std::string> unmatched = {"ig", "kl", "kl_smoothed", "sim", "sim_minmax"};
+  const std::string all = "metrics: [nss, ig, kl, kl_smoothed, sim, sim_minmax]\n";
+  const std::string with_flat = with(flat, all), with_falling = with(falling, all);
+  EXPECT_EQ(columns_of(with_flat, unmatched), columns_of(with_falling, unmatched));
+  EXPECT_NE(columns_of(with_flat, {"nss"}), columns_of(with_falling, {"nss"}));
+  const std::string matched =
+      "metrics: {names: [ig, kl, kl_smoothed, sim, sim_minmax], matching: histogram}\n";
+  const auto matched_to_flat = columns_of(with(flat, matched), unmatched),
+             matched_to_falling = columns_of(with(falling, matched), unmatched);
+  for (std::size_t m = 0; m < unmatched.size(); ++m)
+    EXPECT_NE(matched_to_flat[m], matched_to_falling[m]) << unmatched[m];
+}
+
+TEST(MatchingByMetric, TheRecordSaysHowEachMetricReadsItsMaps) {
+  const Workspace toy;
+  results_with(toy, "metrics: {names: [nss, kl, sim], matching: {sim: histogram}}\n");
+  const std::string record = read_file(toy.out() / "run.yaml");
+  EXPECT_THAT(record,
+              HasSubstr("  nss: {unit: \"standard deviations\", better: higher, matching: histogram}\n"));
+  EXPECT_THAT(record, HasSubstr("  kl: {unit: \"nats\", better: lower, matching: none}\n"));
+  EXPECT_THAT(record, HasSubstr("  sim: {unit: \"1\", better: higher, matching: histogram}\n"));
+  EXPECT_THAT(record, HasSubstr("    matching: {sim: histogram}\n"));
+}
+
 }  // namespace
 }  // namespace salbench

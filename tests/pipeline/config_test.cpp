@@ -56,7 +56,8 @@ TEST(Config, WritesItselfSoThatItReadsBackTheSame) {
   for (const char* yaml :
        {"", "data: 'a \"b\" \\c\u00e9'\ncache: \"two\\nlines\"\noutput: o",
         "protocol: text\nseed: 9\nmodels: {RS: , PS: {absolute: false}}\nfpfh: {radius: 0.03}",
-        "metrics: all", "metrics: {splits: 9, names: [kl, nss]}"}) {
+        "metrics: all", "metrics: {splits: 9, names: [kl, nss]}", "metrics: {names: all, matching: none}",
+        "metrics: {names: [kl, nss], matching: {kl: histogram}}"}) {
     const std::string written = config_yaml(config_of(yaml));
     EXPECT_EQ(config_yaml(config_of(written)), written);
   }
@@ -98,6 +99,32 @@ TEST(Config, MetricsAreNamedInAnyOrderAndAlone) {
   EXPECT_EQ(names("metrics: all").size(), metric_table().size());
   EXPECT_EQ(names("metrics: [nss, all]").size(), metric_table().size());
   EXPECT_EQ(config_of("metrics: {names: [kl], splits: 7}").metrics.splits, 7);
+}
+
+// What run.yaml says of it is what differs from the usual.
+TEST(Config, MatchingIsForAllMetricsOrByName) {
+  const auto matching = [](const std::string& yaml) {
+    return option_text(config_of("metrics: {names: [nss, kl, sim], " + yaml + "}").metrics.matching);
+  };
+  EXPECT_EQ(matching(""), "{}");
+  EXPECT_EQ(matching("matching:"), "{}");
+  EXPECT_EQ(matching("matching: histogram"), "{kl: histogram, sim: histogram}");
+  EXPECT_EQ(matching("matching: none"), "{nss: none}");
+  EXPECT_EQ(matching("matching: {kl: histogram, nss: histogram}"), "{kl: histogram}");
+  EXPECT_EQ(matching("matching: {all: none, kl: histogram}"), "{kl: histogram, nss: none}");
+  EXPECT_EQ(matching("matching: {mse: none}"), "{}") << "not chosen";
+  EXPECT_EQ(config_of("metrics: {matching: histogram}").metrics.matching.size(), 0U) << "the paper's";
+}
+
+TEST(Config, UnknownMatchingsAreErrors) {
+  EXPECT_EQ(error_of("metrics: {matching: histogramm}"),
+            "x.yaml:1: metrics.matching is 'histogramm', not one of none, histogram");
+  EXPECT_EQ(error_of("metrics:\n  matching:\n    kl: no"),
+            "x.yaml:3: metrics.matching.kl is 'no', not one of none, histogram");
+  EXPECT_EQ(error_of("metrics:\n  matching: {klx: none}"),
+            "x.yaml:2: metrics.matching has no metric 'klx'; did you mean 'kl'?");
+  EXPECT_THAT(error_of("metrics: {matching: [kl]}"), HasSubstr("must be one value"));
+  EXPECT_THAT(error_of("metrics: {matchin: none}"), HasSubstr("did you mean 'matching'?"));
 }
 
 TEST(Config, UnknownMetricsAreErrorsWithTheNearestName) {

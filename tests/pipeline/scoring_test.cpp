@@ -75,7 +75,7 @@ TEST_F(RunnerTest, EveryMetricIsFiniteOnMeshesAndScansAndForPeople) {
   }
 }
 
-TEST_F(RunnerTest, OnlyScoresByAreaReadTheSurface) {
+TEST_F(RunnerTest, ScoresReadWhatTheirMetricsDo) {
   const auto inputs_of = [&](const std::string& metrics) {
     const ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
     std::vector<std::string> names;
@@ -83,9 +83,15 @@ TEST_F(RunnerTest, OnlyScoresByAreaReadTheSurface) {
       names.push_back(toy.catalog.rows[input].name);
     return names;
   };
-  EXPECT_THAT(inputs_of("metrics: [nss, kl]\n"), ElementsAre("matched.PS", "scan_ground_truth"));
-  EXPECT_THAT(inputs_of("metrics: [nss, kl_area]\n"),
+  EXPECT_THAT(inputs_of(""), ElementsAre("matched.PS", "scan_ground_truth"));
+  EXPECT_THAT(inputs_of("metrics: kl\n"), ElementsAre("map.PS", "scan_ground_truth"));
+  EXPECT_THAT(inputs_of("metrics: {names: kl, matching: histogram}\n"),
+              ElementsAre("matched.PS", "scan_ground_truth"));
+  EXPECT_THAT(inputs_of("metrics: [nss, kl]\n"), ElementsAre("matched.PS", "map.PS", "scan_ground_truth"));
+  EXPECT_THAT(inputs_of("metrics: nss_area\n"),
               ElementsAre("matched.PS", "scan_ground_truth", "scan", "surface"));
+  EXPECT_THAT(inputs_of("metrics: [nss, kl_area]\n"),
+              ElementsAre("matched.PS", "map.PS", "scan_ground_truth", "scan", "surface"));
 }
 
 constexpr const char* kWithPeople = "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\n";

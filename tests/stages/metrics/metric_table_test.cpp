@@ -30,5 +30,48 @@ TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
   EXPECT_THROW(chosen_metrics(options), OptionError);
 }
 
+TEST(MetricTable, DensitiesReadMapsWithoutMatching) {
+  for (const Metric& metric : metric_table()) {
+    const std::string name = metric.name.substr(0, metric.name.find('_'));
+    EXPECT_EQ(metric.matching == Matching::none, name == "kl" || name == "sim" || name == "ig")
+        << metric.name;
+  }
+}
+
+TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {
+  const auto version = [](const std::vector<std::string>& names, const ByName<Matching>& matching) {
+    MetricsOptions options;
+    options.names = names;
+    options.matching = matching;
+    return scores_version(chosen_metrics(options));
+  };
+  EXPECT_EQ(scores_version(chosen_metrics({})), 1) << "the paper's";
+  EXPECT_EQ(version({"nss", "kl"}, {}), 3);
+  EXPECT_EQ(version({"nss", "kl"}, {{"kl", Matching::histogram}}), 1);
+  EXPECT_EQ(version({"nss"}, {{"nss", Matching::none}}), 3);
+  EXPECT_EQ(version({"mse"}, {{"kl", Matching::none}}), 2);
+}
+
+TEST(MetricsByMatching, ScoresEachPartOnceAndKeepsTheOrder) {
+  MetricsOptions options;
+  options.names = {"nss", "ig", "spearman", "kl", "mse"};
+  const MetricsByMatching metrics(options);
+  int calls = 0;
+  const Scores scores = metrics.score([&](std::span<const Metric> part, Matching matching) {
+    ++calls;
+    Scores of_part{{}, 7, 3};
+    for (const Metric& metric : part) {
+      EXPECT_EQ(metric.matching, matching);
+      of_part.values.push_back(static_cast<double>(metric.name.size()));
+    }
+    return of_part;
+  });
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(scores.values, (std::vector<double>{3, 2, 8, 2, 3}));
+  EXPECT_EQ(scores.n_points, 7);
+  EXPECT_EQ(scores.n_picks, 3);
+  EXPECT_FALSE(MetricsByMatching({}).any(Matching::none));
+}
+
 }  // namespace
 }  // namespace salbench
