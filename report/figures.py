@@ -166,4 +166,4 @@ def human_curves(shop):
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
     return shop.plot("human-curves", figure, plotted,
                      f"n participants against n others, n = 1 to {int(table['n'].max())}: {ends}.",
-                     "How well n participants predict n others, with the 95 % interval; dashed: each model's mean.")
+                     "How well n participants predict n others, with the 95 % interval; dashed: each model's mean, against all participants.")

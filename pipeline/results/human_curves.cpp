@@ -4,10 +4,10 @@
 #include "pipeline/results/human_curves.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
@@ -45,6 +45,9 @@ class CurveScores {
           found != scores_.models().end())
         columns_.push_back(static_cast<std::size_t>(found - scores_.models().begin()));
   }
+
+  CurveScores(const CurveScores&) = delete;
+  CurveScores& operator=(const CurveScores&) = delete;
 
   const DatasetScores& scores() const { return scores_; }
   // Columns for 1, 2, ... participants.

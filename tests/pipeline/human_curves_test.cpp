@@ -217,6 +217,21 @@ TEST(HumanEquivalents, UseTheCurveAsFarAsHalfOfTheMeshesHaveIt) {
   EXPECT_EQ(number(few, 0, "n"), 6);
 }
 
+TEST(HumanEquivalents, FollowTheUnitOfInference) {
+  People people(24);
+  const auto class_of = [](const std::string& item) {
+    return "class " + std::to_string(std::stoi(item) % 8);
+  };
+  for (ResultRow& row : people.rows) row.category = class_of(row.item);
+  for (MeshCurve& mesh : people.curves) mesh.category = class_of(mesh.item);
+  const Table by_class = people.equivalents(Unit::item_class), by_mesh = people.equivalents();
+  EXPECT_EQ(number(by_class, 0, "n"), 8);
+  EXPECT_EQ(number(by_class, 0, "n_shapes"), 24);
+  EXPECT_NEAR(number(by_class, 0, "k"), number(by_mesh, 0, "k"), 1e-9) << "classes of equal size";
+  EXPECT_NE(number(by_class, 0, "ci95_low"), number(by_mesh, 0, "ci95_low"));
+  EXPECT_EQ(to_csv(people.equivalents(Unit::shape)), to_csv(by_mesh)) << "a mesh is a shape";
+}
+
 TEST(HumanEquivalents, AReferenceBoundsItsOwnRowAlone) {
   People people(10);
   std::erase_if(people.rows, [](const ResultRow& row) { return row.model == "HS" && row.item == "3"; });

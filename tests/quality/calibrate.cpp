@@ -3,20 +3,30 @@
 //
 // Scores of equal models are simulated with the variances between and within meshes that the scans of a table
 // of scores have, as many meshes as it has (or MESHES), and concluded from as a run concludes from its own.
+// Where human_curve_by_mesh.csv lies beside the table, meshes with models and people are simulated, too.
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "pipeline/results/score_file.h"
 #include "tests/quality/calibration.h"
+#include "tests/quality/human_calibration.h"
 
 namespace salbench {
 namespace {
 
-int run(const char* path, std::size_t data_sets, std::size_t meshes) {
+void print(const std::vector<Rate>& rates, std::size_t data_sets) {
+  for (const Rate& rate : rates)
+    fmt::print("  {:<38} {:6.2f} %  (nominal {:.0f} %, standard error {:.2f})\n", rate.what,
+               100 * rate.value(), 100 * rate.expected,
+               100 * std::sqrt(rate.value() * (1 - rate.value()) / static_cast<double>(data_sets)));
+}
+
+int run(const std::filesystem::path& path, std::size_t data_sets, std::size_t meshes) {
   const ScoreFile file = read_scores(path);
   for (std::size_t metric = 0; metric < file.metrics.size(); ++metric) {
     ScoreModel model = score_model(file.rows, "scans", metric);
@@ -26,10 +36,14 @@ int run(const char* path, std::size_t data_sets, std::size_t meshes) {
         "by view {:.4f}; {} data sets\n",
         file.metrics[metric].name, model.models, model.meshes, model.views, model.mesh, model.view,
         model.model_of_mesh, model.model_of_view, data_sets);
-    for (const Rate& rate : calibrate(model, data_sets, 2016))
-      fmt::print("  {:<38} {:6.2f} %  (nominal {:.0f} %, standard error {:.2f})\n", rate.what,
-                 100 * rate.value(), 100 * rate.expected,
-                 100 * std::sqrt(rate.value() * (1 - rate.value()) / static_cast<double>(data_sets)));
+    print(calibrate(model, data_sets, 2016), data_sets);
+    const std::filesystem::path curves = path.parent_path() / "human_curve_by_mesh.csv";
+    if (!std::filesystem::exists(curves)) continue;
+    const PeopleModel people = people_model(file, curves, metric);
+    if (people.models.empty()) continue;
+    const std::size_t n = meshes > 0 ? meshes : people.values.units();
+    fmt::print("{}: people beside models on {} meshes\n", people.metric.name, n);
+    print(calibrate_people(people, n, data_sets, 2016), data_sets);
   }
   return 0;
 }

@@ -96,6 +96,8 @@ class Pages(support.ReportTest):
                       f"{reliability['ci95_low']:.2f} to {reliability['ci95_high']:.2f}) over 8 meshes, from two halves that correlate by "
                       f"{reliability['split_half']:.2f}", part)
         self.assertIn("HS is one participant against all others", part)
+        others = support.rows(support.page(self.folder / "whole-report", "metrics.html"), "worth-others")
+        self.assertEqual({row[0] for row in others}, {"AUC (exact)", "CC"})
 
     def test_one_mesh_has_no_interval_and_says_so(self):
         index = self.made("one", fixture.eight_meshes()[:1])
