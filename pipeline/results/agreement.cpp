@@ -116,7 +116,7 @@ class AgreementOfMetrics {
     if (common.is_all_of(scores)) return own_[m];
     const Columns columns = common.of(scores);
     return std::make_shared<Orders>(
-        orders_of(columns, resampled_means(columns, conclusions_.seed), higher_is_better(m)));
+        orders_of(columns, conclusions_.bootstrap->means(columns), higher_is_better(m)));
   }
 
   const Conclusions& conclusions_;

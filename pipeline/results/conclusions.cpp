@@ -18,20 +18,21 @@ std::size_t place_of(const std::vector<std::size_t>& numbers, std::size_t number
 }
 
 // Resampled means of a model's scores: those of the ranking where it is ranked, else by the same draws.
-Interval bca_of(const UnitScores& own, std::size_t model, const RankedMetric& ranked, std::uint64_t seed) {
+Interval bca_of(const UnitScores& own, std::size_t model, const RankedMetric& ranked,
+                const Bootstrap& bootstrap) {
   if (own.units.size() < 2) return {};
   const std::size_t place = place_of(ranked.scores.models, model);
   return bca_interval(own.scores.values, place < ranked.scores.models.size()
                                              ? ranked.resampled.column(place)
-                                             : resampled_means(own.scores, seed).values);
+                                             : bootstrap.means(own.scores).values);
 }
 
 std::vector<Cell> summary_row(const DatasetScores& scores, std::size_t model, const RankedMetric& ranked,
-                              const std::string& metric, std::uint64_t seed) {
+                              const std::string& metric, const Bootstrap& bootstrap) {
   const UnitScores compared = scores.compared(ranked.metric, {&model, 1});
   const UnitScores own = scores.own(ranked.metric, model);
   const Summary summary = summarise(compared.scores.values);
-  const Interval student = student_interval(summary), bca = bca_of(compared, model, ranked, seed);
+  const Interval student = student_interval(summary), bca = bca_of(compared, model, ranked, bootstrap);
   return {scores.dataset(),
           scores.models()[model],
           metric,
@@ -66,23 +67,11 @@ std::vector<std::vector<Cell>> ranking_rows(const DatasetScores& scores, const R
   return rows;
 }
 
-void resample(std::vector<RankedMetric>& ranked, std::uint64_t seed) {
-  std::vector<RankedMetric*> of_several;
-  std::vector<const Columns*> scores;
-  for (RankedMetric& one : ranked) {
-    if (one.scores.units.size() < 2) continue;
-    of_several.push_back(&one);
-    scores.push_back(&one.scores.scores);
-  }
-  std::vector<Columns> resampled = resampled_together(scores, seed);
-  for (std::size_t i = 0; i < of_several.size(); ++i) of_several[i]->resampled = std::move(resampled[i]);
-}
-
 }  // namespace
 
 Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
                      const StatisticsOptions& options, std::uint64_t seed) {
-  Conclusions conclusions{metrics, options.unit, seed, {}};
+  Conclusions conclusions{metrics, options.unit, std::make_shared<Bootstrap>(seed), {}};
   for (const std::string_view dataset : EnumNames<Shapes>::names) {
     DatasetScores scores(rows, dataset, options.unit);
     if (scores.models().empty()) continue;
@@ -90,8 +79,9 @@ Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
     for (std::size_t m = 0; m < metrics.size(); ++m) {
       ranked[m].metric = m;
       ranked[m].scores = scores.compared(m, scores.competitors(m));
+      if (ranked[m].scores.units.size() >= 2)
+        ranked[m].resampled = conclusions.bootstrap->means(ranked[m].scores.scores);
     }
-    resample(ranked, seed);
     parallel_ranges(metrics.size(), 1, [&](std::size_t m, std::size_t) {
       ranked[m].ranking =
           rank_models(ranked[m].scores.scores, ranked[m].resampled, metrics[m].higher_is_better);
@@ -111,7 +101,7 @@ Table summary_table(const Conclusions& conclusions) {
     parallel_ranges(rows.size(), 1, [&](std::size_t row, std::size_t) {
       const std::size_t m = row % metrics.size();
       rows[row] = summary_row(scores, row / metrics.size(), metrics[m], conclusions.metrics[m].name,
-                              conclusions.seed);
+                              *conclusions.bootstrap);
     });
     std::ranges::move(rows, std::back_inserter(table.rows));
   }

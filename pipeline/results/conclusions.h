@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,8 @@ struct DatasetConclusions {
 struct Conclusions {
   Metrics metrics;
   Unit unit = Unit::mesh;
-  std::uint64_t seed = 0;
-  std::vector<DatasetConclusions> datasets;  // those with scores: meshes, scans, clouds
+  std::shared_ptr<const Bootstrap> bootstrap;  // the resamples of all tables
+  std::vector<DatasetConclusions> datasets;    // those with scores: meshes, scans, clouds
 };
 
 // Keeps references to the rows.

@@ -193,7 +193,7 @@ class EquivalentsOfMetric {
     if (beside.units.empty()) return;
     const std::vector<double> means = beside.scores.means();
     const std::vector<Equivalent> made =
-        equivalents(beside.scores, resampled_means(beside.scores, conclusions_.seed), length_,
+        equivalents(beside.scores, conclusions_.bootstrap->means(beside.scores), length_,
                     conclusions_.metrics[metric_].higher_is_better);
     for (std::size_t i = 0; i < models.size(); ++i)
       found_[models[i]] = {beside.units.size(), beside.n_shapes, means[length_ + i], made[i]};

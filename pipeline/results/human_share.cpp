@@ -29,7 +29,7 @@ bool is_clearly_better(const Columns& scores, std::size_t a, std::size_t b, bool
 }
 
 Scale scale_of(const DatasetScores& scores, const RankedMetric& ranked, bool higher_is_better,
-               std::uint64_t seed) {
+               const Bootstrap& bootstrap) {
   const std::vector<std::size_t> scored = scores.scored(ranked.metric);
   std::vector<std::size_t> columns = ranked.scores.models;
   for (const char* name : {kChance, kPeople}) {
@@ -48,7 +48,7 @@ Scale scale_of(const DatasetScores& scores, const RankedMetric& ranked, bool hig
   else if (!is_clearly_better(compared, n_models + 1, n_models, higher_is_better))
     scale.remark = "HS is not clearly better than RS";
   else
-    scale.shares = shares_of_people(compared, resampled_means(compared, seed));
+    scale.shares = shares_of_people(compared, bootstrap.means(compared));
   return scale;
 }
 
@@ -83,8 +83,8 @@ std::vector<Cell> row_of(const DatasetScores& scores, const std::string& metric,
 }
 
 std::vector<std::vector<Cell>> rows_of(const DatasetScores& scores, const RankedMetric& ranked,
-                                       const Metric& metric, std::uint64_t seed) {
-  const Scale scale = scale_of(scores, ranked, metric.higher_is_better, seed);
+                                       const Metric& metric, const Bootstrap& bootstrap) {
+  const Scale scale = scale_of(scores, ranked, metric.higher_is_better, bootstrap);
   std::vector<std::vector<Cell>> rows;
   for (std::size_t model = 0; model < scores.models().size(); ++model) {
     if (scores.is_reference(model)) continue;
@@ -106,7 +106,7 @@ Table human_share_table(const Conclusions& conclusions) {
   for (const DatasetConclusions& dataset : conclusions.datasets) {
     std::vector<std::vector<std::vector<Cell>>> rows(dataset.metrics.size());
     parallel_ranges(rows.size(), 1, [&](std::size_t m, std::size_t) {
-      rows[m] = rows_of(dataset.scores, dataset.metrics[m], conclusions.metrics[m], conclusions.seed);
+      rows[m] = rows_of(dataset.scores, dataset.metrics[m], conclusions.metrics[m], *conclusions.bootstrap);
     });
     for (auto& of_metric : rows) std::ranges::move(of_metric, std::back_inserter(table.rows));
   }

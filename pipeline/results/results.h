@@ -59,9 +59,9 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics =
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
-// results.csv, the tables of write_conclusions, mean_histograms_{meshes,scans}.csv, mean_histograms_clouds.csv
-// where there are point clouds and, where HS was computed, those of write_human_curves. Each begins with the
-// remarks, as comments. Throws StorageError.
+// results.csv, the tables of write_conclusions, mean_histograms_{meshes,scans}.csv,
+// mean_histograms_clouds.csv where there are point clouds and, where HS was computed, those of
+// write_human_curves. Each begins with the remarks, as comments. Throws StorageError.
 void write_tables(const std::filesystem::path& folder, const RunState& run,
                   const std::vector<ResultRow>& rows, const Conclusions& conclusions,
                   const std::vector<std::string>& remarks);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include "stages/core/check.h"
@@ -26,53 +25,20 @@ Columns relative_to_first(Columns columns) {
   return columns;
 }
 
-// How often each unit is in each of the next resamples: resamples x units.
-std::vector<double> times_drawn(Rng& rng, std::size_t units, std::size_t resamples) {
-  std::vector<double> times(resamples * units, 0.0);
-  for (std::size_t r = 0; r < resamples; ++r)
-    for (std::size_t drawn = 0; drawn < units; ++drawn) times[r * units + rng.below(units)] += 1;
-  return times;
-}
-
 // Adds up the columns over each resample: sums, resamples x columns. Units are added in their order.
-void add_resampled(const Columns& columns, const std::vector<double>& times, double* sums) {
+void add_resampled(const Columns& columns, std::span<const std::uint8_t> times, double* sums) {
   const std::size_t n = columns.units(), resamples = times.size() / n;
   for (std::size_t c = 0; c < columns.count; c += kColumnTile) {
     const std::size_t width = std::min(kColumnTile, columns.count - c);
     for (std::size_t u = 0; u < n; ++u) {
       const double* row = columns.values.data() + u * columns.count + c;
       for (std::size_t r = 0; r < resamples; ++r) {
-        const double drawn = times[r * n + u];
+        const auto drawn = static_cast<double>(times[r * n + u]);
         double* sum = sums + r * columns.count + c;
         for (std::size_t k = 0; k < width; ++k) sum[k] += drawn * row[k];
       }
     }
   }
-}
-
-// Tables on the same number of units side by side, and columns of such a table apart again.
-Columns joined(const std::vector<const Columns*>& tables) {
-  Columns all{0, {}};
-  for (const Columns* table : tables) all.count += table->count;
-  for (std::size_t u = 0; u < tables.front()->units(); ++u)
-    for (const Columns* table : tables) {
-      const auto row = table->values.begin() + static_cast<std::ptrdiff_t>(u * table->count);
-      all.values.insert(all.values.end(), row, row + static_cast<std::ptrdiff_t>(table->count));
-    }
-  return all;
-}
-
-std::vector<Columns> split(const Columns& all, const std::vector<const Columns*>& like) {
-  std::vector<Columns> parts;
-  std::size_t first = 0;
-  for (const Columns* table : like) {
-    Columns& part = parts.emplace_back(Columns{table->count, {}});
-    part.values.reserve(all.units() * table->count);
-    for (std::size_t u = 0; u < all.units(); ++u)
-      for (std::size_t c = 0; c < table->count; ++c) part.values.push_back(all.at(u, first + c));
-    first += table->count;
-  }
-  return parts;
 }
 
 // Third moment over the second to the power 3/2, divided by 6: the jackknife's acceleration of a mean.
@@ -110,34 +76,37 @@ std::vector<double> Columns::means() const {
   return result;
 }
 
-Columns resampled_means(const Columns& columns, std::uint64_t seed, std::size_t resamples) {
+Bootstrap::Bootstrap(std::uint64_t seed, std::size_t resamples) : seed_(seed), resamples_(resamples) {}
+
+const std::vector<std::uint8_t>& Bootstrap::times_drawn(std::size_t units) const {
+  const std::scoped_lock lock(making_);
+  std::vector<std::uint8_t>& times = times_drawn_[units];
+  if (!times.empty()) return times;
+  times.resize(resamples_ * units);
+  parallel_ranges(resamples_, kResampleGrain, [&](std::size_t first, std::size_t last) {
+    Rng rng(seed_, "bootstrap", std::to_string(first));
+    for (std::size_t r = first; r < last; ++r)
+      for (std::size_t drawn = 0; drawn < units; ++drawn) {
+        std::uint8_t& of_unit = times[r * units + rng.below(units)];
+        CHECK_LT(of_unit, 255);  // of n draws of n units
+        ++of_unit;
+      }
+  });
+  return times;
+}
+
+Columns Bootstrap::means(const Columns& columns) const {
   const std::size_t n = columns.units(), count = columns.count;
   CHECK_LT(0U, n);
+  const std::span<const std::uint8_t> times = times_drawn(n);
   const Columns relative = relative_to_first(columns);
-  Columns means{count, std::vector<double>(resamples * count, 0.0)};
-  parallel_ranges(resamples, kResampleGrain, [&](std::size_t first, std::size_t last) {
-    Rng rng(seed, "bootstrap", std::to_string(first));
-    for (std::size_t r = first; r < last; r += kResampleTile)
-      add_resampled(relative, times_drawn(rng, n, std::min(kResampleTile, last - r)),
-                    means.values.data() + r * count);
+  Columns means{count, std::vector<double>(resamples_ * count, 0.0)};
+  parallel_ranges(resamples_, kResampleTile, [&](std::size_t first, std::size_t last) {
+    add_resampled(relative, times.subspan(first * n, (last - first) * n),
+                  means.values.data() + first * count);
     for (std::size_t i = first * count; i < last * count; ++i)
       means.values[i] = columns.at(0, i % count) + means.values[i] / static_cast<double>(n);
   });
-  return means;
-}
-
-std::vector<Columns> resampled_together(std::span<const Columns* const> tables, std::uint64_t seed,
-                                        std::size_t resamples) {
-  std::map<std::size_t, std::vector<std::size_t>> by_units;
-  for (std::size_t t = 0; t < tables.size(); ++t)
-    if (tables[t]->units() > 0) by_units[tables[t]->units()].push_back(t);
-  std::vector<Columns> means(tables.size());
-  for (const auto& [units, numbers] : by_units) {
-    std::vector<const Columns*> same;
-    for (const std::size_t t : numbers) same.push_back(tables[t]);
-    std::vector<Columns> parts = split(resampled_means(joined(same), seed, resamples), same);
-    for (std::size_t i = 0; i < numbers.size(); ++i) means[numbers[i]] = std::move(parts[i]);
-  }
   return means;
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bootstrap over the units of inference. One set of resamples serves every column of a table, so that means,
-// differences and ranks of models are compared within the same resample. [efron1993]
+// The bootstrap over the units of inference. One set of resamples serves every column of a table, so that
+// means, differences and ranks of models are compared within the same resample. [efron1993]
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -25,14 +27,23 @@ struct Columns {
 
 inline constexpr std::size_t kResamples = 10000;
 
-// Means of the columns over resamples of the units, drawn with replacement: resamples x columns. They depend
-// on the seed, the number of units and the values alone.
-Columns resampled_means(const Columns& columns, std::uint64_t seed, std::size_t resamples = kResamples);
+// Resamples of units, drawn with replacement. They depend on the seed and the number of units alone, so that
+// tables on as many units share them; how often each unit is in each is kept, a byte each. Thread-safe.
+class Bootstrap {
+ public:
+  explicit Bootstrap(std::uint64_t seed, std::size_t resamples = kResamples);
 
-// The same of several tables, which cost little more than one where they have as many units: those share
-// their draws. A table without units has no means.
-std::vector<Columns> resampled_together(std::span<const Columns* const> tables, std::uint64_t seed,
-                                        std::size_t resamples = kResamples);
+  // Means of the columns over each resample: resamples x columns.
+  Columns means(const Columns& columns) const;
+
+ private:
+  const std::vector<std::uint8_t>& times_drawn(std::size_t units) const;  // resamples x units
+
+  std::uint64_t seed_;
+  std::size_t resamples_;
+  mutable std::mutex making_;
+  mutable std::map<std::size_t, std::vector<std::uint8_t>> times_drawn_;  // by number of units
+};
 
 // 95 % interval of the mean of a sample, bias-corrected and accelerated, from its resampled means; none for
 // fewer than two values, or for equal ones. [efron1987]

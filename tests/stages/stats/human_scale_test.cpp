@@ -75,7 +75,7 @@ TEST(Equivalents, AModelOfTheCurveIsWorthThatMany) {
   Columns scores = units_of(20, 5, 2, 0, rng);
   for (std::size_t unit = 0; unit < 20; ++unit)
     scores.values[unit * 6 + 5] = scores.at(unit, 2);  // the score of three
-  const Equivalent found = equivalents(scores, resampled_means(scores, 1, 2000), 5, true)[0];
+  const Equivalent found = equivalents(scores, Bootstrap(1, 2000).means(scores), 5, true)[0];
   EXPECT_EQ(found.participants, 3);
   EXPECT_EQ(found.crossings, 1);
   EXPECT_TRUE(std::isnan(found.interval.low)) << "three in every resample: no interval of width 0";
@@ -84,7 +84,7 @@ TEST(Equivalents, AModelOfTheCurveIsWorthThatMany) {
 TEST(Equivalents, ManyUnitsShowTheTrueNumber) {
   Rng rng(2, "people", "");
   const Columns scores = units_of(2000, 6, 2, 1.25, rng);  // between 2 (1) and 3 (4 / 3)
-  const Equivalent found = equivalents(scores, resampled_means(scores, 1, 2000), 6, true)[0];
+  const Equivalent found = equivalents(scores, Bootstrap(1, 2000).means(scores), 6, true)[0];
   EXPECT_NEAR(found.participants, 2.75, .25);
   EXPECT_LT(found.interval.high - found.interval.low, .6);
 }
@@ -93,7 +93,7 @@ TEST(Equivalents, BeyondTheCurveBothEndsAreOpen) {
   Rng rng(3, "people", "");
   for (const double model : {-40., 40.}) {
     const Columns scores = units_of(30, 4, 2, model, rng);
-    const Equivalent found = equivalents(scores, resampled_means(scores, 1, 500), 4, true)[0];
+    const Equivalent found = equivalents(scores, Bootstrap(1, 500).means(scores), 4, true)[0];
     for (const double value : {found.participants, found.interval.low, found.interval.high})
       EXPECT_EQ(value, std::copysign(kInfinity, model));
   }
@@ -103,7 +103,7 @@ TEST(Equivalents, FewUnitsHaveNoInterval) {
   Rng rng(4, "people", "");
   for (const std::size_t n : {1UL, 2UL, kMinUnitsOfPercentiles - 1}) {
     const Columns scores = units_of(n, 3, 2, 1, rng);
-    const Equivalent found = equivalents(scores, resampled_means(scores, 1, 500), 3, true)[0];
+    const Equivalent found = equivalents(scores, Bootstrap(1, 500).means(scores), 3, true)[0];
     EXPECT_FALSE(std::isnan(found.participants));
     EXPECT_TRUE(std::isnan(found.interval.low) && std::isnan(found.interval.high)) << n;
   }
@@ -117,7 +117,7 @@ TEST(Equivalents, TheIntervalHoldsTheTrueNumber) {
     Rng rng(5, "people", std::to_string(i));
     const Columns scores = units_of(19, 6, 2, 1.25, rng);
     const Interval interval =
-        equivalents(scores, resampled_means(scores, static_cast<std::uint64_t>(i), 1000), 6, true)[0]
+        equivalents(scores, Bootstrap(static_cast<std::uint64_t>(i), 1000).means(scores), 6, true)[0]
             .interval;
     held += interval.low <= 2.75 && 2.75 <= interval.high ? 1 : 0;
   }
@@ -139,7 +139,7 @@ Columns with_people(std::size_t n, const std::vector<double>& shares, double spa
 
 TEST(SharesOfPeople, AreTheRatioOfTheMeans) {
   const Columns scores{4, {.6, .9, .5, .7, .4, .9, .5, .7}};  // means .5, .9, .5, .7
-  const std::vector<Share> shares = shares_of_people(scores, resampled_means(scores, 1, 100));
+  const std::vector<Share> shares = shares_of_people(scores, Bootstrap(1, 100).means(scores));
   EXPECT_NEAR(shares[0].value, 0, 1e-12);
   EXPECT_NEAR(shares[1].value, 2, 1e-12);
   EXPECT_TRUE(std::isnan(shares[0].interval.low)) << "two units";
@@ -152,7 +152,7 @@ TEST(SharesOfPeople, ChanceIsZeroAndPeopleAreOneWhoeverIsDrawn) {
     scores.values[unit * 4] = scores.at(unit, 2);
     scores.values[unit * 4 + 1] = scores.at(unit, 3);
   }
-  const std::vector<Share> shares = shares_of_people(scores, resampled_means(scores, 1, 500));
+  const std::vector<Share> shares = shares_of_people(scores, Bootstrap(1, 500).means(scores));
   EXPECT_EQ(shares[0].value, 0);
   EXPECT_EQ(shares[1].value, 1);
   for (const Share& share : shares) EXPECT_TRUE(std::isnan(share.interval.low)) << "they do not vary";
@@ -164,8 +164,8 @@ TEST(SharesOfPeople, DoNotDependOnTheScaleOfTheMetric) {
   const Columns scores = with_people(25, {.5, 1.2}, 1, rng);
   Columns turned = scores;
   for (double& value : turned.values) value = 5 - 8 * value;
-  const auto a = shares_of_people(scores, resampled_means(scores, 1, 500)),
-             b = shares_of_people(turned, resampled_means(turned, 1, 500));
+  const auto a = shares_of_people(scores, Bootstrap(1, 500).means(scores)),
+             b = shares_of_people(turned, Bootstrap(1, 500).means(turned));
   for (std::size_t m = 0; m < a.size(); ++m) {
     EXPECT_NEAR(a[m].value, b[m].value, 1e-9);
     EXPECT_NEAR(a[m].interval.low, b[m].interval.low, 1e-9);
@@ -200,7 +200,7 @@ TEST(SharesOfPeople, HaveFiellersInterval) {
   for (const std::size_t n : {12UL, 19UL, 60UL}) {
     Rng rng(n, "shares", "");
     const Columns scores = with_people(n, {.4, 1.3}, 1, rng);
-    const std::vector<Share> shares = shares_of_people(scores, resampled_means(scores, 1));
+    const std::vector<Share> shares = shares_of_people(scores, Bootstrap(1).means(scores));
     for (std::size_t m = 0; m < 2; ++m) {
       const Interval exact = fieller(scores, m);
       const double width = exact.high - exact.low;
@@ -217,7 +217,7 @@ TEST(SharesOfPeople, TheIntervalHoldsTheTrueShare) {
     Rng rng(8, "shares", std::to_string(i));
     const Columns scores = with_people(19, {.8}, 1, rng);
     const Interval interval =
-        shares_of_people(scores, resampled_means(scores, static_cast<std::uint64_t>(i), 1000))[0].interval;
+        shares_of_people(scores, Bootstrap(static_cast<std::uint64_t>(i), 1000).means(scores))[0].interval;
     held += interval.low <= .8 && .8 <= interval.high ? 1 : 0;
   }
   EXPECT_GE(held, .92 * kDataSets);
@@ -232,7 +232,7 @@ TEST(SharesOfPeople, WithoutASpanTheIntervalHasNoEnd) {
     const double chance = rng.normal();
     scores.values.insert(scores.values.end(), {chance + 5, chance, chance + .1 + rng.normal()});
   }
-  const Share share = shares_of_people(scores, resampled_means(scores, 1, 1000))[0];
+  const Share share = shares_of_people(scores, Bootstrap(1, 1000).means(scores))[0];
   EXPECT_EQ(std::abs(share.interval.high), kInfinity);
 }
 

@@ -26,7 +26,7 @@ Columns scores_around(const std::vector<double>& means, std::size_t units, doubl
 }
 
 Ranking ranked(const Columns& scores, bool higher_is_better = true) {
-  return rank_models(scores, resampled_means(scores, 1, 2000), higher_is_better);
+  return rank_models(scores, Bootstrap(1, 2000).means(scores), higher_is_better);
 }
 
 TEST(Ranking, ClearDifferencesGiveSingleRanksAndLetters) {

@@ -24,35 +24,35 @@ Columns random_columns(std::size_t units, std::size_t count) {
 
 TEST(Resampling, SameBytesForAnyNumberOfThreads) {
   const Columns columns = random_columns(40, 3);
-  const auto alone = same_on_any_number_of_threads([&] { return resampled_means(columns, 7, 1000).values; });
-  EXPECT_NE(alone, resampled_means(columns, 8, 1000).values);
+  const auto alone = same_on_any_number_of_threads([&] { return Bootstrap(7, 1000).means(columns).values; });
+  EXPECT_NE(alone, Bootstrap(8, 1000).means(columns).values);
 }
 
 // What is drawn for a column does not depend on its neighbours.
 TEST(Resampling, ColumnsShareTheirResamples) {
   const Columns columns = random_columns(25, 4);
-  const Columns all = resampled_means(columns, 1, 500);
+  const Columns all = Bootstrap(1, 500).means(columns);
   for (std::size_t c = 0; c < columns.count; ++c)
-    EXPECT_EQ(resampled_means({1, columns.column(c)}, 1, 500).values, all.column(c));
+    EXPECT_EQ(Bootstrap(1, 500).means({1, columns.column(c)}).values, all.column(c));
 }
 
 TEST(Resampling, SpreadIsThatOfAMean) {
   const Columns columns = random_columns(200, 1);
   const Summary sample = summarise(columns.values);
-  const Summary means = summarise(resampled_means(columns, 1).values);
+  const Summary means = summarise(Bootstrap(1).means(columns).values);
   EXPECT_NEAR(means.mean, sample.mean, 4 * means.sd / std::sqrt(kResamples));
   EXPECT_NEAR(means.sd, sample.sd * std::sqrt(199.0 / 200) / std::sqrt(200), .03 * means.sd);
 }
 
 TEST(Resampling, EqualValuesResampleToThemselves) {
   const Columns columns{1, std::vector<double>(7, 0.1)};
-  EXPECT_THAT(resampled_means(columns, 1, 100).values, Each(0.1));
+  EXPECT_THAT(Bootstrap(1, 100).means(columns).values, Each(0.1));
   EXPECT_EQ(columns.means(), std::vector{0.1});
 }
 
 TEST(Bca, NoneForOneValueOrEqualOnes) {
   for (const std::vector<double>& sample : {std::vector{0.3}, std::vector(9, 0.3)}) {
-    const Interval interval = bca_interval(sample, resampled_means({1, sample}, 1, 100).values);
+    const Interval interval = bca_interval(sample, Bootstrap(1, 100).means({1, sample}).values);
     EXPECT_TRUE(std::isnan(interval.low) && std::isnan(interval.high)) << sample.size();
   }
 }
@@ -61,7 +61,7 @@ TEST(Bca, NoneForOneValueOrEqualOnes) {
 TEST(Bca, FollowsTheSkewOfTheSample) {
   const Columns columns = random_columns(50, 1);
   const double mean = columns.means()[0];
-  const Interval interval = bca_interval(columns.values, resampled_means(columns, 1).values);
+  const Interval interval = bca_interval(columns.values, Bootstrap(1).means(columns).values);
   EXPECT_GT(interval.high - mean, 1.2 * (mean - interval.low));
 }
 
@@ -71,7 +71,7 @@ TEST(Percentiles, AreStudentsForNormalValues) {
   Columns columns{1, std::vector<double>(19)};
   for (double& value : columns.values) value = rng.normal();
   const Interval student = student_interval(summarise(columns.values));
-  std::vector<double> means = resampled_means(columns, 1).values;
+  std::vector<double> means = Bootstrap(1).means(columns).values;
   const Interval found = percentile_interval(means, 19);
   const double width = student.high - student.low;
   EXPECT_NEAR(found.low, student.low, .05 * width);
