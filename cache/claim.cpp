@@ -23,6 +23,7 @@ class LockedByte final : public Claim {
   ~LockedByte() override {
     if (fd_ >= 0) ::close(fd_);
   }
+  int fd() const { return fd_; }
 
  private:
   int fd_;
@@ -34,19 +35,31 @@ off_t byte_of(std::string_view work) {
   return static_cast<off_t>(hasher.digest().low & (std::numeric_limits<off_t>::max() >> 1));
 }
 
-}  // namespace
-
-std::unique_ptr<Claim> claim_in(const std::filesystem::path& cache, std::string_view work) {
-  const int fd = ::open((cache / kClaimsFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  auto claim = std::make_unique<LockedByte>(fd);
+// The lock that claims the work.
+struct flock lock_of(std::string_view work) {
   struct flock lock {};
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
   lock.l_start = byte_of(work);
   lock.l_len = 1;
+  return lock;
+}
+
+}  // namespace
+
+std::unique_ptr<Claim> claim_in(const std::filesystem::path& cache, std::string_view work) {
+  const int fd = ::open((cache / kClaimsFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  auto claim = std::make_unique<LockedByte>(fd);
+  struct flock lock = lock_of(work);
   const bool taken = fd >= 0 && ::fcntl(fd, F_OFD_SETLK, &lock) != 0 && (errno == EAGAIN || errno == EACCES);
   if (taken) return nullptr;
   return claim;
+}
+
+bool is_claimed_in(const std::filesystem::path& cache, std::string_view work) {
+  const LockedByte file(::open((cache / kClaimsFile).c_str(), O_RDONLY | O_CLOEXEC));
+  struct flock lock = lock_of(work);
+  return file.fd() >= 0 && ::fcntl(file.fd(), F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
 }  // namespace salbench

@@ -241,6 +241,7 @@ void FolderStore::sync() {
 }
 
 std::unique_ptr<Claim> FolderStore::claim(std::string_view work) { return claim_in(impl_->folder, work); }
+bool FolderStore::is_claimed(std::string_view work) const { return is_claimed_in(impl_->folder, work); }
 
 std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& key) const {
   const std::shared_lock lock(impl_->mutex);

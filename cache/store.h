@@ -54,6 +54,11 @@ class Store : public Index {
     static_cast<void>(work);
     return std::make_unique<Claim>();
   }
+  // Whether somebody holds it; takes nothing.
+  virtual bool is_claimed(std::string_view work) const {
+    static_cast<void>(work);
+    return false;
+  }
 };
 
 }  // namespace salbench

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
 #include <stdexcept>
 #include <thread>
 #include <tuple>
@@ -15,7 +16,9 @@
 namespace salbench {
 namespace {
 
-constexpr std::chrono::milliseconds kClaimPollInterval(50);  // whether another process has given up a claim
+// Between two looks at whether another process has given up a claim: longer and longer, so that waiting costs
+// nothing.
+constexpr std::chrono::milliseconds kFirstPoll(20), kLongestPoll(500);
 // The large arrays of a family leave holes that small, lasting ones pin: unless it is handed back, memory
 // that is free grows with every family that has passed, to ten times what is in use.
 constexpr std::size_t kFamiliesPerTrim = 16;
@@ -90,20 +93,35 @@ void Runner::settle(const std::string& what, const std::vector<bool>& rows, int 
   store_.prepare();
   progress_.begin(what, open, [this] { return executor_.at_work(); });
   while (open > 0 && !stop_) {
-    const std::size_t claimed_by_others = stream_once(rows, threads);
+    const std::vector<std::string> claimed_by_others = stream_once(rows, threads);
     const std::size_t before = std::exchange(open, open_jobs(rows));
     if (open < before || stop_) continue;
     if (claimed == Claimed::left) break;
-    if (claimed_by_others == 0) throw std::logic_error("jobs are left that nothing can settle");
-    std::this_thread::sleep_for(kClaimPollInterval);
+    if (claimed_by_others.empty()) throw std::logic_error("jobs are left that nothing can settle");
+    await_any(claimed_by_others);
   }
   progress_.end();
 }
 
-// Returns how many families and sets are claimed by other processes.
-std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
+// Returns when one of them is free: others may be held for hours yet.
+void Runner::await_any(const std::vector<std::string>& claimed) const {
+  const auto is_claimed = [&](const std::string& work) { return store_.is_claimed(work); };
+  for (auto pause = kFirstPoll; !stop_ && std::ranges::all_of(claimed, is_claimed);
+       pause = std::min(2 * pause, kLongestPoll))
+    std::this_thread::sleep_for(pause);
+}
+
+// Returns the families and sets that other processes have claimed.
+std::vector<std::string> Runner::stream_once(const std::vector<bool>& rows, int threads) {
   std::vector<std::unique_ptr<Claim>> claims(context_.workload.families.size());
-  std::atomic<std::size_t> claimed_by_others = 0;
+  std::vector<std::string> claimed_by_others;
+  std::mutex refusing;
+  const auto claim_of = [&](const std::string& work) {
+    std::unique_ptr<Claim> claim = store_.claim(work);
+    const std::scoped_lock lock(refusing);
+    if (!claim) claimed_by_others.push_back(work);
+    return claim;
+  };
   // Only a mesh's values are read by other shapes: those of a scan can go with its last job.
   std::vector<std::atomic<std::size_t>> open_of_scan(claims.size() * kViews);
   const auto open = [&](const JobRef& job) {
@@ -114,8 +132,8 @@ std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
   const auto settle = [&](const JobRef& job) {
     std::unique_ptr<Claim> claim;
     if (job.item.is_set()) {
-      claim = store_.claim(context_.row(job).name + " " + context_.name(job));
-      if (!claim) return ++claimed_by_others, false;
+      claim = claim_of(context_.row(job).name + " " + context_.name(job));
+      if (!claim) return false;
     }
     executor_.settle(job);
     if (job.item.scope() == Scope::scan && --open_of_scan[job.item.index()] == 0) executor_.forget(job.item);
@@ -123,8 +141,7 @@ std::size_t Runner::stream_once(const std::vector<bool>& rows, int threads) {
     return true;
   };
   const auto enter = [&](std::size_t family) {
-    claims[family] = store_.claim(work_of(context_, family));
-    if (!claims[family]) ++claimed_by_others;
+    claims[family] = claim_of(work_of(context_, family));
     return claims[family] != nullptr;
   };
   std::atomic<std::size_t> left = 0;

@@ -42,7 +42,8 @@ class Runner {
   enum class Claimed { left, awaited };
   void settle(const std::string& what, const std::vector<bool>& rows, int threads, Claimed claimed);
   std::size_t open_jobs(const std::vector<bool>& rows) const;
-  std::size_t stream_once(const std::vector<bool>& rows, int threads);
+  std::vector<std::string> stream_once(const std::vector<bool>& rows, int threads);
+  void await_any(const std::vector<std::string>& claimed) const;
 
   const Context& context_;
   Plan& plan_;

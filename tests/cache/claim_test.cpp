@@ -31,6 +31,17 @@ TEST(Claim, IsOfOneCache) {
   EXPECT_NE(claim_in(there.path(), "family 1"), nullptr);
 }
 
+TEST(Claim, IsSeenWithoutBeingTaken) {
+  const TemporaryFolder cache;
+  EXPECT_FALSE(is_claimed_in(cache.path(), "family 1")) << "there is no file of claims yet";
+  auto mine = claim_in(cache.path(), "family 1");
+  EXPECT_TRUE(is_claimed_in(cache.path(), "family 1"));
+  EXPECT_FALSE(is_claimed_in(cache.path(), "family 2"));
+  mine.reset();
+  EXPECT_FALSE(is_claimed_in(cache.path(), "family 1"));
+  EXPECT_NE(claim_in(cache.path(), "family 1"), nullptr) << "looking at it took it";
+}
+
 TEST(Claim, DiesWithItsProcess) {
   const TemporaryFolder cache;
   int held[2];
