@@ -21,7 +21,7 @@ class Claim {
 // system without locks grants everything. `work` identifies the work by its name.
 std::unique_ptr<Claim> claim_in(const std::filesystem::path& cache, std::string_view work);
 
-// Whether a living process (this one included) holds it; takes nothing. False where locks cannot tell.
+// True if a living process (this one included) holds it; takes nothing. False where locks cannot tell.
 bool is_claimed_in(const std::filesystem::path& cache, std::string_view work);
 
 }  // namespace salbench

@@ -17,13 +17,13 @@
 
 namespace salbench {
 
-// What `plan` may ask, from several threads at once: it never touches the artefacts.
+// Queries of `plan`, from several threads at once: they never touch the artefacts.
 class Index {
  public:
   virtual ~Index() = default;
   // Content digest of the artefact, if there is one.
   virtual std::optional<Digest> find(std::string_view stage, const Digest& key) const = 0;
-  // Whether the stage has been computed for this item under any key: tells a new artefact from a changed one.
+  // True if the stage has been computed for this item under any key: a changed artefact, not a new one.
   virtual bool has_item(std::string_view stage, std::string_view item) const = 0;
 };
 
@@ -54,7 +54,7 @@ class Store : public Index {
     static_cast<void>(work);
     return std::make_unique<Claim>();
   }
-  // Whether somebody holds it; takes nothing.
+  // True if somebody holds it; takes nothing.
   virtual bool is_claimed(std::string_view work) const {
     static_cast<void>(work);
     return false;

@@ -14,7 +14,7 @@ namespace salbench {
 bool has_cloud_extension(const std::filesystem::path& path);  // .ply .pcd .xyz
 bool has_shape_extension(const std::filesystem::path& path);  // of a mesh or of a point cloud
 
-// Whether the file holds points alone: .pcd and .xyz always do, .ply where its header announces no faces. A
+// True if the file holds points alone: .pcd and .xyz always do, .ply where its header announces no faces. A
 // header that cannot be read announces some. `bytes` may be the beginning of the file's.
 bool is_point_cloud(std::string_view bytes, const std::filesystem::path& path);
 

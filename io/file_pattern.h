@@ -46,7 +46,7 @@ using IsItem = std::function<bool(std::string_view)>;
 // other text elsewhere. Lists folders and reads no file.
 FoundFiles files_like(const std::filesystem::path& root, const FilePattern& pattern, const IsItem& is_item);
 
-// Whether a folder exists that a file of this pattern could be in.
+// True if a folder exists that a file of this pattern could be in.
 bool has_folder_for(const std::filesystem::path& root, const FilePattern& pattern);
 
 bool one_file_per_item(const FilePattern& pattern);  // neither {participant} nor {view} nor {viewer}

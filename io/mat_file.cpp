@@ -118,7 +118,7 @@ const matvar_t& cell_of(matvar_t& variable, const std::vector<std::string>& cell
   return *found;
 }
 
-// What is asked of a file.
+// A request: variable and field of a file.
 struct Wanted {
   const std::string& variable;
   std::vector<std::string> cell = {};

@@ -187,7 +187,7 @@ struct Numbers {
   }
 };
 
-// What is read of a file, record by record.
+// Properties that are read of each record.
 struct Wanted {
   Numbers vertex, camera;
   const Element* face = nullptr;  // null for point clouds

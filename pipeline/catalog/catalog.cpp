@@ -25,14 +25,14 @@ namespace {
 
 // --- functions of rows that are more than one stage's ------------------------------------------------------
 
-GroundTruth made_up_ground_truth(const Mesh& mesh, const SimulationOptions& options,
-                                 const RandomSource& random) {
+GroundTruth simulate_ground_truth(const Mesh& mesh, const SimulationOptions& options,
+                                  const RandomSource& random) {
   return simulated_ground_truth(mesh, options, random.seed, random.item);
 }
 
 GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
                                        const SimulationOptions& options, const RandomSource& random) {
-  return made_up_ground_truth(mesh_of(cloud, surface), options, random);
+  return simulate_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
 Scan scan_of(const ScanScene& scene, const View& view, const ScanOptions& options) {
@@ -133,7 +133,7 @@ void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, c
 
 RowOf<GroundTruth> add_mesh_ground_truth(Catalog& catalog, const Config& config, const RowOf<Mesh>& mesh) {
   if (config.simulated())
-    return catalog.add(Shapes::meshes, {"ground_truth", 1}, made_up_ground_truth, mesh,
+    return catalog.add(Shapes::meshes, {"ground_truth", 1}, simulate_ground_truth, mesh,
                        section("simulation", config.simulation), kRandom);
   return catalog.add(Shapes::meshes, {"ground_truth", 1}, given_truth, mesh, kFiles<Source::truth_files>);
 }

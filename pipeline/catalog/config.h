@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run is: read from YAML, checked, with every default filled in.
+// Configuration of a run: parsed from YAML, validated, defaults filled in.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ GroundTruth given_truth(const Mesh& mesh, const FilesOf<Source::truth_files>& fi
 GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface,
                               const FilesOf<Source::truth_files>& files);
 
-// Whether the files tell participants apart, at least two.
+// True if the files tell participants apart, at least two.
 bool has_participants(const DatasetItem& item);
 
 }  // namespace salbench

@@ -66,7 +66,7 @@ struct FilesOf {
   std::span<const SourceData> data;
 };
 
-// What is odd about an item that can be used, for the record of the run: one line, stored beside the result.
+// Oddity of an item that can be used, for the record of the run: one line, stored beside the result.
 struct Remark {
   std::string& text;  // empty: nothing
 };
@@ -182,7 +182,7 @@ inline constexpr FilesArgument<source> kFiles;
 
 namespace binding {
 
-// Whether an argument may stand for a parameter.
+// True if this type of argument can be passed for the parameter.
 template <class Parameter, class Argument>
 inline constexpr bool kFits = false;
 template <class Parameter, class T>
@@ -265,7 +265,7 @@ template <class Parameter, class View>
 Parameter parameter(const std::optional<RowOf<View>>& input, const JobInputs& in, std::size_t& value) {
   return input ? parameter<Parameter>(*input, in, value) : Parameter{};
 }
-// What a preparation lends to a job.
+// Part of a preparation, lent to a job.
 template <class T>
 struct Lent {
   std::shared_ptr<const T> object;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the help of the program says beside its subcommands: --help and the manual page print the same texts.
+// Texts of the help beside its subcommands: --help and the manual page print the same ones.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is installed beside the program.
+// Files installed beside the program.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What subcommands that conclude from a table of scores per shape are told, and what they make of it.
+// Options of the subcommands that conclude from a table of scores per shape.
 #pragma once
 
 #include <memory>

@@ -17,7 +17,7 @@ inline constexpr std::string_view kAutomaticLayout = "automatic";
 // Names that a configuration may have as its layout: automatic, and those in configs/datasets.
 std::vector<std::string_view> layout_names();
 
-// Whether the text may be a layout: one of the names, or a file *.yaml, which is not opened.
+// True if the text may be a layout: one of the names, or a file *.yaml, which is not opened.
 bool is_layout(std::string_view text);
 
 // The layouts to try, in their order: one, or for "automatic" those that say so. Reads the file of a user's

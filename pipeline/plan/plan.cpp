@@ -195,7 +195,7 @@ Job decide(const Context& context, const Plan& plan, const JobRef& job, const Lo
   return decided;
 }
 
-std::size_t places_of(const Context& context, std::size_t row) {
+std::size_t slot_count(const Context& context, std::size_t row) {
   const Row& of = context.catalog.rows[row];
   if (of.gathers) return 1;
   return context.workload.families.size() * (of.shapes == Shapes::scans ? kViews : 1);
@@ -206,7 +206,7 @@ Plan make_plan(const Context& context, const Index& index) {
   Plan plan;
   plan.jobs.resize(context.catalog.rows.size());
   for (std::size_t row = 0; row < plan.jobs.size(); ++row) {
-    plan.jobs[row].resize(places_of(context, row), verdict_of(Verdict::not_applicable, Reason::none));
+    plan.jobs[row].resize(slot_count(context, row), verdict_of(Verdict::not_applicable, Reason::none));
     const std::vector<Item> items = items_of(context, row);
     parallel_ranges(items.size(), kItemGrain, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {

@@ -102,7 +102,7 @@ struct Context {
 std::vector<Item> family_items(const Context& context, std::size_t family);
 std::vector<Item> all_items(const Context& context);                    // family by family
 std::vector<Item> items_of(const Context& context, std::size_t row);    // that the row has jobs for, in order
-std::size_t places_of(const Context& context, std::size_t row);         // above Item::index() of all of these
+std::size_t slot_count(const Context& context, std::size_t row);        // above Item::index() of all of these
 std::vector<JobRef> jobs_of(const Catalog& catalog, const Item& item);  // in the order of the rows
 std::optional<Item> find_item(const Context& context, const std::string& name);  // "52", "52_3"
 

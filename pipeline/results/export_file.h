@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run knows, as one self-contained HDF5 file (docs/data_dictionary.md):
+// Artefacts of a run in one self-contained HDF5 file (docs/data_dictionary.md):
 //   /ITEM/STAGE/...              the data sets of an artefact, its attributes on the group
 //   /means/STAGE/{meshes,scans}  mean histograms over the items of the export
 //   /scores                      one table, one row per item and model

@@ -12,7 +12,7 @@
 namespace salbench {
 namespace {
 
-// What names a pair, and its cells.
+// A row per pair: its names, then its cells.
 template <class Cells>
 std::vector<std::vector<Cell>> pair_rows(const DatasetScores& scores, std::size_t metric,
                                          const std::string& name, const Cells& cells) {

@@ -27,7 +27,7 @@ struct ResultRow {
   Scores scores;
   JobRef job = {};  // that gave them
 
-  // Of one of the metrics that the scores hold.
+  // Score by one of the metrics that the scores hold.
   double value(std::size_t metric) const { return scores.values.at(metric); }
 };
 
@@ -39,7 +39,7 @@ struct DatasetAndModel {
 // Those that the rows speak of: meshes before scans before clouds, models in the order of their first row.
 std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows);
 
-// What a run knows, and what its results are read from.
+// A run, as its results are read from it.
 struct RunState {
   const Config& config;
   const Context& context;

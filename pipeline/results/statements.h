@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a text says of pairs of models, and what scores say of it.
+// Statements of a text about pairs of models, beside what scores say.
 #pragma once
 
 #include <array>

@@ -25,7 +25,7 @@ struct Failure {
 
 using Clock = std::chrono::steady_clock;
 
-// What a row's node has done.
+// Statistics of one row's node.
 struct NodeRecord {
   std::size_t settled = 0;                      // jobs that passed through the node
   std::vector<float> seconds = {};              // of each job that was computed
@@ -34,14 +34,14 @@ struct NodeRecord {
 
 class Executor {
  public:
-  // What happens when an artefact turns out to be damaged.
+  // Treatment of an artefact that turns out to be damaged.
   enum class Damaged { restore, report };
 
-  // All references must outlive it; it brings `plan` up to date.
+  // Keeps references to its arguments, and updates `plan` as jobs finish.
   Executor(const Context& context, Plan& plan, Store& store, Damaged damaged = Damaged::restore);
 
   // Brings an open job to its end: from wait or compute to done, cached, not applicable, failed or blocked.
-  // What it reads is settled. Several threads may settle different jobs. Throws StorageError.
+  // Its inputs are settled. Several threads may settle different jobs. Throws StorageError.
   void settle(const JobRef& job);
 
   // The result of a known job: in memory, from the cache, or given. A damaged artefact is computed again;

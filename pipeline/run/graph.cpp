@@ -88,7 +88,7 @@ class Stream {
   // A job without open inputs waits for the ticket that its family's entrance sends.
   void count_inputs() {
     for (std::size_t row = 0; row < context_.catalog.rows.size(); ++row) {
-      std::vector<std::atomic<int>>& missing = missing_.emplace_back(places_of(context_, row));
+      std::vector<std::atomic<int>>& missing = missing_.emplace_back(slot_count(context_, row));
       for (const Item& item : items_of(context_, row)) {
         const JobRef job{row, item};
         missing[item.index()] = bodies_.open(job) ? std::max(1, open_inputs(job)) : kNotOpen;
@@ -161,7 +161,7 @@ class Stream {
   }
 
   // A ticket of a mesh stands for the mesh, or at a row of scans for the scan that it was sent for; at a row
-  // of the data set every ticket stands for the set. That a set is settled shapes know before they enter.
+  // of the data set every ticket stands for the set. Sets finish before any shape that reads them enters.
   void arrive(std::size_t row, const Ticket& ticket, RowNode::output_ports_type& out) {
     const Row& of = context_.catalog.rows[row];
     if (ticket.is_set() && !of.gathers) return;

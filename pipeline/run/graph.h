@@ -13,9 +13,9 @@
 
 namespace salbench {
 
-// What the nodes do; they know no TBB. Called from several threads at once, for different jobs.
+// Bodies of the nodes; they know no TBB. Called from several threads at once, for different jobs.
 struct GraphBodies {
-  // Whether a job is to be settled in this stream. Asked once for each, before the first is.
+  // True if a job is to be settled in this stream. Asked once for each, before the first is.
   std::function<bool(const JobRef&)> open = {};
   // A family has a token and may begin. False: it cannot now, and its jobs stay open.
   std::function<bool(std::size_t family)> enter = {};

@@ -32,7 +32,7 @@ std::vector<bool> reference_rows(const Catalog& catalog) {
   return ancestors(catalog, references);
 }
 
-// What can be had without the rest of the data set.
+// Rows that read nothing of other items.
 std::vector<bool> rows_without_reference(const Catalog& catalog) {
   std::vector<bool> without;
   for (const Row& row : catalog.rows)
@@ -85,8 +85,8 @@ std::size_t Runner::open_jobs(const std::vector<bool>& rows) const {
   return open;
 }
 
-// What other processes have claimed is left to the end; by then most of it is found in the cache. Nothing is
-// held while waiting for them, so that two processes never wait for each other.
+// Jobs that other processes have claimed are left to the end; by then most of them are found in the cache. No
+// claim is held while waiting for others, so that two processes never wait for each other.
 void Runner::settle(const std::string& what, const std::vector<bool>& rows, int threads, Claimed claimed) {
   std::size_t open = open_jobs(rows);
   if (open == 0 || stop_) return;

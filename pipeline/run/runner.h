@@ -13,7 +13,7 @@ namespace salbench {
 
 class Runner {
  public:
-  // All references must outlive the runner; it brings `plan` up to date as it goes.
+  // Keeps references to its arguments, and updates `plan` as jobs finish.
   Runner(const Context& context, Plan& plan, Store& store, Progress& progress, const std::atomic<bool>& stop);
 
   // Throws StorageError if there are jobs to do and their results could not be stored.
@@ -38,7 +38,7 @@ class Runner {
   Progress& progress() const { return progress_; }
 
  private:
-  // What happens to the jobs that other processes have claimed.
+  // Treatment of jobs that other processes have claimed.
   enum class Claimed { left, awaited };
   void settle(const std::string& what, const std::vector<bool>& rows, int threads, Claimed claimed);
   std::size_t open_jobs(const std::vector<bool>& rows) const;

@@ -47,7 +47,7 @@ struct Oriented {
   }
 };
 
-// How many edges the features reach, and whether one is too near to an edge to tell.
+// Number of edges that each feature reaches; doubtful: too near to an edge to tell.
 struct Reached {
   alignas(64) std::array<std::int64_t, kPairs> theta, alpha, phi, both_ways, doubtful;
 };

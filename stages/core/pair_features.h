@@ -23,8 +23,8 @@ struct DarbouxTriple {
 // makes the triple symmetric in p and q. [rusu2009]
 DarbouxTriple pair_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_q, bool swap);
 
-// Of 11 bins over the range of a feature only those of its absolute value are filled: the upper half of the
-// middle one, and the 5 above it.
+// Only bins of a feature's absolute value are filled, of 11 over its range: the upper half of the middle one,
+// and the 5 above it.
 inline constexpr std::size_t kBlockBins = 11;
 inline constexpr std::size_t kFirstFilled = 5;
 inline constexpr std::size_t kFilledBins = kBlockBins - kFirstFilled;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A map and a ground truth, with what several metrics need of them computed once, when the first one asks.
-// What a metric gets does not depend on which others were computed before it.
+// The value of a metric does not depend on which others were computed before it.
 #pragma once
 
 #include <array>

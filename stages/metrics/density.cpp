@@ -72,7 +72,7 @@ struct DensitiesOf {
   PerWeighting scale, offset;
 };
 
-// Of map and ground truth.
+// Map and ground truth.
 struct Distributions {
   Distributions(const Densities& map, const Densities& truth) : p(map), g(truth) {}
 

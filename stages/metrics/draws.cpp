@@ -4,7 +4,7 @@
 namespace salbench {
 namespace {
 
-// What Rng::below makes of a number, for one bound: without its two divisions per draw.
+// Rng::below for one bound, without its two divisions per draw.
 class Below {
  public:
   explicit Below(std::uint64_t bound)

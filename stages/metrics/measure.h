@@ -19,7 +19,7 @@ enum class Weighting : std::uint8_t { vertex, area };
 struct Measure {
   std::vector<double> weight;  // n, >= 0: 1 per vertex, or an area in some unit
   double total = 0;            // sum of the weights
-  // What densities are per. One vertex, as published, or the whole surface: a density per area of the whole
+  // Unit of a density: one vertex, as published, or the area of the whole surface. A density per area
   // does not change when a vertex is replaced by two of half its area.
   double unit = 1;
 
@@ -61,7 +61,7 @@ struct WeighedField {
 };
 inline WeighedField alike(std::span<const double> field) { return {field, field}; }
 
-// Whether the field has one value wherever the weight is positive; also true where no weight is.
+// True if the field has one value wherever the weight is positive, and if no weight is.
 bool is_constant(std::span<const double> field, const Measure& measure);
 
 }  // namespace salbench

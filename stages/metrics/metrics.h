@@ -19,7 +19,7 @@
 
 namespace salbench {
 
-// What a metric reads of a map: the map as the model made it, min-max-normalised, or histogram-matched.
+// Form in which a metric reads a map: as the model made it, min-max-normalised, or histogram-matched.
 enum class Matching : std::uint8_t { none, histogram };
 template <>
 struct EnumNames<Matching> {
@@ -66,10 +66,10 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked, co
 // Pearson correlation; 0 where one of the two is constant, NaN for empty fields. [tasse2016]
 double cc(std::span<const double> map, std::span<const double> saliency);
 
-// How often a point counts that several participants picked, or one participant several times.
+// Weight of a point that several participants picked, or one of them repeatedly.
 enum class PickCount : std::uint8_t { once, multiplicity };
 
-// What a metric may read.
+// Inputs of a metric.
 struct MetricInput {
   std::span<const double> map;           // n
   std::span<const std::int32_t> picked;  // ascending; each once, or as often as it was picked

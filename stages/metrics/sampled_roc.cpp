@@ -24,7 +24,7 @@ class Curve {
   std::vector<double> true_rates(const std::vector<double>& thresholds) const {
     return rates_of(positives_, thresholds);
   }
-  // How many negatives reach each number of thresholds.
+  // reached: number of negatives that reach each number of thresholds.
   void add_split(const std::vector<double>& true_rates, std::span<std::uint32_t> reached) {
     accumulate(reached);
     sum_ += area_under_curve(true_rates, fractions_, [&](std::size_t t) { return reached[t + 1]; });

@@ -41,7 +41,7 @@ struct Kernel {
   void (*bounds)(const float* boxes, std::size_t bins, const float* query, const std::int32_t* groups,
                  std::size_t count, float* bounds);
 
-  // How many of the values are <= limit; `count` is a multiple of 16.
+  // Number of values <= limit; `count` is a multiple of 16.
   std::size_t (*count_up_to)(float limit, const float* values, std::size_t count);
 
   // Writes the places of the values above `low` and up to `high`, ascending, and returns how many there are;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What bounds the time of a model whose neighbourhoods are a part of the shape: a fine surface is simplified,
+// Bounds the cost of models whose neighbourhoods grow with the shape: a fine surface is simplified,
 // and its points take values in between.
 #pragma once
 

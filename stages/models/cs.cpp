@@ -263,7 +263,7 @@ KdTree sampled_tree(Points points, std::size_t count) {
   return KdTree(points, KdTree(points).even_sample(count));
 }
 
-// Of the points that the tree finds; its factor is of the R of all.
+// Support radius of the points that the tree finds; the factor is of the R of all.
 SupportRadius support_of(Points points, const KdTree& tree, double factor) {
   if (tree.size() == points.size()) return grown_support_radius(points, tree, factor);
   std::vector<Vec3> sample;

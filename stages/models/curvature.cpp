@@ -60,7 +60,7 @@ std::vector<Vec3> area_normals(std::size_t n, const std::vector<Face>& faces) {
   return normals;
 }
 
-// Whether a point is at an edge of one face, or of three and more.
+// [point]: true at an edge of one face, or of three and more.
 std::vector<bool> at_irregular_edge(std::size_t n, const std::vector<Face>& faces) {
   std::vector<std::uint64_t> edges;  // lower point above higher one
   edges.reserve(faces.size() * 3);

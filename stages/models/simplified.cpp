@@ -45,7 +45,7 @@ class EdgeCollapse {
     Vec3 place;                      // until the cost is known, the middle of the edge
   };
 
-  // What the queue moves about is small; the edge of the candidate decides between equal costs.
+  // Small, since the queue moves it about; the edge of the candidate decides between equal costs.
   struct Queued {
     double cost;
     std::uint32_t candidate;
@@ -138,7 +138,7 @@ EdgeCollapse::EdgeCollapse(const Mesh& mesh)
   add_border_planes();
 }
 
-// Of faces with the same corners the first counts.
+// Keeps the first of several faces with the same corners.
 void EdgeCollapse::add_faces(const Mesh& mesh) {
   for (const Triangle& corners : mesh.faces) {
     const auto [a, b, c] = corners;

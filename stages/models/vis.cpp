@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3f> half_of_directions(std::int32_t count) {
   return directions;
 }
 
-// What hides points, and how far from a point it begins.
+// Occluding geometry, and how far from a point it begins.
 struct Occluder {
   embree::Scene scene;
   std::vector<double> disc_radii;  // n; empty if it is a surface

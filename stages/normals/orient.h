@@ -22,7 +22,7 @@ struct OrientationGraph {
   double longest_edge = std::numeric_limits<double>::infinity();
   double largest_turn = std::numbers::pi / 2;  // between the normals of an edge, regardless of sign; radians
 
-  // How many are looked for around each of n points: the point itself is among them.
+  // Number looked for around each of n points, the point itself included.
   std::size_t searched(std::size_t n) const { return std::min(static_cast<std::size_t>(neighbours) + 1, n); }
 };
 

@@ -65,7 +65,7 @@ CameraAxes axes_for_scan(const Vec3& up, const Vec3& towards_scanner, const Pict
   return axes_towards(back, vertical ? front_of(up) : up);
 }
 
-// Of all cameras with these axes that see every point, the nearest. To see a point at (x, y, z) from (px, py,
+// The nearest of all cameras with these axes that see every point. To see a point at (x, y, z) from (px, py,
 // d), where z grows towards the camera: |x - px| <= (d - z) t, so d t + px >= x + z t and d t - px >= -x + z
 // t.
 Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const PictureOptions& options,

@@ -27,7 +27,7 @@ class Occluders {
   std::unique_ptr<Scene> scene_;
 };
 
-// Where a pixel meets the surface, in eye space.
+// Surface point under a pixel, in eye space.
 struct Site {
   bool seen = false;
   Vec3f position = Vec3f::Zero();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Each pixel is cut into 3 x 3 cells, so that one of them has its centre; edges are smoothed by all nine.
-// What a pixel shows is what its centre shows, or else the cell nearest to it that shows something.
+// A pixel shows what its centre shows, or else the nearest cell that shows something.
 #include "stages/picture/picture.h"
 
 #include <algorithm>
@@ -49,7 +49,7 @@ struct Planes {
   }
 };
 
-// What is asked of a face or of a disc that is seen.
+// Queries that faces and discs answer alike, once they are seen.
 struct Surfaces {
   virtual ~Surfaces() = default;
   virtual Vec3 weights(std::int32_t primitive, const Vec3& ray) const = 0;

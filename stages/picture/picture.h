@@ -71,7 +71,7 @@ struct PictureOptions {
   }
 };
 
-// What is seen of a mesh; `primitive` counts its faces. All faces count, whichever way they are turned:
+// Renders a mesh; `primitive` counts its faces. All faces count, whichever way they are turned:
 // turning some over changes nothing. Vertices without a face do not count.
 //
 // All depend on nothing but their arguments: several threads may take pictures at once, and x86-64 machines
@@ -79,13 +79,13 @@ struct PictureOptions {
 // is nothing to see, or all of it is in one place.
 Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const RandomSource& random);
 
-// What is seen of a scan as discs around its points at right angles to the normals, large enough to leave no
-// gaps; `primitive` counts its points. The camera stands near the scan's own. Of discs that overlap, the one
-// whose centre is nearest is seen. The mesh, of which `scan` is one, tells which way is up.
+// Renders a scan as discs around its points, at right angles to the normals, large enough to close the gaps
+// between them; `primitive` counts its points. The camera stands near the scan's own. Of discs that overlap,
+// the one whose centre is nearest is seen. The mesh, of which `scan` is one, tells which way is up.
 Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& mesh,
                         const PictureOptions& options, const RandomSource& random);
 
-// What is seen of a point cloud as discs in the planes of its points; `primitive` counts its points. The
+// Renders a point cloud as discs in the planes of its points; `primitive` counts its points. The
 // camera stands near the viewpoint, where there is one outside of the cloud, and as for a mesh otherwise. The
 // partial mesh, which may be empty, tells which way is up.
 Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the rays of a picture meet first, found by going over the faces or discs, not over the rays.
+// First hits of the rays of a picture, found by going over the faces or discs and not over the rays.
 #pragma once
 
 #include <cstdint>
@@ -40,9 +40,9 @@ struct Seen {
 // there; of faces at one depth the first is seen. Leaves the normals to the caller.
 Seen see_faces(std::span<const Vec3> points, std::span<const Triangle> faces, const ImagePlane& plane);
 
-// What a point of a scan stands for: the part of the plane through it, at right angles to its normal, that
-// the scanner saw in the cell of its grid. Looked at along `ray` it is a round disc, on a slanted surface it
-// is long.
+// The part of the surface that a scan's point samples: of the plane through it, at right angles to its
+// normal, that the scanner saw in the cell of its grid. Looked at along `ray` it is a round disc, on a
+// slanted surface it is long.
 struct Disc {
   Vec3 centre;
   Vec3 normal;        // towards the scanner, unit length
@@ -51,7 +51,7 @@ struct Disc {
   double reach = 0;   // in the plane
 };
 
-// Of the discs that overlap at the front, the one is seen whose centre is nearest, by its own radius. Normals
+// Where discs overlap, a pixel shows the one whose centre is nearest, measured in its radius. Normals
 // are means over all of them.
 Seen see_discs(std::span<const Disc> discs, const ImagePlane& plane);
 

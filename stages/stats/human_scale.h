@@ -16,7 +16,7 @@ namespace salbench {
 // -infinity where it begins better, infinity where it never is. The curve has one value at least.
 double first_reached(std::span<const double> curve, double level, bool higher_is_better);
 
-// How often such a curve passes from one side of `level` to the other.
+// Number of times that such a curve passes from one side of `level` to the other.
 int crossings(std::span<const double> curve, double level);
 
 struct Equivalent {

@@ -24,7 +24,7 @@ double t_statistic(const Summary& summary, double hypothesis) {
   return away / (summary.sd / std::sqrt(static_cast<double>(summary.n)));
 }
 
-// What two one-sided tests at 0.05 compare with their margins.
+// The interval that two one-sided tests at 0.05 compare with their margins.
 Interval interval_90(const Summary& summary) {
   const double half = student_upper_quantile(kLevel, static_cast<double>(summary.n - 1)) * summary.sd /
                       std::sqrt(static_cast<double>(summary.n));

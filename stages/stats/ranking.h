@@ -28,8 +28,8 @@ struct Ranking {
   double critical = std::numeric_limits<double>::quiet_NaN();  // standard errors that bound every pair
 };
 
-// Of the columns of `scores` (units x models), with their resampled means; those of fewer than two units are
-// not read.
+// Ranks the columns of `scores` (units x models) with their resampled means, which are not read for fewer
+// than two units.
 Ranking rank_models(const Columns& scores, const Columns& resampled, bool higher_is_better);
 
 // Kendall's tau-b of two lists of values of the same models; NaN where one of them is constant.

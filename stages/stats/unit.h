@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What counts as one observation. The views of a mesh share its form and its participants: they are no
-// independent shapes, and intervals that take them for such are too narrow.
+// The unit of inference: what one observation is. The views of a mesh share its form and its participants:
+// they are no independent shapes, and intervals that take them for such are too narrow.
 #pragma once
 
 #include <array>
