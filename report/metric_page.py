@@ -13,7 +13,7 @@ def others(shop):
 
 def blocks(shop):
     """(title, blocks) of each section."""
-    return [("Ranking", attempt(ranking.table, shop, "ranking-others", others(shop))), ("Means", attempt(means, shop)),
+    return [("Ranking", attempt(ranking.table, shop, "ranking-others", others(shop)) + ranking.chance(shop, others(shop))), ("Means", attempt(means, shop)),
             *((f"Performance per class on {spoken(dataset)}", attempt(classes, shop, dataset))
               for dataset in statistics.shown(shop.results)),
             ("How many participants a model is worth", attempt(people.worth, shop, "worth-others", others(shop))),
@@ -21,10 +21,11 @@ def blocks(shop):
 
 
 def listing(shop):
-    rows = [[Cell(of.label), Cell(of.name), Cell(of.unit), Cell("lower" if of.lower else "higher")]
+    rows = [[Cell(of.label), Cell(of.name), Cell(of.unit), Cell("lower" if of.lower else "higher"), Cell(of.maps or "–")]
             for of in shop.results.metrics.values()]
-    return Table("metrics", "Metrics of the run, as run.yaml lists them: unit, and whether higher or lower is better.",
-                 ["Metric", "Column", "Unit", "Better"], rows, [False] * 4)
+    return Table("metrics", "Metrics of the run, as run.yaml lists them: unit, whether higher or lower is better, and whether they "
+                 "read maps matched to the histogram of the ground truth or as the models made them.",
+                 ["Metric", "Column", "Unit", "Better", "Maps"], rows, [False] * 5)
 
 
 def means(shop):

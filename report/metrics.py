@@ -9,7 +9,7 @@ TIE = 1e-12  # relative difference of equal means: the same scores summed in ano
 LEADING = 3  # metrics that every page shows; the others stand behind a menu
 
 _LABELS = {**PAPER, "auc_exact": "AUC (exact)", "auc_judd": "AUC (Judd)", "auc_borji": "AUC (Borji)", "cc": "CC",
-           "ig": "Information gain", "spearman": "Spearman", "kl": "KL", "kl_smoothed": "KL (smoothed)", "sim": "SIM",
+           "ig": "Information gain", "ig_centre": "Information gain (centre bias)", "spearman": "Spearman", "kl": "KL", "kl_smoothed": "KL (smoothed)", "sim": "SIM",
            "sim_minmax": "SIM (min-max)", "mse": "MSE", "mae": "MAE"}
 _ENDINGS = {"_multiplicity": "with multiplicity", "_area": "by area"}
 _DISTANCES = ("kl", "kl_smoothed", "mse", "mae")  # for results of a run.yaml that does not say what is better
@@ -52,6 +52,17 @@ class Metric:
     label: str
     unit: str = "1"
     lower: bool = False  # better
+    matching: str = ""   # of the maps that it reads: "histogram", "none"; empty if run.yaml does not say
+
+    @property
+    def maps(self):
+        """Which maps it reads, in words; empty where nobody said."""
+        return {"histogram": "matched", "none": "as they are"}.get(self.matching, "")
+
+    @property
+    def below(self):
+        """What stands below the label in tables: the paper's metrics read matched maps, which goes without saying."""
+        return "maps as they are" if self.matching == "none" else ""
 
     def best(self, scores):
         """The keys of the best scores: what every page and table sets in bold. Several where scores tie; none where no score
@@ -62,10 +73,10 @@ class Metric:
 
 
 def described(name, entry=None):
-    """entry: {"unit": ..., "better": ...} of run.yaml, if it has one."""
+    """entry: {"unit": ..., "better": ..., "matching": ...} of run.yaml, if it has one."""
     entry = entry if isinstance(entry, dict) else {}
     better = entry.get("better") or ("lower" if split(name)[0] in _DISTANCES else "higher")
-    return Metric(name, label_of(name), str(entry.get("unit") or "1"), better == "lower")
+    return Metric(name, label_of(name), str(entry.get("unit") or "1"), better == "lower", str(entry.get("matching") or ""))
 
 
 def leading(names):

@@ -20,13 +20,25 @@ def tables(shop):
     """A sentence per data set, and the table of the leading metrics."""
     shop.results.table("ranking.csv", *statistics.RANKING)
     notes = [Note(said) for dataset in statistics.shown(shop.results) if (said := said_of(shop.results, dataset))]
-    return notes + attempt(lacking, shop) + attempt(table, shop, "ranking", list(shop.results.leading))
+    leading = list(shop.results.leading)
+    return notes + attempt(lacking, shop) + attempt(table, shop, "ranking", leading) + chance(shop, leading)
 
 
 def lacking(shop):
     """No blocks, but Missing where the column "Of HS" has no file."""
     shop.results.table("human_share.csv", *statistics.SHARES)
     return []
+
+
+def chance(shop, metrics):
+    """The remarks of run.yaml on metrics by which chance or a constant map is as good as a model."""
+    remarks = shop.results.record.get("remarks")
+    notes = []
+    for remark in remarks if isinstance(remarks, list) else []:
+        if isinstance(remark, dict) and remark.get("metric") in metrics and remark.get("dataset") in DATASETS:
+            label = shop.results.metric(remark["metric"]).label
+            notes.append(Note(f"By the means of {label} on {spoken(remark['dataset'])}, {remark.get('remark')}."))
+    return notes
 
 
 def said_of(results, dataset):
@@ -43,7 +55,8 @@ def table(shop, identifier, metrics):
 
 def rows_of(shop, dataset, metric):
     """The ranked models, below them the references."""
-    head = [Cell(DATASETS[dataset]), Cell(shop.results.metric(metric).label)]
+    of = shop.results.metric(metric)
+    head = [Cell(DATASETS[dataset]), Cell(of.label, below=of.below)]
     try:
         means = {row["model"]: row for row in statistics.summary(shop.results, dataset, metric).to_dict("records")}
     except Missing:

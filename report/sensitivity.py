@@ -27,8 +27,8 @@ def tables(shop):
 
 def matching(shop):
     if shop.other is None:
-        return Note("Matched against unmatched maps: the program scores matched maps alone, and has no option that leaves the "
-                    "matching out. The conventions of another run, given with --compare, stand beside those of this one.",
+        return Note("Matched against unmatched maps: run the configuration again with metrics: {matching: none}, or histogram, and "
+                    "give the folder of its results with --compare; its conventions then stand beside those of this run.",
                     missing=True)
     return Note(f"Conventions of {shop.other.folder.resolve().name} are those of the run given with --compare, over the shapes "
                 "and models that both runs have; their taus have no interval.")
@@ -125,7 +125,7 @@ def table(shop, dataset):
         of = row.metric
         label = f"{of.label}, {row.run}" if row.run else of.label
         tau = cell(row.tau, 2, below=interval(row.low, row.high, 2).text if row.low == row.low else "")
-        line = [Cell(family_label(row.family)), Cell(label, below="lower is better" if of.lower else ""),
+        line = [Cell(family_label(row.family)), Cell(label, below=", ".join(filter(None, ("lower is better" if of.lower else "", of.below)))),
                 count_cell(shop.results, dataset, row.n, row.n_shapes), tau]
         for model in models:
             if model not in row.means:

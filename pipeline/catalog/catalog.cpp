@@ -12,6 +12,7 @@
 #include "pipeline/catalog/given_truth.h"
 #include "pipeline/catalog/human.h"
 #include "pipeline/catalog/loading.h"
+#include "stages/core/centre.h"
 #include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/point_cloud.h"
@@ -85,23 +86,31 @@ RowOf<ScalarField> add_given_map(Catalog& catalog, const ShapeRows& shape, const
       shape.points, kFiles<Source::map_file>);
 }
 
+ScalarField centre_bias_if(bool needed, Points points) {
+  return needed ? distances_from_centroid(points) : ScalarField{};
+}
+
+// The row where it is needed.
+template <class T>
+std::optional<RowOf<T>> only_if(bool needed, const RowOf<T>& row) {
+  return needed ? std::optional(row) : std::nullopt;
+}
+
 // Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
 // scores are found whatever these are.
 void add_scores(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model,
                 RowOf<FieldView> map, RowOf<FieldView> matched_map) {
   const std::string name = "scores." + model.name;
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
-  const auto only_if = []<class T>(bool needed, RowOf<T> row) {
-    return needed ? std::optional(row) : std::nullopt;
-  };
-  const bool by_area = any_by_area(metrics->all());
+  const bool by_area = any_by_area(metrics->all()), of_positions = any_of_positions(metrics->all());
   catalog.add(
       shape.shapes, {name, scores_version(metrics->all())},
-      [name, metrics](FieldView matched_values, FieldView values, const GroundTruth& truth, Points points,
-                      Surface surface, const MetricsOptions& options, const RandomSource& random) {
+      [name, metrics, of_positions](FieldView matched_values, FieldView values, const GroundTruth& truth,
+                                    Points points, Surface surface, const MetricsOptions& options,
+                                    const RandomSource& random) {
         Draws draws(random.rng(name));
         const Measures measures(std::max(matched_values.size(), values.size()),
-                                barycentric_areas(points, surface));
+                                barycentric_areas(points, surface), centre_bias_if(of_positions, points));
         return metrics->score([&](std::span<const Metric> of_part, Matching read) {
           return read == Matching::histogram
                      ? score(of_part, matched_values, truth, options, draws, measures)
@@ -109,8 +118,29 @@ void add_scores(Catalog& catalog, const ShapeRows& shape, const Config& config, 
         });
       },
       only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any(Matching::none), map),
-      shape.ground_truth, only_if(by_area, shape.points), only_if(by_area, shape.surface),
+      shape.ground_truth, only_if(by_area || of_positions, shape.points), only_if(by_area, shape.surface),
       section("metrics", config.metrics), kRandom);
+}
+
+// Scores of a constant map by the metrics that score it otherwise on each shape: what models are compared
+// with in remarks.
+void add_constant_scores(Catalog& catalog, const ShapeRows& shape, const Config& config) {
+  MetricsOptions varying = config.metrics;
+  varying.names.clear();
+  varying.matching.clear();  // a constant map stays as it is
+  for (const Metric& metric : chosen_metrics(config.metrics))
+    if (metric.constant_varies) varying.names.push_back(metric.name);
+  if (varying.names.empty()) return;
+  const std::vector<Metric> metrics = chosen_metrics(varying);
+  catalog.add(
+      shape.shapes, {fmt::format("scores.{}", kConstantMap), scores_version(metrics)},
+      [metrics, of_positions = any_of_positions(metrics)](const GroundTruth& truth, Points points,
+                                                          Surface surface, const MetricsOptions& options) {
+        return score(metrics, ScalarField(points.size(), 0.5), truth, options, Rng(0, "", ""),
+                     barycentric_areas(points, surface), centre_bias_if(of_positions, points));
+      },
+      shape.ground_truth, shape.points, only_if(any_by_area(metrics), shape.surface),
+      section("metrics", varying));
 }
 
 void add_model(Catalog& catalog, const ShapeRows& shape, const Config& config, const Model& model) {
@@ -245,6 +275,9 @@ Catalog make_catalog(const Config& config, const std::optional<Histogram>& given
     if (model.is_map() && on_scans) add_model(catalog, scans, config, model);
     if (model.is_map() && kinds.clouds) add_model(catalog, clouds, config, model);
   }
+  if (on_meshes) add_constant_scores(catalog, meshes, config);
+  if (on_scans) add_constant_scores(catalog, scans, config);
+  if (kinds.clouds) add_constant_scores(catalog, clouds, config);
   if (config.pictures != Pictures::none) {
     if (on_meshes) add_picture(catalog, config, Shapes::meshes, picture_of_mesh, mesh);
     if (on_scans) add_picture(catalog, config, Shapes::scans, picture_of_scan, scan, scans.normals, mesh);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pipeline/catalog/given_truth.h"
+#include "stages/core/centre.h"
 #include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
@@ -35,7 +36,8 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const Met
   // The same for every pair of groups.
   const auto measures = std::make_shared<const Measures>(
       mesh.vertices.size(),
-      any_by_area(metrics->all()) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{});
+      any_by_area(metrics->all()) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{},
+      any_of_positions(metrics->all()) ? distances_from_centroid(mesh.vertices) : ScalarField{});
   const auto draws = std::make_shared<Draws>(rng);
   return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
             return metrics->score([&](std::span<const Metric> of_part, Matching matching) {

@@ -12,7 +12,7 @@ namespace salbench {
 namespace {
 
 // In the tables and in the cache the name stands beside others: these mean something else there.
-constexpr std::array<std::string_view, 2> kTaken = {"GS", "Avg"};
+constexpr std::array<std::string_view, 3> kTaken = {"GS", "Avg", kConstantMap};
 constexpr std::size_t kLongestName = 40;
 
 }  // namespace

@@ -61,8 +61,9 @@ std::span<const ModelRow> model_rows() {
 }
 
 bool is_reference_model(std::string_view name) {
-  return std::ranges::any_of(model_rows(),
-                             [&](const ModelRow& row) { return row.is_reference && row.name == name; });
+  return name == kConstantMap || std::ranges::any_of(model_rows(), [&](const ModelRow& row) {
+           return row.is_reference && row.name == name;
+         });
 }
 
 }  // namespace salbench

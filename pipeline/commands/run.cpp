@@ -39,7 +39,14 @@ void print_summary(const Session& session, const Conclusions& conclusions) {
   fmt::print("to make a report of them: {} {}\n", report_command(), shell_word(setup.output.string()));
 }
 
-void write_results(Session& session, const RunRecord& record, const Arguments& arguments) {
+std::vector<ChanceRemark> remarks_on_chance(const RunState& run, std::vector<ResultRow> rows) {
+  const Config& config = run.config;
+  const std::vector<ResultRow> constant = rows_of_constant(rows, collect_constant(run), config.metrics);
+  rows.insert(rows.end(), constant.begin(), constant.end());
+  return chance_remarks(rows, chosen_metrics(config.metrics), config.statistics.unit);
+}
+
+void write_results(Session& session, RunRecord record, const Arguments& arguments) {
   const std::vector<ResultRow> rows = collect_results(record.run);
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
@@ -49,6 +56,7 @@ void write_results(Session& session, const RunRecord& record, const Arguments& a
       conclude(rows, chosen_metrics(config.metrics), config.statistics, config.seed);
   if (!record.interrupted || !rows.empty())
     write_tables(session.setup.output, record.run, rows, conclusions, remarks);
+  record.chance = remarks_on_chance(record.run, rows);
   write_record(session.setup.output, record);
   if (!arguments.quiet && !record.interrupted) print_summary(session, conclusions);
   if (record.interrupted)

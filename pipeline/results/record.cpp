@@ -139,8 +139,12 @@ std::string remark_lines(const RunRecord& record) {
                             yaml_quoted(remark));
     }
   }
-  return yaml.empty() ? "remarks: []\n"
-                      : "remarks:  # on shapes whose polygons, scale or unit are odd\n" + yaml;
+  for (const ChanceRemark& remark : record.chance)
+    yaml += fmt::format("  - {{dataset: {}, metric: {}, remark: {}}}\n", remark.dataset, remark.metric,
+                        yaml_quoted(remark.text));
+  return yaml.empty()
+             ? "remarks: []\n"
+             : "remarks:  # on odd shapes, and on metrics by which chance is as good as a model\n" + yaml;
 }
 
 std::string run_yaml(const RunRecord& record) {

@@ -5,8 +5,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "cache/folder_store.h"
+#include "pipeline/results/chance.h"
 #include "pipeline/results/results.h"
 
 namespace salbench {
@@ -19,6 +21,7 @@ struct RunRecord {
   double seconds = 0;
   bool interrupted = false;  // the tables hold what was finished
   Why why = {};              // of what was computed; empty: not recorded
+  std::vector<ChanceRemark> chance = {};
 };
 
 // run.yaml and timeline.csv. Throws StorageError.

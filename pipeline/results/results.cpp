@@ -40,9 +40,7 @@ ResultRow result_row(const Context& context, const JobRef& job, Scores scores) {
           job};
 }
 
-}  // namespace
-
-std::vector<ResultRow> collect_results(const RunState& run) {
+std::vector<ResultRow> collect(const RunState& run, bool of_constant) {
   struct Scored {
     std::size_t row;  // of the scores that the table is made of
     ValuePtr table;
@@ -51,7 +49,8 @@ std::vector<ResultRow> collect_results(const RunState& run) {
   const Catalog& catalog = run.context.catalog;
   std::vector<Scored> scored;
   for (std::size_t row = 0; row < catalog.rows.size(); ++row)
-    if (catalog.rows[row].kind == "score_table")
+    if (catalog.rows[row].kind == "score_table" &&
+        catalog.rows[row].name.ends_with(fmt::format(".{}", kConstantMap)) == of_constant)
       scored.push_back({catalog.rows[row].inputs[0], run.runner.result_so_far({row, Item::set()})});
 
   std::vector<ResultRow> rows;
@@ -63,6 +62,12 @@ std::vector<ResultRow> collect_results(const RunState& run) {
     }
   return rows;
 }
+
+}  // namespace
+
+std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, false); }
+
+std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, true); }
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
   Table table{.columns = {"dataset", "item", "class", "view", "model"}, .rows = {}};

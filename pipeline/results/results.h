@@ -51,6 +51,9 @@ struct RunState {
 // Read from the tables of scores, or for those that are still open from the scores that there are.
 std::vector<ResultRow> collect_results(const RunState& run);
 
+// Likewise of a constant map, by the metrics that score it otherwise on each shape.
+std::vector<ResultRow> collect_constant(const RunState& run);
+
 // The tables below have the metrics that the scores hold, in their order.
 using Metrics = std::vector<Metric>;
 

@@ -44,14 +44,27 @@ const ScalarField& Comparison::normalised_map() const {
   return once(normalised_map_, [&] { return min_max_normalised(compared_.map); });
 }
 
-const Density& Comparison::map_density(Weighting weighting) const {
-  return once(map_densities_,
-              [&] { return densities_of_map(compared_.map, compared_.measures); })[index(weighting)];
+Distributed Comparison::map_distributed(Weighting weighting) const {
+  const auto& densities =
+      once(map_densities_, [&] { return densities_of_map(compared_.map, compared_.measures); });
+  return {compared_.map, densities[index(weighting)]};
+}
+
+Distributed Comparison::uniform(Weighting weighting) const {
+  return {compared_.map, {0, measure(weighting).unit / measure(weighting).total}};
+}
+
+Distributed Comparison::centre_bias(Weighting weighting) const {
+  const ScalarField& bias = compared_.measures.centre_bias;
+  if (bias.empty()) return {};
+  const auto& densities = once(centre_densities_, [&] { return densities_of_map(bias, compared_.measures); });
+  return {bias, densities[index(weighting)]};
 }
 
 const DensityScores& Comparison::density_scores(Weighting weighting) const {
   return once(density_scores_, [&] {
-    const Densities densities = {map_density(Weighting::vertex), map_density(Weighting::area)};
+    const Densities densities = {map_distributed(Weighting::vertex).density,
+                                 map_distributed(Weighting::area).density};
     return salbench::density_scores(
         {compared_.map, compared_.raw_saliency, normalised_map(), compared_.saliency, densities},
         compared_.measures);

@@ -39,7 +39,9 @@ class Comparison {
   const Measure& measure(Weighting weighting) const { return compared_.measures[weighting]; }
   const Distribution& map_distribution(Weighting weighting) const;
   const Moments& map_moments(Weighting weighting) const;
-  const Density& map_density(Weighting weighting) const;
+  Distributed map_distributed(Weighting weighting) const;
+  Distributed uniform(Weighting weighting) const;
+  Distributed centre_bias(Weighting weighting) const;  // no distribution where it is not known
   // These need saliency values.
   const DensityScores& density_scores(Weighting weighting) const;
   const Errors& errors(Weighting weighting) const;
@@ -81,7 +83,7 @@ class Comparison {
   mutable Both<Distribution> map_distributions_;
   mutable Both<Moments> map_moments_;        // without saliency
   mutable Both<PairMoments> with_saliency_;  // of map and saliency
-  mutable Both<Density> map_densities_;
+  mutable Both<Density> map_densities_, centre_densities_;
   mutable Both<DensityScores> density_scores_;
   mutable Both<Errors> errors_;
   mutable std::array<std::optional<TopScores>, 2> top_scores_;

@@ -16,8 +16,6 @@ namespace salbench {
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double kEpsilon = 2.2204e-16;  // as the MIT benchmark has it: Matlab's eps to five digits
-constexpr double kSmoothing = 1e-12;
 
 // The weighed sum of a field, which its density is divided by.
 struct WeighedSum {
@@ -92,7 +90,7 @@ struct AllDistributions {
 };
 
 AllDistributions distributions_of(const DensityInput& in, const Measures& measures) {
-  WeighedSum smoothed_map{kSmoothing}, smoothed_saliency{kSmoothing}, saliency, normalised_map,
+  WeighedSum smoothed_map{kValueFloor}, smoothed_saliency{kValueFloor}, saliency, normalised_map,
       normalised_saliency;
   for (std::size_t i = 0; i < measures.size(); ++i) {
     const PerWeighting weight = measures.weight(i);
@@ -153,7 +151,7 @@ class ScoreSums {
   };
 
   PerWeighting ratio(double map, double saliency) const {
-    return kEpsilon + all_.raw.g(saliency) / (all_.raw.p(map) + kEpsilon);
+    return kDensityFloor + all_.raw.g(saliency) / (all_.raw.p(map) + kDensityFloor);
   }
   PerWeighting smoothed_ratio(double map, double saliency) const {
     return all_.smoothed.g(saliency) / all_.smoothed.p(map);
@@ -239,13 +237,12 @@ std::array<Errors, 2> errors(std::span<const double> normalised_map,
   return {of(Weighting::vertex), of(Weighting::area)};
 }
 
-double information_gain(std::span<const double> map, const Density& density,
-                        std::span<const std::int32_t> picked, const Measure& measure) {
-  if (!density.defined() || picked.empty()) return kUndefined;
-  const double baseline = std::log2(kEpsilon + measure.unit / measure.total);
+double information_gain(const Distributed& map, const Distributed& baseline,
+                        std::span<const std::int32_t> picked) {
+  if (!map.density.defined() || !baseline.density.defined() || picked.empty()) return kUndefined;
   double sum = 0;
   for (const std::int32_t i : picked)
-    sum += std::log2(kEpsilon + density.of(map[static_cast<std::size_t>(i)])) - baseline;
+    sum += std::log2(kDensityFloor + map.at(i)) - std::log2(kDensityFloor + baseline.at(i));
   return sum / static_cast<double>(picked.size());
 }
 

@@ -17,6 +17,13 @@
 
 namespace salbench {
 
+// Floors, which keep logarithms of zeros finite. The first is added to densities, in their unit: the share of
+// a vertex in the whole, or by area the multiple of the uniform density; it is that of the MIT benchmark,
+// Matlab's eps to five digits. The second is added to values: of a map, which has them in [0, 1], and of the
+// ground truth in its own unit.
+inline constexpr double kDensityFloor = 2.2204e-16;
+inline constexpr double kValueFloor = 1e-12;
+
 // Density of a field where it has this value: scale * value + offset. NaN if there is no such distribution.
 struct Density {
   double scale = std::numeric_limits<double>::quiet_NaN();
@@ -35,11 +42,12 @@ struct DensityInput {
 };
 
 struct DensityScores {
-  // Kullback-Leibler divergence of the map from the ground truth, in nats: sum (w/u) g ln(eps + g / (p +
-  // eps)), g and p the densities, eps = 2.2204e-16. Per vertex these are the maps scaled to the sum 1.
+  // Kullback-Leibler divergence of the map from the ground truth, in nats: sum (w/u) g ln(e + g / (p + e)),
+  // g and p the densities, e = kDensityFloor. Per vertex these are the maps scaled to the sum 1.
   // [bylinskii2019]
   double kl;
-  // The same of smoothed fields, s + 1e-12 in place of s and no eps: sum (w/u) g ln(g / p). [kummerer2018]
+  // The same of smoothed fields, s + kValueFloor in place of s and no e: sum (w/u) g ln(g / p).
+  // [kummerer2018]
   double kl_smoothed;
   // Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
   double sim, sim_of_normalised;
@@ -54,10 +62,17 @@ struct Errors {
 std::array<Errors, 2> errors(std::span<const double> normalised_map,
                              std::span<const double> normalised_saliency, const Measures& measures);
 
-// Information gain over the uniform distribution, in bits per pick: mean over the picks of
-// log2(eps + p) - log2(eps + u/W), W the total weight. 0 for a constant map, NaN without picks.
-// [kummerer2015]
-double information_gain(std::span<const double> map, const Density& density,
-                        std::span<const std::int32_t> picked, const Measure& measure);
+// A field as a distribution.
+struct Distributed {
+  std::span<const double> field;  // n
+  Density density;
+
+  double at(std::int32_t i) const { return density.of(field[static_cast<std::size_t>(i)]); }
+};
+
+// Information gain of p over a baseline b, in bits per pick: mean over the picks of log2(e + p) - log2(e +
+// b), e = kDensityFloor. NaN without picks, and where one of the two is no distribution. [kummerer2015]
+double information_gain(const Distributed& map, const Distributed& baseline,
+                        std::span<const std::int32_t> picked);
 
 }  // namespace salbench

@@ -23,10 +23,12 @@ Measure area_measure(std::span<const double> areas) {
   return measure;
 }
 
-Measures::Measures(std::size_t n, std::span<const double> areas)
+Measures::Measures(std::size_t n, std::span<const double> areas, std::span<const double> centre)
     : vertex(vertex_measure(n)),
-      area(areas.empty() ? Measure{std::vector<double>(n, 0.0), 0, 0} : area_measure(areas)) {
+      area(areas.empty() ? Measure{std::vector<double>(n, 0.0), 0, 0} : area_measure(areas)),
+      centre_bias(centre.begin(), centre.end()) {
   CHECK_EQ(area.size(), n);
+  if (!centre.empty()) CHECK_EQ(centre.size(), n);
 }
 
 bool is_constant(std::span<const double> field, const Measure& measure) {

@@ -36,10 +36,10 @@ Measure area_measure(std::span<const double> areas);
 // two of a PerWeighting wait together.
 using PerWeighting = Eigen::Array2d;
 
-// Both measures of a shape.
+// Both measures of a shape, and its centre bias.
 struct Measures {
-  Measures(std::size_t n,
-           std::span<const double> areas);  // areas: n, or none, and nothing is weighed by them
+  // areas: n, or none, and nothing is weighed by them; centre: n values >= 0, or none.
+  Measures(std::size_t n, std::span<const double> areas, std::span<const double> centre = {});
 
   const Measure& operator[](Weighting weighting) const {
     return weighting == Weighting::vertex ? vertex : area;
@@ -48,6 +48,7 @@ struct Measures {
   std::size_t size() const { return vertex.size(); }
 
   Measure vertex, area;
+  ScalarField centre_bias;  // not a density yet: relative to each other
 };
 
 // A field that may have other values by area, as ranks have. Both are n long.

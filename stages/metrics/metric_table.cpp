@@ -39,7 +39,13 @@ double height_of_picks(const MetricInput& in) {
 }
 
 double gain(const MetricInput& in) {
-  return information_gain(in.map, in.comparison.map_density(in.weighting), in.picked, in.measure());
+  return information_gain(in.comparison.map_distributed(in.weighting), in.comparison.uniform(in.weighting),
+                          in.picked);
+}
+
+double gain_over_centre_bias(const MetricInput& in) {
+  return information_gain(in.comparison.map_distributed(in.weighting),
+                          in.comparison.centre_bias(in.weighting), in.picked);
 }
 
 // Metrics of the saliency values are undefined without any.
@@ -86,6 +92,12 @@ BaseMetric unmatched(BaseMetric row) {
   return row;
 }
 
+// The scores of a constant map are not the same for all shapes.
+BaseMetric varying(BaseMetric row) {
+  row.metric.constant_varies = true;
+  return row;
+}
+
 constexpr const char* kDeviations = "standard deviations";
 
 std::vector<BaseMetric> base_metrics() {
@@ -104,20 +116,20 @@ std::vector<BaseMetric> base_metrics() {
        true},
       unmatched({{"ig", "bits per pick", "information gain over the uniform map", gain}, true}),
       {{"spearman", "1", "rank correlation with the saliency of the ground truth", of_saliency<of_ranks>}},
-      unmatched(
+      varying(unmatched(
           {{"kl", "nats", "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-            of_saliency<of_densities<&DensityScores::kl>>, 1, false}}),
-      unmatched(
+            of_saliency<of_densities<&DensityScores::kl>>, 1, false}})),
+      varying(unmatched(
           {{"kl_smoothed", "nats", "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-            of_saliency<of_densities<&DensityScores::kl_smoothed>>, 1, false}}),
-      unmatched({{"sim", "1", "intersection of map and ground truth as distributions",
-                  of_saliency<of_densities<&DensityScores::sim>>}}),
-      unmatched({{"sim_minmax", "1", "the same after min-max normalisation",
-                  of_saliency<of_densities<&DensityScores::sim_of_normalised>>}}),
-      {{"mse", "1", "mean squared difference after min-max normalisation",
-        of_saliency<of_errors<&Errors::mse>>, 2, false}},
-      {{"mae", "1", "mean absolute difference after min-max normalisation",
-        of_saliency<of_errors<&Errors::mae>>, 2, false}},
+            of_saliency<of_densities<&DensityScores::kl_smoothed>>, 1, false}})),
+      varying(unmatched({{"sim", "1", "intersection of map and ground truth as distributions",
+                          of_saliency<of_densities<&DensityScores::sim>>}})),
+      varying(unmatched({{"sim_minmax", "1", "the same after min-max normalisation",
+                          of_saliency<of_densities<&DensityScores::sim_of_normalised>>}})),
+      varying({{"mse", "1", "mean squared difference after min-max normalisation",
+                of_saliency<of_errors<&Errors::mse>>, 2, false}}),
+      varying({{"mae", "1", "mean absolute difference after min-max normalisation",
+                of_saliency<of_errors<&Errors::mae>>, 2, false}}),
   };
   const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
     const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };
@@ -132,6 +144,13 @@ std::vector<BaseMetric> base_metrics() {
      ...);
   };
   add_top(std::make_index_sequence<kTopPercents.size()>());
+  BaseMetric over_centre_bias = varying(
+      unmatched({{"ig_centre", "bits per pick",
+                  "information gain over the centre bias of the shape, the distance from its centroid",
+                  gain_over_centre_bias},
+                 true}));
+  over_centre_bias.metric.reads_positions = true;
+  rows.push_back(over_centre_bias);
   return rows;
 }
 

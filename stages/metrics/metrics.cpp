@@ -113,6 +113,10 @@ bool any_by_area(std::span<const Metric> metrics) {
                              [](const Metric& metric) { return metric.weighting == Weighting::area; });
 }
 
+bool any_of_positions(std::span<const Metric> metrics) {
+  return std::ranges::any_of(metrics, &Metric::reads_positions);
+}
+
 Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
              const MetricsOptions& options, Draws& draws, const Measures& measures) {
   check(options);
@@ -121,7 +125,9 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
   CHECK_EQ(measures.size(), map.size());
   if (const auto seen = seen_points(truth.saliency)) {
     if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
-    const Measures of_seen(seen->size(), values_at(measures.area.weight, *seen));
+    const ScalarField& centre = measures.centre_bias;
+    const Measures of_seen(seen->size(), values_at(measures.area.weight, *seen),
+                           centre.empty() ? centre : values_at(centre, *seen));
     return score(metrics, values_at(map, *seen), truth_at(truth, *seen), options, draws, of_seen);
   }
   require_finite(map, "the map");
@@ -146,14 +152,22 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
 }
 
 Scores score(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
-             const MetricsOptions& options, const Rng& rng, std::span<const double> areas) {
+             const MetricsOptions& options, const Rng& rng, std::span<const double> areas,
+             std::span<const double> centre_bias) {
   Draws draws(rng);
-  return score(metrics, map, truth, options, draws, Measures(map.size(), areas));
+  return score(metrics, map, truth, options, draws, Measures(map.size(), areas, centre_bias));
 }
 
 Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
              std::span<const double> areas) {
   return score(chosen_metrics(options), map, truth, options, rng, areas);
+}
+
+std::optional<double> score_of_constant(const Metric& metric, const MetricsOptions& options) {
+  if (metric.constant_varies) return {};
+  const GroundTruth truth{{0, 0.5, 1}, {{1}}};  // of any shape: three points
+  const ScalarField areas(3, 1.0);
+  return score({&metric, 1}, ScalarField(3, kMiddle), truth, options, Rng(0, "", ""), areas).values[0];
 }
 
 MetricsByMatching::MetricsByMatching(const MetricsOptions& options) : all_(chosen_metrics(options)) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -92,6 +93,8 @@ struct Metric {
   Weighting weighting = Weighting::vertex;
   PickCount picks = PickCount::once;
   Matching matching = Matching::histogram;  // unless the options say otherwise
+  bool reads_positions = false;             // of the points
+  bool constant_varies = false;             // the score of a constant map differs from shape to shape
 };
 
 // The table of metrics: a new one is a function and a row at the end of its part. A metric whose values
@@ -108,9 +111,11 @@ std::vector<Metric> chosen_metrics(const MetricsOptions& options);
 std::int32_t scores_version(std::span<const Metric> metrics);
 
 bool any_by_area(std::span<const Metric> metrics);  // they read the areas of the points
+bool any_of_positions(std::span<const Metric> metrics);
 
 // The metrics of one map, in their order. What the ground truth has nothing for is NaN: metrics of picks
-// without picks, metrics of saliency without saliency values, and metrics by area without areas. Points
+// without picks, metrics of saliency without saliency values, metrics by area without areas, and those of the
+// centre bias where it is not known. Points
 // whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. A constant map
 // counts as 0.5 everywhere, whichever constant it is. Throws InputError where the ground truth is not of this
 // shape: picks out of range, or another number of points; and for other values that are not finite.
@@ -118,10 +123,14 @@ bool any_by_area(std::span<const Metric> metrics);  // they read the areas of th
 Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
              const MetricsOptions& options, Draws& draws, const Measures& measures);
 Scores score(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
-             const MetricsOptions& options, const Rng& rng, std::span<const double> areas = {});
+             const MetricsOptions& options, const Rng& rng, std::span<const double> areas = {},
+             std::span<const double> centre_bias = {});
 // Those that the options name.
 Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
              std::span<const double> areas = {});
+
+// Score of a constant map; nothing where it differs from shape to shape.
+std::optional<double> score_of_constant(const Metric& metric, const MetricsOptions& options);
 
 // The metrics chosen, apart by their matching. Each part is scored on its own, and the scores are put
 // together in the order of the table.

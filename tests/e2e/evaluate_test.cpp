@@ -190,7 +190,7 @@ TEST(Evaluate, NamesAndFoldersThatWillNotDo) {
     EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
     return run.err;
   };
-  for (const char* taken : {"PS", "HS", "LS", "GS", "Avg"})
+  for (const char* taken : {"PS", "HS", "LS", "GS", "Avg", "constant"})
     EXPECT_THAT(complaint("own", taken), AllOf(HasSubstr("--name"), HasSubstr(taken)));
   for (const char* bad : {"", "a b", "../x", "ä"}) EXPECT_THAT(complaint("own", bad), HasSubstr("letters"));
   EXPECT_THAT(complaint("empty", "OWN"), AllOf(HasSubstr("--maps"), HasSubstr("1.val")));
@@ -217,6 +217,23 @@ TEST(Evaluate, MatchingByNameIsThatOfTheMapsThemselves) {
   const auto of_map = scores_of(toy, "PS", names);
   EXPECT_EQ(scores_of(toy, "OWN", names), of_map);
   for (std::size_t i = 0; i < of_map.size(); ++i) EXPECT_NE(of_map[i], of_matched[i]) << names[i];
+}
+
+// A constant map that is given is level with the one that remarks speak of, by every metric.
+TEST(Evaluate, AConstantMapIsLevelWithTheConstantMapOfTheRemarks) {
+  const Workspace toy("dataset: {scans: false}\nmodels: {PS: }\nmetrics: all\n");
+  std::string flat;
+  for (std::size_t i = 0; i < kVertices; ++i) flat += "7\n";
+  for (const char* name : {"flat/1.val", "flat/2.val"}) {
+    fs::create_directories(toy / "flat");
+    toy.write(name, flat);
+  }
+  ASSERT_EQ(toy.salbench("evaluate", {"--maps", (toy / "flat").string(), "--name", "FLAT"}).status, 0);
+  const std::string record = read_file(toy.out() / "run.yaml");
+  for (const Metric& metric : metric_table())
+    EXPECT_THAT(lines_with(record, fmt::format("dataset: meshes, metric: {}, ", metric.name)),
+                testing::ElementsAre(HasSubstr("FLAT (level)")))
+        << metric.name;
 }
 
 }  // namespace

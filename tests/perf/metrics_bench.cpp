@@ -40,8 +40,8 @@ void score_one_map(benchmark::State& state, bool all) {
   std::vector<Metric> metrics = chosen_metrics(options);
   if (all) metrics.assign(metric_table().begin(), metric_table().end());
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        score(metrics, example.map, example.truth, options, Rng(1, "scores", "52"), example.areas));
+    benchmark::DoNotOptimize(score(metrics, example.map, example.truth, options, Rng(1, "scores", "52"),
+                                   example.areas, example.areas));
 }
 BENCHMARK_CAPTURE(score_one_map, papers, false)
     ->Args({10000, 450})
@@ -56,8 +56,8 @@ BENCHMARK_CAPTURE(score_one_map, all, true)
 void one_metric(benchmark::State& state, const Metric& metric) {
   const Example example(10000, 450);
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        score({&metric, 1}, example.map, example.truth, {}, Rng(1, "scores", "52"), example.areas));
+    benchmark::DoNotOptimize(score({&metric, 1}, example.map, example.truth, {}, Rng(1, "scores", "52"),
+                                   example.areas, example.areas));
 }
 const int registered = [] {
   for (const Metric& metric : metric_table())

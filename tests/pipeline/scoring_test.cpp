@@ -35,8 +35,10 @@ TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
 TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
   run();
   const std::string paper_results = results_;
-  const auto computed = run(std::string(kToyConfig) + "metrics: [kl, auc, auc_judd_area]\n");
-  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores") + jobs_.of_kind("score_table")));
+  const std::string further = std::string(kToyConfig) + "metrics: [kl, auc, auc_judd_area]\n";
+  const auto computed = run(further);
+  const JobCounts jobs(further);
+  EXPECT_THAT(computed, SizeIs(jobs.of_kind("scores") + jobs.of_kind("score_table")));
   EXPECT_THAT(computed, Each(AnyOf(HasSubstr("scores."), HasSubstr("score_table."))));
   EXPECT_THAT(results_, HasSubstr("model,auc,kl,auc_judd_area,n_points"));
   EXPECT_THAT(run(std::string(kToyConfig) + "metrics: {names: [auc_judd_area, kl, auc]}\n"), IsEmpty())
@@ -88,10 +90,25 @@ TEST_F(RunnerTest, ScoresReadWhatTheirMetricsDo) {
   EXPECT_THAT(inputs_of("metrics: {names: kl, matching: histogram}\n"),
               ElementsAre("matched.PS", "scan_ground_truth"));
   EXPECT_THAT(inputs_of("metrics: [nss, kl]\n"), ElementsAre("matched.PS", "map.PS", "scan_ground_truth"));
+  EXPECT_THAT(inputs_of("metrics: ig_centre\n"), ElementsAre("map.PS", "scan_ground_truth", "scan"));
   EXPECT_THAT(inputs_of("metrics: nss_area\n"),
               ElementsAre("matched.PS", "scan_ground_truth", "scan", "surface"));
   EXPECT_THAT(inputs_of("metrics: [nss, kl_area]\n"),
               ElementsAre("matched.PS", "map.PS", "scan_ground_truth", "scan", "surface"));
+}
+
+TEST_F(RunnerTest, OnlyMetricsThatNeedItScoreAConstantMap) {
+  const auto shapes = [&](const std::string& metrics) {
+    ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
+    toy.run();
+    const std::vector<ResultRow> constant = collect_constant(toy.state());
+    for (const ResultRow& row : toy.results()) EXPECT_NE(row.model, kConstantMap);
+    return constant.size();
+  };
+  EXPECT_EQ(shapes(""), 0U);
+  EXPECT_EQ(shapes("metrics: [nss, ig, auc_top5]\n"), 0U);
+  EXPECT_EQ(shapes("metrics: [nss, kl]\n"), jobs_.shapes());
+  EXPECT_EQ(shapes("metrics: {names: [mse, ig_centre_area]}\n"), jobs_.shapes());
 }
 
 constexpr const char* kWithPeople = "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\n";

@@ -12,9 +12,9 @@ import twin
 
 MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
 METRICS = ("auc", "auc_exact", "nss", "cc", "lcc")
-_PICKED = ("auc", "auc_exact", "nss", "auc_judd", "auc_borji", "ig")
+_PICKED = ("auc", "auc_exact", "nss", "auc_judd", "auc_borji", "ig", "ig_centre")
 _PER_VERTEX = (*METRICS, "auc_judd", "auc_borji", "ig", "spearman", "kl", "kl_smoothed", "sim", "sim_minmax", "mse", "mae",
-               *(f"{kind}_top{share}" for kind in ("auc", "nss") for share in (20, 10, 5, 1)),
+               *(f"{kind}_top{share}" for kind in ("auc", "nss") for share in (20, 10, 5, 1)), "ig_centre",
                *(f"{name}_multiplicity" for name in _PICKED))
 ALL_METRICS = (*_PER_VERTEX, *(f"{name}_area" for name in _PER_VERTEX))  # what `metrics: all` chooses
 CLASSES = ("human", "teddy", "glasses", "spring")
@@ -55,10 +55,15 @@ def with_metrics(results, metrics, seed=7):
     return made.assign(n_points=results["n_points"], n_picks=results["n_picks"])
 
 
+def matching_of(metric):
+    return "none" if metric.split("_")[0] in ("kl", "sim", "ig") else "histogram"
+
+
 def metric_lines(metrics):
     """The block `metrics` of run.yaml."""
     return "metrics:  # columns of the tables\n" + "".join(
-        f'  {metric}: {{unit: "1", better: {"lower" if is_distance(metric) else "higher"}}}\n' for metric in metrics)
+        f'  {metric}: {{unit: "1", better: {"lower" if is_distance(metric) else "higher"}, matching: {matching_of(metric)}}}\n'
+        for metric in metrics)
 
 
 def results_table(items, models=MODELS, views=12, seed=1, datasets=("meshes", "scans")):

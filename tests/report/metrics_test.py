@@ -30,9 +30,9 @@ class Names(unittest.TestCase):
         self.assertEqual(metrics.family_of("of_tomorrow_area"), "of")
 
     def test_every_metric_of_the_program_has_its_own_label(self):
-        self.assertEqual(len(fixture.ALL_METRICS), 58)
+        self.assertEqual(len(fixture.ALL_METRICS), 62)
         labels = [metrics.label_of(name) for name in fixture.ALL_METRICS]
-        self.assertEqual(len(set(labels)), 58)
+        self.assertEqual(len(set(labels)), 62)
         self.assertFalse([label for label in labels if "_" in label])
 
     def test_what_leads(self):
@@ -117,7 +117,10 @@ class AllMetrics(support.ReportTest):
         table = fixture.results_table(fixture.eight_meshes()[:4], MODELS, views=2)
         cls.table = fixture.with_metrics(table, fixture.ALL_METRICS)
         cls.table.loc[cls.table["model"] == "LS", "auc_judd_area"] -= 0.5  # last under this convention
-        fixture.write_results(cls.out, [], MODELS, results=cls.table, extra=fixture.metric_lines(fixture.ALL_METRICS))
+        remarks = ("remarks:\n  - {item: \"1\", remark: \"odd\"}\n"
+                   "  - {dataset: meshes, metric: nss, remark: \"a constant map is level with or ahead of LS (level)\"}\n"
+                   "  - {dataset: scans, metric: kl, remark: \"chance (RS) is level with or ahead of PS (by 3.1)\"}\n")
+        fixture.write_results(cls.out, [], MODELS, results=cls.table, extra=fixture.metric_lines(fixture.ALL_METRICS) + remarks)
         cls.to = cls.folder / "report"
         with support.without_drawing():
             status, errors = support.make(cls.out, cls.to)
@@ -132,13 +135,25 @@ class AllMetrics(support.ReportTest):
         self.assertNotIn("table-classes-meshes-kl", self.index)
         self.assertLess(len(self.index), 400_000)
 
-    def test_the_other_55_stand_behind_a_menu(self):
+    def test_the_other_59_stand_behind_a_menu(self):
         self.assertIn('href="metrics.html"', self.index)
         options = re.findall(r"<option>(.*?)</option>", self.other[:self.other.index("</form>")])
-        self.assertEqual(len(options), 55)
+        self.assertEqual(len(options), 59)
         self.assertEqual({row[2] for row in support.rows(self.other, "means-others")}, set(options))
         self.assertEqual({row[0] for row in support.rows(self.other, "classes-scans-others")}, set(options))
-        self.assertEqual(len(support.rows(self.other, "metrics")), 58)
+        self.assertEqual(len(support.rows(self.other, "metrics")), 62)
+
+    def test_metrics_are_listed_with_the_maps_that_they_read(self):
+        maps = {row[1]: row[4] for row in support.rows(self.other, "metrics")}
+        self.assertEqual({maps[name] for name in ("kl", "sim_area", "ig_centre_multiplicity")}, {"as they are"})
+        self.assertEqual({maps[name] for name in ("auc", "lcc_area", "mse")}, {"matched"})
+        self.assertIn("maps as they are", next(row[1] for row in support.rows(self.other, "ranking-others") if row[1].startswith("KL")))
+
+    def test_remarks_on_chance_stand_below_the_ranking_of_their_metric(self):
+        on_index = "By the means of NSS on meshes, a constant map is level with or ahead of LS (level)."
+        on_other = "By the means of KL on scans, chance (RS) is level with or ahead of PS (by 3.1)."
+        self.assertEqual([on_index in self.index, on_other in self.index], [True, False])
+        self.assertEqual([on_index in self.other, on_other in self.other], [False, True])
 
     def test_best_of_a_distance_is_the_lowest(self):
         body = self.other[self.other.index('id="table-means-others"'):]
@@ -162,7 +177,7 @@ class AllMetrics(support.ReportTest):
         text = (self.to / "data/scores.js").read_text()
         data = json.loads(text.removeprefix("salbench.scores = ").removesuffix(";\n"))
         self.assertEqual(list(data["scores"]), ["auc", "nss", "lcc"])
-        self.assertEqual(len(data["files"]), 55)
+        self.assertEqual(len(data["files"]), 59)
         self.assertEqual(set(data["lower"]), {name for name in fixture.ALL_METRICS if fixture.is_distance(name)})
         script = (self.to / data["files"]["kl"]).read_text()
         rows = json.loads(script.removeprefix('salbench.scores.scores["kl"] = ').removesuffix(";\n"))
@@ -178,7 +193,7 @@ class AllMetrics(support.ReportTest):
 
     def test_sensitivity_is_scipys_and_marks_what_changes(self):
         rows = {row[1].split("  ")[0]: row for row in support.rows(self.index, "sensitivity-meshes")}
-        self.assertEqual(len(rows), 58)
+        self.assertEqual(len(rows), 62)
         means = {}
         for name in ("auc", "auc_judd_area", "auc_top1"):
             wide = self.table[self.table["dataset"] == "meshes"].pivot(index="item", columns="model", values=name)
@@ -210,7 +225,7 @@ class AllMetrics(support.ReportTest):
 
     def test_sensitivity_as_numbers(self):
         numbers = pandas.read_csv(self.to / "data/sensitivity-meshes.csv")
-        self.assertEqual(numbers["metric"].nunique(), 58)
+        self.assertEqual(numbers["metric"].nunique(), 62)
         distances = numbers[numbers["metric"] == "kl"]
         self.assertEqual(distances.sort_values("mean")["rank"].tolist(), [1, 2, 3])
 
@@ -252,12 +267,12 @@ class FewMetrics(support.ReportTest):
         self.assertEqual(rows["AUC, unmatched"][3], "−1.00")
         self.assertEqual(rows["AUC (exact), unmatched"][3], rows["AUC (exact)"][3].split()[0])
         self.assertEqual(len(rows["AUC"]), 4 + 4)
-        self.assertNotIn("the program scores matched maps alone", index)
+        self.assertNotIn("run the configuration again with metrics: {matching: none}", index)
 
     def test_what_a_run_without_a_second_one_lacks(self):
         items = fixture.eight_meshes()[:2]
         fixture.write_results(self.folder / "single", items, results=fixture.results_table(items, views=1))
-        self.assertIn("the program scores matched maps alone", support.page(self.report("single")))
+        self.assertIn("run the configuration again with metrics: {matching: none}", support.page(self.report("single")))
 
 
 if __name__ == "__main__":

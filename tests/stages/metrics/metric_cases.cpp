@@ -21,7 +21,7 @@ std::string list(const Numbers& numbers) {
 }
 
 struct Case {
-  ScalarField map, areas;
+  ScalarField map, areas, centre_bias;
   GroundTruth truth;
 };
 
@@ -38,7 +38,7 @@ Case random_case(Rng& rng) {
     for (double& v : values) v = rng.uniform() < zeros ? 0 : std::round(rng.uniform() * levels) / levels;
     return constant ? ScalarField(n, value) : values;
   };
-  Case random{field(), {}, {field(), {}, false}};
+  Case random{field(), {}, {}, {field(), {}, false}};
   for (std::size_t i = 0; i < n; ++i) random.areas.push_back(rng.below(10) == 0 ? 0 : 0.01 + rng.uniform());
   const std::size_t participants = rng.below(4);
   for (std::size_t k = 0; k < participants; ++k) {
@@ -50,12 +50,13 @@ Case random_case(Rng& rng) {
     random.truth.picks.resize(1);
     for (std::size_t i = 0; i < n; ++i) random.truth.picks[0].push_back(static_cast<std::int32_t>(i));
   }
+  for (std::size_t i = 0; i < n; ++i) random.centre_bias.push_back(rng.below(10) == 0 ? 0 : rng.uniform());
   return random;
 }
 
 void print_case(const Case& random, const std::string& item, const MetricsOptions& options) {
-  const Scores scores =
-      score(metric_table(), random.map, random.truth, options, Rng(1, "scores", item), random.areas);
+  const Scores scores = score(metric_table(), random.map, random.truth, options, Rng(1, "scores", item),
+                              random.areas, random.centre_bias);
   std::vector<std::int32_t> picks;
   for (const auto& participant : random.truth.picks)
     picks.insert(picks.end(), participant.begin(), participant.end());
@@ -65,9 +66,9 @@ void print_case(const Case& random, const std::string& item, const MetricsOption
                           std::isnan(scores.values[m]) ? "NaN" : fmt::format("{}", scores.values[m]));
   fmt::print(
       "{{\"item\": \"{}\", \"splits\": {}, \"thresholds\": {}, \"constant_nss\": {}, \"map\": {}, "
-      "\"saliency\": {}, \"areas\": {}, \"picks\": {}, \"values\": {{{}}}}}\n",
+      "\"saliency\": {}, \"areas\": {}, \"centre_bias\": {}, \"picks\": {}, \"values\": {{{}}}}}\n",
       item, options.splits, options.thresholds, options.constant_nss, list(random.map),
-      list(random.truth.saliency), list(random.areas), list(picks), values);
+      list(random.truth.saliency), list(random.areas), list(random.centre_bias), list(picks), values);
 }
 
 }  // namespace

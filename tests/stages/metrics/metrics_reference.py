@@ -135,10 +135,10 @@ def similarity(map_, truth, weights):
     return math.nan if g is None else np.minimum(p * weights, g * weights).sum()
 
 
-def information_gain(map_, picks, weights, unit):
+def information_gain(map_, baseline, picks, weights, unit):
     """Kuemmerer, Wallis, Bethge 2015: mean of log2(p) - log2(baseline) over the fixations, eps as in the MIT benchmark."""
-    p = density(map_, weights, unit, True)
-    return np.mean(np.log2(EPS + p[picks]) - np.log2(EPS + unit / weights.sum()))
+    p, b = density(map_, weights, unit, True), density(baseline, weights, unit, True)
+    return np.mean(np.log2(EPS + p[picks]) - np.log2(EPS + b[picks]))
 
 
 # --- ROC curves -------------------------------------------------------------------------------------------------
@@ -255,7 +255,7 @@ def reference(case, by_area):
             roc_auc(map_[top], map_[~top], weights[top], weights[~top]) if defined else math.nan
         )
     for suffix, picks in (("", np.unique(case["picks"])), ("_multiplicity", np.sort(case["picks"]))):
-        names = ("auc", "auc_exact", "auc_judd", "auc_borji", "nss", "ig")
+        names = ("auc", "auc_exact", "auc_judd", "auc_borji", "nss", "ig", "ig_centre")
         if not len(picks):
             values.update({name + suffix: math.nan for name in names})
             continue
@@ -264,7 +264,8 @@ def reference(case, by_area):
         values["auc_judd" + suffix] = judd(case, picks, weights, by_area)
         values["auc_borji" + suffix] = borji(case, picks, weights)
         values["nss" + suffix] = height(map_, picks, weights, np.ones(len(picks)), case["constant_nss"])
-        values["ig" + suffix] = information_gain(map_, picks, weights, unit)
+        values["ig" + suffix] = information_gain(map_, np.ones_like(map_), picks, weights, unit)
+        values["ig_centre" + suffix] = information_gain(map_, case["centre_bias"], picks, weights, unit)
     return values
 
 
@@ -281,7 +282,7 @@ def main():
     lines = subprocess.run([program, "7", count], check=True, capture_output=True, text=True).stdout.splitlines()
     for line in lines:
         case = json.loads(line)
-        for name in ("map", "saliency", "areas"):
+        for name in ("map", "saliency", "areas", "centre_bias"):
             case[name] = np.array(case[name], float)
         case["picks"] = np.array(case["picks"], int)
         expected = reference(case, False)

@@ -58,10 +58,11 @@ TEST(UnseenPoints, TakeNoPartInAnyMetric) {
     }
   }
   seen.truth.picks = {{2}, {2}, {}};  // point 4 is the third of those left; 3, 50 and 99 were not seen
-  const MetricsOptions options = all_metrics();
   const Rng rng(1, "scores", "x");
-  const Scores of_masked = score(masked.map, masked.truth, options, rng, masked.areas);
-  const Scores of_seen = score(seen.map, seen.truth, options, rng, seen.areas);
+  // Areas stand for the centre bias as well.
+  const Scores of_masked =
+      score(metric_table(), masked.map, masked.truth, {}, rng, masked.areas, masked.areas);
+  const Scores of_seen = score(metric_table(), seen.map, seen.truth, {}, rng, seen.areas, seen.areas);
   EXPECT_EQ(of_masked.values, of_seen.values);
   for (const double value : of_masked.values) EXPECT_TRUE(std::isfinite(value));
   EXPECT_EQ(of_masked.n_points, static_cast<std::int64_t>(seen.map.size()));

@@ -21,7 +21,9 @@ Values values_of(std::span<const Metric> metrics, const ScalarField& map, const 
                  const ScalarField& areas) {
   MetricsOptions options;
   options.constant_nss = -0.5;
-  const Scores scores = score(metrics, map, truth, options, Rng(1, "scores", "x"), areas);
+  ScalarField centre_bias;
+  for (std::size_t i = 0; i < map.size(); ++i) centre_bias.push_back(static_cast<double>(i + 1));
+  const Scores scores = score(metrics, map, truth, options, Rng(1, "scores", "x"), areas, centre_bias);
   Values values;
   for (std::size_t m = 0; m < metrics.size(); ++m) values[metrics[m].name] = scores.values[m];
   return values;
@@ -65,6 +67,7 @@ TEST(Suite, ValuesOfASmallExampleByHand) {
   EXPECT_NEAR(v.at("mae"), (0 + 0.5 + 0.5 + 0) / 4, 1e-12);
   EXPECT_NEAR(v.at("ig"), (std::log2(0.25 / 0.25) + std::log2(0.5 / 0.25)) / 2, 1e-12);
   EXPECT_NEAR(v.at("ig_multiplicity"), (0 + 1 + 1) / 3.0, 1e-12);
+  EXPECT_NEAR(v.at("ig_centre"), (std::log2(0.25 / 0.2) + std::log2(0.5 / 0.4)) / 2, 1e-12);
   EXPECT_NEAR(v.at("auc_exact"), (1 + 1 + 1 + 0.5) / 4, 1e-12);
   EXPECT_NEAR(v.at("auc_exact_multiplicity"), (2 + 2 + 1 + 0.5) / 6, 1e-12);
   // (0, 0), (0, 1/2), (1/2, 1), (1, 1)
@@ -86,7 +89,8 @@ TEST(Suite, AConstantMapIsThatOfChanceWhateverItsValue) {
         EXPECT_NEAR(v.at(metric.name), 0.5, 1e-12) << metric.name << " of " << value;
       } else if (name == "nss") {
         EXPECT_EQ(v.at(metric.name), -0.5) << metric.name;
-      } else if (name == "cc" || name == "lcc" || name == "spearman" || name == "ig") {
+      } else if (name == "cc" || name == "lcc" || name == "spearman" ||
+                 (name == "ig" && !metric.reads_positions)) {
         EXPECT_EQ(v.at(metric.name), 0) << metric.name;
       }
       EXPECT_FALSE(std::isnan(v.at(metric.name))) << metric.name;
@@ -147,6 +151,37 @@ TEST(Suite, OfAGroundTruthAnyMultipleCounts) {
         EXPECT_TRUE(std::isfinite(value) || offset < 0) << name;
       }
   }
+}
+
+TEST(Suite, AConstantMapScoresAlikeOnAllShapesUnlessItVaries) {
+  MetricsOptions options;
+  options.constant_nss = -0.5;
+  const Field field = random_field();
+  const Values of_one = all_values(ScalarField(300, 0.5), {field.saliency, {field.picks}});
+  const Values of_other = all_values(ScalarField(5, 0.5), {{0, 0.5, 1, 0, 0.2}, {{1, 2}, {2}}});
+  for (const Metric& metric : metric_table()) {
+    const std::optional<double> value = score_of_constant(metric, options);
+    EXPECT_EQ(!value, metric.constant_varies) << metric.name;
+    EXPECT_EQ(!value, std::abs(of_one.at(metric.name) - of_other.at(metric.name)) > 1e-9) << metric.name;
+    EXPECT_NEAR(value.value_or(of_one.at(metric.name)), of_one.at(metric.name), 1e-12) << metric.name;
+  }
+}
+
+TEST(InformationGain, OverTheCentreBiasIsTheGainLessThatOfTheBias) {
+  const Field field = random_field();
+  ScalarField bias;
+  for (std::size_t i = 0; i < field.map.size(); ++i) bias.push_back(static_cast<double>(i + 1));
+  ScalarField map = field.map;
+  for (double& value : map) value += 0.01;  // floors play no part
+  const GroundTruth truth{field.saliency, {field.picks}};
+  const Values of_map = all_values(map, truth), of_bias = all_values(bias, truth);
+  for (const std::string ending : {"", "_multiplicity", "_area", "_multiplicity_area"}) {
+    EXPECT_NEAR(of_map.at("ig_centre" + ending), of_map.at("ig" + ending) - of_bias.at("ig" + ending), 1e-9);
+    EXPECT_EQ(of_bias.at("ig_centre" + ending), 0);
+  }
+  const Scores without = score(metric_table(), map, truth, {}, Rng(1, "scores", "x"));
+  for (std::size_t m = 0; m < without.values.size(); ++m)
+    EXPECT_TRUE(!metric_table()[m].reads_positions || std::isnan(without.values[m])) << "there is no bias";
 }
 
 TEST(Suite, OfTheAreasAnyMultipleCounts) {
