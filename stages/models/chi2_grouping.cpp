@@ -39,7 +39,7 @@ class Grouping {
       ranges.clear();
       for (const auto& both : halves)
         std::copy_if(both.begin(), both.end(), std::back_inserter(ranges),
-                     [](const Range& r) { return r.last > 0; });
+                     [](const Range& r) { return r.first < r.last; });
     }
     return std::move(order_);
   }

@@ -71,8 +71,8 @@ std::vector<bool> at_irregular_edge(std::size_t n, const std::vector<Face>& face
     }
   std::sort(edges.begin(), edges.end());
   std::vector<bool> irregular(n, false);
-  for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
-    while (end < edges.size() && edges[end] == edges[first]) ++end;
+  for (std::size_t first = 0, end; first < edges.size(); first = end) {
+    for (end = first + 1; end < edges.size() && edges[end] == edges[first];) ++end;
     if (end - first == 2) continue;
     irregular[edges[first] >> 32U] = true;
     irregular[edges[first] & std::numeric_limits<std::uint32_t>::max()] = true;

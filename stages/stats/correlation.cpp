@@ -31,8 +31,8 @@ Pairs defined(std::span<const double> x, std::span<const double> y) {
 
 // The correlation is the same of values times a factor.
 void centre(std::vector<double>& values) {
-  if (const double scale = scale_against_overflow(values); scale != 1)
-    for (double& value : values) value *= scale;
+  const double scale = scale_against_overflow(values);
+  for (double& value : values) value *= scale;
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   for (double& value : values) value -= mean;
 }

@@ -76,6 +76,21 @@ TEST(Chi2Sums, DependNeitherOnTheGuessesNorOnThreads) {
   EXPECT_EQ(weighted_sums(search, 125, points, Weight::far, kth), sums);
 }
 
+// By a power of two, which rounds nothing: the rounding of terms and what counts as alike scale as well.
+TEST(Chi2Sums, ScaleWithTheHistograms) {
+  const std::vector<Vec3> points = shapes::random_cloud(300, 8);
+  const Descriptors histograms = random_histograms(300, 1U << 20U, 12);
+  const std::vector<double> sums = sums_of(Chi2Search(histograms), 30, points, Weight::near);
+  EXPECT_GT(*std::min_element(sums.begin(), sums.end()), 0);
+  for (const int power : {-30, -10, 20}) {
+    Descriptors scaled = histograms;
+    for (float& value : scaled.values) value = std::ldexp(value, power);
+    std::vector<double> found = sums_of(Chi2Search(scaled), 30, points, Weight::near);
+    for (double& sum : found) sum = std::ldexp(sum, -power);
+    EXPECT_EQ(found, sums) << power;
+  }
+}
+
 // More alike than are asked for: sums are 0 without a look at all of them, and right for the others.
 TEST(Chi2Sums, AreZeroWhereMoreHistogramsAreAlikeThanCount) {
   Descriptors histograms = random_histograms(900, 9, 9);

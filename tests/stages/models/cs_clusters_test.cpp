@@ -100,6 +100,17 @@ TEST(CsClusters, StartFromAGridThatHoldsEachClustersShare) {
   EXPECT_EQ(clusters.of_point, seeds.find(points));
 }
 
+// Cells of a side of 1.345, aligned with the origin: [0, 1.345) holds both.
+TEST(CsClusters, TheSpacingOfTwoVoxelsIsTheirDistance) {
+  const std::vector<Vec3> points = {{0.1, 0.1, 0.1}, {1.1, 1.0, 0.1}};
+  CsOptions options = options_for(1);
+  options.rounds = 0;
+  options.repair = false;
+  const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 1, options);
+  EXPECT_EQ(clusters.count, 1U);
+  EXPECT_THAT(clusters.of_point, ElementsAre(0, 0));
+}
+
 TEST(CsClusters, OfFewVoxelsStartFromAGridOfTheirSpacing) {
   // Mean squared distance to the 8 nearest others: 12 / 8 inside, 19 / 8 along the border, 30 / 8 in a
   // corner.

@@ -66,6 +66,8 @@ TEST(CsOptions, RejectWhatCannotBeUsed) {
   EXPECT_EQ(wrong_field(CsOptions{.rounds = -1}), "rounds");
   EXPECT_EQ(wrong_field(CsOptions{.descriptor_weight = std::nan("")}), "descriptor_weight");
   EXPECT_EQ(wrong_field(CsOptions{.distribution_weight = 1.5}), "distribution_weight");
+  EXPECT_EQ(wrong_field(CsOptions{.sample = 999}), "sample");
+  EXPECT_EQ(wrong_field(CsOptions{.sample = 1000}), "");
 }
 
 TEST(CsOptions, OfTheTextAskForAHundredClusters) {

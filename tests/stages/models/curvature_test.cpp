@@ -207,5 +207,19 @@ TEST(MeanCurvatureDegenerate, FaceThatNamesNoPoint) {
   EXPECT_THROW(curvature(mesh, CurvatureMethod::cotangent), InputError);
 }
 
+TEST(MeanCurvature, IsInverseToTheSize) {
+  const Mesh mesh = shapes::bumpy_sphere(2);
+  for (const CurvatureMethod method : kMethods) {
+    const ScalarField expected = curvature(mesh, method);
+    for (const int power : {-40, -10, 10, 40}) {
+      Mesh scaled = mesh;
+      for (Vec3& v : scaled.vertices) v *= std::ldexp(1, power);
+      ScalarField found = curvature(scaled, method);
+      for (double& value : found) value = std::ldexp(value, power);
+      EXPECT_THAT(found, testing::Pointwise(testing::DoubleNear(1e-9), expected)) << power;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace salbench

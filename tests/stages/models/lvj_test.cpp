@@ -185,6 +185,7 @@ TEST(LvjOptionsCheck, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(LvjOptions{}), "");
   EXPECT_EQ(wrong_field(LvjOptions{.epsilon = 0}), "epsilon");
   EXPECT_EQ(wrong_field(LvjOptions{.faces = 10}), "faces");
+  EXPECT_THROW(lvj(shapes::sphere(2), LvjOptions{.epsilon = 0}), OptionError);
 }
 
 }  // namespace

@@ -109,6 +109,43 @@ TEST(Simplified, OpenSquareKeepsItsOutline) {
     EXPECT_GT(face_area_vector(coarse, face).z(), 0);  // none folded over
 }
 
+// The plane of a border edge counts by the square of its length, as a face does by its area.
+TEST(Simplified, ABorderGetsCoarserAsTheInteriorDoes) {
+  const Mesh sphere = shapes::sphere(5);
+  Mesh half{sphere.vertices, {}};
+  for (const Triangle& face : sphere.faces) {
+    double height = 0;
+    for (const std::int32_t v : face) height += sphere.vertices[static_cast<std::size_t>(v)].z();
+    if (height > 0) half.faces.push_back(face);
+  }
+  const Mesh coarse = simplified(half, 100);
+  std::map<bool, std::pair<double, double>> lengths;  // [at the border]: sum, count
+  for (const auto& [edge, uses] : edge_uses(coarse)) {
+    auto& [sum, count] = lengths[uses == 1];
+    sum += (coarse.vertices[static_cast<std::size_t>(edge.first)] -
+            coarse.vertices[static_cast<std::size_t>(edge.second)])
+               .norm();
+    ++count;
+  }
+  const auto mean = [&](bool border) { return lengths[border].first / lengths[border].second; };
+  EXPECT_GT(mean(true), 0.5 * mean(false));
+  EXPECT_LT(mean(true), 1.5 * mean(false));
+}
+
+TEST(Simplified, APointInsideJoinsTheBorderWhicheverOfThemComesFirst) {
+  const std::vector<Vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  for (const std::int32_t inside : {0, 1, 3}) {
+    Mesh fan{corners, {}};
+    fan.vertices.insert(fan.vertices.begin() + inside, Vec3(0.3, 0.3, 0));
+    const auto corner = [&](std::int32_t k) { return k % 3 < inside ? k % 3 : k % 3 + 1; };
+    for (std::int32_t k = 0; k < 3; ++k) fan.faces.push_back({corner(k), corner(k + 1), inside});
+    const Mesh one = simplified(fan, 1);
+    ASSERT_EQ(one.faces.size(), 1U) << inside;
+    ASSERT_EQ(one.vertices.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((one.vertices[k] - corners[k]).norm(), 1e-6) << inside;
+  }
+}
+
 TEST(Simplified, SmallMeshIsOnlyCleaned) {
   Mesh mesh = shapes::tetrahedron();
   mesh.vertices.insert(mesh.vertices.begin(), Vec3(9, 9, 9));  // unreferenced

@@ -116,6 +116,22 @@ TEST(Spectrum, EigenpairsEqualADenseSolver) {
     EXPECT_NEAR(std::abs(pairs.vectors.col(k).dot(dense.eigenvectors().col(k))), 1, 1e-8) << k;
 }
 
+// Powers of two, which round nothing: the same pairs in another unit of length.
+TEST(Spectrum, EigenvaluesScaleWithTheLaplacian) {
+  const Mesh mesh = shapes::bumpy_sphere(2);
+  const SparseMatrix laplacian = graph_laplacian(
+      inverse_square_weights(mesh.vertices, edge_adjacency(mesh.vertices.size(), mesh.faces)));
+  const Eigenpairs pairs = lowest_eigenpairs(laplacian, 10);
+  ASSERT_EQ(pairs.values.size(), 10);
+  for (const double scale : {0x1p-60, 0x1p-20, 0x1p20}) {
+    const Eigenpairs scaled = lowest_eigenpairs(scale * laplacian, 10);
+    ASSERT_EQ(scaled.values.size(), 10) << scale;
+    EXPECT_LT((scaled.values / scale - pairs.values).cwiseAbs().maxCoeff(), 1e-9 * pairs.values[9]) << scale;
+    for (Eigen::Index k = 0; k < 10; ++k)
+      EXPECT_NEAR(std::abs(scaled.vectors.col(k).dot(pairs.vectors.col(k))), 1, 1e-8) << scale << " " << k;
+  }
+}
+
 TEST(Spectrum, SphereHasItsRepeatedValuesAsOftenAsTheyOccur) {
   const Mesh mesh = shapes::sphere(2);  // 1, 3, 5, 3 + 4, ...
   const SparseMatrix laplacian = graph_laplacian(

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "stages/core/rng.h"
+
 namespace salbench {
 namespace {
 
@@ -28,6 +30,21 @@ TEST(Pearson, SeesOnlyTheDirectionOfALine) {
   EXPECT_NEAR(pearson(x, up), 1, 1e-7);
   EXPECT_NEAR(pearson(x, down), -1, 1e-15);
   EXPECT_LE(pearson(x, x), 1);
+}
+
+TEST(Pearson, IsNeverBeyondOneByRounding) {
+  Rng rng(1, "pearson", "");
+  for (int round = 0; round < 2000; ++round) {
+    Sample x(3 + rng.below(20)), same, opposite;
+    for (double& value : x) value = rng.normal();
+    for (const double value : x) {
+      same.push_back(3 * value);
+      opposite.push_back(-7 * value);
+    }
+    ASSERT_LE(pearson(x, same), 1);
+    ASSERT_NEAR(pearson(x, same), 1, 1e-14);
+    ASSERT_GE(pearson(x, opposite), -1);
+  }
 }
 
 TEST(Pearson, OfAConstantIsUndefined) {

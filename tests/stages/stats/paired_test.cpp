@@ -20,6 +20,16 @@ TEST(PairedComparison, OfAHandMadeExample) {
   EXPECT_DOUBLE_EQ(found.d_z, 1.5 / std::sqrt(13.0 / 3));
   EXPECT_DOUBLE_EQ(found.rank_biserial, (8.5 - 1.5) / 10);  // ranks 1.5, 3, -1.5, 4
   EXPECT_DOUBLE_EQ(found.superiority, 0.75);
+  const double half = 2.353363434801824 * std::sqrt(13.0 / 3) / 2;  // t(0.95, 3) of the tables
+  EXPECT_NEAR(found.equivalence_interval.low, 1.5 - half, 1e-12);
+  EXPECT_NEAR(found.equivalence_interval.high, 1.5 + half, 1e-12);
+}
+
+TEST(PairedComparison, HasTheIntervalOfTheTestOfEquivalence) {
+  const Sample a{1, 2, 3, 4.5, 2}, b{2, 2, 1, 3, 1.5}, differences{-1, 0, 2, 1.5, 0.5};
+  const Interval of_test = test_equivalence(differences, 1).interval;
+  EXPECT_EQ(compare_paired(a, b).equivalence_interval.low, of_test.low);
+  EXPECT_EQ(compare_paired(a, b).equivalence_interval.high, of_test.high);
 }
 
 TEST(PairedComparison, SwapsWithItsModels) {
@@ -97,7 +107,9 @@ TEST(WilsonInterval, StaysWithinARangeOfItsOwn) {
 }
 
 TEST(Power, InvertsItself) {
-  for (const std::int64_t n : {5, 19, 400}) {
+  std::vector<std::int64_t> sizes = {100, 399, 400};
+  for (std::int64_t n = 2; n <= 40; ++n) sizes.push_back(n);
+  for (const std::int64_t n : sizes) {
     const double difference = detectable_difference(0.3, n);
     EXPECT_NEAR(power_of_paired_test(difference, 0.3, static_cast<double>(n)), kPower, 1e-9);
     EXPECT_EQ(units_to_detect(difference * (1 + 1e-9), 0.3), n);
@@ -105,6 +117,12 @@ TEST(Power, InvertsItself) {
   EXPECT_EQ(units_to_detect(0, 0.3), -1);
   EXPECT_EQ(units_to_detect(1e9, 0.3), 2);
   EXPECT_TRUE(std::isnan(detectable_difference(0.3, 1)));
+}
+
+TEST(Power, DependsOnTheDifferenceInDeviationsAlone) {
+  for (const double unit : {1e-6, 0.3, 1e6})
+    EXPECT_NEAR(power_of_paired_test(0.7 * unit, unit, 12), power_of_paired_test(0.7, 1, 12), 1e-12) << unit;
+  EXPECT_EQ(power_of_paired_test(-0.7, 1, 12), power_of_paired_test(0.7, 1, 12));
 }
 
 // The share of simulated tests that find a difference which is there.

@@ -57,6 +57,21 @@ TEST(Bca, NoneForOneValueOrEqualOnes) {
   }
 }
 
+// The means are 0, 0.001 ... 1, so that the quantiles are the levels: worked out with SciPy's distributions.
+// The acceleration is +-0.0962 for one value that differs from three, and 0 for even steps.
+TEST(Bca, LevelsFollowBiasAndAcceleration) {
+  std::vector<double> means;
+  for (int i = 0; i <= 1000; ++i) means.push_back(i / 1000.0);
+  const auto expect = [&](const std::vector<double>& sample, double low, double high) {
+    const Interval interval = bca_interval(sample, means);
+    EXPECT_NEAR(interval.low, low, 1e-9);
+    EXPECT_NEAR(interval.high, high, 1e-9);
+  };
+  expect({0, 0, 0, 1}, 0.0027610911511, 0.7864734589205);
+  expect({0, 0.5, 0.5, 0.5}, 0.0006054872999, 0.8642014368306);
+  expect({0.2, 0.4, 0.6, 0.8}, 0.025, 0.975);
+}
+
 // The long tail is above: the interval reaches farther up than down, unlike Student's.
 TEST(Bca, FollowsTheSkewOfTheSample) {
   const Columns columns = random_columns(50, 1);

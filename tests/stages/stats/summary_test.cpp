@@ -31,6 +31,9 @@ TEST(Summarise, OfLargeValuesIsFinite) {
   const Summary s = summarise(std::vector<double>{1e308, 1.2e308, 1.1e308});
   EXPECT_NEAR(s.mean / 1.1e308, 1, 1e-15);
   EXPECT_NEAR(s.sd / 1e307, 1, 1e-12);
+  const double half = 4.302652729749464e307 / std::sqrt(3.0);  // t(0.975, 2) of the tables
+  EXPECT_NEAR(s.ci_low / (1.1e308 - half), 1, 1e-9);
+  EXPECT_NEAR(s.ci_high / (1.1e308 + half), 1, 1e-9);
   EXPECT_EQ(summarise(std::vector<double>{-1.7e308, 1.7e308}).mean, 0);
 }
 
