@@ -190,7 +190,7 @@ std::vector<double> quantile_aucs(std::span<const QuantileCurve> curves, std::sp
   std::vector<QuantileCurve> defined;
   for (const QuantileCurve& curve : curves)
     if (curve.map.total() > 0) defined.push_back(curve);
-  if (picks.empty() || defined.empty()) return areas;
+  if (picks.empty()) return areas;
   QuantileSums sums(defined, picks, splits);
   std::span<const std::uint64_t> rest = draws.numbers(static_cast<std::size_t>(splits.count) * picks.size());
   for (; !rest.empty(); rest = rest.subspan(picks.size())) sums.add_split(rest.first(picks.size()));

@@ -12,12 +12,12 @@ class TopSums {
  public:
   TopSums(const TopInput& in, const Measure& measure)
       : in_(in), measure_(measure), next_(in.saliency_order.size()) {
-    std::size_t first = 0;
-    while (!(measure.weight[in.saliency_order[first]] > 0)) ++first;
-    minimum_ = value(first);
+    while (!(measure.weight[in.saliency_order[above_]] > 0)) ++above_;
+    const double minimum = value(above_);
+    while (value(above_) <= minimum) ++above_;
   }
 
-  bool at_minimum() const { return next_ == 0 || value(next_ - 1) <= minimum_; }
+  bool at_minimum() const { return next_ == above_; }
   double weight() const { return weight_; }
 
   // Equal values come together.
@@ -41,8 +41,8 @@ class TopSums {
 
   const TopInput& in_;
   const Measure& measure_;
-  std::size_t next_;  // points of the order from here on are summed
-  double minimum_;    // of what has a weight
+  std::size_t next_;       // points of the order from here on are summed
+  std::size_t above_ = 0;  // and from here on lie above the minimum of those that have a weight
   double weight_ = 0, mid_ = 0, height_ = 0;
 };
 
@@ -52,7 +52,7 @@ TopScores top_scores(const TopInput& in, const Measure& measure) {
   TopScores scores;
   scores.auc.fill(std::numeric_limits<double>::quiet_NaN());
   scores.nss = scores.auc;
-  if (measure.empty() || is_constant(in.saliency, measure)) return scores;
+  if (is_constant(in.saliency, measure)) return scores;
   TopSums sums(in, measure);
   for (std::size_t k = kTopPercents.size(); k-- > 0;) {
     // Sums of areas are rounded: equal parts must not differ by that.

@@ -37,7 +37,7 @@ std::vector<Disc> discs_of(const Scan& scan, const Normals& normals, const Camer
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double distance = (points[i] - scanner).norm();
     tree.nearest(points[i], 2, nearest);
-    if (nearest.size() > 1) angles.push_back(std::sqrt(nearest[1].distance_squared) / distance);
+    angles.push_back(std::sqrt(nearest[1].distance_squared) / distance);
     const Vec3 ray = (points[i] - scanner) / distance, normal = camera.eye_from_world_direction(normals[i]);
     discs.push_back({points[i], normal.dot(ray) > 0 ? Vec3(-normal) : normal, ray});
   }

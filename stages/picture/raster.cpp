@@ -32,8 +32,9 @@ struct Cells {
   int first, last;
 };
 Cells cells_between(double low, double high, int side) {
+  constexpr double kNone = -1;  // ends before the first cell
   return {static_cast<int>(std::clamp(std::ceil(low - 0.5), 0.0, static_cast<double>(side))),
-          static_cast<int>(std::clamp(std::floor(high - 0.5), -1.0, side - 1.0))};
+          static_cast<int>(std::clamp(std::floor(high - 0.5), kNone, side - 1.0))};
 }
 
 // A face in the image, turned so that it is counter-clockwise for edge().

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -20,7 +21,7 @@ struct FacesAround {
       : offsets(n_points + 1), faces(3 * all.size()) {
     for (const Triangle& face : all)
       for (const std::int32_t v : face) ++offsets[static_cast<std::size_t>(v) + 1];
-    for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
     std::vector<std::int32_t> next(offsets.begin(), offsets.end() - 1);
     for (std::size_t f = 0; f < all.size(); ++f)
       for (const std::int32_t v : all[f])

@@ -146,6 +146,25 @@ TEST(SimulatedGroundTruth, OfATetrahedronStopsAtFourPicks) {
   EXPECT_THAT(truth.picks, testing::Contains(SizeIs(4U)));
 }
 
+// Two flat squares, one with a share p of the area, and no room for two picks on one square: all pick twice
+// but those whose next 64 draws fall on the square of their first pick, mostly the large one.
+TEST(SimulatedGroundTruth, StopsAfterSixtyFourDrawsInARow) {
+  constexpr double kShare = 1.0 / 40;
+  Mesh mesh;
+  for (const auto& [side, x] : {std::pair(1.0, 0.0), {std::sqrt(kShare / (1 - kShare)), 5.0}}) {
+    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    for (const auto& [u, v] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}})
+      mesh.vertices.emplace_back(x + side * u, side * v, 0);
+    mesh.faces.push_back({first, first + 1, first + 2});
+    mesh.faces.push_back({first, first + 2, first + 3});
+  }
+  const SimulationOptions options{.participants = 160'000, .picks = 9, .separation = 3};
+  const GroundTruth truth = simulated_ground_truth(mesh, options, 1, "squares");
+  const double expected = 1 - std::pow(1 - kShare, 65);
+  const double share = static_cast<double>(number_of_picks(truth)) / options.participants - 1;
+  EXPECT_NEAR(share, expected, 2.5 * std::sqrt(expected * (1 - expected) / options.participants));
+}
+
 TEST(SimulatedGroundTruth, NeverPicksAnIsolatedVertexOfAMesh) {
   Mesh mesh = shapes::tetrahedron();
   mesh.vertices.insert(mesh.vertices.begin(), Vec3(50, 0, 0));

@@ -26,6 +26,20 @@ TEST(Draws, AreThoseOfTheGenerator) {
     }
 }
 
+// One number in 2^32 is rejected at most: the first of this stream is, for the bound below which most are.
+TEST(Draws, GoOnBehindANumberThatIsRejected) {
+  constexpr std::uint32_t kBound = 4294901761U;
+  const Rng rng(269845303, "draws", "");
+  ASSERT_LT(Rng(rng).next(), (0 - std::uint64_t{kBound}) % kBound);
+  for (const std::size_t count : {1U, 2U, 9U}) {
+    Draws draws(rng);
+    Rng below = rng;
+    for (const std::uint32_t drawn : draws.below(kBound, count)) EXPECT_EQ(drawn, below.below(kBound));
+    for (const std::uint32_t drawn : draws.below(kBound, count + 1).last(1))
+      EXPECT_EQ(drawn, below.below(kBound));
+  }
+}
+
 TEST(ThresholdTable, CountsAsASearchDoes) {
   Rng rng(8, "suite", "");
   for (int repeat = 0; repeat < 200; ++repeat) {

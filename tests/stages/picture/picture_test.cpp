@@ -5,6 +5,7 @@
 #include <limits>
 #include <thread>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -107,6 +108,14 @@ std::pair<double, std::int32_t> nearest_hit(const Mesh& mesh, const Vec3& from, 
   return nearest;
 }
 
+double radius_of(const Mesh& mesh) {  // around the middle of the bounding box
+  Eigen::AlignedBox3d box;
+  for (const Vec3& v : mesh.vertices) box.extend(v);
+  double radius = 0;
+  for (const Vec3& v : mesh.vertices) radius = std::max(radius, (v - box.center()).norm());
+  return radius;
+}
+
 TEST(PictureOfMesh, WhatAPixelShowsLiesInIt) {
   for (const Mesh& mesh : {two_bodies(), box()}) {
     const Picture picture = picture_of_mesh(mesh, kSmall, kRandom);
@@ -129,6 +138,8 @@ TEST(PictureOfMesh, ShowsTheNearestFace) {
   const Mesh mesh = two_bodies();
   const Picture picture = picture_of_mesh(mesh, {.size = 60}, kRandom);
   const Projection projection(picture);
+  constexpr double half_a_step = 0x1.1p-16;  // of the radius, and the rounding to float
+  const double radius = radius_of(mesh);
   std::size_t differ = 0, compared = 0;
   for (int row = 0; row < picture.size; ++row)
     for (int column = 0; column < picture.size; ++column) {
@@ -139,10 +150,26 @@ TEST(PictureOfMesh, ShowsTheNearestFace) {
       ++compared;
       differ += face != picture.primitive[pixel] ? 1U : 0U;
       if (face < 0) continue;
-      ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), depth, 1e-4 * depth);
+      ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), depth, half_a_step * radius);
     }
   EXPECT_GT(compared, 3000U);
   EXPECT_EQ(differ, 0U);
+}
+
+TEST(PictureOfMesh, ClipSpaceHoldsTheShapeFromItsNearestToItsFarthestPoint) {
+  Mesh mesh = shapes::sphere(4);
+  for (Vec3& v : mesh.vertices) v = 20 * v + Vec3(70, -30, 20);
+  const Projection projection(picture_of_mesh(mesh, {.size = 16}, kRandom));
+  double nearest = 2, farthest = -2;
+  for (const Vec3& v : mesh.vertices) {
+    const Eigen::Vector4d clip = projection.matrix * v.homogeneous();
+    nearest = std::min(nearest, clip.z() / clip.w());
+    farthest = std::max(farthest, clip.z() / clip.w());
+  }
+  EXPECT_NEAR(nearest, -1, 0.02);
+  EXPECT_NEAR(farthest, 1, 0.02);
+  EXPECT_GE(nearest, -1);
+  EXPECT_LE(farthest, 1);
 }
 
 TEST(PictureOfMesh, DepthOfASphereIsTheAnalyticOne) {
@@ -263,6 +290,13 @@ TEST(PictureOfMesh, DoesNotDependOnOtherThreadsAndTheSeedMovesTheShadeAlone) {
   for (std::size_t i = 0; i < alone.pixels(); ++i) ASSERT_NEAR(other.shade[i], alone.shade[i], 40);
 }
 
+TEST(PictureOfMesh, OfASingleFaceShowsIt) {
+  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.1}}, {{0, 1, 2}}};
+  const Picture picture = picture_of_mesh(mesh, kSmall, kRandom);
+  EXPECT_GT(seen_pixels(picture), 500U);
+  for (const std::int32_t face : picture.primitive) EXPECT_LE(face, 0);
+}
+
 TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
   const auto taking = [](Mesh mesh) { return [mesh] { picture_of_mesh(mesh, kSmall, kRandom); }; };
   EXPECT_THAT(taking({}), ThrowsMessage<InputError>(HasSubstr("the mesh is empty")));
@@ -286,6 +320,35 @@ TEST(PictureOptions, NameTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(Options{.field_of_view = 180}), "field_of_view");
   EXPECT_EQ(wrong_field(Options{.margin = 0.5}), "margin");
   EXPECT_EQ(wrong_field(Options{.occlusion_reach = 0}), "occlusion_reach");
+}
+
+template <class Number>
+void expect_closed_range(Number PictureOptions::*field, const char* name, Number low, Number high,
+                         Number step) {
+  PictureOptions options;
+  const auto wrong = [&](Number value) {
+    options.*field = value;
+    return wrong_field(options);
+  };
+  EXPECT_EQ(wrong(low - step), name);
+  EXPECT_EQ(wrong(low), "") << name;
+  EXPECT_EQ(wrong(high), "") << name;
+  EXPECT_EQ(wrong(high + step), name);
+}
+
+TEST(PictureOptions, TakeBothEndsOfTheirRanges) {
+  using Options = PictureOptions;
+  expect_closed_range(&Options::size, "size", 16, 2048, 1);
+  expect_closed_range(&Options::occlusion_samples, "occlusion_samples", 0, 1024, 1);
+  expect_closed_range(&Options::azimuth, "azimuth", -180.0, 180.0, 0.1);
+  expect_closed_range(&Options::elevation, "elevation", -89.0, 89.0, 0.1);
+  expect_closed_range(&Options::scan_turn, "scan_turn", -180.0, 180.0, 0.1);
+  expect_closed_range(&Options::light_azimuth, "light_azimuth", -180.0, 180.0, 0.1);
+  expect_closed_range(&Options::light_elevation, "light_elevation", -90.0, 90.0, 0.1);
+  expect_closed_range(&Options::field_of_view, "field_of_view", 1.0, 120.0, 0.1);
+  expect_closed_range(&Options::margin, "margin", 0.0, 0.45, 0.01);
+  expect_closed_range(&Options::ambient, "ambient", 0.0, 1.0, 0.1);
+  expect_closed_range(&Options::occlusion_strength, "occlusion_strength", 0.0, 1.0, 0.1);
 }
 
 }  // namespace

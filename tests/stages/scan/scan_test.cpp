@@ -306,6 +306,9 @@ TEST(ScanOptions, NameTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(Options{}), "");
   EXPECT_EQ(wrong_field(Options{.distance = 0}), "distance");
   EXPECT_EQ(wrong_field(Options{.distance = std::nan("")}), "distance");
+  EXPECT_EQ(wrong_field(Options{.distance = 0.01}), "");
+  EXPECT_EQ(wrong_field(Options{.distance = 1e4}), "");
+  EXPECT_EQ(wrong_field(Options{.distance = 1.001e4}), "distance");
   EXPECT_EQ(wrong_field(Options{.step_degrees = 0.001}), "step_degrees");
   EXPECT_EQ(wrong_field(Options{.step_degrees = 90}), "step_degrees");
   EXPECT_EQ(wrong_field(Options{.phase = 0.7}), "phase");
