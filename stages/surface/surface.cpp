@@ -29,6 +29,9 @@
 namespace salbench {
 namespace {
 
+// Links atan2f.cpp, whose definition PCL takes.
+[[gnu::used]] float (*const kOwnAtan2f)(float, float) = ::atan2f;
+
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
