@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#define H5_USE_110_API  // newer libraries offer it too
 #include <hdf5.h>
 
 #include "io/arrays.h"

@@ -145,6 +145,10 @@ herr_t truncate_on_disk(H5FD_t* file, hid_t, hbool_t) {
 Handle disk_access(Disk* disk) {
   static const hid_t driver = [] {
     H5FD_class_t functions = {};
+#ifdef H5FD_CLASS_VERSION  // HDF5 1.14 and later
+    functions.version = H5FD_CLASS_VERSION;
+    functions.value = 256;  // the first number that the library does not keep for itself
+#endif
     functions.name = "salbench";
     functions.maxaddr = (haddr_t{1} << 63U) - 1;
     functions.fc_degree = H5F_CLOSE_WEAK;

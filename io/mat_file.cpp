@@ -133,7 +133,7 @@ void require_row_or_column(const matvar_t& variable) {
 
 ScalarField read_numbers(const std::string& path, const Wanted& wanted) {
   const auto& [name, cell, row_or_column] = wanted;
-  Mat_LogInitFunc("salbench", [](int, char*) {});
+  Mat_LogInitFunc("salbench", [](int, auto*) {});
   const File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close);
   if (file == nullptr) throw InputError("not a MAT file that can be read");
   const Variable variable(Mat_VarRead(file.get(), name.c_str()), Mat_VarFree);

@@ -1,24 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=bash
-# Sourced by scripts/package and scripts/container: fresh Debian 12 roots below build/debian, made with debootstrap. Their
-# functions need root. The first call fetches the base from Debian's mirror, later ones copy it; packages that were installed
-# in a root before are kept in build/debian/archives.
+# Sourced by scripts/package, scripts/container and scripts/releases: fresh roots of Debian 12 and 13 below build/debian, made
+# with debootstrap. Their functions need root. The first call fetches the base of a release from Debian's mirror, later ones
+# copy it; packages that were installed in a root before are kept in build/debian/archives.
 
 debian_mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
+declare -A debian_codenames=([12]=bookworm [13]=trixie)
 
-# fresh_root NAME: makes build/debian/NAME anew and prints its path.
+# debian_release: prints the number of the release that this machine runs.
+debian_release() {
+  local ID='' VERSION_ID='' PRETTY_NAME=unknown
+  source /etc/os-release
+  [[ $ID == debian && ${debian_codenames[$VERSION_ID]:-} ]] ||
+    { echo "this system is $PRETTY_NAME, expected Debian ${!debian_codenames[*]}" >&2; return 1; }
+  echo "$VERSION_ID"
+}
+
+# fresh_root NAME RELEASE: makes build/debian/NAME anew and prints its path.
 fresh_root() {
-  local folder=$PWD/build/debian
+  local folder=$PWD/build/debian base=base-$2
   mkdir -p "$folder/archives/partial"
-  if [[ ! -d $folder/base ]]; then
-    rm -rf --one-file-system "$folder/base.part"
-    debootstrap --variant=minbase bookworm "$folder/base.part" "$debian_mirror" > "$folder/debootstrap.log" 2>&1 ||
+  if [[ ! -d $folder/$base ]]; then
+    rm -rf --one-file-system "$folder/$base.part"
+    debootstrap --variant=minbase "${debian_codenames[$2]}" "$folder/$base.part" "$debian_mirror" > "$folder/debootstrap.log" 2>&1 ||
       { tail -n 5 "$folder/debootstrap.log" >&2; return 1; }
-    echo force-unsafe-io > "$folder/base.part/etc/dpkg/dpkg.cfg.d/unsafe-io"  # if the power fails, the root is made again
-    mv "$folder/base.part" "$folder/base"
+    echo force-unsafe-io > "$folder/$base.part/etc/dpkg/dpkg.cfg.d/unsafe-io"  # if the power fails, the root is made again
+    mv "$folder/$base.part" "$folder/$base"
   fi
   rm -rf --one-file-system "${folder:?}/$1"
-  cp -a --reflink=auto "$folder/base" "$folder/$1"
+  cp -a --reflink=auto "$folder/$base" "$folder/$1"
   cp /etc/resolv.conf "$folder/$1/etc/resolv.conf"
   echo "$folder/$1"
 }

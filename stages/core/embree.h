@@ -1,38 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shared by the stages that trace rays: the only files of the program that know the Embree library.
+// Rays against triangles or discs, for the stages that trace them. The .cpp alone knows the Embree library,
+// and which of its versions 3 and 4 is installed.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
-#include <type_traits>
-
-#include <embree3/rtcore.h>
+#include <vector>
 
 #include "stages/core/types.h"
 
+struct RTCSceneTy;
+
 namespace salbench::embree {
 
-template <auto release>
 struct Release {
-  template <class Handle>
-  void operator()(Handle* handle) const {
-    release(handle);
-  }
+  void operator()(RTCSceneTy* scene) const;
 };
-using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release<rtcReleaseScene>>;
-using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release<rtcReleaseGeometry>>;
+using Scene = std::unique_ptr<RTCSceneTy, Release>;  // ready for rays; read by several threads
 
-// All throw std::runtime_error if the library fails. Coordinates are rounded to float.
-Geometry triangles(std::span<const Vec3> points, std::span<const Triangle> faces);
+// Both throw std::runtime_error if the library fails. Coordinates are rounded to float.
+Scene scene_of_triangles(std::span<const Vec3> points, std::span<const Triangle> faces);
 // Flat discs around the points, at right angles to the normals; radii as coordinates.
-Geometry discs(std::span<const Vec3> points, std::span<const Vec3> normals, std::span<const double> radii);
+Scene scene_of_discs(std::span<const Vec3> points, std::span<const Vec3> normals,
+                     std::span<const double> radii);
 
-// Whether the scene hits the ray between the two distances. Any hit is a hit, so neither the order in which
+// True if the scene hits the ray between the two distances. Any hit is a hit, so neither the order in which
 // Embree visits its tree nor the number of threads that built it changes the answer.
 bool occluded(const Scene& scene, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near,
               float far);
 
-// The geometry as a scene of its own, ready for rays; `further` flags beside ROBUST.
-Scene scene_of(const Geometry& geometry, RTCSceneFlags further = RTC_SCENE_FLAG_NONE);
+struct Hit {
+  std::uint32_t face;
+  float depth;  // along the direction, in its lengths
+};
+
+// Appends every face that the ray meets up to a limit, and returns that limit: `margin` behind the nearest
+// face, infinity if there is none. Faces behind the limit may be among them, depending on the order in which
+// Embree visits its tree.
+float append_hits(const Scene& scene, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+                  float margin, std::vector<Hit>& hits);
 
 }  // namespace salbench::embree

@@ -1,47 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tree is nanoflann's. The search is our own: it reads copies of the coordinates that lie in the tree's
-// order, a leaf at a time, and is independent of that order, since of equally distant points the index
-// decides.
+// The searches read copies of the coordinates that lie in the tree's order, a leaf at a time, and are
+// independent of that order, since of equally distant points the index decides.
 #include "stages/core/neighbours.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
-#include <nanoflann.hpp>
-
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/kd_nodes.h"
 #include "stages/core/parallel.h"
 
 namespace salbench {
 namespace {
 
-struct Adaptor {
-  std::span<const Vec3> points;
-  std::vector<std::int32_t> members;
-  bool all_points;
-
-  std::size_t kdtree_get_point_count() const { return all_points ? points.size() : members.size(); }
-  std::int32_t index_of(std::size_t i) const {
-    return all_points ? static_cast<std::int32_t>(i) : members[i];
-  }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    return points[static_cast<std::size_t>(index_of(i))][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>, Adaptor, 3,
-                                                 std::uint32_t>;
-
-constexpr std::size_t kLeaf = 12;  // points at most; decides which points are an even sample
 constexpr std::size_t kMany = 64;
 constexpr std::size_t kLeafGrain = kPointGrain / kLeaf;
 
@@ -150,75 +127,67 @@ std::span<const Vec3> finite(std::span<const Vec3> points) {
   return points;
 }
 
+std::vector<std::int32_t> all_of(std::span<const Vec3> points) {
+  std::vector<std::int32_t> indices(points.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
 }  // namespace
 
 struct KdTree::Impl {
-  Adaptor adaptor;
-  Tree tree;
-  std::vector<std::int32_t> index;  // of the points, in the tree's order
-  std::vector<double> x, y, z;      // of these, and of one leaf more, which is read and not used
+  std::vector<std::int32_t> members;  // ascending
+  KdNodes tree;
+  std::vector<double> x, y, z;  // in the tree's order, and of one leaf more, which is read and not used
 
-  // The points of a leaf, by their places in the tree's order.
+  // The points of a leaf, by their places.
   struct Range {
     std::size_t first, last;
   };
   std::vector<Range> leaves;
 
-  explicit Impl(Adaptor of)
-      : adaptor(std::move(of)), tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)) {
-    for (const std::uint32_t member : tree.vAcc) {
-      index.push_back(adaptor.index_of(member));
-      const Vec3& point = adaptor.points[static_cast<std::size_t>(index.back())];
+  Impl(std::span<const Vec3> points, std::vector<std::int32_t> of)
+      : members(std::move(of)), tree(kd_nodes(finite(points), members)) {
+    for (auto* coordinates : {&x, &y, &z}) coordinates->reserve(size() + kLeaf);
+    for (const std::int32_t i : tree.order) {
+      const Vec3& point = points[static_cast<std::size_t>(i)];
       x.push_back(point.x());
       y.push_back(point.y());
       z.push_back(point.z());
     }
     for (auto* coordinates : {&x, &y, &z}) coordinates->resize(size() + kLeaf);
-    if (size() > 0) add_leaves(*tree.root_node, leaves);
+    for (const KdNode& node : tree.nodes)
+      if (node.is_leaf()) leaves.push_back({node.first, node.last});
   }
 
-  std::size_t size() const { return index.size(); }
+  std::size_t size() const { return tree.order.size(); }
 
   template <class Set>
   void search(Set& set, const Vec3& query) const {
     if (size() == 0) return;
-    Vec3 outside;  // squared distances from the box of all points, along the axes
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const auto& side = tree.root_bbox[static_cast<std::size_t>(axis)];
-      const double beyond = std::max({side.low - query[axis], query[axis] - side.high, 0.0});
-      outside[axis] = beyond * beyond;
-    }
-    descend(set, query, *tree.root_node, outside.sum(), outside);
+    // Squared distances from the box of all points, along the axes.
+    Vec3 outside = (tree.low - query).cwiseMax(query - tree.high).cwiseMax(0.0).cwiseAbs2();
+    descend(set, query, tree.nodes.front(), outside.sum(), outside);
   }
 
   // `least` and `outside`: squared distance from the node's box, in all and along the axes.
   template <class Set>
-  void descend(Set& set, const Vec3& query, const Tree::Node& node, double least, Vec3& outside) const {
-    if (node.child1 == nullptr) return set.take(leaf(node.node_type.lr.left, node.node_type.lr.right, query));
-    const auto& [axis, low, high] = node.node_type.sub;
-    const double to_low = query[axis] - low, to_high = query[axis] - high;
-    const bool in_first = to_low + to_high < 0;
-    descend(set, query, in_first ? *node.child1 : *node.child2, least, outside);
-    const double across = in_first ? to_high * to_high : to_low * to_low;
-    const double least_beyond = least + across - outside[axis];
+  void descend(Set& set, const Vec3& query, const KdNode& node, double least, Vec3& outside) const {
+    if (node.is_leaf()) return set.take(leaf(node.first, node.last, query));
+    const double to_low = query[node.axis] - node.low, to_high = query[node.axis] - node.high;
+    const bool in_near = to_low + to_high < 0;
+    descend(set, query, in_near ? node.near_child() : node.far_child(), least, outside);
+    const double across = in_near ? to_high * to_high : to_low * to_low;
+    const double least_beyond = least + across - outside[node.axis];
     if (least_beyond > widened(set.limit())) return;
-    const double before = std::exchange(outside[axis], across);
-    descend(set, query, in_first ? *node.child2 : *node.child1, least_beyond, outside);
-    outside[axis] = before;
+    const double before = std::exchange(outside[node.axis], across);
+    descend(set, query, in_near ? node.far_child() : node.near_child(), least_beyond, outside);
+    outside[node.axis] = before;
   }
 
   struct Box {
     Vec3 low, high;
   };
-
-  static void add_leaves(const Tree::Node& node, std::vector<Range>& all) {
-    if (node.child1 == nullptr) {
-      all.push_back({node.node_type.lr.left, node.node_type.lr.right});
-      return;
-    }
-    add_leaves(*node.child1, all);
-    add_leaves(*node.child2, all);
-  }
 
   Box box_of(const Range& range) const {
     Box box{point(range.first), point(range.first)};
@@ -231,22 +200,22 @@ struct KdTree::Impl {
 
   // Adds the leaves that start at `first` or later and come that near to the box. `least` and `outside` as in
   // descend.
-  void leaves_near(const Box& box, double limit, const Tree::Node& node, double least, Vec3& outside,
+  void leaves_near(const Box& box, double limit, const KdNode& node, double least, Vec3& outside,
                    std::size_t first, std::vector<Range>& near) const {
-    if (node.child1 == nullptr) {
-      if (node.node_type.lr.left >= first) near.push_back({node.node_type.lr.left, node.node_type.lr.right});
+    if (node.is_leaf()) {
+      if (node.first >= first) near.push_back({node.first, node.last});
       return;
     }
-    const auto& [axis, low, high] = node.node_type.sub;
-    const std::array beyond = {std::max(box.low[axis] - low, 0.0), std::max(high - box.high[axis], 0.0)};
-    const std::array children = {node.child1, node.child2};
+    const std::array beyond = {std::max(box.low[node.axis] - node.low, 0.0),
+                               std::max(node.high - box.high[node.axis], 0.0)};
+    const std::array children = {&node.near_child(), &node.far_child()};
     for (std::size_t child = 0; child < 2; ++child) {
-      const double across = std::max(beyond[child] * beyond[child], outside[axis]);
-      const double least_there = least + across - outside[axis];
+      const double across = std::max(beyond[child] * beyond[child], outside[node.axis]);
+      const double least_there = least + across - outside[node.axis];
       if (least_there > limit) continue;
-      const double before = std::exchange(outside[axis], across);
+      const double before = std::exchange(outside[node.axis], across);
       leaves_near(box, limit, *children[child], least_there, outside, first, near);
-      outside[axis] = before;
+      outside[node.axis] = before;
     }
   }
 
@@ -256,7 +225,7 @@ struct KdTree::Impl {
   void for_each_with_later(const Range& own, double limit, std::vector<Range>& near, const Body& body) const {
     near.clear();
     Vec3 outside = Vec3::Zero();
-    leaves_near(box_of(own), widened(limit), *tree.root_node, 0, outside, own.first, near);
+    leaves_near(box_of(own), widened(limit), tree.nodes.front(), 0, outside, own.first, near);
     for (std::size_t i = own.first; i < own.last; ++i) {
       near.front().first = i + 1;  // the points' own leaf
       body(i, near);
@@ -272,7 +241,7 @@ struct KdTree::Impl {
         WithinSet set(found, limit);
         for (const Range& range : later) set.take(leaf(range.first, range.last, point(i)));
         set.finish();
-        visit(index[i], found);
+        visit(tree.order[i], found);
       });
   }
 
@@ -302,7 +271,7 @@ struct KdTree::Impl {
   Leaf leaf(std::size_t first, std::size_t last, const Vec3& query) const {
     Leaf leaf;
     leaf.count = last - first;
-    leaf.index = index.data() + first;
+    leaf.index = tree.order.data() + first;
     for (std::size_t i = 0; i < kLeaf; ++i) {  // beyond the leaf too: a loop of fixed length is faster
       const double dx = x[first + i] - query.x(), dy = y[first + i] - query.y(),
                    dz = z[first + i] - query.z();
@@ -312,20 +281,16 @@ struct KdTree::Impl {
   }
 };
 
-KdTree::KdTree(std::span<const Vec3> points)
-    : impl_(std::make_unique<Impl>(Adaptor{finite(points), {}, true})) {}
+KdTree::KdTree(std::span<const Vec3> points) : KdTree(points, all_of(points)) {}
 KdTree::KdTree(std::span<const Vec3> points, std::vector<std::int32_t> members)
-    : impl_(std::make_unique<Impl>(Adaptor{finite(points), std::move(members), false})) {}
+    : impl_(std::make_unique<Impl>(points, std::move(members))) {}
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 KdTree::~KdTree() = default;
 
 std::size_t KdTree::size() const { return impl_->size(); }
 
-bool KdTree::contains(std::int32_t point) const {
-  const Adaptor& adaptor = impl_->adaptor;
-  return adaptor.all_points || std::ranges::binary_search(adaptor.members, point);
-}
+bool KdTree::contains(std::int32_t point) const { return std::ranges::binary_search(impl_->members, point); }
 
 void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const {
   k = std::min(k, size());
@@ -384,7 +349,8 @@ std::vector<std::int32_t> KdTree::even_sample(std::size_t count) const {
   count = std::min(count, size());
   std::vector<std::int32_t> sample;
   sample.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) sample.push_back(impl_->index[(2 * i + 1) * size() / (2 * count)]);
+  for (std::size_t i = 0; i < count; ++i)
+    sample.push_back(impl_->tree.order[(2 * i + 1) * size() / (2 * count)]);
   std::sort(sample.begin(), sample.end());
   return sample;
 }

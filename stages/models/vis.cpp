@@ -46,7 +46,7 @@ struct Occluder {
 };
 
 Occluder occluder_of(const std::vector<Vec3>& places, const Normals& normals, Surface surface) {
-  if (!surface.empty()) return {embree::scene_of(embree::triangles(places, surface)), {}};
+  if (!surface.empty()) return {embree::scene_of_triangles(places, surface), {}};
   std::vector<double> radii(places.size());
   const KdTree tree(places);
   parallel_ranges(places.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
@@ -56,7 +56,7 @@ Occluder occluder_of(const std::vector<Vec3>& places, const Normals& normals, Su
       radii[i] = std::sqrt(nearest.back().distance_squared);
     }
   });
-  return {embree::scene_of(embree::discs(places, normals, radii)), radii};
+  return {embree::scene_of_discs(places, normals, radii), radii};
 }
 
 double open_part(const Occluder& occluder, const Vec3& place, const Vec3& normal, float near,

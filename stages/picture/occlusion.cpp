@@ -19,7 +19,7 @@ struct Occluders::Scene {
 };
 
 Occluders::Occluders(std::span<const Vec3> points, std::span<const Triangle> faces)
-    : scene_(new Scene{embree::scene_of(embree::triangles(points, faces))}) {}
+    : scene_(new Scene{embree::scene_of_triangles(points, faces)}) {}
 
 Occluders::Occluders(std::span<const Disc> discs) {
   std::vector<Vec3> centres, normals;
@@ -29,7 +29,7 @@ Occluders::Occluders(std::span<const Disc> discs) {
     normals.push_back(disc.normal);
     radii.push_back(disc.radius);
   }
-  scene_.reset(new Scene{embree::scene_of(embree::discs(centres, normals, radii))});
+  scene_.reset(new Scene{embree::scene_of_discs(centres, normals, radii)});
 }
 
 Occluders::~Occluders() = default;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
 // where the ray meets it, is decided in double, among those that float puts no farther behind the nearest one
-// than kMargin. The filter cuts the ray there at each hit, so that Embree does not search what is hidden. The
+// than kMargin. The ray is cut there at each hit, so that Embree does not search what is hidden. The
 // result depends neither on the order in which it visits its tree, which differs with the number of threads
 // that built it, nor on the reciprocal estimates of the processor.
 //
@@ -28,6 +28,7 @@ namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr float kMargin = 0.01F;  // local; thousands of times what float is off by
+constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
 
 // The corners of an icosahedron in the order of the benchmark's views.
 Vec3 view_direction(int view) {
@@ -132,36 +133,14 @@ struct Traced {
     }
     for (std::size_t v = 0; v < is_corner.size(); ++v)
       if (is_corner[v]) local_corners.push_back(local_vertices[v]);
-    scene = embree::scene_of(embree::triangles(local_vertices, mesh.faces),
-                             RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    scene = embree::scene_of_triangles(local_vertices, mesh.faces);
+  }
+
+  void prefetch(std::uint32_t face) const {
+    __builtin_prefetch(&local_faces[face].front());
+    __builtin_prefetch(&local_faces[face].back());
   }
 };
-
-struct Candidate {
-  std::uint32_t face;
-  float depth;  // along the direction of the ray, as Embree sees it
-};
-
-// Embree hands the context on to the filter.
-struct Candidates : RTCIntersectContext {
-  const Traced& from;
-  std::vector<Candidate> noted;  // by the rays so far
-  float limit = 0;               // of the depth, for the present ray
-};
-
-// N is 1: rays are traced one by one. The face is looked at when the row is done; until then it arrives from
-// memory, which each look would wait for.
-void note_and_cut(const RTCFilterFunctionNArguments* arguments) {
-  auto& candidates = *static_cast<Candidates*>(arguments->context);
-  float& depth = RTCRayN_tfar(arguments->ray, 1, 0);
-  const std::uint32_t face = RTCHitN_primID(arguments->hit, 1, 0);
-  candidates.noted.push_back({face, depth});
-  const Corners& corners = candidates.from.local_faces[face];
-  __builtin_prefetch(&corners.front());
-  __builtin_prefetch(&corners.back());
-  candidates.limit = std::min(candidates.limit, depth + kMargin);
-  depth = candidates.limit;  // where Embree goes on to search
-}
 
 // The nearest hit so far of one ray.
 struct NearestHit {
@@ -169,7 +148,7 @@ struct NearestHit {
   Vec3 origin, direction;  // local
 
   double depth = std::numeric_limits<double>::infinity();  // of the hit, along the direction
-  std::uint32_t face = RTC_INVALID_GEOMETRY_ID;
+  std::uint32_t face = kNoFace;
   Vec3 weights = Vec3::Zero();  // of the face's corners
 
   // Embree found the face in float. Weights that are negative in double come from that rounding: clamping
@@ -201,20 +180,6 @@ struct NearestHit {
   }
 };
 
-RTCRayHit float_ray(const Vec3& origin, const Vec3& direction) {
-  RTCRayHit ray{};
-  ray.ray.org_x = static_cast<float>(origin.x());
-  ray.ray.org_y = static_cast<float>(origin.y());
-  ray.ray.org_z = static_cast<float>(origin.z());
-  ray.ray.dir_x = static_cast<float>(direction.x());
-  ray.ray.dir_y = static_cast<float>(direction.y());
-  ray.ray.dir_z = static_cast<float>(direction.z());
-  ray.ray.tfar = std::numeric_limits<float>::infinity();
-  ray.ray.mask = ~0U;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  return ray;
-}
-
 }  // namespace
 
 struct ScanScene::Impl : Traced {
@@ -237,11 +202,10 @@ Scan ScanScene::scan(int view, const ScanOptions& options) const {
   const Camera camera = camera_of_view(view, options);
   const double step = std::tan(options.step_degrees * kRadiansPerDegree);
   const Window window = window_of(from.local_corners, camera, options);
+  const Eigen::Vector3f position = camera.position.cast<float>();
 
   Scan scan{{}, from.frame.mesh_from_local(camera.position)};
-  Candidates candidates{{}, from, {}};
-  rtcInitIntersectContext(&candidates);
-  candidates.filter = note_and_cut;
+  std::vector<embree::Hit> candidates;  // of a row's rays
   struct Traversed {
     std::size_t end;  // of the ray's candidates in the row's
     float limit;
@@ -251,21 +215,24 @@ Scan ScanScene::scan(int view, const ScanOptions& options) const {
     const auto direction = [&](int column) {
       return camera.ray((column + options.phase) * step, (row + options.phase) * step);
     };
-    candidates.noted.clear();
+    candidates.clear();
     rays.clear();
     for (int column = window.left; column <= window.right; ++column) {
-      alignas(16) RTCRayHit ray = float_ray(camera.position, direction(column));
-      candidates.limit = std::numeric_limits<float>::infinity();
-      rtcIntersect1(from.scene.get(), &candidates, &ray);
-      rays.push_back({candidates.noted.size(), candidates.limit});
+      const std::size_t first = candidates.size();
+      const float limit =
+          embree::append_hits(from.scene, position, direction(column).cast<float>(), kMargin, candidates);
+      rays.push_back({candidates.size(), limit});
+      // Faces are looked at when the row is done; until then they arrive from memory, which each look would
+      // wait for.
+      for (std::size_t i = first; i < candidates.size(); ++i) from.prefetch(candidates[i].face);
     }
     std::size_t next = 0;
     for (int column = window.left; column <= window.right; ++column) {
       NearestHit nearest{from, camera.position, direction(column)};
       // Whether a face behind the limit was noted depends on the order of the search.
       for (const auto [end, limit] = rays[static_cast<std::size_t>(column - window.left)]; next < end; ++next)
-        if (const auto [face, depth] = candidates.noted[next]; depth <= limit) nearest.offer(face);
-      if (nearest.face != RTC_INVALID_GEOMETRY_ID) scan.points.push_back(nearest.point_in_mesh());
+        if (const auto [face, depth] = candidates[next]; depth <= limit) nearest.offer(face);
+      if (nearest.face != kNoFace) scan.points.push_back(nearest.point_in_mesh());
     }
   }
   if (scan.points.empty()) throw InputError(fmt::format("view {}: no ray meets the mesh", view));

@@ -29,6 +29,9 @@
 namespace salbench {
 namespace {
 
+// Links atan2f.cpp, whose definition PCL takes.
+[[gnu::used]] float (*const kOwnAtan2f)(float, float) = ::atan2f;
+
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
@@ -57,21 +60,14 @@ Cloud::Ptr cloud_in_spacings(Points points, const Normals& normals, double spaci
 }
 
 // The tree of pcl::search::KdTree, whose order of equally distant points decides where faces begin. PCL's own
-// class allocates memory and starts a team of threads for each query.
+// class allocates memory and starts a team of threads for each query. Searches the cloud of its constructor.
 class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
  public:
   using Distances = std::vector<float>;
   using Search::nearestKSearch;
   using Search::radiusSearch;
 
-  void setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices) override {
-    Search::setInputCloud(cloud, indices);
-    places_.clear();
-    for (const pcl::PointNormal& p : *cloud) places_.insert(places_.end(), {p.x, p.y, p.z});
-    tree_.emplace(flann::Matrix<float>(places_.data(), cloud->size(), 3),
-                  flann::KDTreeSingleIndexParams(kPclLeaf));
-    tree_->buildIndex();
-  }
+  explicit CloudSearch(const Cloud& cloud) : places_(places_of(cloud)) { tree_.buildIndex(); }
 
   int nearestKSearch(const pcl::PointNormal& query, int k, pcl::Indices& found,
                      Distances& distances_squared) const override {
@@ -79,7 +75,7 @@ class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
     CHECK_LE(count, input_->size());
     if (!nearest_ || found_.size() != count) nearest_.emplace(count);
     nearest_->clear();
-    tree_->findNeighbors(*nearest_, query.data, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+    tree_.findNeighbors(*nearest_, query.data, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
     // FLANN finds fewer than k points if squared distances overflow, and PCL reads all k: the rest are the
     // first point, too far away to be connected.
     found_.assign(count, 0);
@@ -96,8 +92,16 @@ class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
  private:
   static constexpr int kPclLeaf = 15;  // points at most
 
+  static std::vector<float> places_of(const Cloud& cloud) {
+    std::vector<float> places;
+    places.reserve(3 * cloud.size());
+    for (const pcl::PointNormal& p : cloud) places.insert(places.end(), {p.x, p.y, p.z});
+    return places;
+  }
+
   std::vector<float> places_;  // n x 3
-  std::optional<flann::KDTreeSingleIndex<flann::L2_Simple<float>>> tree_;
+  flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree_{
+      flann::Matrix<float>(places_.data(), places_.size() / 3, 3), flann::KDTreeSingleIndexParams(kPclLeaf)};
   mutable std::optional<flann::KNNSimpleResultSet<float>> nearest_;  // and so on: working memory
   mutable std::vector<std::size_t> found_;
 };
@@ -166,8 +170,9 @@ Faces partial_mesh(Points points, const Normals& normals, const SurfaceOptions& 
   triangulation.setMinimumAngle(options.smallest_angle * kRadiansPerDegree);
   triangulation.setMaximumAngle(options.largest_angle * kRadiansPerDegree);
   triangulation.setNormalConsistency(true);
-  triangulation.setSearchMethod(pcl::make_shared<CloudSearch>());
-  triangulation.setInputCloud(cloud_in_spacings(points, normals, spacing));
+  const Cloud::Ptr cloud = cloud_in_spacings(points, normals, spacing);
+  triangulation.setSearchMethod(pcl::make_shared<CloudSearch>(*cloud));
+  triangulation.setInputCloud(cloud);
   std::vector<pcl::Vertices> polygons;
   triangulation.reconstruct(polygons);
 

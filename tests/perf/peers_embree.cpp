@@ -2,21 +2,30 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 #include <benchmark/benchmark.h>
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
 
-#include "stages/core/embree.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/scan/scan.h"
 #include "tests/perf/peers.h"
 
 namespace salbench::peers {
 namespace {
+
+using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
+using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, decltype(&rtcReleaseGeometry)>;
 
 RTCDevice device() {
   static RTCDevice device = rtcNewDevice(nullptr);
@@ -52,14 +61,14 @@ Rays rays_of(const Mesh& mesh, int view) {
 }
 
 // Flags as those of our own scenes: without ROBUST, rays slip through between faces.
-embree::Scene scene_of(const std::vector<float>& vertices, const std::vector<Triangle>& faces) {
-  const embree::Geometry geometry(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE));
+Scene scene_of(const std::vector<float>& vertices, const std::vector<Triangle>& faces) {
+  const Geometry geometry(rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE), rtcReleaseGeometry);
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
                              3 * sizeof(float), vertices.size() / 3);
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, faces.data(), 0,
                              sizeof(Triangle), faces.size());
   rtcCommitGeometry(geometry.get());
-  embree::Scene scene(rtcNewScene(device()));
+  Scene scene(rtcNewScene(device()), rtcReleaseScene);
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);
   rtcAttachGeometry(scene.get(), geometry.get());
@@ -67,10 +76,21 @@ embree::Scene scene_of(const std::vector<float>& vertices, const std::vector<Tri
   return scene;
 }
 
-void cast(const embree::Scene& scene, const Rays& rays, std::vector<Eigen::Vector3f>& hits) {
+void intersect(RTCScene scene, RTCRayHit& ray) {
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect1(scene, &ray, &arguments);
+#else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect1(scene, &context, &ray);
+#endif
+}
+
+void cast(const Scene& scene, const Rays& rays, std::vector<Eigen::Vector3f>& hits) {
   for (const Eigen::Vector3f& direction : rays.directions) {
     alignas(16) RTCRayHit ray{};
     Eigen::Map<Eigen::Vector3f>(&ray.ray.org_x) = rays.origin;
@@ -78,7 +98,7 @@ void cast(const embree::Scene& scene, const Rays& rays, std::vector<Eigen::Vecto
     ray.ray.tfar = std::numeric_limits<float>::infinity();
     ray.ray.mask = ~0U;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene.get(), &context, &ray);
+    intersect(scene.get(), ray);
     if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID) hits.emplace_back(rays.origin + ray.ray.tfar * direction);
   }
 }
@@ -93,7 +113,7 @@ Work embree_scans(const Shape& shape, int views) {
   std::vector<Rays> rays;
   for (int view = 0; view < views; ++view) rays.push_back(rays_of(shape.mesh, view));
   return [&faces = shape.mesh.faces, vertices = std::move(vertices), rays = std::move(rays)] {
-    const embree::Scene scene = scene_of(vertices, faces);
+    const Scene scene = scene_of(vertices, faces);
     std::size_t count = 0;
     for (const Rays& of_view : rays) {
       std::vector<Eigen::Vector3f> hits;

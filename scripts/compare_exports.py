@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compares two exports of one configuration over the same data, made on two machines, stage by stage.
+
+compare_exports.py FIRST.h5 SECOND.h5 [TOLERANCE]
+
+Prints two tables in Markdown. Stages: how many artefacts there are and how many have the same bytes; of the others, the
+largest difference between two values over the largest value of their array, and the array where that is. Metrics: the
+largest difference between two scores. Exit status 1 if that is above the tolerance (default 1e-6), or if an artefact or an
+array of other length is in one export only. Needs python3-h5py.
+"""
+
+import sys
+
+import h5py
+import numpy
+
+
+def text(value):
+    return value.decode() if isinstance(value, bytes) else value
+
+
+def artefacts(file):
+    """(stage, item) -> group, of the items and of the means over them."""
+    found = {}
+    for name, item in file.items():
+        if "dataset" in item.attrs:
+            found |= {(stage, name): group for stage, group in item.items()}
+    for stage, means in file.get("means", {}).items():
+        found |= {(stage, f"mean of {name}"): group for name, group in means.items()}
+    return found
+
+
+def difference(first, second):
+    """The largest relative difference between the arrays of two artefacts, and the name of the array."""
+    worst = (0.0, "")
+    for name in sorted(set(first) | set(second)):
+        a, b = (numpy.asarray(group[name], dtype=float) if name in group else None for group in (first, second))
+        if a is None or b is None or a.shape != b.shape or (numpy.isnan(a) != numpy.isnan(b)).any():
+            return numpy.inf, name
+        same = (a == b) | numpy.isnan(a)
+        if same.all():
+            continue
+        size = max(numpy.nanmax(numpy.abs(a)), numpy.nanmax(numpy.abs(b)))
+        worst = max(worst, (float(numpy.abs(a - b)[~same].max() / size), name))
+    return worst
+
+
+def compare_stages(first, second):
+    """Prints a row per stage, in the order of the computation. True if all artefacts have their counterparts."""
+    ours, theirs = artefacts(first), artefacts(second)
+    order = [line.split(":")[0] for line in text(first.attrs["stage_versions"]).splitlines()]
+    stages = sorted({stage for stage, _ in ours | theirs}, key=lambda stage: (order.index(stage) if stage in order else -1, stage))
+    complete = True
+    print("| stage | artefacts | same bytes | largest difference | in |\n|---|---|---|---|---|")
+    for stage in stages:
+        keys = [key for key in ours.keys() | theirs.keys() if key[0] == stage]
+        same, worst = 0, (0.0, "")
+        for key in keys:
+            if key not in ours or key not in theirs:
+                worst = max(worst, (numpy.inf, f"{key[1]}, in one export only"))
+            elif text(ours[key].attrs["content"]) == text(theirs[key].attrs["content"]):
+                same += 1
+            else:
+                worst = max(worst, difference(ours[key], theirs[key]))
+        complete = complete and worst[0] < numpy.inf
+        print(f"| {stage} | {len(keys)} | {same} | {worst[0]:.1g} | {worst[1] or '-'} |")
+    return complete
+
+
+def compare_scores(first, second):
+    """Prints a row per metric, and returns the largest difference of all."""
+    def by_name(file):
+        table = file["scores"][:]
+        return {tuple(text(row[column]) for column in ("dataset", "item", "view", "model")): row for row in table}, table.dtype
+    (ours, columns), (theirs, _) = by_name(first), by_name(second)
+    if ours.keys() != theirs.keys():
+        print("the scores are of other shapes or models")
+        return numpy.inf
+    print("\n| metric | scores | equal | largest difference |\n|---|---|---|---|")
+    largest = 0.0
+    for metric in (name for name in columns.names if columns[name] == float):
+        a, b = (numpy.array([table[key][metric] for key in ours]) for table in (ours, theirs))
+        known = ~(numpy.isnan(a) & numpy.isnan(b))
+        off = numpy.nan_to_num(numpy.abs(a - b)[known], nan=numpy.inf)
+        largest = max(largest, off.max(initial=0))
+        print(f"| {metric} | {len(off)} | {(off == 0).sum()} | {off.max(initial=0):.1g} |")
+    return largest
+
+
+def main(first, second, tolerance="1e-6"):
+    with h5py.File(first) as ours, h5py.File(second) as theirs:
+        complete = compare_stages(ours, theirs)
+        return 0 if compare_scores(ours, theirs) <= float(tolerance) and complete else 1
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (3, 4):
+        sys.exit(__doc__)
+    sys.exit(main(*sys.argv[1:]))
