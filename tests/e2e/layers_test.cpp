@@ -66,6 +66,9 @@ TEST_F(Layers, EveryKindOfBreachIsNamed) {
                 "already included by stages/core/embree.h");
   expect_breach("stages/scan/a.h", "#include \"stages/core/embree.h\"\n",
                 "brings the Embree library with it");
+  expect_breach("pipeline/config/a.h", "#include <yaml-cpp/yaml.h>\n", "belongs in a .cpp of pipeline/config");
+  expect_breach("pipeline/plan/a.cpp", "#include <yaml-cpp/yaml.h>\n",
+                "belongs in a .cpp of pipeline/config");
 }
 
 }  // namespace
