@@ -29,8 +29,8 @@ file(WRITE ${documents}/salbench-report.1 ".so man1/salbench.1\n")
 install(TARGETS salbench)
 install(PROGRAMS scripts/report DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME salbench-report)
 install(DIRECTORY configs report DESTINATION ${share} PATTERN __pycache__ EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE CITATION.cff docs/data_dictionary.md docs/data_sets.md docs/statistics.md
-  docs/bibliography.bib DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff docs/data_dictionary.md docs/data_sets.md docs/json.md
+  docs/statistics.md docs/bibliography.bib DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES scripts/read_export.py DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES ${documents}/salbench.1 ${documents}/salbench-report.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${documents}/salbench.bash

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/table.h"
+#include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/config/section.h"
@@ -68,17 +69,38 @@ std::vector<Explanation> explain(const Context& context, const Plan& plan, const
 
 namespace {
 
-ExitStatus print_explanation(const Arguments& arguments, const ExplainOptions& options) {
-  const Setup setup(arguments, {}, Pictures::cached);
+struct ExplainReport {
+  ExplainOptions asked;
+  std::vector<Explanation> stages;
+};
+
+Json::Object json_of(const ExplainReport& report) {
+  return {{"item", report.asked.item},
+          {"stages", Json::list(report.stages, [](const Explanation& stage) {
+             return Json{{"stage", stage.stage},
+                         {"state", stage.state},
+                         {"why", stage.why},
+                         {"file", stage.file.empty() ? std::nullopt : std::optional(stage.file)}};
+           })}};
+}
+
+ExplainReport explained(const Setup& setup, const ExplainOptions& options) {
   const FolderStore store(setup.cache, Access::read_only);
-  const Plan plan = make_plan(setup.context, store);
-  const auto explanations = explain(setup.context, plan, setup.cache, options);
-  Table table{.columns = {"stage", options.item, "why"}, .rows = {}};
-  for (const Explanation& stage : explanations) table.rows.push_back({stage.stage, stage.state, stage.why});
-  fmt::print("{}", aligned(table));
-  if (!options.stage.empty() && !explanations.front().file.empty())
-    fmt::print("{}: {}\n", explanations.front().state == "to compute" ? "nearest" : "artefact",
-               explanations.front().file.string());
+  return {options, explain(setup.context, make_plan(setup.context, store), setup.cache, options)};
+}
+
+std::string text_of(const ExplainReport& report) {
+  Table table{.columns = {"stage", report.asked.item, "why"}, .rows = {}};
+  for (const Explanation& stage : report.stages) table.rows.push_back({stage.stage, stage.state, stage.why});
+  const Explanation& first = report.stages.front();
+  if (report.asked.stage.empty() || first.file.empty()) return aligned(table);
+  return fmt::format("{}{}: {}\n", aligned(table), first.state == "to compute" ? "nearest" : "artefact",
+                     first.file.string());
+}
+
+ExitStatus print_explanation(const Arguments& arguments, const ExplainOptions& options, ReportFormat format) {
+  const ExplainReport report = explained(Setup(arguments, {}, Pictures::cached), options);
+  print_report(format, "explain", json_of(report), text_of(report));
   return kAllDone;
 }
 
@@ -86,11 +108,15 @@ ExitStatus print_explanation(const Arguments& arguments, const ExplainOptions& o
 
 Subcommand explain_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<ExplainOptions>();
+  const FormatWord format = default_format();
   return {"explain", "tell of each artefact of an item whether it is cached, and if not what differs",
           run_parameters(arguments, {{"ITEM", &options->item,
                                       "a mesh or point cloud (52), or a scan of a mesh (52_3)", true},
-                                     {"STAGE", &options->stage, "this stage only"}}),
-          [&arguments, options](const std::atomic<bool>&) { return print_explanation(arguments, *options); }};
+                                     {"STAGE", &options->stage, "this stage only"},
+                                     format_parameter(format)}),
+          [&arguments, options, format](const std::atomic<bool>&) {
+            return print_explanation(arguments, *options, format_of(format));
+          }};
 }
 
 }  // namespace salbench

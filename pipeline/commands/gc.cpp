@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/table.h"
+#include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/plan/remark.h"
@@ -21,9 +22,34 @@ struct GcOptions {
   bool dry_run = false;
 };
 
+struct GcReport {
+  fs::path cache;
+  bool dry_run = false;
+  Collected collected;
+  std::size_t waiting = 0;  // jobs whose keys are not known yet
+};
+
+Json json_of(const Amount& amount) { return {{"files", amount.files}, {"bytes", amount.bytes}}; }
+
+Json::Object json_of(const GcReport& report) {
+  const Collected& collected = report.collected;
+  return {{"cache", report.cache},
+          {"dry_run", report.dry_run},
+          {"stages", Json::list(collected.stages,
+                                [](const Collected::OfStage& stage) {
+                                  return Json{{"stage", stage.stage},
+                                              {"kept", json_of(stage.kept)},
+                                              {"removed", json_of(stage.removed)}};
+                                })},
+          {"damaged", json_of(collected.damaged)},
+          {"unfinished", json_of(collected.unfinished)},
+          {"waiting", report.waiting}};
+}
+
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-void print_collected(const Collected& collected, std::size_t waiting, bool dry_run) {
+std::string text_of(const GcReport& report) {
+  const auto& [cache, dry_run, collected, waiting] = report;
   Table table{.columns = {"stage", "kept", "MB", dry_run ? "to remove" : "removed", "MB"}, .rows = {}};
   Amount removed;
   for (const Collected::OfStage& stage : collected.stages) {
@@ -32,18 +58,20 @@ void print_collected(const Collected& collected, std::size_t waiting, bool dry_r
     removed.files += stage.removed.files;
     removed.bytes += stage.removed.bytes;
   }
-  fmt::print("{}\n", aligned(table, 1));
-  fmt::print("{}: {} artefacts ({:.1f} MB), {} damaged ones, {} unfinished files\n",
-             dry_run ? "would be removed" : "removed", removed.files, megabytes(removed.bytes),
-             collected.damaged.files, collected.unfinished.files);
+  std::string text =
+      fmt::format("{}\n{}: {} artefacts ({:.1f} MB), {} damaged ones, {} unfinished files\n",
+                  aligned(table, 1), dry_run ? "would be removed" : "removed", removed.files,
+                  megabytes(removed.bytes), collected.damaged.files, collected.unfinished.files);
   if (waiting > 0)
-    fmt::print("{} jobs wait for what they read: everything of their stages and items was kept\n", waiting);
+    text += fmt::format("{} jobs wait for what they read: everything of their stages and items was kept\n",
+                        waiting);
+  return text;
 }
 
-ExitStatus run_gc(Arguments arguments, const GcOptions& options) {
+ExitStatus run_gc(Arguments arguments, const GcOptions& options, ReportFormat format) {
   KeepSet needed;
-  std::size_t waiting = 0;
-  fs::path folder;
+  GcReport report{.cache = {}, .dry_run = options.dry_run, .collected = {}};
+  fs::path& folder = report.cache;
   for (const std::string& config : options.configs) {
     arguments.config = config;
     const Setup setup(arguments, {}, Pictures::cached);
@@ -52,10 +80,10 @@ ExitStatus run_gc(Arguments arguments, const GcOptions& options) {
                                     setup.cache.string(), folder.string()));
     folder = setup.cache;
     const FolderStore store(folder, Access::read_only);
-    waiting += add_needed(setup.context, make_plan(setup.context, store), needed);
+    report.waiting += add_needed(setup.context, make_plan(setup.context, store), needed);
   }
-  const Collected collected = collect_garbage(folder, needed, options.dry_run, *progress_of(arguments.quiet));
-  if (!arguments.quiet) print_collected(collected, waiting, options.dry_run);
+  report.collected = collect_garbage(folder, needed, options.dry_run, *progress_of(arguments.quiet));
+  print_report(format, "gc", json_of(report), arguments.quiet ? "" : text_of(report));
   return kAllDone;
 }
 
@@ -96,11 +124,15 @@ std::size_t add_needed(const Context& context, const Plan& plan, KeepSet& needed
 
 Subcommand gc_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<GcOptions>();
+  const FormatWord format = default_format();
   return {"gc", "remove from a cache what no run of these configurations needs",
           cache_parameters(
               arguments, {{"CONFIG", &options->configs, "every configuration whose artefacts are kept", true},
-                          {"--dry-run", &options->dry_run, "only say what would be removed"}}),
-          [&arguments, options](const std::atomic<bool>&) { return run_gc(arguments, *options); }};
+                          {"--dry-run", &options->dry_run, "only say what would be removed"},
+                          format_parameter(format)}),
+          [&arguments, options, format](const std::atomic<bool>&) {
+            return run_gc(arguments, *options, format_of(format));
+          }};
 }
 
 }  // namespace salbench

@@ -1,30 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/commands/graph.h"
 
-#include <memory>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "pipeline/commands/installed.h"
+#include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/run/graph.h"
-#include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
-std::string options_of(const Row& row, std::string_view between) {
-  std::string text;
-  for (const OptionLines& options : row.options) text += options.text;
-  if (text.ends_with('\n')) text.pop_back();
-  std::string joined;
-  for (const char c : text) joined += c == '\n' ? std::string(between) : std::string(1, c);
-  return joined;
+std::vector<std::string> option_lines(const Row& row) {
+  std::vector<std::string> lines;
+  for (const OptionLines& options : row.options) {
+    std::istringstream text(options.text);
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+  }
+  return lines;
 }
 
-std::string jobs_text(const std::vector<std::size_t>& to_do, std::size_t row) {
-  return to_do.empty() ? "" : fmt::format(", {} to do", to_do[row]);
+std::string jobs_text(const GraphNode& node) {
+  return node.to_do ? fmt::format(", {} to do", *node.to_do) : "";
+}
+
+Json::Object json_of(const Graph& graph) {
+  const auto words = [](const std::vector<std::string>& list) {
+    return Json::List(list.begin(), list.end());
+  };
+  return {{"nodes", Json::list(graph.nodes, [&](const GraphNode& node) {
+             return Json{{"node", node.name},
+                         {"stage", node.stage},
+                         {"shapes", node.shapes},
+                         {"per", node.per},
+                         {"version", node.version},
+                         {"options", words(node.options)},
+                         {"inputs", words(node.inputs)},
+                         {"to_do", node.to_do}};
+           })}};
 }
 
 std::vector<std::size_t> open_jobs(const Setup& setup) {
@@ -34,58 +50,66 @@ std::vector<std::size_t> open_jobs(const Setup& setup) {
   return open;
 }
 
-ExitStatus print_graph(const Arguments& arguments, const std::string& format) {
-  if (format != "text" && format != "dot")
-    throw ConfigError(fmt::format("--format {}: must be text or dot", format));
-  const auto print = [&](const Catalog& catalog, const std::vector<std::size_t>& to_do) {
-    fmt::print("{}", format == "dot" ? graph_dot(catalog, to_do) : graph_text(catalog, to_do));
-  };
-  if (arguments.data.empty()) {
-    print(make_catalog(read_config(Section::from_file(configuration_path(arguments.config)), "")), {});
-  } else {
-    const Setup setup(arguments);
-    print(setup.catalog, open_jobs(setup));
-  }
+Graph graph_of_run(const Arguments& arguments) {
+  if (arguments.data.empty())
+    return graph_of(make_catalog(read_config(Section::from_file(configuration_path(arguments.config)), "")));
+  const Setup setup(arguments);
+  return graph_of(setup.catalog, open_jobs(setup));
+}
+
+ExitStatus print_graph(const Arguments& arguments, ReportFormat format) {
+  const Graph graph = graph_of_run(arguments);
+  print_report(format, "graph", json_of(graph),
+               format == ReportFormat::dot ? graph_dot(graph) : graph_text(graph));
   return kAllDone;
 }
 
 }  // namespace
 
-std::string graph_text(const Catalog& catalog, const std::vector<std::size_t>& to_do) {
+Graph graph_of(const Catalog& catalog, const std::vector<std::size_t>& to_do) {
+  Graph graph;
+  for (const Row& row : catalog.rows)
+    graph.nodes.push_back({.name = node_name(row),
+                           .stage = row.name,
+                           .shapes = name_of(row.shapes),
+                           .per = name_of(row.scope()),
+                           .version = row.version,
+                           .options = option_lines(row)});
+  for (const Edge& edge : edges(catalog)) graph.nodes[edge.to].inputs.push_back(graph.nodes[edge.from].name);
+  for (std::size_t row = 0; row < to_do.size(); ++row) graph.nodes[row].to_do = to_do[row];
+  return graph;
+}
+
+std::string graph_text(const Graph& graph) {
   std::string text;
-  for (std::size_t r = 0; r < catalog.rows.size(); ++r) {
-    const Row& row = catalog.rows[r];
-    std::vector<std::string> inputs;
-    for (const Edge& edge : edges(catalog))
-      if (edge.to == r) inputs.push_back(node_name(catalog.rows[edge.from]));
-    text +=
-        fmt::format("{} (version {}, one per {}{}){}{}\n", node_name(row), row.version, name_of(row.scope()),
-                    jobs_text(to_do, r), inputs.empty() ? "" : " <- ", fmt::join(inputs, ", "));
-    if (const std::string options = options_of(row, ", "); !options.empty()) text += "  " + options + "\n";
+  for (const GraphNode& node : graph.nodes) {
+    text += fmt::format("{} (version {}, one per {}{}){}{}\n", node.name, node.version, node.per,
+                        jobs_text(node), node.inputs.empty() ? "" : " <- ", fmt::join(node.inputs, ", "));
+    if (!node.options.empty()) text += fmt::format("  {}\n", fmt::join(node.options, ", "));
   }
   return text;
 }
 
-std::string graph_dot(const Catalog& catalog, const std::vector<std::size_t>& to_do) {
-  std::string dot =
-      "digraph salbench {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n";
-  for (std::size_t r = 0; r < catalog.rows.size(); ++r) {
-    const Row& row = catalog.rows[r];
-    dot += fmt::format("  \"{}\" [label=\"{}\\n{}, version {}{}\", tooltip=\"{}\"{}];\n", node_name(row),
-                       row.name, name_of(row.shapes), row.version, jobs_text(to_do, r),
-                       options_of(row, "\\n"), row.gathers ? ", shape=ellipse" : "");
+std::string graph_dot(const Graph& graph) {
+  std::string nodes, edges;
+  for (const GraphNode& node : graph.nodes) {
+    nodes += fmt::format("  \"{}\" [label=\"{}\\n{}, version {}{}\", tooltip=\"{}\"{}];\n", node.name,
+                         node.stage, node.shapes, node.version, jobs_text(node),
+                         fmt::join(node.options, "\\n"), node.per == "set" ? ", shape=ellipse" : "");
+    for (const std::string& input : node.inputs)
+      edges += fmt::format("  \"{}\" -> \"{}\";\n", input, node.name);
   }
-  for (const Edge& edge : edges(catalog))
-    dot += fmt::format("  \"{}\" -> \"{}\";\n", node_name(catalog.rows[edge.from]),
-                       node_name(catalog.rows[edge.to]));
-  return dot + "}\n";
+  return "digraph salbench {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n" +
+         nodes + edges + "}\n";
 }
 
 Subcommand graph_subcommand(Arguments& arguments) {
-  const auto format = std::make_shared<std::string>("text");
+  const FormatWord format = default_format();
   return {"graph", "print the flow graph of a run: a node per row of the catalog, an edge per input",
-          run_parameters(arguments, {{"--format", format.get(), "text (default), or dot for Graphviz"}}),
-          [&arguments, format](const std::atomic<bool>&) { return print_graph(arguments, *format); }};
+          run_parameters(arguments, {format_parameter(format, ", or dot for Graphviz")}),
+          [&arguments, format](const std::atomic<bool>&) {
+            return print_graph(arguments, format_of(format, true));
+          }};
 }
 
 }  // namespace salbench

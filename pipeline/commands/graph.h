@@ -2,16 +2,32 @@
 // Subcommand `graph`: the flow graph that a configuration runs.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/plan/plan.h"
 
 namespace salbench {
 
-// Text with one line per node, or Graphviz with `dot`. `to_do` has the open jobs of each row; empty: not
-// known.
-std::string graph_text(const Catalog& catalog, const std::vector<std::size_t>& to_do = {});
-std::string graph_dot(const Catalog& catalog, const std::vector<std::size_t>& to_do = {});
+struct GraphNode {
+  std::string name, stage;       // "fpfh of scans", "fpfh"
+  std::string_view shapes, per;  // "scans", "scan"
+  std::int32_t version = 0;
+  std::vector<std::string> options = {};  // "radius: 0.02"
+  std::vector<std::string> inputs = {};   // names of nodes
+  std::optional<std::size_t> to_do = {};  // open jobs; nothing if no data set was looked at
+};
+
+struct Graph {
+  std::vector<GraphNode> nodes;
+};
+
+// `to_do` has the open jobs of each row; empty: not known.
+Graph graph_of(const Catalog& catalog, const std::vector<std::size_t>& to_do = {});
+std::string graph_text(const Graph& graph);  // a line per node, and one of its options
+std::string graph_dot(const Graph& graph);   // for Graphviz
 
 }  // namespace salbench

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "io/table.h"
+#include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/results/record.h"
@@ -11,32 +13,86 @@
 namespace salbench {
 namespace {
 
-ExitStatus print_status(const Arguments& arguments) {
-  const Setup setup(arguments, {}, Pictures::cached);
+struct StatusReport {
+  struct Stage {
+    std::string stage;
+    std::size_t done = 0, of = 0;  // jobs of this configuration
+    std::size_t artefacts = 0;     // in the cache, of all configurations
+    std::uint64_t bytes = 0;       // of these
+  };
+  std::vector<Stage> stages;
+  std::size_t meshes = 0, clouds = 0;
+  std::string shapes;  // these two in words
+  std::size_t models = 0;
+  std::filesystem::path cache;
+  std::optional<std::string> last_run;  // as in run.yaml
+  std::filesystem::path results;
+};
+
+Json::Object json_of(const StatusReport& report) {
+  return {{"stages", Json::list(report.stages,
+                                [](const StatusReport::Stage& stage) {
+                                  return Json{{"stage", stage.stage},
+                                              {"done", stage.done},
+                                              {"of", stage.of},
+                                              {"artefacts", stage.artefacts},
+                                              {"bytes", stage.bytes}};
+                                })},
+          {"meshes", report.meshes},
+          {"clouds", report.clouds},
+          {"models", report.models},
+          {"cache", report.cache},
+          {"last_run", report.last_run},
+          {"results", report.results}};
+}
+
+StatusReport status_of(const Setup& setup) {
   const FolderStore store(setup.cache, Access::read_only);
-  const Plan plan = make_plan(setup.context, store);
-  Table table{.columns = {"stage", "done", "of", "in the cache", "MB"}, .rows = {}};
+  const std::size_t clouds = count_clouds(setup.workload);
+  StatusReport report{.stages = {},
+                      .meshes = setup.workload.families.size() - clouds,
+                      .clouds = clouds,
+                      .shapes = shapes_text(setup.workload),
+                      .models = setup.config.models.size(),
+                      .cache = setup.cache,
+                      .last_run = {},
+                      .results = setup.output};
+  if (std::string state = state_of_results(setup.output); !state.empty()) report.last_run = std::move(state);
   std::map<std::string, FolderStore::Usage> usage;
   for (const FolderStore::Usage& stage : store.usage()) usage[stage.stage] = stage;
-  for (const RowCount& count : count_by_name(setup.context, plan)) {
+  for (const RowCount& count : count_by_name(setup.context, make_plan(setup.context, store))) {
     const FolderStore::Usage& used = usage[count.stage];
-    table.rows.push_back({count.stage, cell_of(count.cached),
-                          cell_of(count.cached + count.compute + count.wait), cell_of(used.artefacts),
-                          static_cast<double>(used.bytes) / 1e6});
+    report.stages.push_back(
+        {count.stage, count.cached, count.cached + count.compute + count.wait, used.artefacts, used.bytes});
   }
-  const std::string state = state_of_results(setup.output);
-  fmt::print("{}\ndata set: {}, {} models; cache: {}\n", aligned(table, 1), shapes_text(setup.workload),
-             setup.config.models.size(), setup.cache.string());
-  if (!state.empty()) fmt::print("last run: {}\n", state);
-  fmt::print("results: {}\n", setup.output.string());  // the last line and nothing else: scripts/slurm/submit
+  return report;
+}
+
+std::string text_of(const StatusReport& report) {
+  Table table{.columns = {"stage", "done", "of", "in the cache", "MB"}, .rows = {}};
+  for (const StatusReport::Stage& stage : report.stages)
+    table.rows.push_back({stage.stage, cell_of(stage.done), cell_of(stage.of), cell_of(stage.artefacts),
+                          static_cast<double>(stage.bytes) / 1e6});
+  return fmt::format("{}\ndata set: {}, {} models; cache: {}\n{}results: {}\n", aligned(table, 1),
+                     report.shapes, report.models, report.cache.string(),
+                     report.last_run ? fmt::format("last run: {}\n", *report.last_run) : "",
+                     report.results.string());
+}
+
+ExitStatus print_status(const Arguments& arguments, ReportFormat format) {
+  const StatusReport report = status_of(Setup(arguments, {}, Pictures::cached));
+  print_report(format, "status", json_of(report), text_of(report));
   return kAllDone;
 }
 
 }  // namespace
 
 Subcommand status_subcommand(Arguments& arguments) {
-  return {"status", "count what is in the cache; changes nothing", run_parameters(arguments),
-          [&arguments](const std::atomic<bool>&) { return print_status(arguments); }};
+  const FormatWord format = default_format();
+  return {
+      "status", "count what is in the cache; changes nothing",
+      run_parameters(arguments, {format_parameter(format)}),
+      [&arguments, format](const std::atomic<bool>&) { return print_status(arguments, format_of(format)); }};
 }
 
 }  // namespace salbench

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
 #include "stages/core/errors.h"
@@ -22,6 +23,47 @@ struct VerifyOptions {
   bool deep = false;
   int sample = 20;  // jobs computed again, per configuration
 };
+
+struct CheckedCache {
+  fs::path cache;
+  Verification found;
+};
+
+struct CheckedSample {
+  std::string configuration;
+  Recomputation found;
+};
+
+struct VerifyReport {
+  std::vector<CheckedCache> caches;
+  std::vector<CheckedSample> samples;
+  bool interrupted = false;
+};
+
+Json faults_json(const std::vector<Fault>& faults) {
+  return Json::list(faults, [](const Fault& fault) {
+    return Json{{"file", fault.file}, {"what", fault.what}};
+  });
+}
+
+Json::Object json_of(const VerifyReport& report) {
+  return {{"caches", Json::list(report.caches,
+                                [](const CheckedCache& checked) {
+                                  const Verification& found = checked.found;
+                                  return Json{{"cache", checked.cache},
+                                              {"artefacts", found.artefacts},
+                                              {"bytes", found.bytes},
+                                              {"other_files", found.others},
+                                              {"faults", faults_json(found.faults)}};
+                                })},
+          {"samples", Json::list(report.samples,
+                                 [](const CheckedSample& checked) {
+                                   return Json{{"configuration", checked.configuration},
+                                               {"jobs", checked.found.jobs},
+                                               {"faults", faults_json(checked.found.faults)}};
+                                 })},
+          {"interrupted", report.interrupted}};
+}
 
 std::vector<JobRef> cached_jobs(const Context& context, const Plan& plan) {
   std::vector<JobRef> cached;
@@ -47,50 +89,66 @@ std::string recomputed_fault(Executor& executor, const JobRef& job, const Digest
   return current_defect();
 }
 
-void print_faults(const std::vector<Fault>& faults) {
-  for (const Fault& fault : faults) fmt::print("{}: {}\n", fault.file.string(), fault.what);
+std::string summary_of(const CheckedCache& checked) {
+  const Verification& found = checked.found;
+  return fmt::format("{}: {} artefacts, {:.1f} MB: {} bad{}\n", checked.cache.string(), found.artefacts,
+                     static_cast<double>(found.bytes) / 1e6, found.faults.size(),
+                     found.others > 0 ? fmt::format("; {} other files, left alone", found.others) : "");
 }
 
-std::size_t verify_folder(const fs::path& folder, bool quiet, const std::atomic<bool>& stop) {
+std::string summary_of(const CheckedSample& checked) {
+  return fmt::format("{}: {} of its jobs computed again: {} came out otherwise\n", checked.configuration,
+                     checked.found.jobs, checked.found.faults.size());
+}
+
+// Text goes out as soon as a check ends: the next one may take long, or find its cache unusable.
+template <class Checked>
+void add(ReportFormat format, bool quiet, Checked checked, std::vector<Checked>& all) {
+  if (format == ReportFormat::text) {
+    for (const Fault& fault : checked.found.faults) fmt::print("{}: {}\n", fault.file.string(), fault.what);
+    if (!quiet) fmt::print("{}", summary_of(checked));
+  }
+  all.push_back(std::move(checked));
+}
+
+CheckedCache verified(const fs::path& cache, bool quiet, const std::atomic<bool>& stop) {
   const OrderlyEnd orderly;
-  const Verification result = verify_cache(folder, stop, *progress_of(quiet));
-  print_faults(result.faults);
-  if (!quiet)
-    fmt::print("{}: {} artefacts, {:.1f} MB: {} bad{}\n", folder.string(), result.artefacts,
-               static_cast<double>(result.bytes) / 1e6, result.faults.size(),
-               result.others > 0 ? fmt::format("; {} other files, left alone", result.others) : "");
-  return result.faults.size();
+  return {cache, verify_cache(cache, stop, *progress_of(quiet))};
 }
 
-std::size_t verify_sample(const Setup& setup, std::size_t sample, bool quiet, const std::atomic<bool>& stop) {
+CheckedSample recomputed(const Setup& setup, std::size_t sample, const std::atomic<bool>& stop) {
   FolderStore store(setup.cache, Access::read_only);
   const Plan plan = make_plan(setup.context, store);
   const OrderlyEnd orderly;
-  const Recomputation result = recompute_sample(setup.context, plan, store, sample, stop);
-  print_faults(result.faults);
-  if (!quiet)
-    fmt::print("{}: {} of its jobs computed again: {} came out otherwise\n", setup.config.name, result.jobs,
-               result.faults.size());
-  return result.faults.size();
+  return {setup.config.name, recompute_sample(setup.context, plan, store, sample, stop)};
 }
 
-ExitStatus run_verify(Arguments arguments, const VerifyOptions& options, const std::atomic<bool>& stop) {
+ExitStatus run_verify(Arguments arguments, const VerifyOptions& options, ReportFormat format,
+                      const std::atomic<bool>& stop) {
   if (options.configs.empty() && (arguments.cache.empty() || options.deep))
     throw ConfigError(options.deep ? "--deep needs a configuration: it says what to compute again"
                                    : "name a configuration, or a cache with --cache DIR");
-  std::size_t faults = 0;
+  VerifyReport report;
+  const auto verify = [&](const fs::path& cache) {
+    add(format, arguments.quiet, verified(cache, arguments.quiet, stop), report.caches);
+  };
   std::set<fs::path> seen;
-  if (options.configs.empty()) faults += verify_folder(arguments.cache, arguments.quiet, stop);
+  if (options.configs.empty()) verify(arguments.cache);
   for (const std::string& config : options.configs) {
     arguments.config = config;
     const Setup setup(arguments, {}, Pictures::cached);
-    if (seen.insert(fs::weakly_canonical(setup.cache)).second)
-      faults += verify_folder(setup.cache, arguments.quiet, stop);
+    if (seen.insert(fs::weakly_canonical(setup.cache)).second) verify(setup.cache);
     if (options.deep)
-      faults += verify_sample(setup, static_cast<std::size_t>(options.sample), arguments.quiet, stop);
+      add(format, arguments.quiet, recomputed(setup, static_cast<std::size_t>(options.sample), stop),
+          report.samples);
   }
-  if (stop) return interrupted_status(arguments);
-  return faults == 0 ? kAllDone : kSomeFailed;
+  report.interrupted = stop;
+  print_report(format, "verify", json_of(report), "");
+  if (report.interrupted) return interrupted_status(arguments);
+  const auto sound = [](const auto& checked) { return checked.found.faults.empty(); };
+  return std::ranges::all_of(report.caches, sound) && std::ranges::all_of(report.samples, sound)
+             ? kAllDone
+             : kSomeFailed;
 }
 
 }  // namespace
@@ -115,13 +173,17 @@ Recomputation recompute_sample(const Context& context, const Plan& plan, FolderS
 
 Subcommand verify_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<VerifyOptions>();
-  return {
-      "verify", "read every artefact of a cache and name each bad one; changes nothing",
-      cache_parameters(arguments, {{"CONFIG", &options->configs, "configuration files, or none with --cache"},
-                                   {"--deep", &options->deep,
-                                    "also compute a sample of the cached jobs again, and compare"},
-                                   {"--sample", &options->sample, "how many (default: 20)"}}),
-      [&arguments, options](const std::atomic<bool>& stop) { return run_verify(arguments, *options, stop); }};
+  const FormatWord format = default_format();
+  return {"verify", "read every artefact of a cache and name each bad one; changes nothing",
+          cache_parameters(
+              arguments,
+              {{"CONFIG", &options->configs, "configuration files, or none with --cache"},
+               {"--deep", &options->deep, "also compute a sample of the cached jobs again, and compare"},
+               {"--sample", &options->sample, "how many (default: 20)"},
+               format_parameter(format)}),
+          [&arguments, options, format](const std::atomic<bool>& stop) {
+            return run_verify(arguments, *options, format_of(format), stop);
+          }};
 }
 
 }  // namespace salbench

@@ -64,6 +64,9 @@ TEST_F(Layers, EveryKindOfBreachIsNamed) {
   expect_breach("stages/scan/a.h", "#include <embree3/rtcore.h>\n", "Embree belongs in a .cpp");
   expect_breach("stages/scan/a.cpp", "#include <embree4/rtcore.h>\n",
                 "already included by stages/core/embree.cpp");
+  expect_breach("pipeline/config/a.h", "#include <yaml-cpp/yaml.h>\n", "belongs in a .cpp of pipeline/config");
+  expect_breach("pipeline/plan/a.cpp", "#include <yaml-cpp/yaml.h>\n",
+                "belongs in a .cpp of pipeline/config");
 }
 
 }  // namespace

@@ -269,7 +269,7 @@ std::multiset<Pair> edges_in(const std::string& dot) {
 
 TEST(GraphText, OfTheDefaultConfigurationItIsTheCatalogNodeForNodeAndEdgeForEdge) {
   const Catalog catalog = make_catalog(toy_config(""));
-  const std::string dot = graph_dot(catalog), text = graph_text(catalog);
+  const std::string dot = graph_dot(graph_of(catalog)), text = graph_text(graph_of(catalog));
   std::multiset<Pair> expected;
   for (const Row& row : catalog.rows) {
     EXPECT_THAT(dot, testing::HasSubstr("  \"" + node(row) + "\" ["));

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/commands/report.h"
+
+#include <fmt/format.h>
+
+#include "pipeline/config/option_text.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+
+FormatWord default_format() { return std::make_shared<std::string>(name_of(ReportFormat::text)); }
+
+Parameter format_parameter(const FormatWord& word, const std::string& further_help) {
+  return {"--format", word.get(),
+          "text (default), or json: one document for programs (docs/json.md)" + further_help};
+}
+
+ReportFormat format_of(const FormatWord& word, bool graph) {
+  ReportFormat format{};
+  if (parse_option(*word, format) && (graph || format != ReportFormat::dot)) return format;
+  throw ConfigError(
+      fmt::format("--format {}: must be {}", *word, graph ? "text, json or dot" : "text or json"));
+}
+
+void print_report(ReportFormat format, const std::string& subcommand, Json::Object members,
+                  const std::string& text) {
+  if (format != ReportFormat::json) return fmt::print("{}", text);
+  const std::initializer_list<Json::Member> head = {{"schema", kReportSchema}, {"command", subcommand}};
+  members.insert(members.begin(), head);
+  fmt::print("{}\n", Json(std::move(members)).text());
+}
+
+}  // namespace salbench

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The documents of --format json: docs/json.md says what they hold, key for key and type for type, and the text says the same."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ["SALBENCH_PROGRAM"]
+CONFIG = "dataset: {layout: folder, participants: simulated, scans: false}\nmodels: {PS: , RS: }\n"
+ODD = 'q"uo\\te é'  # a mesh
+TYPES = {str: "text", int: "number", bool: "true or false", list: "list", type(None): "null"}
+
+
+def documented():
+    """Of docs/json.md: for each subcommand the types of each key, those of every document among them."""
+    sections = re.split(r"^## (\w+)$", (ROOT / "docs/json.md").read_text(encoding="utf-8"), flags=re.M)
+
+    def keys(text):
+        rows = re.findall(r"^\| `([^`]+)` \| ([^|]+) \|", text, flags=re.M)
+        assert len(rows) == len(dict(rows)), "a key stands there twice"
+        return {key: {types} if types == "true or false" else set(types.split(" or ")) for key, types in rows}
+    common = keys(sections[0])
+    return {name: {**common, **keys(text)} for name, text in zip(sections[1::2], sections[2::2])}
+
+
+def keys_of(value, path=""):
+    """Pairs of a key as the documentation writes it and a type."""
+    if isinstance(value, dict):
+        for key, member in value.items():
+            yield from keys_of(member, f"{path}.{key}" if path else key)
+        return
+    yield path, TYPES[type(value)]
+    if isinstance(value, list):
+        for element in value:
+            yield from keys_of(element, path + "[]")
+
+
+class JsonTest(unittest.TestCase):
+    """Goes through the life of one cache, from none to what is left after garbage collection."""
+
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory(prefix='js"on \\ é\x01\t')
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = Path(holder.name)
+        cls.cache, cls.config = cls.folder / "cache", cls.folder / "toy.yaml"
+        cls.config.write_text(CONFIG)
+        subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", cls.folder / "data", "2", "16", "8"], check=True)
+        (cls.folder / "data/2.off").rename(cls.folder / f"data/{ODD}.off")
+        cls.seen = {}  # subcommand: types of each key
+
+    def salbench(self, subcommand, *further, status=0, preload=None):
+        folders = ["--data", self.folder / "data", "--cache", self.cache]
+        if subcommand not in ("verify", "gc"):
+            folders += ["--out", self.folder / "out", "--threads", "1"]
+        done = subprocess.run([PROGRAM, subcommand, self.config, *further, *folders], capture_output=True,
+                              env={**os.environ, **(preload or {})})
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done.stdout.decode("utf-8")
+
+    def document(self, subcommand, *further, status=0):
+        """The document, and the text that says the same. Each key that it holds is seen."""
+        said = self.salbench(subcommand, *further, "--format", "json", status=status)
+        self.assertEqual((said.count("\n"), said[-1]), (1, "\n"))
+        document = json.loads(said)
+        self.assertEqual((document["schema"], document["command"]), (1, subcommand))
+        for key, kind in keys_of(document):
+            self.seen.setdefault(subcommand, {}).setdefault(key, set()).add(kind)
+        return document, self.salbench(subcommand, *further, status=status)
+
+    def run_to(self, status=0, preload=None):
+        self.salbench("run", "--quiet", status=status, preload=preload)
+
+    def check_counts(self):
+        """status and plan, by each other, by the text and by the files. Returns the open jobs."""
+        status, text = self.document("status")
+        for stage in status["stages"]:
+            files = list((self.cache / stage["stage"]).glob("*/*.h5"))
+            self.assertEqual(stage["artefacts"], len(files))
+            self.assertEqual(stage["bytes"], sum(file.stat().st_size for file in files))
+            self.assertRegex(text, "(?m)^" + re.escape(stage["stage"]) + " +{done} +{of} +{artefacts} ".format(**stage))
+        self.assertEqual((status["meshes"], status["clouds"], status["models"]), (2, 0, 2))
+        self.assertEqual((status["cache"], status["results"]), (str(self.cache), str(self.folder / "out")))
+        self.assertEqual(f"\nlast run: {status['last_run']}\n" in text, status["last_run"] is not None)
+        plan, text = self.document("plan")
+        counts = {stage["stage"]: stage for stage in status["stages"]}
+        for stage in plan["stages"]:
+            counted = counts.pop(stage["stage"])
+            numbers = "{cached} +{to_compute} +{waiting} +{not_applicable} +{failed}".format(**stage)
+            reasons = "; ".join(f"{reason['why']}: {reason['jobs']}" for reason in stage["reasons"])
+            self.assertRegex(text, f"(?m)^{re.escape(stage['stage'])} +{numbers} *{re.escape(reasons)}$")
+            self.assertEqual((stage["cached"], stage["cached"] + stage["to_compute"] + stage["waiting"]),
+                             (counted["done"], counted["of"]))
+        self.assertEqual(set(counts), {"picture"})  # no part of a run
+        self.assertEqual(plan["open"], sum(stage["to_compute"] + stage["waiting"] for stage in plan["stages"]))
+        self.assertIn(f"\n{plan['open']} jobs to do", text)
+        return plan["open"], status["last_run"]
+
+    def check_explanation(self, item, *stage):
+        document, text = self.document("explain", item, *stage)
+        self.assertEqual(document["item"], item)
+        for row in document["stages"]:
+            self.assertRegex(text, f"(?m)^{re.escape(row['stage'])} +{row['state']} *{re.escape(row['why'])}$")
+            self.assertTrue(row["file"] is None or Path(row["file"]).is_file())
+        return {row["stage"]: row["state"] for row in document["stages"]}
+
+    def check_graph(self, *further):
+        document, text = self.document("graph", *further)
+        for node in document["nodes"]:
+            to_do = "" if node["to_do"] is None else f", {node['to_do']} to do"
+            inputs = " <- " + ", ".join(node["inputs"]) if node["inputs"] else ""
+            options = "  " + ", ".join(node["options"]) + "\n" if node["options"] else ""
+            self.assertIn("{node} (version {version}, one per {per}".format(**node) + f"{to_do}){inputs}\n{options}", text)
+            self.assertEqual(node["node"], "{stage} of {shapes}".format(**node))
+        return [node["to_do"] for node in document["nodes"]]
+
+    def check_verify(self, *further, status=0):
+        document, text = self.document("verify", *further, status=status)
+        (cache,) = document["caches"]
+        self.assertIn("{cache}: {artefacts} artefacts, ".format(**cache) + f"{cache['bytes'] / 1e6:.1f} MB: {len(cache['faults'])} bad", text)
+        for sample in document["samples"]:
+            self.assertIn("{configuration}: {jobs} of its jobs computed again: ".format(**sample) + f"{len(sample['faults'])} came", text)
+        for fault in cache["faults"] + [fault for sample in document["samples"] for fault in sample["faults"]]:
+            self.assertIn("{file}: {what}\n".format(**fault), text)
+        self.assertFalse(document["interrupted"])
+        return cache, document["samples"]
+
+    def check_gc(self, *further):
+        document, text = self.document("gc", "--dry-run", *further)
+        for stage in document["stages"]:
+            self.assertRegex(text, f"(?m)^{re.escape(stage['stage'])} +{stage['kept']['files']} +[0-9.e-]+ +{stage['removed']['files']} ")
+        removed = sum(stage["removed"]["files"] for stage in document["stages"])
+        self.assertIn(f"\nwould be removed: {removed} artefacts ", text)
+        self.assertIn(f" {document['damaged']['files']} damaged ones, {document['unfinished']['files']} unfinished files\n", text)
+        return removed, document
+
+    def test_documents_agree_with_their_documentation_and_with_the_text(self):
+        with self.subTest("no cache"):
+            left, state = self.check_counts()
+            self.assertTrue(left > 0 and state is None)
+            self.assertLessEqual({"to compute", "waiting"}, set(self.check_explanation(ODD).values()))
+            self.assertEqual(sum(self.check_graph()), left)
+            self.assertFalse(self.cache.exists())
+        with self.subTest("interrupted"):
+            self.run_to(130, {"LD_PRELOAD": os.environ["SALBENCH_KILL_AT_RENAME"], "SALBENCH_KILL_AT": "12 after",
+                              "SALBENCH_KILL_BY": str(int(signal.SIGINT)), "ASAN_OPTIONS": "verify_asan_link_order=0"})
+            now, state = self.check_counts()
+            self.assertTrue(0 < now < left and state.startswith("partial"))
+            _, collected = self.check_gc()
+            self.assertGreater(collected["waiting"], 0)
+        with self.subTest("finished"):
+            self.run_to()
+            self.assertEqual(self.check_counts(), (0, "finished"))
+            self.assertLessEqual({"cached"}, set(self.check_explanation(ODD).values()))
+            self.assertEqual(set(self.check_graph()), {0})
+            (cache, samples) = self.check_verify("--deep", "--sample", "3")
+            self.assertEqual((cache["cache"], cache["faults"], samples[0]["jobs"]), (str(self.cache), [], 3))
+            self.assertEqual(self.check_gc()[0], 0)
+        with self.subTest("damaged"):
+            bad = next((self.cache / "fpfh").glob("*/*.h5"))
+            sound = bad.read_bytes()
+            bad.write_bytes(sound[:-1] + bytes([sound[-1] ^ 1]))
+            cache, samples = self.check_verify("--deep", "--sample", "1000", status=1)
+            self.assertEqual([fault["file"] for fault in cache["faults"]], [str(bad)])
+            self.assertGreater(len(samples[0]["faults"]), 0)
+            states = [*self.check_explanation("1", "fpfh").values(), *self.check_explanation(ODD, "fpfh").values()]
+            self.assertEqual(sorted(states), ["cached", "damaged"])
+            bad.write_bytes(sound)
+        with self.subTest("another configuration"):
+            self.config.write_text(CONFIG.replace("PS: , RS: ", "PS: {absolute: true}, RS: "))
+            self.assertGreater(self.check_counts()[0], 0)
+            self.assertEqual(self.check_explanation("1", "map.PS"), {"map.PS": "to compute"})
+            removed, collected = self.check_gc()
+            self.assertTrue(removed > 0 or collected["waiting"] > 0)
+            self.config.write_text(CONFIG.replace("PS: , RS: ", "RS: "))
+            before = len(list(self.cache.glob("*/*/*.h5")))
+            removed, collected = self.check_gc()
+            done = json.loads(self.salbench("gc", "--quiet", "--format", "json"))
+            self.assertEqual(done, {**collected, "dry_run": False})
+            self.assertEqual(len(list(self.cache.glob("*/*/*.h5"))), before - removed)
+        with self.subTest("no data set"):
+            done = subprocess.run([PROGRAM, "graph", self.config, "--format", "json"], check=True, capture_output=True)
+            nodes = json.loads(done.stdout)["nodes"]
+            self.assertEqual({node["to_do"] for node in nodes}, {None})
+            self.seen["graph"]["nodes[].to_do"].add("null")
+        for subcommand, keys in documented().items():
+            with self.subTest(subcommand):
+                self.assertEqual(self.seen[subcommand], keys)
+
+    def test_bytes_that_are_not_utf_8_are_replaced(self):
+        cache = os.fsencode(self.folder) + b"/caf\xe9"
+        shutil.rmtree(cache, ignore_errors=True)
+        done = subprocess.run([PROGRAM, "status", self.config, "--data", self.folder / "data", "--cache", cache, "--format", "json"],
+                              check=True, capture_output=True)
+        self.assertEqual(json.loads(done.stdout.decode("utf-8"))["cache"], f"{self.folder}/caf\ufffd")
+
+    def test_another_format_is_refused_before_anything_is_done(self):
+        for subcommand, known in (("status", "text or json"), ("plan", "text or json"), ("explain", "text or json"),
+                                  ("verify", "text or json"), ("gc", "text or json"), ("graph", "text, json or dot")):
+            with self.subTest(subcommand):
+                further = ["1"] if subcommand == "explain" else []
+                done = subprocess.run([PROGRAM, subcommand, self.config, *further, "--format", "jason"], capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stdout), (2, ""))
+                self.assertEqual(done.stderr, f"error: --format jason: must be {known}\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
