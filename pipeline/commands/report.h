@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a subcommand reports: facts in a struct, from which both the text for people and the JSON document for
+// Reports of subcommands: facts in a struct, from which both the text for people and the JSON document for
 // programs are made. docs/json.md has the documents; tests/e2e/json_test.py holds it against them.
 #pragma once
 

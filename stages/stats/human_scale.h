@@ -12,7 +12,7 @@
 
 namespace salbench {
 
-// Where a curve with values at 1, 2, ... and straight lines between them first is as good as `level`:
+// First place where a curve with values at 1, 2, ... and straight lines between them is as good as `level`:
 // -infinity where it begins better, infinity where it never is. The curve has one value at least.
 double first_reached(std::span<const double> curve, double level, bool higher_is_better);
 
@@ -25,7 +25,7 @@ struct Equivalent {
   int crossings = 0;                                               // 2 or more: `participants` is the first
 };
 
-// Of each model. Columns of `scores` (units x columns; one unit at least): the human curve from 1 to `length`
+// One per model. Columns of `scores` (units x columns; one unit at least): the human curve from 1 to `length`
 // participants, then the models; `resampled` are their resampled means. [tasse2016]
 std::vector<Equivalent> equivalents(const Columns& scores, const Columns& resampled, std::size_t length,
                                     bool higher_is_better);
