@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
-#include "stages/core/parallel.h"
+#include "pipeline/results/metric_rows.h"
 #include "stages/stats/human_scale.h"
 #include "stages/stats/paired.h"
 
@@ -100,17 +99,13 @@ std::vector<std::vector<Cell>> rows_of(const DatasetScores& scores, const Ranked
 }  // namespace
 
 Table human_share_table(const Conclusions& conclusions) {
-  Table table{.columns = {"dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs", "mean_hs",
-                          "share", "ci95_low", "ci95_high", "remark"},
-              .rows = {}};
-  for (const DatasetConclusions& dataset : conclusions.datasets) {
-    std::vector<std::vector<std::vector<Cell>>> rows(dataset.metrics.size());
-    parallel_ranges(rows.size(), 1, [&](std::size_t m, std::size_t) {
-      rows[m] = rows_of(dataset.scores, dataset.metrics[m], conclusions.metrics[m], *conclusions.bootstrap);
-    });
-    for (auto& of_metric : rows) std::ranges::move(of_metric, std::back_inserter(table.rows));
-  }
-  return table;
+  return rows_by_metric(
+      conclusions,
+      {"dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs", "mean_hs", "share", "ci95_low",
+       "ci95_high", "remark"},
+      [&](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string&) {
+        return rows_of(dataset.scores, ranked, conclusions.metrics[ranked.metric], *conclusions.bootstrap);
+      });
 }
 
 }  // namespace salbench

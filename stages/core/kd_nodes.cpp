@@ -62,7 +62,7 @@ Interval extent(std::span<const Place> places, Eigen::Index axis) {
   return interval;
 }
 
-// Of several longest sides, the one along which the points reach farthest.
+// The longest side; of several, the one along which the points reach farthest.
 Cut cut_of(std::span<const Place> places, const Box& box) {
   const Vec3 sides = box.high - box.low;
   const double longest = sides.maxCoeff();
