@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
+#include "pipeline/catalog/models.h"
 #include "pipeline/results/metric_rows.h"
 #include "stages/stats/human_scale.h"
 #include "stages/stats/paired.h"
@@ -11,7 +13,7 @@
 namespace salbench {
 namespace {
 
-constexpr const char *kChance = "RS", *kPeople = "HS";  // of the references, those that have a scale between
+constexpr std::string_view kPeople = "HS";  // with kChance, the ends of the scale
 constexpr double kLevel = 1 - kConfidence;
 
 // The models, chance and people under one metric, on the same units.
@@ -31,10 +33,10 @@ Scale scale_of(const DatasetScores& scores, const RankedMetric& ranked, bool hig
                const Bootstrap& bootstrap) {
   const std::vector<std::size_t> scored = scores.scored(ranked.metric);
   std::vector<std::size_t> columns = ranked.scores.models;
-  for (const char* name : {kChance, kPeople}) {
+  for (const std::string_view name : {kChance, kPeople}) {
     const auto found =
         std::ranges::find_if(scored, [&](std::size_t model) { return scores.models()[model] == name; });
-    if (found == scored.end()) return {.remark = std::string("no scores of ") + name};
+    if (found == scored.end()) return {.remark = "no scores of " + std::string(name)};
     columns.push_back(*found);
   }
   Scale scale{.scores = scores.compared(ranked.metric, columns)};
