@@ -18,7 +18,7 @@ struct Recipe {
   std::int32_t stage_version = 0;
   std::string options;                                 // canonical text, one `key: value` per line
   std::string seed;                                    // "seed/item" if random numbers are used; else empty
-  std::vector<std::pair<std::string, Digest>> inputs;  // name and content digest, in the order of the catalog
+  std::vector<std::pair<std::string, Digest>> inputs;  // name and content digest, in the order of the rules
 };
 
 Digest key_of(const Recipe& recipe);

@@ -12,12 +12,12 @@ namespace fs = std::filesystem;
 using Event = RunningCommand::Event;
 
 void run_command(const std::string& command, const fs::path& folder, std::chrono::duration<double> timeout) {
-  if (commands_are_ended()) throw CommandInterrupted("the program ends");
+  if (commands_are_ended()) throw Interrupted("the program ends");
   const auto deadline = deadline_after(timeout);
   RunningCommand running(command, folder, RunningCommand::Serves::no);
   const bool in_time = running.wait(deadline, true) == Event::ended;
   if (!in_time) running.terminate();
-  if (commands_are_ended()) throw CommandInterrupted("the program ends");
+  if (commands_are_ended()) throw Interrupted("the program ends");
   if (!in_time) throw InputError(too_late(timeout, running));
   if (const std::string failure = running.failure(); !failure.empty())
     throw InputError(fmt::format("{}; {}", failure, running.said()));

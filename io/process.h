@@ -9,11 +9,6 @@
 
 namespace salbench {
 
-// The program was asked to end while a command was at work: nothing is known about the command.
-struct CommandInterrupted : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 // Starts the process that commands are started from, a copy of this one: for a moment when the program is
 // small, since the first command does it otherwise. Throws StorageError.
 void prepare_commands();
@@ -22,7 +17,7 @@ void prepare_commands();
 // the terminal. When it returns or throws, no process that the command started is left, in whatever group or
 // session; the same holds when the program ends, however it does. Throws InputError if the command fails or
 // takes longer than the timeout: one line with the reason and the last lines of its output;
-// CommandInterrupted after end_commands; StorageError if the system has no process or pipe for it.
+// Interrupted after end_commands; StorageError if the system has no process or pipe for it.
 void run_command(const std::string& command, const std::filesystem::path& folder,
                  std::chrono::duration<double> timeout);
 

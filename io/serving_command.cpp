@@ -42,7 +42,7 @@ class ServingCommand::Running {
 };
 
 ServingCommand::ServingCommand(const std::string& command, const fs::path& folder) {
-  if (commands_are_ended()) throw CommandInterrupted("the program ends");
+  if (commands_are_ended()) throw Interrupted("the program ends");
   running_ = std::make_unique<Running>(command, folder);
 }
 
@@ -63,7 +63,7 @@ bool ServingCommand::ask(const std::string& line, const std::string& answer,
   running_->busy = true;
   if (!process.tell(line + "\n")) throw InputError("the command does not read its standard input");
   const Event event = process.wait(deadline, true, answer);
-  if (commands_are_ended()) throw CommandInterrupted("the program ends");
+  if (commands_are_ended()) throw Interrupted("the program ends");
   if (event == Event::late) {
     running_->end(false);
     throw InputError(too_late(timeout, process));

@@ -13,7 +13,7 @@ namespace salbench {
 // and prints another line on its standard output when it is done with each. One thread at a time may use it.
 class ServingCommand {
  public:
-  // Starts the command as run_command does. Throws CommandInterrupted after end_commands, and StorageError.
+  // Starts the command as run_command does. Throws Interrupted after end_commands, and StorageError.
   ServingCommand(const std::string& command, const std::filesystem::path& folder);
   ServingCommand(const ServingCommand&) = delete;
   ServingCommand& operator=(const ServingCommand&) = delete;
@@ -26,7 +26,7 @@ class ServingCommand {
 
   // Writes the line, and waits until the command prints `answer` as a whole line. What else it prints counts
   // for messages only. False if the line is not to blame for its end: it ended with status 0, or, after
-  // other answers, without reading the line. Otherwise throws InputError and CommandInterrupted as
+  // other answers, without reading the line. Otherwise throws InputError and Interrupted as
   // run_command does; the command is of no use then.
   bool ask(const std::string& line, const std::string& answer, std::chrono::duration<double> timeout);
 

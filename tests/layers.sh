@@ -5,10 +5,10 @@ set -euo pipefail
 cd "$1"
 breaches=0
 
-# path:line:included of every include of the program's sources; tests may include what they like.
+# path:line:included of every include of the program's sources; tests may include what they like, but for those of the engine.
 includes() {
   local folder
-  for folder in stages io cache pipeline; do
+  for folder in stages io cache pipeline tests/engine; do
     [[ -d $folder ]] && grep -rnoE --include='*.h' --include='*.cpp' '^#include [<"][^>"]+[>"]' "$folder"
   done | sed -E 's/#include [<"]([^>"]+)[>"]/\1/'
 }
@@ -46,10 +46,15 @@ done
 keeps io 'io|stages/core'
 keeps cache 'cache|io|stages/core'
 below='cache|io|stages/[a-z_]+'
-for room in config catalog plan run results commands; do
+for room in config engine inputs rules results commands; do
   below+="|pipeline/$room"
   keeps "pipeline/$room" "$below"
 done
+subject_free='^(pipeline/engine/|cache/|io/(arrays|file)\.h|stages/core/(errors|parallel|progress|rng)\.h)'
+while IFS=: read -r path line included; do
+  [[ ! $path =~ ^(pipeline|tests)/engine/ || ! $included =~ ^(stages|io|pipeline)/ || $included =~ $subject_free ]] ||
+    complain "$path:$line" "$included" "the engine and its tests know nothing of shapes"
+done < <(includes)
 while IFS=: read -r path line included; do
   [[ ! $path =~ ^pipeline/[^/]+$ ]] || complain "$path:$line" "$included" "pipeline has rooms: put it into one"
 done < <(includes)

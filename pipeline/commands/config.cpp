@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/catalog/config.h"
+#include "pipeline/rules/config.h"
 
 #include <fmt/format.h>
 

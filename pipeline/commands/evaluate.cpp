@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <memory>
 
-#include "pipeline/catalog/given_maps.h"
 #include "pipeline/commands/run.h"
 #include "pipeline/commands/subcommands.h"
 

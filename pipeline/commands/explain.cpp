@@ -10,24 +10,27 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/why.h"
 #include "pipeline/config/section.h"
-#include "pipeline/plan/causes.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
-Item require_item(const Context& context, const std::string& name) {
-  if (const auto item = find_item(context, name)) return *item;
+// A mesh may be called "52_3", as the scan 3 of the mesh 52 is: it goes first.
+Unit require_unit(const Project& project, const std::string& name) {
+  for (const Level level : {kMeshes, kClouds, kScans})
+    for (const Unit unit : project.units.of(level))
+      if (project.units.name(unit) == name && !project.jobs_of(unit).empty()) return unit;
   throw ConfigError(
       fmt::format("explain: there is no item '{}'; a shape is named like its file (52), the scans of a mesh "
                   "52_0 to 52_11",
                   name));
 }
 
-void require_stage(const Context& context, const std::vector<JobRef>& jobs, const ExplainOptions& options) {
+void require_stage(const Project& project, const std::vector<Job>& jobs, const ExplainOptions& options) {
   std::vector<std::string_view> known;
-  for (const JobRef& job : jobs) known.push_back(context.row(job).name);
+  for (const Job& job : jobs) known.push_back(project.rule(job).stage);
   if (options.stage.empty() || std::find(known.begin(), known.end(), options.stage) != known.end()) return;
   const std::string nearest = nearest_word(options.stage, known);
   throw ConfigError(fmt::format("explain: {} has no stage '{}'; {}", options.item, options.stage,
@@ -35,7 +38,7 @@ void require_stage(const Context& context, const std::vector<JobRef>& jobs, cons
                                                 : fmt::format("did you mean '{}'?", nearest)));
 }
 
-std::string state_of(const Job& job, const Cause& cause) {
+std::string state_of(const Decision& job, const Cause& cause) {
   if (cause.reason == Reason::damaged) return "damaged";
   switch (job.verdict) {
     case Verdict::cached:
@@ -52,17 +55,19 @@ std::string state_of(const Job& job, const Cause& cause) {
 
 }  // namespace
 
-std::vector<Explanation> explain(const Context& context, const Plan& plan, const std::filesystem::path& cache,
-                                 const ExplainOptions& options) {
-  const std::vector<JobRef> jobs = jobs_of(context.catalog, require_item(context, options.item));
-  require_stage(context, jobs, options);
-  Causes causes(context, plan, cache);
+std::vector<Explanation> explain(const Project& project, const Index& index,
+                                 const std::filesystem::path& cache, const ExplainOptions& options) {
+  std::vector<Job> jobs = project.jobs_of(require_unit(project, options.item));
+  require_stage(project, jobs, options);
+  if (!options.stage.empty())
+    std::erase_if(jobs, [&](const Job& job) { return project.rule(job).stage != options.stage; });
+  const Plan plan = make_plan_of(project, index, jobs);
+  Causes causes(project, plan, cache);
   std::vector<Explanation> explanations;
-  for (const JobRef& job : jobs) {
-    const std::string& stage = context.row(job).name;
-    if (!options.stage.empty() && stage != options.stage) continue;
+  for (const Job& job : jobs) {
     const Cause cause = causes.of(job, true);
-    explanations.push_back({stage, state_of(plan[job], cause), causes.line(job, cause), cause.file});
+    explanations.push_back(
+        {project.rule(job).stage, state_of(plan[job], cause), why_line(causes, job, cause), cause.file});
   }
   return explanations;
 }
@@ -86,7 +91,7 @@ Json::Object json_of(const ExplainReport& report) {
 
 ExplainReport explained(const Setup& setup, const ExplainOptions& options) {
   const FolderStore store(setup.cache, Access::read_only);
-  return {options, explain(setup.context, make_plan(setup.context, store), setup.cache, options)};
+  return {options, explain(setup.project, store, setup.cache, options)};
 }
 
 std::string text_of(const ExplainReport& report) {

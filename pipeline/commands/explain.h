@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/plan/plan.h"
+#include "pipeline/engine/plan.h"
 
 namespace salbench {
 
@@ -23,7 +23,7 @@ struct Explanation {
 };
 
 // In the order of the catalog. Throws ConfigError for an item or a stage that does not exist.
-std::vector<Explanation> explain(const Context& context, const Plan& plan, const std::filesystem::path& cache,
-                                 const ExplainOptions& options);
+std::vector<Explanation> explain(const Project& project, const Index& index,
+                                 const std::filesystem::path& cache, const ExplainOptions& options);
 
 }  // namespace salbench

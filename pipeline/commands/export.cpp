@@ -27,17 +27,17 @@ struct ExportOptions {
 };
 
 // All but the tables of scores, which are exported with the scores.
-std::vector<std::string> stages_of(const Catalog& catalog) {
+std::vector<std::string> stages_of(const Rules& rules) {
   std::vector<std::string> names;
-  for (const Row& row : catalog.rows)
-    if (row.kind != "score_table" && std::find(names.begin(), names.end(), row.name) == names.end())
-      names.push_back(row.name);
+  for (const Rule& rule : rules)
+    if (!has_role(rule, Role::score_table) && std::ranges::find(names, rule.stage) == names.end())
+      names.push_back(rule.stage);
   return names;
 }
 
 // "map" names "map.LS" and all its like.
-StageNames selected_stages(const std::string& list, const Catalog& catalog) {
-  const std::vector<std::string> known = stages_of(catalog);
+StageNames selected_stages(const std::string& list, const Rules& rules) {
+  const std::vector<std::string> known = stages_of(rules);
   const std::vector<std::string> wanted = split_list(list);
   if (wanted.empty()) return {known.begin(), known.end()};
   StageNames selected;
@@ -82,37 +82,35 @@ struct Addition {
   void operator()(const Other&) const {}  // not per point
 };
 
-bool is_points(const Row& row) {
-  return row.kind == "mesh" || row.kind == "scan" || row.kind == "point_cloud";
-}
-
-// Rows stand in the order of their inputs: the points come first.
-bool write_shape(Session& session, const Item& item, ShapeFormat format, const StageNames& stages,
+// Rules stand in the order of their inputs: the points come first.
+bool write_shape(Session& session, Unit unit, ShapeFormat format, const StageNames& stages,
                  const fs::path& folder) {
-  const Context& context = session.setup.context;
+  const RunState run = session.state();
   ShapeWithFields shape;
   if (session.setup.config.simulated()) shape.remark = kSimulatedNote;
   std::vector<ValuePtr> values;  // spans refer to them
-  for (const JobRef& job : jobs_of(context.catalog, item)) {
-    const Row& row = context.row(job);
-    if (!session.plan[job].known() || (!is_points(row) && !stages.contains(row.name))) continue;
-    values.push_back(session.runner.result(job));
-    std::visit(Addition{shape, row.name}, *values.back());
+  for (const Job& job : run.project().jobs_of(unit)) {
+    const Rule& rule = run.project().rule(job);
+    if (!run.decision(job).known() || (!has_role(rule, Role::shape) && !stages.contains(rule.stage)))
+      continue;
+    values.push_back(run.resolver.value(job));
+    std::visit(Addition{shape, rule.stage}, value_of(*values.back()));
   }
   if (shape.points.empty()) return false;
-  write_file(folder / fmt::format("{}.{}", context.name(item), name_of(format)), shape_text(shape, format));
+  write_file(folder / fmt::format("{}.{}", run.units().name(unit), name_of(format)),
+             shape_text(shape, format));
   return true;
 }
 
 std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames& stages,
                          const fs::path& folder, const std::atomic<bool>& stop) {
   make_folder(folder, "choose another with --to");
-  const std::vector<Item> items = all_items(session.setup.context);
+  const std::vector<Unit> shapes = session.state().shapes();
   std::size_t written = 0;
-  session.progress->begin("exporting", items.size());
-  for (const Item& item : items) {
+  session.progress->begin("exporting", shapes.size());
+  for (const Unit shape : shapes) {
     if (stop) break;
-    written += write_shape(session, item, format, stages, folder) ? 1U : 0U;
+    written += write_shape(session, shape, format, stages, folder) ? 1U : 0U;
     session.progress->item_done();
   }
   session.progress->end();
@@ -129,9 +127,9 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
   if (shapes && options.link) throw ConfigError("--link: only one HDF5 file (--format h5) can hold links");
 
   Session session(arguments, stop, {}, shapes ? Pictures::none : Pictures::cached);
-  const StageNames stages = selected_stages(options.stages, session.setup.catalog);
+  const StageNames stages = selected_stages(options.stages, session.setup.project.rules);
   const OrderlyEnd orderly;
-  session.runner.run(thread_count(arguments));
+  session.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
   std::string done = fmt::format("exported to {}\n", arguments.to);
@@ -139,8 +137,8 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
     const std::size_t written = write_shapes(session, format, stages, arguments.to, stop);
     if (stop) return interrupted_status(arguments);
     done = fmt::format("{} shapes written to {}\n", written, arguments.to);
-  } else if (!export_file({session.state(), session.store, session.setup.cache}, stages, arguments.to,
-                          options.link, stop)) {
+  } else if (!export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages,
+                          arguments.to, options.link, stop)) {
     return interrupted_status(arguments);
   }
   if (!arguments.quiet) fmt::print("{}", done);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/commands/gc.h"
-
 #include <memory>
 
 #include <fmt/format.h>
@@ -9,7 +7,7 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/plan/remark.h"
+#include "pipeline/engine/maintain.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -80,7 +78,7 @@ ExitStatus run_gc(Arguments arguments, const GcOptions& options, ReportFormat fo
                                     setup.cache.string(), folder.string()));
     folder = setup.cache;
     const FolderStore store(folder, Access::read_only);
-    report.waiting += add_needed(setup.context, make_plan(setup.context, store), needed);
+    report.waiting += add_needed(setup.project, make_plan(setup.project, store), needed);
   }
   report.collected = collect_garbage(folder, needed, options.dry_run, *progress_of(arguments.quiet));
   print_report(format, "gc", json_of(report), arguments.quiet ? "" : text_of(report));
@@ -88,39 +86,6 @@ ExitStatus run_gc(Arguments arguments, const GcOptions& options, ReportFormat fo
 }
 
 }  // namespace
-
-bool key_is_unknown(const Job& job) {
-  switch (job.verdict) {
-    case Verdict::cached:
-    case Verdict::done:
-    case Verdict::not_applicable:
-      return false;
-    case Verdict::compute:
-      return job.reason == Reason::unreadable;
-    default:
-      return true;
-  }
-}
-
-std::size_t add_needed(const Context& context, const Plan& plan, KeepSet& needed) {
-  std::size_t unknown = 0;
-  for (std::size_t row = 0; row < plan.jobs.size(); ++row)
-    for (const Item& item : items_of(context, row)) {
-      const JobRef ref{row, item};
-      const Job& job = plan[ref];
-      const bool may_have_remark = context.row(ref).source == Source::shape_file;
-      if (context.row(ref).given) continue;
-      if (key_is_unknown(job)) {
-        needed.add_every_key(context.row(ref).name, context.name(ref));
-        if (may_have_remark) needed.add_every_key(kRemarkStage, context.name(ref));
-        ++unknown;
-      } else if (job.verdict != Verdict::not_applicable) {
-        needed.add(context.row(ref).name, job.key);  // also of a job to compute: another process may store it
-        if (may_have_remark) needed.add(kRemarkStage, remark_key(context.row(ref).name, job.key));
-      }
-    }
-  return unknown;
-}
 
 Subcommand gc_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<GcOptions>();

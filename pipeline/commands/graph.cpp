@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/commands/graph.h"
 
+#include <algorithm>
+#include <map>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -9,14 +11,14 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/run/graph.h"
+#include "pipeline/engine/run.h"
 
 namespace salbench {
 namespace {
 
-std::vector<std::string> option_lines(const Row& row) {
+std::vector<std::string> option_lines(const Rule& rule) {
   std::vector<std::string> lines;
-  for (const OptionLines& options : row.options) {
+  for (const OptionLines& options : rule.options) {
     std::istringstream text(options.text);
     for (std::string line; std::getline(text, line);) lines.push_back(line);
   }
@@ -39,22 +41,21 @@ Json::Object json_of(const Graph& graph) {
                          {"version", node.version},
                          {"options", words(node.options)},
                          {"inputs", words(node.inputs)},
+                         {"cuts", words(node.cuts)},
+                         {"stratum", node.stratum},
                          {"to_do", node.to_do}};
            })}};
 }
 
-std::vector<std::size_t> open_jobs(const Setup& setup) {
-  const FolderStore store(setup.cache, Access::read_only);
-  std::vector<std::size_t> open;
-  for (const std::vector<Job>& jobs : make_plan(setup.context, store).jobs) open.push_back(count_open(jobs));
-  return open;
-}
-
 Graph graph_of_run(const Arguments& arguments) {
   if (arguments.data.empty())
-    return graph_of(make_catalog(read_config(Section::from_file(configuration_path(arguments.config)), "")));
+    return graph_of(make_rules(read_config(Section::from_file(configuration_path(arguments.config)), "")));
   const Setup setup(arguments);
-  return graph_of(setup.catalog, open_jobs(setup));
+  const FolderStore store(setup.cache, Access::read_only);
+  const Plan plan = make_plan(setup.project, store);
+  Graph graph = graph_of(setup.project.rules);
+  for (std::size_t rule = 0; rule < graph.nodes.size(); ++rule) graph.nodes[rule].to_do = plan.open(rule);
+  return graph;
 }
 
 ExitStatus print_graph(const Arguments& arguments, ReportFormat format) {
@@ -66,27 +67,39 @@ ExitStatus print_graph(const Arguments& arguments, ReportFormat format) {
 
 }  // namespace
 
-Graph graph_of(const Catalog& catalog, const std::vector<std::size_t>& to_do) {
+Graph graph_of(const Rules& rules) {
+  const std::vector<std::size_t> stratum = strata(rules);
   Graph graph;
-  for (const Row& row : catalog.rows)
-    graph.nodes.push_back({.name = node_name(row),
-                           .stage = row.name,
-                           .shapes = name_of(row.shapes),
-                           .per = name_of(row.scope()),
-                           .version = row.version,
-                           .options = option_lines(row)});
-  for (const Edge& edge : edges(catalog)) graph.nodes[edge.to].inputs.push_back(graph.nodes[edge.from].name);
-  for (std::size_t row = 0; row < to_do.size(); ++row) graph.nodes[row].to_do = to_do[row];
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    const Rule& rule = rules[r];
+    graph.nodes.push_back({.name = node_name(rule),
+                           .stage = rule.stage,
+                           .shapes = shapes_name(rule.over),
+                           .per = levels()[rule.level()].unit,
+                           .version = rule.version,
+                           .options = option_lines(rule),
+                           .stratum = stratum[r]});
+    for (const std::size_t input : rule.inputs) {
+      graph.nodes[r].inputs.push_back(graph.nodes[input].name);
+      if (stratum[input] < stratum[r]) graph.nodes[r].cuts.push_back(graph.nodes[input].name);
+    }
+  }
   return graph;
 }
 
 std::string graph_text(const Graph& graph) {
-  std::string text;
+  std::map<std::size_t, std::string> strata;
   for (const GraphNode& node : graph.nodes) {
-    text += fmt::format("{} (version {}, one per {}{}){}{}\n", node.name, node.version, node.per,
-                        jobs_text(node), node.inputs.empty() ? "" : " <- ", fmt::join(node.inputs, ", "));
+    std::string& text = strata[node.stratum];
+    text += fmt::format("{} (version {}, one per {}{}){}{}{}\n", node.name, node.version, node.per,
+                        jobs_text(node), node.inputs.empty() ? "" : " <- ", fmt::join(node.inputs, ", "),
+                        node.cuts.empty() ? "" : fmt::format("; read back: {}", fmt::join(node.cuts, ", ")));
     if (!node.options.empty()) text += fmt::format("  {}\n", fmt::join(node.options, ", "));
   }
+  std::string text;
+  for (const auto& [stratum, nodes] : strata)
+    text +=
+        fmt::format("{}stratum {} of {}\n{}", text.empty() ? "" : "\n", stratum + 1, strata.size(), nodes);
   return text;
 }
 
@@ -97,7 +110,8 @@ std::string graph_dot(const Graph& graph) {
                          node.stage, node.shapes, node.version, jobs_text(node),
                          fmt::join(node.options, "\\n"), node.per == "set" ? ", shape=ellipse" : "");
     for (const std::string& input : node.inputs)
-      edges += fmt::format("  \"{}\" -> \"{}\";\n", input, node.name);
+      edges += fmt::format("  \"{}\" -> \"{}\"{};\n", input, node.name,
+                           std::ranges::find(node.cuts, input) == node.cuts.end() ? "" : " [style=dashed]");
   }
   return "digraph salbench {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n" +
          nodes + edges + "}\n";
@@ -105,7 +119,7 @@ std::string graph_dot(const Graph& graph) {
 
 Subcommand graph_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
-  return {"graph", "print the flow graph of a run: a node per row of the catalog, an edge per input",
+  return {"graph", "print the flow graph of a run: a node per rule, an edge per input, dashed across a cut",
           run_parameters(arguments, {format_parameter(format, ", or dot for Graphviz")}),
           [&arguments, format](const std::atomic<bool>&) {
             return print_graph(arguments, format_of(format, true));

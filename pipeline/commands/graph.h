@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Subcommand `graph`: the flow graph that a configuration runs.
+// Subcommand `graph`: the flow graph that a configuration runs, with its cuts.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/plan/plan.h"
+#include "pipeline/engine/rule.h"
 
 namespace salbench {
 
@@ -17,7 +17,9 @@ struct GraphNode {
   std::string_view shapes, per;  // "scans", "scan"
   std::int32_t version = 0;
   std::vector<std::string> options = {};  // "radius: 0.02"
-  std::vector<std::string> inputs = {};   // names of nodes
+  std::vector<std::string> inputs = {};   // names of nodes, all of them
+  std::vector<std::string> cuts = {};     // of these, inputs of earlier strata: read back from the cache
+  std::size_t stratum = 0;                // streamed one after the other
   std::optional<std::size_t> to_do = {};  // open jobs; nothing if no data set was looked at
 };
 
@@ -25,9 +27,8 @@ struct Graph {
   std::vector<GraphNode> nodes;
 };
 
-// `to_do` has the open jobs of each row; empty: not known.
-Graph graph_of(const Catalog& catalog, const std::vector<std::size_t>& to_do = {});
-std::string graph_text(const Graph& graph);  // a line per node, and one of its options
+Graph graph_of(const Rules& rules);
+std::string graph_text(const Graph& graph);  // a line per node, and one of its options; by stratum
 std::string graph_dot(const Graph& graph);   // for Graphviz
 
 }  // namespace salbench

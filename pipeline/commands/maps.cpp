@@ -21,22 +21,21 @@ std::string val_text(const ScalarField& field) {
 }
 
 // Writes TO/MODEL/ITEM.val for every map that is known; returns how many. Ends early once `stop` is set.
-std::size_t write_maps(Session& session, const fs::path& folder, std::string_view kind,
-                       const std::atomic<bool>& stop) {
-  const Context& context = session.setup.context;
+std::size_t write_maps(Session& session, const fs::path& folder, Role role, const std::atomic<bool>& stop) {
+  const RunState run = session.state();
   for (const Model& model : session.setup.config.models)
-    if (model.is_map()) make_folder(folder / model.name, "choose another with --to");
-  const std::vector<Item> items = all_items(context);
+    if (model.add_map) make_folder(folder / model.name, "choose another with --to");
+  const std::vector<Unit> shapes = run.shapes();
   std::size_t written = 0;
-  session.progress->begin("writing", items.size());
-  for (const Item& item : items) {
-    for (const JobRef& job : jobs_of(context.catalog, item)) {
+  session.progress->begin("writing", shapes.size());
+  for (const Unit shape : shapes) {
+    for (const Job& job : run.project().jobs_of(shape)) {
       if (stop) return written;
-      const std::string& name = context.row(job).name;
-      if (!name.starts_with(kind) || !session.plan[job].known()) continue;
-      const ValuePtr map = session.runner.result(job);
-      write_file(folder / name.substr(kind.size()) / (context.name(item) + ".val"),
-                 val_text(std::get<ScalarField>(*map)));
+      const Rule& rule = run.project().rule(job);
+      if (!has_role(rule, role) || !run.decision(job).known()) continue;
+      const ValuePtr map = run.resolver.value(job);
+      write_file(folder / rule.subject / (run.units().name(shape) + ".val"),
+                 val_text(value_as<ScalarField>(*map)));
       ++written;
     }
     session.progress->item_done();
@@ -48,9 +47,9 @@ std::size_t write_maps(Session& session, const fs::path& folder, std::string_vie
 ExitStatus run_maps(const Arguments& arguments, bool matched, const std::atomic<bool>& stop) {
   Session session(arguments, stop);
   const OrderlyEnd orderly;
-  session.runner.run(thread_count(arguments));
+  session.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
-  const std::size_t written = write_maps(session, arguments.to, matched ? "matched." : "map.", stop);
+  const std::size_t written = write_maps(session, arguments.to, matched ? Role::matched : Role::map, stop);
   if (stop) return interrupted_status(arguments);
   if (!arguments.quiet) fmt::print("{} maps written to {}\n", written, arguments.to);
   return finished_status(session);

@@ -5,13 +5,14 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/plan/causes.h"
+#include "pipeline/commands/why.h"
+#include "pipeline/results/stage_counts.h"
 
 namespace salbench {
 namespace {
 
 struct PlanReport {
-  std::vector<RowCount> stages;
+  std::vector<StageCount> stages;
   std::size_t open = 0;  // jobs to compute or waiting
 };
 
@@ -22,7 +23,7 @@ Json reason_json(const std::pair<std::string, std::size_t>& reason) {
 Json::Object json_of(const PlanReport& report) {
   return {{"stages",
            Json::list(report.stages,
-                      [](const RowCount& count) {
+                      [](const StageCount& count) {
                         return Json{
                             {"stage", count.stage},   {"version", count.version},
                             {"cached", count.cached}, {"to_compute", count.compute},
@@ -34,17 +35,17 @@ Json::Object json_of(const PlanReport& report) {
 
 PlanReport plan_of(const Setup& setup) {
   const FolderStore store(setup.cache, Access::read_only);
-  const Plan plan = make_plan(setup.context, store);
-  Causes causes(setup.context, plan, setup.cache, kOpenedForCounting);
-  PlanReport report{.stages = count_by_name(setup.context, plan, causes.words())};
-  for (const RowCount& count : report.stages) report.open += count.compute + count.wait;
+  const Plan plan = make_plan(setup.project, store);
+  Causes causes(setup.project, plan, setup.cache, kOpenedForCounting);
+  PlanReport report{.stages = count_by_stage(setup.project, plan, why_open(causes))};
+  for (const StageCount& count : report.stages) report.open += count.compute + count.wait;
   return report;
 }
 
 std::string text_of(const PlanReport& report) {
   Table table{.columns = {"stage", "cached", "to compute", "waiting", "not applicable", "failed", "why"},
               .rows = {}};
-  for (const RowCount& count : report.stages) {
+  for (const StageCount& count : report.stages) {
     std::string reasons;
     for (const auto& [reason, n] : count.reasons)
       reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", reason, n);

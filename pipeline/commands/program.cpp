@@ -24,7 +24,7 @@ namespace {
 constexpr std::array kSubcommands = {
     run_subcommand,         maps_subcommand,   evaluate_subcommand, pictures_subcommand, export_subcommand,
     conclusions_subcommand, power_subcommand,  plan_subcommand,     graph_subcommand,    explain_subcommand,
-    status_subcommand,      config_subcommand, verify_subcommand,   gc_subcommand,       accept_subcommand,
+    status_subcommand,      config_subcommand, verify_subcommand,   gc_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the command line to a subcommand and its exit status.
+// The room of the command line. Words come in; a subcommand, its output and its exit status go out. Each has
+// the file of its name and a row in the table (program.cpp); session.h is the way from their arguments to a
+// run. It includes everything, and alone CLI11; nothing includes it.
 #pragma once
 
 #include <span>

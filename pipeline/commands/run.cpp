@@ -10,7 +10,8 @@
 #include "pipeline/commands/installed.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/plan/causes.h"
+#include "pipeline/commands/why.h"
+#include "pipeline/engine/run.h"
 #include "pipeline/results/conclusions.h"
 #include "pipeline/results/record.h"
 
@@ -27,7 +28,7 @@ void finish_shard(const Session& session, const RunRecord& record, const Argumen
     fmt::print(
         "shard {}: {}, {} artefacts computed; when all shards are done, the same line without "
         "--shard writes the tables\n",
-        session.setup.context.shard->text(), shapes_text(session.setup.workload), session.runner.computed());
+        session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
 }
 
 void print_summary(const Session& session, const Conclusions& conclusions) {
@@ -35,7 +36,7 @@ void print_summary(const Session& session, const Conclusions& conclusions) {
   if (setup.config.simulated()) fmt::print("{}\n", kSimulatedNote);
   fmt::print("{}", aligned(overview_table(conclusions)));
   fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup.config.protocol),
-             session.runner.computed(), setup.output.string());
+             session.resolver.computed(), setup.output.string());
   fmt::print("to make a report of them: {} {}\n", report_command(), shell_word(setup.output.string()));
 }
 
@@ -70,18 +71,16 @@ void write_results(Session& session, RunRecord record, const Arguments& argument
 
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
-  session.runner.prepare();  // before the results of an earlier run are touched
-  setup.context.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
-  {
-    const OrderlyEnd orderly;
-    session.runner.run(thread_count(arguments));
-  }
+  if (has_work(session.resolver))
+    session.store.prepare();  // before the results of an earlier run are touched
+  setup.inputs.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
+  session.run(thread_count(arguments));
   const bool interrupted = stop;
-  if (interrupted && setup.context.shard) return interrupted_status(arguments);
-  Causes causes(setup.context, session.plan, setup.cache, kOpenedForCounting);
-  const RunRecord record{session.state(),   session.store, thread_count(arguments),   session.started,
-                         session.seconds(), interrupted,   causes.words_of_computed()};
-  if (setup.context.shard)
+  if (interrupted && setup.inputs.shard) return interrupted_status(arguments);
+  Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
+  const RunRecord record{session.state(),   session.store, thread_count(arguments), session.started,
+                         session.seconds(), interrupted,   why_computed(causes)};
+  if (setup.inputs.shard)
     finish_shard(session, record, arguments);
   else
     write_results(session, record, arguments);

@@ -6,20 +6,20 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "pipeline/catalog/config.h"
 #include "pipeline/config/section.h"
+#include "pipeline/rules/config.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
-Unit unit_named(const std::string& name) {
+Observation unit_named(const std::string& name) {
   if (name.empty()) return StatisticsOptions{}.unit;
-  const auto& names = EnumNames<Unit>::names;
+  const auto& names = EnumNames<Observation>::names;
   const auto found = std::ranges::find(names, name);
   if (found == names.end())
     throw ConfigError(fmt::format("--unit {}: must be one of {}", name, fmt::join(names, ", ")));
-  return static_cast<Unit>(found - names.begin());
+  return static_cast<Observation>(found - names.begin());
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ Parameters score_parameters(ScoreOptions& options, Parameter scores, const Param
 }
 
 std::unique_ptr<ConcludedScores> conclude_from_file(const ScoreOptions& options) {
-  const Unit unit = unit_named(options.unit);
+  const Observation unit = unit_named(options.unit);
   auto concluded = std::make_unique<ConcludedScores>();
   concluded->file =
       read_scores(options.scores, {split_list(options.higher), split_list(options.lower)}, options.classes);

@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "pipeline/catalog/given_reference.h"
 #include "pipeline/commands/installed.h"
+#include "pipeline/commands/interrupt.h"
+#include "pipeline/engine/run.h"
+#include "pipeline/inputs/given_reference.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -73,29 +75,26 @@ int thread_count(const Arguments& arguments) {
 
 Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
     : config(read_configuration(arguments, given, pictures)),
-      workload(
-          make_workload(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
-                        arguments.items, shard_of(arguments))),
-      catalog(make_catalog(config, reference_of(arguments), kinds_of(workload))),
-      context{.catalog = catalog,
-              .workload = workload,
-              .seed = config.seed,
-              .attributes = {{"protocol", std::string(name_of(config.protocol))}},
-              .shard = shard_of(arguments)},
+      inputs(read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
+                         arguments.items, shard_of(arguments))),
+      project(make_project(config, inputs, reference_of(arguments))),
       cache(config.cache),
       output(config.output) {
-  if (config.simulated()) context.attributes.emplace_back("participants", std::string(kSimulatedNote));
-  if (given) add_given_maps(workload, catalog, *given);
-  for (const std::string& note : workload.notes) spdlog::warn("{}", note);
+  for (const std::string& note : inputs.notes) spdlog::warn("{}", note);
 }
 
-Session::Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given,
-                 Pictures pictures)
+Session::Session(const Arguments& arguments, const std::atomic<bool>& the_stop,
+                 const std::optional<Model>& given, Pictures pictures)
     : setup(arguments, given, pictures),
       store(setup.cache, Access::read_write),
-      plan(make_plan(setup.context, store)),
+      resolver(setup.project, make_plan(setup.project, store), store),
       progress(progress_of(arguments.quiet)),
-      runner(setup.context, plan, store, *progress, stop) {}
+      stop(the_stop) {}
+
+void Session::run(int threads, const std::string& what, const std::vector<bool>& rules) {
+  const OrderlyEnd orderly;
+  salbench::run(resolver, {threads, what, rules}, *progress, stop);
+}
 
 double Session::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -113,12 +112,12 @@ ExitStatus interrupted_status(const Arguments& arguments) {
 }
 
 ExitStatus finished_status(const Session& session) {
-  const std::vector<Failure> failures = session.runner.failures();
+  const std::vector<Failure> failures = session.resolver.failures();
   if (failures.empty()) return kAllDone;
-  const Context& context = session.setup.context;
+  const Project& project = session.setup.project;
   std::string text = fmt::format("\n{} failed:\n", failures.size());
   for (const Failure& failure : failures)
-    text += fmt::format("  {}: {}: {}\n", context.name(failure.job), context.row(failure.job).name,
+    text += fmt::format("  {}: {}: {}\n", project.name(failure.job), project.rule(failure.job).stage,
                         failure.cause);
   std::fputs(text.c_str(), stderr);
   const bool any_defect =

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cache/folder_store.h"
+#include "pipeline/commands/progress.h"
 #include "pipeline/commands/subcommand.h"
 #include "pipeline/results/results.h"
 
@@ -17,19 +18,16 @@ namespace salbench {
 
 int thread_count(const Arguments& arguments);
 
-// Everything that stands before the first job. The context refers to its neighbours, so it is never moved.
-// Throws ConfigError or InputError for what makes the command impossible.
+// Everything that stands before the first job. Throws ConfigError or InputError for what makes the command
+// impossible.
 struct Setup {
   // A model more; pictures, where the configuration has less of them.
   explicit Setup(const Arguments& arguments, const std::optional<Model>& given = {},
                  Pictures pictures = Pictures::none);
-  Setup(const Setup&) = delete;
-  Setup& operator=(const Setup&) = delete;
 
   Config config;
-  Workload workload;
-  Catalog catalog;
-  Context context;
+  Inputs inputs;
+  Project project;
   std::filesystem::path cache, output;
 };
 
@@ -43,15 +41,17 @@ struct Session {
   Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {},
           Pictures pictures = Pictures::none);
 
-  RunState state() { return {setup.config, setup.context, plan, runner}; }
+  RunState state() { return {setup.config, setup.inputs, resolver}; }
   double seconds() const;  // since it began
+  // Computes what there is to do, or only the rules given and what they read: [rule].
+  void run(int threads, const std::string& what = "evaluation", const std::vector<bool>& rules = {});
 
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   Setup setup;
   FolderStore store;
-  Plan plan;
+  Resolver resolver;
   std::unique_ptr<Progress> progress;
-  Runner runner;
+  const std::atomic<bool>& stop;
 };
 
 // The end of a subcommand that computes: each says on stderr what the user must know.

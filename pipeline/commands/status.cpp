@@ -48,11 +48,10 @@ Json::Object json_of(const StatusReport& report) {
 
 StatusReport status_of(const Setup& setup) {
   const FolderStore store(setup.cache, Access::read_only);
-  const std::size_t clouds = count_clouds(setup.workload);
   StatusReport report{.stages = {},
-                      .meshes = setup.workload.families.size() - clouds,
-                      .clouds = clouds,
-                      .shapes = shapes_text(setup.workload),
+                      .meshes = setup.inputs.count(kMeshes),
+                      .clouds = setup.inputs.count(kClouds),
+                      .shapes = setup.inputs.text(),
                       .models = setup.config.models.size(),
                       .cache = setup.cache,
                       .last_run = {},
@@ -60,7 +59,7 @@ StatusReport status_of(const Setup& setup) {
   if (std::string state = state_of_results(setup.output); !state.empty()) report.last_run = std::move(state);
   std::map<std::string, FolderStore::Usage> usage;
   for (const FolderStore::Usage& stage : store.usage()) usage[stage.stage] = stage;
-  for (const RowCount& count : count_by_name(setup.context, make_plan(setup.context, store))) {
+  for (const StageCount& count : count_by_stage(setup.project, make_plan(setup.project, store))) {
     const FolderStore::Usage& used = usage[count.stage];
     report.stages.push_back(
         {count.stage, count.cached, count.cached + count.compute + count.wait, used.artefacts, used.bytes});

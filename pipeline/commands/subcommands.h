@@ -20,6 +20,5 @@ Subcommand status_subcommand(Arguments& arguments);
 Subcommand config_subcommand(Arguments& arguments);
 Subcommand verify_subcommand(Arguments& arguments);
 Subcommand gc_subcommand(Arguments& arguments);
-Subcommand accept_subcommand(Arguments& arguments);
 
 }  // namespace salbench

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/commands/verify.h"
-
 #include <algorithm>
 #include <memory>
 #include <set>
@@ -11,6 +9,7 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/engine/maintain.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -65,30 +64,6 @@ Json::Object json_of(const VerifyReport& report) {
           {"interrupted", report.interrupted}};
 }
 
-std::vector<JobRef> cached_jobs(const Context& context, const Plan& plan) {
-  std::vector<JobRef> cached;
-  for (std::size_t row = 0; row < plan.jobs.size(); ++row)
-    for (const Item& item : items_of(context, row))
-      if (plan[{row, item}].verdict == Verdict::cached) cached.push_back({row, item});
-  return cached;
-}
-
-// Recomputes a cached job and describes the first difference; empty if there is none.
-std::string recomputed_fault(Executor& executor, const JobRef& job, const Digest& expected) try {
-  const Digest content = content_digest(arrays_from(executor.recompute(job)));
-  for (const Item& item : {job.item, Item::mesh(job.item.family)}) executor.forget(item);
-  if (content == expected) return {};
-  return fmt::format(
-      "computed again, its content is {}: the stage is not deterministic, or its version was not raised",
-      content.hex());
-} catch (const InputError& error) {
-  return fmt::format("cannot be computed again: {}", error.what());
-} catch (const StorageError&) {
-  throw;
-} catch (...) {
-  return current_defect();
-}
-
 std::string summary_of(const CheckedCache& checked) {
   const Verification& found = checked.found;
   return fmt::format("{}: {} artefacts, {:.1f} MB: {} bad{}\n", checked.cache.string(), found.artefacts,
@@ -118,9 +93,9 @@ CheckedCache verified(const fs::path& cache, bool quiet, const std::atomic<bool>
 
 CheckedSample recomputed(const Setup& setup, std::size_t sample, const std::atomic<bool>& stop) {
   FolderStore store(setup.cache, Access::read_only);
-  const Plan plan = make_plan(setup.context, store);
+  const Plan plan = make_plan(setup.project, store);
   const OrderlyEnd orderly;
-  return {setup.config.name, recompute_sample(setup.context, plan, store, sample, stop)};
+  return {setup.config.name, recompute_sample(setup.project, plan, store, sample, stop)};
 }
 
 ExitStatus run_verify(Arguments arguments, const VerifyOptions& options, ReportFormat format,
@@ -152,24 +127,6 @@ ExitStatus run_verify(Arguments arguments, const VerifyOptions& options, ReportF
 }
 
 }  // namespace
-
-Recomputation recompute_sample(const Context& context, const Plan& plan, FolderStore& store,
-                               std::size_t sample, const std::atomic<bool>& stop) {
-  std::vector<JobRef> jobs = cached_jobs(context, plan);
-  Rng rng(context.seed, "verify", "");
-  Plan copy = plan;
-  Executor executor(context, copy, store, Executor::Damaged::report);
-  Recomputation result;
-  for (std::size_t i = 0; i < std::min(sample, jobs.size()) && !stop; ++i) {
-    std::swap(jobs[i], jobs[i + rng.below(jobs.size() - i)]);
-    const std::string& stage = context.row(jobs[i]).name;
-    const auto file = store.path(stage, plan[jobs[i]].key);
-    std::string fault = recomputed_fault(executor, jobs[i], plan[jobs[i]].content);
-    if (!fault.empty()) result.faults.push_back({file.value_or(stage), std::move(fault)});
-    ++result.jobs;
-  }
-  return result;
-}
 
 Subcommand verify_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<VerifyOptions>();

@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/catalog/models.h"
 #include "pipeline/results/unit_scores.h"
+#include "pipeline/rules/models.h"
 #include "stages/core/parallel.h"
 
 namespace salbench {
@@ -87,9 +87,9 @@ std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
 }
 
 std::vector<ChanceRemark> chance_remarks(const std::vector<ResultRow>& rows, const Metrics& metrics,
-                                         Unit unit) {
+                                         Observation unit) {
   std::vector<ChanceRemark> remarks;
-  for (const std::string_view dataset : EnumNames<Shapes>::names) {
+  for (const std::string_view dataset : kShapeNames) {
     const DatasetScores scores(rows, dataset, unit);
     std::vector<std::string> texts(metrics.size());
     parallel_ranges(metrics.size(), 1, [&](std::size_t m, std::size_t) {

@@ -24,6 +24,6 @@ std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
 // One per data set and metric by whose means chance (RS) or the constant map, as far as the rows have them,
 // is level with or ahead of a model or of people; over the shapes and units of the other tables.
 std::vector<ChanceRemark> chance_remarks(const std::vector<ResultRow>& rows, const Metrics& metrics,
-                                         Unit unit);
+                                         Observation unit);
 
 }  // namespace salbench

@@ -72,7 +72,7 @@ std::vector<std::vector<Cell>> ranking_rows(const DatasetScores& scores, const R
 Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
                      const StatisticsOptions& options, std::uint64_t seed) {
   Conclusions conclusions{metrics, options.unit, std::make_shared<Bootstrap>(seed), {}};
-  for (const std::string_view dataset : EnumNames<Shapes>::names) {
+  for (const std::string_view dataset : kShapeNames) {
     DatasetScores scores(rows, dataset, options.unit);
     if (scores.models().empty()) continue;
     std::vector<RankedMetric> ranked(metrics.size());

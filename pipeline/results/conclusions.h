@@ -30,7 +30,7 @@ struct DatasetConclusions {
 
 struct Conclusions {
   Metrics metrics;
-  Unit unit = Unit::mesh;
+  Observation unit = Observation::mesh;
   std::shared_ptr<const Bootstrap> bootstrap;  // the resamples of all tables
   std::vector<DatasetConclusions> datasets;    // those with scores: meshes, scans, clouds
 };

@@ -12,6 +12,7 @@
 
 #include "cache/folder_store.h"
 #include "pipeline/results/results.h"
+#include "stages/core/progress.h"
 
 namespace salbench {
 
@@ -20,6 +21,7 @@ using StageNames = std::set<std::string, std::less<>>;
 struct ExportSource {
   RunState run;
   FolderStore& store;
+  Progress& progress;
   std::filesystem::path cache;  // in messages
 };
 

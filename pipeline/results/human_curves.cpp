@@ -25,19 +25,15 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 ResultRow row_of(const MeshCurve& mesh, std::string name, std::vector<double> values) {
-  return {std::string(name_of(Shapes::meshes)),
-          mesh.item,
-          mesh.category,
-          "",
-          std::move(name),
+  return {std::string(shapes_name(kMeshes)), mesh.item, mesh.category, "", std::move(name),
           Scores{std::move(values)}};
 }
 
 // The scores of models on meshes, if any, followed by the curve: a column per number of participants.
 class CurveScores {
  public:
-  CurveScores(const std::vector<MeshCurve>& curves, const std::vector<ResultRow>& scores, Unit unit)
-      : rows_(rows_of(curves, scores)), scores_(rows_, name_of(Shapes::meshes), unit) {
+  CurveScores(const std::vector<MeshCurve>& curves, const std::vector<ResultRow>& scores, Observation unit)
+      : rows_(rows_of(curves, scores)), scores_(rows_, shapes_name(kMeshes), unit) {
     for (const MeshCurve& mesh : curves) longest_ = std::max(longest_, mesh.curve.size());
     // Units may leave meshes out, and curves with them.
     for (std::size_t n = 1; n <= longest_; ++n)
@@ -60,7 +56,7 @@ class CurveScores {
                                         const std::vector<ResultRow>& scores) {
     std::vector<ResultRow> rows;
     std::ranges::copy_if(scores, std::back_inserter(rows),
-                         [](const ResultRow& row) { return row.dataset == name_of(Shapes::meshes); });
+                         [](const ResultRow& row) { return row.dataset == shapes_name(kMeshes); });
     for (const MeshCurve& mesh : curves)
       for (std::size_t i = 0; i < mesh.curve.size(); ++i)
         rows.push_back(row_of(mesh, name_of_point(i + 1), mesh.curve[i].values));
@@ -236,13 +232,10 @@ class EquivalentsOfMetric {
 
 std::vector<MeshCurve> collect_human_curves(const RunState& run) {
   std::vector<MeshCurve> curves;
-  for (std::size_t row = 0; row < run.plan.jobs.size(); ++row) {
-    if (run.context.catalog.rows[row].kind != "human_curve") continue;
-    for (const Item& item : items_of(run.context, row)) {
-      if (!run.plan[{row, item}].known()) continue;
-      const DatasetItem& source = run.context.source(item);
-      curves.push_back({source.name, source.category, std::get<HumanCurve>(*run.runner.result({row, item}))});
-    }
+  for (const Job& job : run.project().jobs()) {
+    if (!has_role(run.project().rule(job), Role::curve) || !run.decision(job).known()) continue;
+    const DatasetItem& item = item_of(run.units(), job.unit);
+    curves.push_back({item.name, item.category, value_as<HumanCurve>(*run.resolver.value(job))});
   }
   return curves;
 }
@@ -278,7 +271,8 @@ Table human_curve_by_mesh_table(const std::vector<MeshCurve>& curves, const Metr
   return table;
 }
 
-Table human_curve_differences_table(const std::vector<MeshCurve>& curves, const Metrics& metrics, Unit unit) {
+Table human_curve_differences_table(const std::vector<MeshCurve>& curves, const Metrics& metrics,
+                                    Observation unit) {
   const CurveScores scores(curves, {}, unit);
   const std::span<const std::size_t> curve = scores.curve();
   return {.columns = {"metric", "from_participants", "to_participants", "n", "n_shapes", "mean_difference",
@@ -303,7 +297,7 @@ Table human_equivalents_table(const std::vector<MeshCurve>& curves, const std::v
                   "ci95_high", "k_bound", "low_bound", "high_bound", "crossings", "remark"},
       .rows = {}};
   const auto meshes = std::ranges::find_if(conclusions.datasets, [](const DatasetConclusions& dataset) {
-    return dataset.scores.dataset() == name_of(Shapes::meshes);
+    return dataset.scores.dataset() == shapes_name(kMeshes);
   });
   if (meshes == conclusions.datasets.end()) return table;
   const CurveScores scores(curves, rows, conclusions.unit);
@@ -315,7 +309,8 @@ Table human_equivalents_table(const std::vector<MeshCurve>& curves, const std::v
   return table;
 }
 
-Table human_reliability_table(const std::vector<MeshCurve>& curves, const Metrics& metrics, Unit unit) {
+Table human_reliability_table(const std::vector<MeshCurve>& curves, const Metrics& metrics,
+                              Observation unit) {
   Table table{.columns = {"metric", "n", "n_shapes", "fewest_participants", "most_participants", "split_half",
                           "mean", "sd", "ci95_low", "ci95_high"},
               .rows = {}};
@@ -331,7 +326,7 @@ Table human_reliability_table(const std::vector<MeshCurve>& curves, const Metric
     const double r = last->values.at(*cc);
     rows.push_back(row_of(mesh, "people", {r, reliability(r)}));
   }
-  const DatasetScores scores(rows, name_of(Shapes::meshes), unit);
+  const DatasetScores scores(rows, shapes_name(kMeshes), unit);
   if (scores.models().empty()) return table;
   const UnitScores found = scores.own(1, 0);
   const Summary summary = summarise(found.scores.values);

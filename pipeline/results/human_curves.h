@@ -34,7 +34,8 @@ Table human_curve_by_mesh_table(const std::vector<MeshCurve>& curves, const Metr
 // metric, from_participants, to_participants, n (units), n_shapes, mean_difference, ci95_low, ci95_high, t_p,
 // ci90_low, ci90_high: what more participants add, the value for more less that for fewer, over the meshes
 // that have both; each number of participants with every larger one. Paired, as in significance_table.
-Table human_curve_differences_table(const std::vector<MeshCurve>& curves, const Metrics& metrics, Unit unit);
+Table human_curve_differences_table(const std::vector<MeshCurve>& curves, const Metrics& metrics,
+                                    Observation unit);
 
 // dataset, metric, model, n (units), n_shapes, largest_group, mean, k, ci95_low, ci95_high, k_bound,
 // low_bound, high_bound, crossings, remark: how many participants a model is worth, which is where the mean
@@ -48,7 +49,7 @@ Table human_equivalents_table(const std::vector<MeshCurve>& curves, const std::v
 // metric, n (units), n_shapes, fewest_participants, most_participants, split_half, mean, sd, ci95_low,
 // ci95_high (Student): the reliability of the ground truth by the largest groups of each mesh. Empty where cc
 // is not computed.
-Table human_reliability_table(const std::vector<MeshCurve>& curves, const Metrics& metrics, Unit unit);
+Table human_reliability_table(const std::vector<MeshCurve>& curves, const Metrics& metrics, Observation unit);
 
 // human_curve.csv, human_curve_by_mesh.csv, human_curve_differences.csv, human_equivalents.csv and
 // human_reliability.csv, each below `head`; without curves, those of an earlier run are removed. Throws

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "pipeline/catalog/models.h"
 #include "pipeline/results/metric_rows.h"
+#include "pipeline/rules/models.h"
 #include "stages/stats/human_scale.h"
 #include "stages/stats/paired.h"
 

@@ -10,9 +10,7 @@
 #include <unistd.h>
 
 #include "io/file.h"
-#include "pipeline/catalog/given_maps.h"
 #include "pipeline/config/section.h"
-#include "pipeline/plan/remark.h"
 #include "pipeline/results/timeline.h"
 #include "stages/core/errors.h"
 
@@ -27,20 +25,21 @@ std::string host_name() {
   return name;
 }
 
-std::string_view reference_line(const Context& context) {
-  if (context.catalog.reference_is_given()) return "given by --reference";
-  return context.shard ? "none, the run was over a share of the items" : "mean over the items of the run";
+std::string_view reference_line(const RunState& run) {
+  if (reference_is_given(run.project().rules)) return "given by --reference";
+  return run.inputs.shard ? "none, the run was over a share of the items" : "mean over the items of the run";
 }
 
 // Shapes whose scores are all there, of those that have any to come.
 std::pair<std::size_t, std::size_t> finished_shapes(const RunState& run) {
   std::size_t finished = 0, scored = 0;
-  for (const Item& item : all_items(run.context)) {
+  for (const Unit unit : run.shapes()) {
     std::size_t jobs = 0, open = 0;
-    for (const JobRef& job : jobs_of(run.context.catalog, item)) {
-      if (run.context.row(job).kind != "scores") continue;
-      jobs += run.plan[job].known() || run.plan[job].open() ? 1U : 0U;
-      open += run.plan[job].open() ? 1U : 0U;
+    for (const Job& job : run.project().jobs_of(unit)) {
+      if (!has_role(run.project().rule(job), Role::scores)) continue;
+      const Decision& decision = run.decision(job);
+      jobs += decision.known() || decision.open() ? 1U : 0U;
+      open += decision.open() ? 1U : 0U;
     }
     scored += jobs > 0 ? 1U : 0U;
     finished += jobs > 0 && open == 0 ? 1U : 0U;
@@ -61,14 +60,14 @@ float quantile(std::vector<float> values, double q) {
   return *at;
 }
 
-std::string node_line(const Row& row, const NodeRecord& node, std::size_t items, double core_seconds) {
+std::string node_line(const Rule& rule, const RuleRecord& node, std::size_t units, double core_seconds) {
   double seconds = 0;
   for (const float s : node.seconds) seconds += static_cast<double>(s);
   return fmt::format(
       "  - {{stage: {}, of: {}, scope: {}, items: {}, settled: {}, computed: {}, seconds: {:.3f}, "
       "median: {:.4f}, p95: {:.4f}, busy: {:.4f}}}\n",
-      row.name, name_of(row.shapes), name_of(row.scope()), items, node.settled, node.seconds.size(), seconds,
-      quantile(node.seconds, 0.5), quantile(node.seconds, 0.95),
+      rule.stage, shapes_name(rule.over), levels()[rule.level()].unit, units, node.finished,
+      node.seconds.size(), seconds, quantile(node.seconds, 0.5), quantile(node.seconds, 0.95),
       core_seconds > 0 ? seconds / core_seconds : 0);
 }
 
@@ -83,7 +82,8 @@ std::string metric_lines(const Metrics& metrics) {
 
 std::string stage_lines(const RunRecord& record) {
   std::string yaml = "stages:  # version, and why this run computed what it did\n";
-  for (const RowCount& count : count_by_name(record.run.context, record.run.plan, record.why)) {
+  for (const StageCount& count :
+       count_by_stage(record.run.project(), record.run.resolver.plan(), record.why)) {
     std::string why;
     for (const auto& [reason, n] : count.reasons)
       why += fmt::format("{}{}: {}", why.empty() ? "" : ", ", yaml_quoted(reason), n);
@@ -92,10 +92,11 @@ std::string stage_lines(const RunRecord& record) {
   yaml +=
       "nodes:  # jobs settled and computed; seconds: sum, median, 95th percentile; share of the cores' "
       "time\n";
-  const std::vector<NodeRecord>& nodes = record.run.runner.records();
-  for (std::size_t row = 0; row < nodes.size(); ++row)
-    yaml += node_line(record.run.context.catalog.rows[row], nodes[row],
-                      items_of(record.run.context, row).size(), record.seconds * record.threads);
+  const Project& project = record.run.project();
+  const std::vector<RuleRecord>& nodes = record.run.resolver.records();
+  for (std::size_t rule = 0; rule < nodes.size(); ++rule)
+    yaml += node_line(project.rules[rule], nodes[rule], project.units_of(rule).size(),
+                      record.seconds * record.threads);
   return yaml;
 }
 
@@ -105,16 +106,16 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
 }
 
-// By stage, in the order of the rows: what the artefacts of this run's jobs occupy. Items may share one.
+// By stage, in the order of the rules: what the artefacts of this run's jobs occupy. Units may share one.
 std::string cache_lines(const RunRecord& record) {
-  const Context& context = record.run.context;
+  const RunState& run = record.run;
   std::vector<std::pair<std::string, std::unordered_set<Digest>>> stages;
-  for (std::size_t row = 0; row < record.run.plan.jobs.size(); ++row) {
-    const std::string& stage = context.catalog.rows[row].name;
-    auto keys = std::find_if(stages.begin(), stages.end(), [&](const auto& of) { return of.first == stage; });
+  for (std::size_t rule = 0; rule < run.project().rules.size(); ++rule) {
+    const std::string& stage = run.project().rules[rule].stage;
+    auto keys = std::ranges::find(stages, stage, [](const auto& entry) { return entry.first; });
     if (keys == stages.end()) keys = stages.insert(keys, {stage, {}});
-    for (const Job& job : record.run.plan.jobs[row])
-      if (job.known()) keys->second.insert(job.key);
+    for (const Decision& decision : run.resolver.plan().decisions[rule])
+      if (decision.known()) keys->second.insert(decision.key);
   }
   std::string yaml = "cache_bytes:  # of the artefacts of this run, by stage\n";
   for (const auto& [stage, keys] : stages) {
@@ -126,18 +127,13 @@ std::string cache_lines(const RunRecord& record) {
 }
 
 std::string remark_lines(const RunRecord& record) {
-  const Context& context = record.run.context;
+  const RunState& run = record.run;
   std::string yaml;
-  for (std::size_t row = 0; row < record.run.plan.jobs.size(); ++row) {
-    if (context.catalog.rows[row].source != Source::shape_file) continue;
-    for (const Item& item : items_of(context, row)) {
-      const Job& job = record.run.plan[{row, item}];
-      if (!job.known()) continue;
-      const std::string remark = load_remark(record.store, context.catalog.rows[row].name, job.key);
-      if (!remark.empty())
-        yaml += fmt::format("  - {{item: {}, remark: {}}}\n", yaml_quoted(context.name(item)),
-                            yaml_quoted(remark));
-    }
+  for (const Job& job : run.project().jobs()) {
+    if (!run.project().rule(job).remarks || !run.decision(job).known()) continue;
+    if (const std::string remark = run.resolver.remark(job); !remark.empty())
+      yaml += fmt::format("  - {{item: {}, remark: {}}}\n", yaml_quoted(run.project().name(job)),
+                          yaml_quoted(remark));
   }
   for (const ChanceRemark& remark : record.chance)
     yaml += fmt::format("  - {{dataset: {}, metric: {}, remark: {}}}\n", remark.dataset, remark.metric,
@@ -148,34 +144,34 @@ std::string remark_lines(const RunRecord& record) {
 }
 
 std::string run_yaml(const RunRecord& record) {
-  const auto& [config, context, plan, runner] = record.run;
+  const auto& [config, inputs, resolver] = record.run;
   std::string yaml;
   if (config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
   yaml += fmt::format("program: salbench {}\nresults: {}\nhost: {}\n", SALBENCH_VERSION, state_line(record),
                       yaml_quoted(host_name()));
   yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {:.1f}\nartefacts_computed: {}\n",
-                      record.threads, record.seconds, peak_memory_mb(), runner.computed());
-  if (context.shard) yaml += fmt::format("shard: {}\n", context.shard->text());
-  yaml += fmt::format("reference: {}\n", reference_line(context));
+                      record.threads, record.seconds, peak_memory_mb(), resolver.computed());
+  if (inputs.shard) yaml += fmt::format("shard: {}\n", inputs.shard->text());
+  yaml += fmt::format("reference: {}\n", reference_line(record.run));
   for (const Model& model : config.models)
     if (model.given)
       yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
                           yaml_quoted(model.given->source.string()), model.given->matched);
-  const DataIdentity data = identity_of(context.workload);
-  const std::size_t clouds = count_clouds(context.workload);
+  const DataIdentity data = identity_of(inputs);
+  const std::size_t clouds = inputs.count(kClouds);
   yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}}}\n",
-                      yaml_quoted(config.data), yaml_scalar(context.workload.layout),
-                      context.workload.families.size() - clouds,
+                      yaml_quoted(config.data), yaml_scalar(inputs.layout), inputs.count(kMeshes),
                       clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex());
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
   yaml += cache_lines(record);
   yaml += remark_lines(record);
-  const std::vector<Failure> failures = runner.failures();
+  const std::vector<Failure> failures = resolver.failures();
   yaml += failures.empty() ? "failed: []\n" : "failed:\n";
   for (const Failure& failure : failures)
-    yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n", yaml_quoted(context.name(failure.job)),
-                        context.row(failure.job).name, yaml_quoted(failure.cause));
+    yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n",
+                        yaml_quoted(resolver.project().name(failure.job)),
+                        resolver.project().rule(failure.job).stage, yaml_quoted(failure.cause));
   yaml += "configuration:\n";
   std::istringstream lines(config_yaml(config));
   for (std::string line; std::getline(lines, line);) yaml += "  " + line + "\n";
@@ -186,13 +182,13 @@ std::string run_yaml(const RunRecord& record) {
 
 void write_record(const fs::path& folder, const RunRecord& record) {
   write_file(folder / "timeline.csv",
-             to_csv(timeline_table(record.run.context.catalog, record.run.runner.records(), record.started,
+             to_csv(timeline_table(record.run.project().rules, record.run.resolver.records(), record.started,
                                    record.seconds)));
   write_file(folder / "run.yaml", run_yaml(record));
 }
 
 void write_shard_record(const fs::path& folder, const RunRecord& record) {
-  const Shard& shard = *record.run.context.shard;
+  const Shard& shard = *record.run.inputs.shard;
   write_file(folder / fmt::format("shard_{}_of_{}.yaml", shard.index, shard.count), run_yaml(record));
 }
 

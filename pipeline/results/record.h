@@ -10,6 +10,7 @@
 #include "cache/folder_store.h"
 #include "pipeline/results/chance.h"
 #include "pipeline/results/results.h"
+#include "pipeline/results/stage_counts.h"
 
 namespace salbench {
 

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows) {
   std::vector<DatasetAndModel> pairs;
-  for (const std::string_view dataset : EnumNames<Shapes>::names)
+  for (const std::string_view dataset : kShapeNames)
     for (const ResultRow& row : rows)
       if (const DatasetAndModel pair{row.dataset, row.model};
           row.dataset == dataset && std::find(pairs.begin(), pairs.end(), pair) == pairs.end())
@@ -28,42 +28,41 @@ std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& r
 
 namespace {
 
-ResultRow result_row(const Context& context, const JobRef& job, Scores scores) {
-  const DatasetItem& source = context.source(job.item);
-  const std::string& stage = context.row(job).name;
-  return {std::string(name_of(job.item.shapes())),
-          source.name,
-          source.category,
-          job.item.is_scan() ? std::to_string(job.item.view) : "",
-          stage.substr(stage.find('.') + 1),
-          std::move(scores),
-          job};
-}
-
 std::vector<ResultRow> collect(const RunState& run, bool of_constant) {
   struct Scored {
-    std::size_t row;  // of the scores that the table is made of
+    std::size_t scores;  // the rule that the table is made of
     ValuePtr table;
     std::size_t taken = 0;  // rows of the table
   };
-  const Catalog& catalog = run.context.catalog;
+  const Rules& rules = run.project().rules;
   std::vector<Scored> scored;
-  for (std::size_t row = 0; row < catalog.rows.size(); ++row)
-    if (catalog.rows[row].kind == "score_table" &&
-        catalog.rows[row].name.ends_with(fmt::format(".{}", kConstantMap)) == of_constant)
-      scored.push_back({catalog.rows[row].inputs[0], run.runner.result_so_far({row, Item::set()})});
+  for (std::size_t r = 0; r < rules.size(); ++r)
+    if (has_role(rules[r], Role::score_table) && (rules[r].subject == kConstantMap) == of_constant)
+      scored.push_back({rules[r].inputs[0], run.resolver.value_so_far({r, Unit{}})});
 
   std::vector<ResultRow> rows;
-  for (const Item& item : all_items(run.context))
-    for (auto& [row, table, taken] : scored) {
-      const JobRef job{row, item};
-      if (run.context.row(job).scope() == item.scope() && run.plan[job].known())
-        rows.push_back(result_row(run.context, job, std::get<ScoreTable>(*table).rows.at(taken++)));
+  for (const Unit unit : run.shapes())
+    for (auto& [rule, table, taken] : scored) {
+      const Job job{rule, unit};
+      if (rules[rule].over != unit.level || !run.decision(job).known()) continue;
+      const DatasetItem& item = item_of(run.units(), unit);
+      rows.push_back({std::string(shapes_name(unit.level)), item.name, item.category,
+                      unit.level == kScans ? std::to_string(run.units().place(unit)) : "",
+                      rules[rule].subject, value_as<ScoreTable>(*table).rows.at(taken++), job});
     }
   return rows;
 }
 
 }  // namespace
+
+std::vector<Unit> RunState::shapes() const {
+  std::vector<Unit> shapes;
+  for (std::size_t family = 0; family < units().families().size(); ++family)
+    for (const Unit unit : units().of_family(family))
+      if (std::ranges::any_of(project().rules, [&](const Rule& rule) { return rule.level() == unit.level; }))
+        shapes.push_back(unit);
+  return shapes;
+}
 
 std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, false); }
 
@@ -100,12 +99,12 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
   write("results.csv", results_table(rows, metrics));
   write_conclusions(folder, rows, conclusions, head);
   // Tables of an earlier run would pass for some of this.
-  for (const Shapes shapes : kAllShapes) {
-    const std::string name = fmt::format("mean_histograms_{}.csv", name_of(shapes));
-    if (shapes == Shapes::clouds && !run.context.catalog.has(shapes, "cloud"))
+  for (const Level level : kShapeLevels) {
+    const std::string name = fmt::format("mean_histograms_{}.csv", shapes_name(level));
+    if (level == kClouds && !run.inputs.has(level))
       remove_file(folder / name);
     else
-      write(name, mean_histogram_table(run, shapes));
+      write(name, mean_histogram_table(run, level));
   }
   write_human_curves(folder, collect_human_curves(run), rows, conclusions, head);
 }

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of a run, item by item, and the tables made of them.
+// The room of results. A run comes in, as a Resolver that knows every value; or a table of scores, anybody's.
+// Tables go out, with their statistics, the record of the run (record.h) and the HDF5 export (export_file.h).
+// It includes rules/ and all before it, computes no job itself, and prints nothing.
+//
+// Here: scores of a run, item by item, and the files that a run writes.
 #pragma once
 
 #include <filesystem>
@@ -7,16 +11,13 @@
 #include <vector>
 
 #include "io/table.h"
-#include "pipeline/run/runner.h"
+#include "pipeline/engine/resolver.h"
+#include "pipeline/rules/rules.h"
 #include "stages/metrics/metrics.h"
 
 namespace salbench {
 
 struct Conclusions;  // pipeline/results/conclusions.h
-
-inline constexpr const char* kSimulatedNote =
-    "SIMULATED participants: the ground truth was made by the program; these scores say nothing about "
-    "people.";
 
 struct ResultRow {
   std::string dataset;  // "meshes", "scans" or "clouds"
@@ -25,7 +26,7 @@ struct ResultRow {
   std::string view;  // of a scan; empty for others
   std::string model;
   Scores scores;
-  JobRef job = {};  // that gave them
+  Job job = {};  // that gave them
 
   // Score by one of the metrics that the scores hold.
   double value(std::size_t metric) const { return scores.values.at(metric); }
@@ -42,9 +43,13 @@ std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& r
 // A run, as its results are read from it.
 struct RunState {
   const Config& config;
-  const Context& context;
-  const Plan& plan;
-  Runner& runner;
+  const Inputs& inputs;
+  Resolver& resolver;
+
+  const Project& project() const { return resolver.project(); }
+  const Units& units() const { return project().units; }
+  const Decision& decision(const Job& job) const { return resolver.plan()[job]; }
+  std::vector<Unit> shapes() const;  // for which there are rules, family by family
 };
 
 // One row per item and model that was scored; by item, mesh before scans, then in the order of the models.

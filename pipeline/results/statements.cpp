@@ -111,9 +111,9 @@ std::vector<Statement> read_statements(const std::filesystem::path& path) {
   for (std::size_t i = 0; i < claims.size(); ++i) {
     const auto relation = std::ranges::find(EnumNames<Relation>::names, checks[i]);
     if (relation == EnumNames<Relation>::names.end() || words[i].empty()) continue;
-    if (std::ranges::find(EnumNames<Shapes>::names, datasets[i]) == EnumNames<Shapes>::names.end())
+    if (std::ranges::find(kShapeNames, datasets[i]) == kShapeNames.end())
       throw InputError(fmt::format("{}:{}: data set '{}', expected one of {}", table.name, table.lines[i],
-                                   datasets[i], fmt::join(EnumNames<Shapes>::names, ", ")));
+                                   datasets[i], fmt::join(kShapeNames, ", ")));
     if (margins[i] <= 0)
       throw InputError(
           fmt::format("{}:{}: margin {}, expected above 0", table.name, table.lines[i], margins[i]));

@@ -15,7 +15,7 @@ constexpr const char* kAverage = "Avg";  // no model can be called so
 // In the order of their first item.
 std::vector<std::pair<std::string, std::string>> datasets_and_classes(const std::vector<ResultRow>& rows) {
   std::vector<std::pair<std::string, std::string>> classes;
-  for (const std::string_view dataset : EnumNames<Shapes>::names)
+  for (const std::string_view dataset : kShapeNames)
     for (const ResultRow& row : rows)
       if (const std::pair key(row.dataset, row.category);
           row.dataset == dataset && !row.category.empty() && std::ranges::find(classes, key) == classes.end())
@@ -51,9 +51,9 @@ void add_class_rows(Table& table, const std::string& category, const DatasetScor
 
 }  // namespace
 
-Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics, Unit unit) {
+Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics, Observation unit) {
   // Within a class its shapes are the units.
-  if (unit == Unit::item_class) unit = Unit::mesh;
+  if (unit == Observation::item_class) unit = Observation::mesh;
   Table table{
       .columns = {"dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"},
       .rows = {}};
@@ -62,18 +62,20 @@ Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics
   return table;
 }
 
-Table mean_histogram_table(const RunState& run, Shapes shapes) {
+Table mean_histogram_table(const RunState& run, Level level) {
   Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
   for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
     table.rows[bin].emplace_back(static_cast<double>(bin) / kHistogramBins);
-  for (std::size_t r = 0; r < run.plan.jobs.size(); ++r) {
-    const Row& row = run.context.catalog.rows[r];
-    const JobRef job{r, Item::set()};
-    if (row.kind != "histogram" || row.shapes != shapes || !run.plan[job].known()) continue;
-    const std::size_t dot = row.name.find('.');  // "mean_histogram.LS", or "reference"
-    table.columns.push_back(dot == std::string::npos ? "GS" : row.name.substr(dot + 1));
-    const auto histogram = std::get<Histogram>(*run.runner.result(job));
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) table.rows[bin].emplace_back(histogram[bin]);
+  for (const Job& job : run.project().jobs_of(Unit{})) {
+    const Rule& rule = run.project().rule(job);
+    const bool is_reference = has_role(rule, Role::reference);
+    if ((!is_reference && !has_role(rule, Role::mean_histogram)) || rule.over != level ||
+        !run.decision(job).known())
+      continue;
+    table.columns.push_back(is_reference ? "GS" : rule.subject);
+    const ValuePtr histogram = run.resolver.value(job);
+    for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
+      table.rows[bin].emplace_back(value_as<Histogram>(*histogram)[bin]);
   }
   return table;
 }

@@ -14,10 +14,10 @@ namespace salbench {
 // that all competitors have a score for. The model "Avg" is the mean over the competitors, shape by shape, so
 // that its interval is one over shapes. Empty where items have no class.
 Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}),
-                      Unit unit = Unit::mesh);
+                      Observation unit = Observation::mesh);
 
 // bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
 // unmatched, min-max-normalised maps. [tasse2016]
-Table mean_histogram_table(const RunState& run, Shapes shapes);
+Table mean_histogram_table(const RunState& run, Level level);
 
 }  // namespace salbench

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "io/table.h"
-#include "pipeline/catalog/catalog.h"
-#include "pipeline/run/executor.h"
+#include "pipeline/engine/resolver.h"
 
 namespace salbench {
 
@@ -14,8 +13,8 @@ inline constexpr std::size_t kTimelineIntervals = 240;
 
 // start, end (s since the run began), node ("fpfh of scans"), busy (core-seconds that the node computed
 // within the interval): the run in kTimelineIntervals equal intervals, rows where a node was at work.
-// `records` are those of the catalog's rows: [row].
-Table timeline_table(const Catalog& catalog, const std::vector<NodeRecord>& records, Clock::time_point began,
+// `records` are those of the rules: [rule].
+Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records, Clock::time_point began,
                      double seconds);
 
 }  // namespace salbench

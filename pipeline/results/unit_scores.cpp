@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "pipeline/catalog/models.h"
+#include "pipeline/rules/models.h"
 
 namespace salbench {
 namespace {
@@ -19,21 +19,21 @@ std::size_t number_of(std::map<Key, std::size_t>& numbers, Key key) {
   return numbers.emplace(std::move(key), next).first->second;
 }
 
-std::string unit_name(const ResultRow& row, Unit unit) {
-  if (unit == Unit::mesh) return row.item;
-  return unit == Unit::item_class ? row.category : row.item + "/" + row.view;
+std::string unit_name(const ResultRow& row, Observation unit) {
+  if (unit == Observation::mesh) return row.item;
+  return unit == Observation::item_class ? row.category : row.item + "/" + row.view;
 }
 
 }  // namespace
 
-DatasetScores::DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Unit unit,
+DatasetScores::DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Observation unit,
                              std::string_view only_class)
     : dataset_(dataset) {
   std::map<std::string, std::size_t> models, units;
   std::map<std::pair<std::string, std::string>, std::size_t> shapes;
   for (const ResultRow& row : rows) {
     // A shape without a class is no unit of them.
-    if (row.dataset != dataset || (unit == Unit::item_class && row.category.empty())) continue;
+    if (row.dataset != dataset || (unit == Observation::item_class && row.category.empty())) continue;
     if (!only_class.empty() && row.category != only_class) continue;
     const std::size_t model = number_of(models, row.model);
     if (model == models_.size()) {

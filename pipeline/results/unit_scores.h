@@ -26,7 +26,7 @@ struct UnitScores {
 // The scores of one data set, or of one class of it. Keeps references to the rows.
 class DatasetScores {
  public:
-  DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Unit unit,
+  DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Observation unit,
                 std::string_view only_class = {});
 
   const std::string& dataset() const { return dataset_; }

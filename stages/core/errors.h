@@ -34,6 +34,11 @@ struct StorageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The program was asked to end while a command was at work: nothing is known about the command.
+struct Interrupted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // The message for any other exception (exit status 70). Call it inside a catch block.
 inline std::string current_defect() {
   try {

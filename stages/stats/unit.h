@@ -11,18 +11,18 @@
 
 namespace salbench {
 
-enum class Unit : std::uint8_t {
+enum class Observation : std::uint8_t {
   mesh,        // a mesh, its score being the mean over its scans; a point cloud
   item_class,  // a class of shapes: for statements about kinds of shapes
   shape        // a mesh, scan or point cloud: the paper's reading, which takes 12 scans for 12 shapes
 };
 template <>
-struct EnumNames<Unit> {
+struct EnumNames<Observation> {
   static constexpr std::array<std::string_view, 3> names{"mesh", "class", "shape"};
 };
 
 struct StatisticsOptions {
-  Unit unit = Unit::mesh;
+  Observation unit = Observation::mesh;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {

@@ -116,6 +116,7 @@ class JsonTest(unittest.TestCase):
         for node in document["nodes"]:
             to_do = "" if node["to_do"] is None else f", {node['to_do']} to do"
             inputs = " <- " + ", ".join(node["inputs"]) if node["inputs"] else ""
+            inputs += "; read back: " + ", ".join(node["cuts"]) if node["cuts"] else ""
             options = "  " + ", ".join(node["options"]) + "\n" if node["options"] else ""
             self.assertIn("{node} (version {version}, one per {per}".format(**node) + f"{to_do}){inputs}\n{options}", text)
             self.assertEqual(node["node"], "{stage} of {shapes}".format(**node))

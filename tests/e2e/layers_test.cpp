@@ -21,7 +21,7 @@ class Layers : public testing::Test {
                 "#include \"stages/scan/scan.h\"\n#include \"stages/core/embree.h\"\n");
     tree_.write("io/off.cpp", "#include \"stages/core/types.h\"\n");
     tree_.write("cache/key.cpp", "#include \"io/arrays.h\"\n");
-    tree_.write("pipeline/run/graph.cpp", "#include <tbb/flow_graph.h>\n#include \"stages/fpfh/fpfh.h\"\n");
+    tree_.write("pipeline/engine/graph.cpp", "#include <tbb/flow_graph.h>\n#include \"cache/key.h\"\n");
   }
   Outcome check() const { return run_process({SALBENCH_LAYERS, tree_.path().string()}); }
   void expect_breach(const std::string& path, const std::string& text, const std::string& said) const {
@@ -48,24 +48,29 @@ TEST_F(Layers, EveryKindOfBreachIsNamed) {
   expect_breach("stages/core/a.h", "#include \"stages/fpfh/fpfh.h\"\n", "stages/core may include");
   expect_breach("io/a.h", "#include \"stages/fpfh/fpfh.h\"\n", "io may include");
   expect_breach("io/a.h", "#include \"cache/key.h\"\n", "io may include");
-  expect_breach("cache/a.h", "#include \"pipeline/plan/plan.h\"\n", "cache may include");
-  expect_breach("pipeline/plan/a.h", "#include \"tests/support/shapes.h\"\n", "pipeline/plan may include");
-  expect_breach("pipeline/config/a.h", "#include \"pipeline/catalog/catalog.h\"\n",
+  expect_breach("cache/a.h", "#include \"pipeline/engine/plan.h\"\n", "cache may include");
+  expect_breach("pipeline/rules/a.h", "#include \"tests/support/shapes.h\"\n", "pipeline/rules may include");
+  expect_breach("pipeline/config/a.h", "#include \"pipeline/rules/rules.h\"\n",
                 "pipeline/config may include");
-  expect_breach("pipeline/catalog/a.h", "#include \"pipeline/plan/plan.h\"\n",
-                "pipeline/catalog may include");
-  expect_breach("pipeline/plan/a.h", "#include \"pipeline/run/runner.h\"\n", "pipeline/plan may include");
-  expect_breach("pipeline/run/a.h", "#include \"pipeline/results/results.h\"\n", "pipeline/run may include");
+  expect_breach("pipeline/engine/a.h", "#include \"pipeline/rules/rules.h\"\n",
+                "pipeline/engine may include");
+  expect_breach("pipeline/engine/a.h", "#include \"stages/core/types.h\"\n", "know nothing of shapes");
+  expect_breach("tests/engine/a_test.cpp", "#include \"io/value.h\"\n", "know nothing of shapes");
+  expect_breach("pipeline/inputs/a.h", "#include \"pipeline/rules/rules.h\"\n",
+                "pipeline/inputs may include");
+  expect_breach("pipeline/rules/a.h", "#include \"pipeline/results/results.h\"\n",
+                "pipeline/rules may include");
   expect_breach("pipeline/results/a.h", "#include \"pipeline/commands/run.h\"\n",
                 "pipeline/results may include");
   expect_breach("pipeline/a.h", "#include \"io/table.h\"\n", "pipeline has rooms");
-  expect_breach("pipeline/run/a.cpp", "#include <tbb/flow_graph.h>\n",
+  expect_breach("pipeline/inputs/a.cpp", "#include <tbb/flow_graph.h>\n",
                 "the flow graph is already included by");
   expect_breach("stages/scan/a.h", "#include <embree3/rtcore.h>\n", "Embree belongs in a .cpp");
   expect_breach("stages/scan/a.cpp", "#include <embree4/rtcore.h>\n",
                 "already included by stages/core/embree.cpp");
-  expect_breach("pipeline/config/a.h", "#include <yaml-cpp/yaml.h>\n", "belongs in a .cpp of pipeline/config");
-  expect_breach("pipeline/plan/a.cpp", "#include <yaml-cpp/yaml.h>\n",
+  expect_breach("pipeline/config/a.h", "#include <yaml-cpp/yaml.h>\n",
+                "belongs in a .cpp of pipeline/config");
+  expect_breach("pipeline/inputs/a.cpp", "#include <yaml-cpp/yaml.h>\n",
                 "belongs in a .cpp of pipeline/config");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// verify, gc and accept on the command line.
+// verify and gc on the command line.
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -59,14 +59,6 @@ TEST(Maintenance, ADryRunSaysWhatGcThenRemoves) {
   EXPECT_EQ(toy.computed(), 0);
 }
 
-TEST(Maintenance, AcceptHasNothingToDoWhereNoVersionWasRaised) {
-  const Workspace toy(kMeshesOnly);
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  const Outcome accept = maintain(toy, "accept", {"fpfh"});
-  EXPECT_EQ(accept.status, 0) << accept.err;
-  EXPECT_THAT(accept.out, HasSubstr("0 results of earlier versions accepted; 2 were valid already"));
-}
-
 TEST(Maintenance, WithoutAScopeNothingIsTouched) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("run").status, 0);
@@ -75,7 +67,6 @@ TEST(Maintenance, WithoutAScopeNothingIsTouched) {
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "gc", "--cache", cache}).status, 2);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify"}).status, 2);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--deep", "--cache", cache}).status, 2);
-  EXPECT_EQ(maintain(toy, "accept", {"no-such-stage"}).status, 2);
   EXPECT_EQ(toy.artefacts(), before);
 
   const std::string other = (toy.write("elsewhere/damaged/mine", "x")).parent_path().parent_path().string();

@@ -5,7 +5,7 @@
 
 #include "io/file.h"
 #include "io/table.h"
-#include "pipeline/catalog/models.h"
+#include "pipeline/rules/models.h"
 #include "tests/e2e/workspace.h"
 
 namespace salbench {

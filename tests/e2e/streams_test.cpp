@@ -40,7 +40,6 @@ std::vector<std::string> command_of(const Workspace& toy, const std::string& cal
   if (call == "config") return {SALBENCH_PROGRAM, call, config};
   if (call == "verify" || call == "gc")
     return {SALBENCH_PROGRAM, call, config, "--data", data, "--cache", cache};
-  if (call == "accept") return {SALBENCH_PROGRAM, call, config, "fpfh", "--data", data, "--cache", cache};
   if (call == "explain") return toy.command(call, {"1"});
   if (call == "maps") return toy.command(call, {"--to", (toy / "maps").string()});
   if (call == "export") return toy.command(call, {"--to", (toy / "all.h5").string()});
@@ -82,7 +81,7 @@ TEST_P(StandardOutput, ThatNobodyReadsEndsTheProgramSilently) {
 }
 INSTANTIATE_TEST_SUITE_P(Calls, StandardOutput,
                          testing::Values("run", "maps", "evaluate", "pictures", "export", "plan", "graph",
-                                         "explain", "status", "config", "verify", "gc", "accept", "--help",
+                                         "explain", "status", "config", "verify", "gc", "--help",
                                          "run --help", "--version"),
                          [](const auto& test) {
                            std::string name;

@@ -165,7 +165,7 @@ TEST(Usage, GraphCountsWhatEachNodeHasToDo) {
     return graph.out;
   };
   EXPECT_THAT(lines({}), HasSubstr("\nfpfh of scans (version 1, one per scan, 24 to do) <- scan of scans, "
-                                   "scan_normals of scans\n"));
+                                   "scan_normals of scans; read back: scan of scans\n"));
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_THAT(lines({}), HasSubstr("\nreference of meshes (version 1, one per set, 0 to do) <- ground_truth "
                                    "of meshes\n"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string>
 
-#include "pipeline/catalog/config.h"
+#include "pipeline/rules/config.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "tests/fuzz/message.h"

@@ -174,7 +174,7 @@ TEST(RunCommand, IsInterruptedByTheProgramsEnd) {
         ::alarm(1);
         try {
           run_command("sleep 50", "/", std::chrono::seconds(60));
-        } catch (const CommandInterrupted&) {
+        } catch (const Interrupted&) {
           ::_exit(7);
         }
         ::_exit(1);

@@ -152,7 +152,7 @@ TEST(ServingCommand, IsInterruptedByTheProgramsEnd) {
         ::alarm(1);
         try {
           failure_of(command);
-        } catch (const CommandInterrupted&) {
+        } catch (const Interrupted&) {
           for (int i = 0; i < 100 && !idle.has_ended(); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
           ::_exit(idle.has_ended() ? 7 : 1);

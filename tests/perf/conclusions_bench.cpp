@@ -39,7 +39,7 @@ std::vector<ResultRow> random_rows(int models) {
 
 void all_tables(benchmark::State& state) {
   const std::vector<ResultRow> rows = random_rows(static_cast<int>(state.range(0)));
-  const StatisticsOptions options{.unit = static_cast<Unit>(state.range(1))};
+  const StatisticsOptions options{.unit = static_cast<Observation>(state.range(1))};
   for (auto _ : state) {
     const Conclusions conclusions = conclude(rows, metrics(), options, 1);
     benchmark::DoNotOptimize(summary_table(conclusions));

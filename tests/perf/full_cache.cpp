@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "pipeline/commands/session.h"
+#include "pipeline/engine/run.h"
 #include "stages/core/rng.h"
 #include "stages/metrics/metrics.h"
 
@@ -42,27 +43,27 @@ Value made_up(std::string_view kind, std::size_t n_metrics, Rng rng) {
 }
 
 // Means and tables are real, of the made-up maps and scores.
-void replace_bodies(Catalog& catalog, std::size_t n_metrics) {
-  for (Row& row : catalog.rows)
-    if (!row.gathers)
-      row.run = [name = row.name, kind = row.kind, n_metrics](const JobInputs& inputs) {
-        return made_up(kind, n_metrics, inputs.random.rng(name));
+void replace_bodies(Rules& rules, std::size_t n_metrics) {
+  for (Rule& rule : rules)
+    if (!rule.gathers)
+      rule.compute = [stage = rule.stage, kind = rule.kind, n_metrics](const JobInputs& inputs) -> ValuePtr {
+        return std::make_shared<const Held<ValueCodec>>(made_up(kind, n_metrics, inputs.random.rng(stage)));
       };
 }
 
 void fill(const Arguments& arguments) {
   const std::atomic<bool> stop = false;
   Setup setup(arguments);
-  replace_bodies(setup.catalog, chosen_metrics(setup.config.metrics).size());
+  Project& project = setup.project;
+  replace_bodies(project.rules, chosen_metrics(setup.config.metrics).size());
   FolderStore store(setup.cache, Access::read_write);
-  Plan plan = make_plan(setup.context, store);
-  const auto progress = std::make_unique<NoProgress>();
-  Runner runner(setup.context, plan, store, *progress, stop);
-  runner.run(thread_count(arguments));
-  for (const Failure& failure : runner.failures())
-    std::cerr << setup.context.name(failure.job) << ": " << setup.context.row(failure.job).name << ": "
-              << failure.cause << '\n';
-  std::cout << setup.workload.families.size() << " meshes, " << runner.computed() << " artefacts\n";
+  Resolver resolver(project, make_plan(project, store), store);
+  NoProgress progress;
+  run(resolver, {.threads = thread_count(arguments)}, progress, stop);
+  for (const Failure& failure : resolver.failures())
+    std::cerr << project.name(failure.job) << ": " << project.rule(failure.job).stage << ": " << failure.cause
+              << '\n';
+  std::cout << setup.inputs.text() << ", " << resolver.computed() << " artefacts\n";
 }
 
 }  // namespace

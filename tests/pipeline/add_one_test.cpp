@@ -75,12 +75,12 @@ TEST(AddAModel, ItsOptionsMayDifferOnScansAndEachKeyHasThoseThatCount) {
   Config config = toy_config();
   config.models = {
       model_row("TWO", 1, twofold_saliency).bind(Section::from_text("", ""), Protocol::published)};
-  const Catalog catalog = make_catalog(config, {});
-  const auto in_key = [&](Shapes shapes) {
-    return catalog.rows[catalog.index(shapes, "map.TWO")].options.at(0).in_key;
+  const Rules rules = make_rules(config);
+  const auto in_key = [&](Level level) {
+    return rules[find_rule(rules, level, "map.TWO")].options.at(0).in_key;
   };
-  EXPECT_EQ(in_key(Shapes::meshes), "power: 1\n");
-  EXPECT_EQ(in_key(Shapes::scans), "power: 2\n");
+  EXPECT_EQ(in_key(kMeshes), "power: 1\n");
+  EXPECT_EQ(in_key(kScans), "power: 2\n");
   EXPECT_EQ(config.models[0].options, "power: 1\npower_of_scans: 2\n");
 }
 
@@ -111,7 +111,7 @@ TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
               HasSubstr("meshes,FAR,auc,1,"));
 }
 
-// --- what a row reads follows from its signature ---------------------------------------------------------
+// --- what a rule reads follows from its signature ---------------------------------------------------------
 
 ScalarField of_everything(Points, const Normals&, Surface, const Descriptors&, const RandomSource&,
                           const FarOptions&) {
@@ -121,29 +121,38 @@ ScalarField of_everything(Points, const Normals&, Surface, const Descriptors&, c
 TEST(AddAModel, ItReadsWhatItsSignatureNames) {
   Config config = toy_config("models: {RS: }");
   config.models = {model_row("ALL", 3, of_everything).bind(Section::from_text("", ""), Protocol::text)};
-  const Catalog catalog = make_catalog(config);
-  const auto inputs_of = [&](Shapes shapes) {
+  const Rules rules = make_rules(config);
+  const auto inputs_of = [&](Level level) {
     std::vector<std::string> names;
-    for (const std::size_t input : catalog.rows[catalog.index(shapes, "map.ALL")].inputs)
-      names.push_back(catalog.rows[input].name);
+    for (const std::size_t input : rules[find_rule(rules, level, "map.ALL")].inputs)
+      names.push_back(rules[input].stage);
     return names;
   };
-  EXPECT_THAT(inputs_of(Shapes::meshes), testing::ElementsAre("mesh", "normals", "mesh", "fpfh"));
-  EXPECT_THAT(inputs_of(Shapes::scans), testing::ElementsAre("scan", "scan_normals", "surface", "fpfh"));
-  const Row& row = catalog.rows[catalog.index(Shapes::scans, "map.ALL")];
-  EXPECT_TRUE(row.seeded);
-  EXPECT_EQ(row.version, 3);
-  EXPECT_EQ(row.kind, "field");
-  EXPECT_EQ(row.options[0].section, "models.ALL");
-  EXPECT_EQ(row.options[0].text, "power: 2\n");
+  EXPECT_THAT(inputs_of(kMeshes), testing::ElementsAre("mesh", "normals", "mesh", "fpfh"));
+  EXPECT_THAT(inputs_of(kScans), testing::ElementsAre("scan", "scan_normals", "surface", "fpfh"));
+  const Rule& rule = rules[find_rule(rules, kScans, "map.ALL")];
+  EXPECT_TRUE(rule.seeded);
+  EXPECT_EQ(rule.version, 3);
+  EXPECT_EQ(rule.kind, "field");
+  EXPECT_EQ(rule.options[0].section, "models.ALL");
+  EXPECT_EQ(rule.options[0].text, "power: 2\n");
 }
 
-// --- a stage: its function, and a row of the catalog -----------------------------------------------------
+// --- a stage: its function, and a row of the table of rules
+// --------------------------------------------------
 
 ScalarField heights(const Mesh& mesh, const FarOptions& options) {
   ScalarField z;
   for (const Vec3& p : mesh.vertices) z.push_back(p.z() * options.power);
   return z;
+}
+
+template <class Add>
+void add_to(ToyRun& toy, const Add& add) {
+  RuleTable table(std::move(toy.project.rules));
+  add(table);
+  toy.project.rules = std::move(table).take();
+  toy.make_plan_again();
 }
 
 TEST(AddAStage, ItIsComputedStoredAndFoundAgain) {
@@ -152,14 +161,13 @@ TEST(AddAStage, ItIsComputedStoredAndFoundAgain) {
   MemoryStore store;
   const auto computed = [&](double power) {
     ToyRun toy(data.path(), store);
-    const RowOf<Mesh> mesh(toy.row("mesh"));
-    toy.catalog.add(Shapes::meshes, {"heights", 1}, heights, mesh, section("heights", FarOptions{power}));
-    toy.plan = make_plan(toy.context, store);
-    NoProgress progress;
-    Runner runner(toy.context, toy.plan, store, progress, toy.stop);
-    runner.run(2);
-    const auto value = runner.result({toy.row("heights"), Item::mesh(0)});
-    EXPECT_EQ(std::get<ScalarField>(*value).size(), shapes::bumpy_sphere(2).vertices.size());
+    const Output<Mesh> mesh(toy.index("mesh"));
+    add_to(toy, [&](RuleTable& table) {
+      table.add(kMeshes, {.stage = "heights"}, heights, mesh, section("heights", FarOptions{power}));
+    });
+    toy.run();
+    const ValuePtr value = toy.resolver->value({toy.index("heights"), mesh_unit(0)});
+    EXPECT_EQ(value_as<ScalarField>(*value).size(), shapes::bumpy_sphere(2).vertices.size());
     return store.take_saved();
   };
   EXPECT_THAT(computed(1), testing::Contains("heights@1"));
@@ -178,7 +186,7 @@ struct Sized {
   ~Sized() { --left; }
 };
 
-ScalarField of_view(const Sized& mesh, const View& view, const FarOptions&) {
+ScalarField of_view(const Sized& mesh, const UnitPlace& view, const FarOptions&) {
   return ScalarField(mesh.n, view.index);
 }
 
@@ -191,31 +199,31 @@ TEST(AddAStage, WhatItsViewsShareIsMadeOncePerMeshAndGoesWithIt) {
   }
   MemoryStore store;
   ToyRun toy(data.path(), store);
-  const RowOf<Mesh> mesh(toy.row("mesh"));
-  toy.catalog.add(Shapes::scans, {"of_view", 1}, of_view, prepared<Sized>(mesh), kView,
-                  section("of_view", FarOptions{}));
-  toy.plan = make_plan(toy.context, store);
-  NoProgress progress;
-  Runner runner(toy.context, toy.plan, store, progress, toy.stop);
+  const Output<Mesh> mesh(toy.index("mesh"));
+  add_to(toy, [&](RuleTable& table) {
+    table.add(kScans, {.stage = "of_view"}, of_view, prepared<Sized>(mesh), kPlace,
+              section("of_view", FarOptions{}));
+  });
   const int made_before = Sized::made;  // by other tests
-  runner.run(1);
+  toy.run(1);
   EXPECT_EQ(Sized::made - made_before, 3);
   EXPECT_EQ(Sized::left, 0);
-  const std::size_t row = toy.row("of_view", Shapes::scans);
+  const std::size_t rule = toy.index("of_view", kScans);
   for (int view = 0; view < kViews; ++view)
-    EXPECT_EQ(std::get<ScalarField>(*runner.result({row, {2, view}})),
+    EXPECT_EQ(value_as<ScalarField>(*toy.resolver->value({rule, scan_unit(2, view)})),
               ScalarField(shapes::bumpy_sphere(2).vertices.size(), view));
 }
 
 TEST(Preparation, ThoseWhoAskAtOnceGetTheSame) {
-  const auto value = std::make_shared<const Value>(shapes::tetrahedron());
   Preparation preparation;
-  std::vector<std::shared_ptr<const Sized>> got(4);
+  std::vector<Preparation::Made> got(4);
   std::vector<std::thread> threads;
-  for (auto& mine : got) threads.emplace_back([&] { mine = preparation.of<Sized, Mesh>(value); });
+  for (auto& mine : got)
+    threads.emplace_back(
+        [&] { mine = preparation.of([] { return std::make_shared<const Sized>(shapes::tetrahedron()); }); });
   for (std::thread& thread : threads) thread.join();
   for (const auto& mine : got) EXPECT_EQ(mine, got.front());
-  EXPECT_EQ(got.front()->n, 4U);
+  EXPECT_EQ(std::static_pointer_cast<const Sized>(got.front())->n, 4U);
 }
 
 // --- a metric: its function, and a row of the table ------------------------------------------------------

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/catalog/models.h"
+#include "pipeline/rules/models.h"
 
 namespace salbench {
 namespace {
@@ -29,7 +29,7 @@ ResultRow row_of(const std::string& item, const std::string& model, double nss, 
 
 std::vector<std::string> remarks_on(const std::vector<ResultRow>& rows) {
   std::vector<std::string> lines;
-  for (const ChanceRemark& remark : chance_remarks(rows, two_metrics(), Unit::mesh))
+  for (const ChanceRemark& remark : chance_remarks(rows, two_metrics(), Observation::mesh))
     lines.push_back(remark.dataset + ", " + remark.metric + ": " + remark.text);
   return lines;
 }

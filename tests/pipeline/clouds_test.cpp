@@ -42,12 +42,21 @@ struct Twins12 {
 };
 
 template <class T>
-T result(ToyRun& toy, const std::string& row, Shapes shapes, const Item& item) {
-  return std::get<T>(*toy.runner.result({toy.catalog.index(shapes, row), item}));
+T result(ToyRun& toy, const std::string& stage, Unit unit) {
+  return value_as<T>(*toy.resolver->value({toy.index(stage, unit.level), unit}));
 }
 
-ScalarField map_of(ToyRun& toy, const std::string& model, Shapes shapes, const Item& item) {
-  return result<ScalarField>(toy, "map." + model, shapes, item);
+ScalarField map_of(ToyRun& toy, const std::string& model, Unit unit) {
+  return result<ScalarField>(toy, "map." + model, unit);
+}
+
+Unit cloud_unit(std::uint32_t family) { return {kClouds, family}; }
+
+// Of a data set with one of each.
+Rules rules_for(const Config& config, const std::vector<Level>& shapes) {
+  std::vector<Family> families;
+  for (const Level level : shapes) families.push_back({level, "a", DatasetItem()});
+  return make_rules(config, {.units = Units(levels(), families)});
 }
 
 TEST(Clouds, WithAMeshsNormalsHaveTheMeshsMapsToTheBit) {
@@ -57,11 +66,9 @@ TEST(Clouds, WithAMeshsNormalsHaveTheMeshsMapsToTheBit) {
     ToyRun toy(data.folder.path(), store,
                fmt::format("protocol: {}\nnormals: {{method: faces}}\n{}", protocol, kPointModels));
     toy.run();
-    ASSERT_THAT(toy.runner.failures(), IsEmpty());
+    ASSERT_THAT(toy.resolver->failures(), IsEmpty());
     for (const char* model : {"LS", "CS", "PS"})
-      EXPECT_EQ(map_of(toy, model, Shapes::clouds, Item::cloud(1)),
-                map_of(toy, model, Shapes::meshes, Item::mesh(0)))
-          << model;
+      EXPECT_EQ(map_of(toy, model, cloud_unit(1)), map_of(toy, model, mesh_unit(0))) << model;
   }
 }
 
@@ -70,9 +77,9 @@ TEST(Clouds, HaveMapsAndScoresOfEveryModelButHumanPerformance) {
   MemoryStore store;
   ToyRun toy(data.folder.path(), store, kAllModels);
   toy.run();
-  ASSERT_THAT(toy.runner.failures(), IsEmpty());
+  ASSERT_THAT(toy.resolver->failures(), IsEmpty());
   for (const char* model : {"LS", "CS", "PS", "MS"}) {
-    const ScalarField map = map_of(toy, model, Shapes::clouds, Item::cloud(1));
+    const ScalarField map = map_of(toy, model, cloud_unit(1));
     ASSERT_THAT(map, SizeIs(data.mesh.vertices.size()));
     EXPECT_TRUE(std::all_of(map.begin(), map.end(), [](double v) { return std::isfinite(v); })) << model;
     EXPECT_LT(*std::min_element(map.begin(), map.end()), *std::max_element(map.begin(), map.end())) << model;
@@ -90,21 +97,19 @@ TEST(Clouds, HaveMapsAndScoresOfEveryModelButHumanPerformance) {
 
 TEST(Clouds, HaveRowsOnlyWhereTheDataSetHoldsSome) {
   const Config config = toy_config("picture: {size: 40}\n");
-  const auto rows_of = [](const Catalog& catalog, Shapes shapes) {
-    return std::count_if(catalog.rows.begin(), catalog.rows.end(),
-                         [&](const Row& row) { return row.shapes == shapes; });
+  const auto rows_of = [](const Rules& rules, Level level) {
+    return std::count_if(rules.begin(), rules.end(), [&](const Rule& rule) { return rule.over == level; });
   };
-  const Catalog meshes = make_catalog(config),
-                clouds = make_catalog(config, {}, {.meshes = false, .clouds = true}),
-                both = make_catalog(config, {}, {.meshes = true, .clouds = true});
-  EXPECT_EQ(rows_of(meshes, Shapes::clouds), 0);
-  EXPECT_EQ(rows_of(clouds, Shapes::meshes) + rows_of(clouds, Shapes::scans), 0);
-  EXPECT_EQ(rows_of(both, Shapes::clouds), rows_of(clouds, Shapes::clouds));
+  const Rules meshes = make_rules(config), clouds = rules_for(config, {kClouds}),
+              both = rules_for(config, {kMeshes, kClouds});
+  EXPECT_EQ(rows_of(meshes, kClouds), 0);
+  EXPECT_EQ(rows_of(clouds, kMeshes) + rows_of(clouds, kScans), 0);
+  EXPECT_EQ(rows_of(both, kClouds), rows_of(clouds, kClouds));
   // Nothing of the other rows depends on the clouds beside them.
   std::vector<std::string> without, beside;
-  for (const Row& row : meshes.rows) without.push_back(node_name(row));
-  for (const Row& row : both.rows)
-    if (row.shapes != Shapes::clouds) beside.push_back(node_name(row));
+  for (const Rule& rule : meshes) without.push_back(node_name(rule));
+  for (const Rule& rule : both)
+    if (rule.over != kClouds) beside.push_back(node_name(rule));
   EXPECT_EQ(beside, without);
 }
 
@@ -114,17 +119,17 @@ TEST(Clouds, AreFoundInTheCacheByTheNextRunAndChangeNoKeyOfAMesh) {
   {
     ToyRun alone(data.folder.path(), store, kToyConfig, "1");
     alone.run();
-    ASSERT_THAT(alone.runner.failures(), IsEmpty());
+    ASSERT_THAT(alone.resolver->failures(), IsEmpty());
   }
   ToyRun both(data.folder.path(), store);
-  for (std::size_t row = 0; row < both.catalog.rows.size(); ++row) {
-    if (both.catalog.rows[row].shapes == Shapes::clouds) continue;
-    EXPECT_EQ(count_open(both.plan.jobs[row]), 0U) << node_name(both.catalog.rows[row]);
+  for (std::size_t rule = 0; rule < both.project.rules.size(); ++rule) {
+    if (both.project.rules[rule].over == kClouds) continue;
+    EXPECT_EQ(both.plan().open(rule), 0U) << node_name(both.project.rules[rule]);
   }
   both.run();
   ToyRun again(data.folder.path(), store);
   EXPECT_EQ(again.open(), 0U);
-  for (const std::vector<Job>& jobs : again.plan.jobs) EXPECT_EQ(count_open(jobs), 0U);
+  EXPECT_FALSE(has_work(*again.resolver));
 }
 
 TEST(Clouds, ComeOutTheSameOnAnyNumberOfThreads) {
@@ -135,10 +140,9 @@ TEST(Clouds, ComeOutTheSameOnAnyNumberOfThreads) {
     MemoryStore store;
     ToyRun toy(data.folder.path(), store, "scan: {step_degrees: 1}\nmodels: {CS: , MS: , RS: }\n");
     toy.run(threads);
-    ASSERT_THAT(toy.runner.failures(), IsEmpty());
+    ASSERT_THAT(toy.resolver->failures(), IsEmpty());
     std::vector<Digest> contents;
-    for (const std::vector<Job>& jobs : toy.plan.jobs)
-      for (const Job& job : jobs) contents.push_back(job.content);
+    for (const Job& job : toy.project.jobs()) contents.push_back(toy.plan()[job].content);
     if (first.empty()) first = contents;
     EXPECT_TRUE(contents == first) << threads;
   }
@@ -154,8 +158,8 @@ TEST(Clouds, GroundTruthCountsThePointsOfTheFile) {
   MemoryStore store;
   ToyRun toy(data.folder.path(), store, kPointModels);
   toy.run();
-  ASSERT_THAT(toy.runner.failures(), IsEmpty());
-  const auto truth = result<GroundTruth>(toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(1));
+  ASSERT_THAT(toy.resolver->failures(), IsEmpty());
+  const auto truth = result<GroundTruth>(toy, "cloud_ground_truth", cloud_unit(1));
   EXPECT_THAT(truth.picks, AllOf(SizeIs(4), Each(ElementsAre(0, 99, 298))));
   ASSERT_THAT(truth.saliency, SizeIs(points.size() - 2));
   EXPECT_EQ(truth.saliency[0], data.truth.saliency[1]);
@@ -173,10 +177,10 @@ TEST(Clouds, APickOfAPointWithoutAPositionIsTheItemsFailure) {
   MemoryStore store;
   ToyRun toy(data.folder.path(), store, kPointModels);
   toy.run();
-  ASSERT_THAT(toy.runner.failures(), SizeIs(1));
-  EXPECT_THAT(toy.runner.failures()[0].cause,
+  ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
+  EXPECT_THAT(toy.resolver->failures()[0].cause,
               HasSubstr("participant 0 picked point 7 (0-based), which has no position"));
-  EXPECT_THAT(map_of(toy, "PS", Shapes::clouds, Item::cloud(1)), SizeIs(points.size() - 1));
+  EXPECT_THAT(map_of(toy, "PS", cloud_unit(1)), SizeIs(points.size() - 1));
 }
 
 TEST(Clouds, GroundTruthThatDoesNotFitIsToldInPoints) {
@@ -186,7 +190,7 @@ TEST(Clouds, GroundTruthThatDoesNotFitIsToldInPoints) {
   const auto cause = [&] {
     ToyRun toy(data.folder.path(), store, kPointModels);
     toy.run();
-    return toy.runner.failures().empty() ? "no failure" : toy.runner.failures()[0].cause;
+    return toy.resolver->failures().empty() ? "no failure" : toy.resolver->failures()[0].cause;
   };
   data.folder.write("RawData/2_0.pid", fmt::format("3\n{}\n", n));
   EXPECT_THAT(cause(), HasSubstr(fmt::format("2_0.pid:2: point {0} is out of range: the point cloud has {0} "
@@ -203,8 +207,8 @@ TEST(Clouds, PicksAloneAreSmoothedOverThePartialMesh) {
   MemoryStore store;
   ToyRun toy(data.folder.path(), store, kPointModels);
   toy.run();
-  ASSERT_THAT(toy.runner.failures(), IsEmpty());
-  const auto truth = result<GroundTruth>(toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(1));
+  ASSERT_THAT(toy.resolver->failures(), IsEmpty());
+  const auto truth = result<GroundTruth>(toy, "cloud_ground_truth", cloud_unit(1));
   const Faces faces = partial_mesh(data.mesh.vertices, mesh_normals(data.mesh));
   EXPECT_EQ(truth.saliency, smoothed_picks({data.mesh.vertices, faces}, truth.picks));
 }
@@ -215,8 +219,8 @@ TEST(Clouds, MayHaveMadeUpParticipantsAndMetricsByArea) {
   ToyRun toy(data.folder.path(), store,
              "dataset: {scans: false, participants: simulated}\nmodels: {PS: , MS: }\nmetrics: [all]\n");
   toy.run();
-  ASSERT_THAT(toy.runner.failures(), IsEmpty());
-  EXPECT_TRUE(result<GroundTruth>(toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(1)).simulated);
+  ASSERT_THAT(toy.resolver->failures(), IsEmpty());
+  EXPECT_TRUE(result<GroundTruth>(toy, "cloud_ground_truth", cloud_unit(1)).simulated);
   for (const ResultRow& row : toy.results())
     for (const double value : row.scores.values)
       EXPECT_TRUE(std::isfinite(value)) << row.dataset << row.model;
@@ -231,11 +235,11 @@ TEST(Clouds, ThatCannotBeReadFailAloneAndSayWhy) {
   ToyRun toy(data.folder.path(), store, kPointModels);
   toy.run();
   std::vector<std::string> causes;
-  for (const Failure& failure : toy.runner.failures()) causes.push_back(failure.cause);
+  for (const Failure& failure : toy.resolver->failures()) causes.push_back(failure.cause);
   EXPECT_THAT(causes, ElementsAre(HasSubstr("3.xyz:2: a point needs 3 values"),
                                   "the point cloud has 3 points with a position: it needs at least 9",
                                   "no faces: this is a point cloud; write it as PLY, PCD or XYZ"));
-  EXPECT_THAT(map_of(toy, "PS", Shapes::clouds, Item::cloud(1)), SizeIs(data.mesh.vertices.size()));
+  EXPECT_THAT(map_of(toy, "PS", cloud_unit(1)), SizeIs(data.mesh.vertices.size()));
 }
 
 TEST(Clouds, AFileThatBecomesAMeshDuringTheRunIsRefused) {
@@ -248,8 +252,8 @@ TEST(Clouds, AFileThatBecomesAMeshDuringTheRunIsRefused) {
   text.replace(text.find("end_header"), 0, "element face 1\nproperty list uchar int vertex_indices\n");
   folder.write("1.ply", text + "3 0 1 2\n");
   toy.run();
-  ASSERT_THAT(toy.runner.failures(), SizeIs(1));
-  EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("1.ply:9: the header announces faces"));
+  ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
+  EXPECT_THAT(toy.resolver->failures()[0].cause, HasSubstr("1.ply:9: the header announces faces"));
 }
 
 // A description of clouds with values in a column of CSV, -1 where nothing was seen. Values and picks count
@@ -277,21 +281,21 @@ indices: {{base: 1}}
         data.path(), store,
         fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", own.string()));
     toy->run();
-    const auto truth = toy->runner.failures().empty()
-                           ? result<GroundTruth>(*toy, "cloud_ground_truth", Shapes::clouds, Item::cloud(0))
+    const auto truth = toy->resolver->failures().empty()
+                           ? result<GroundTruth>(*toy, "cloud_ground_truth", cloud_unit(0))
                            : GroundTruth{};
     return std::pair(std::move(toy), truth);
   };
   const auto [toy, truth] = run("vertex");
-  ASSERT_THAT(toy->workload.families, SizeIs(1));  // b.off is no point cloud
+  ASSERT_THAT(toy->inputs.units.families(), SizeIs(1));  // b.off is no point cloud
   ASSERT_THAT(truth.saliency, SizeIs(mesh.vertices.size()));
   EXPECT_TRUE(std::isnan(truth.saliency[0]));
   EXPECT_EQ(truth.saliency[8], 1);
   EXPECT_THAT(truth.picks, ElementsAre(ElementsAre(2, 7)));
 
   const auto [refused, none] = run("face");
-  ASSERT_THAT(refused->runner.failures(), SizeIs(1));
-  EXPECT_THAT(refused->runner.failures()[0].cause,
+  ASSERT_THAT(refused->resolver->failures(), SizeIs(1));
+  EXPECT_THAT(refused->resolver->failures()[0].cause,
               AllOf(HasSubstr("maps/a.csv: has values per face"), HasSubstr("a.xyz is a point cloud")));
 }
 

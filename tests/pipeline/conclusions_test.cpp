@@ -30,7 +30,7 @@ ResultRow scored(const std::string& item, const std::string& view, const std::st
   return {view.empty() ? "meshes" : "scans", item, category, view, model, Scores{{auc}}};
 }
 
-Conclusions concluded(const std::vector<ResultRow>& rows, Unit unit = Unit::mesh) {
+Conclusions concluded(const std::vector<ResultRow>& rows, Observation unit = Observation::mesh) {
   return conclude(rows, kAuc, {.unit = unit}, 1);
 }
 
@@ -66,7 +66,7 @@ std::vector<ResultRow> scans_of(std::size_t meshes, double between, double withi
 TEST(Units, TheViewsOfAMeshAreOneObservation) {
   const std::vector<ResultRow> rows = scans_of(10, 1, 0.1);
   const Table by_mesh = significance_table(concluded(rows)),
-              by_shape = significance_table(concluded(rows, Unit::shape));
+              by_shape = significance_table(concluded(rows, Observation::shape));
   EXPECT_EQ(number(by_mesh, "n", {"A", "B"}), 10);
   EXPECT_EQ(number(by_shape, "n", {"A", "B"}), 120);
   EXPECT_EQ(number(by_mesh, "n_shapes", {"A", "B"}), 120);
@@ -83,7 +83,7 @@ TEST(Units, TheViewsOfAMeshAreOneObservation) {
 TEST(Units, AClassIsOneObservationAndShapesWithoutOneAreNone) {
   const std::vector<ResultRow> rows{scored("1", "", "A", 1, "human"), scored("2", "", "A", 2, "human"),
                                     scored("3", "", "A", 5, "cup"), scored("4", "", "A", 99)};
-  const Table summary = summary_table(concluded(rows, Unit::item_class));
+  const Table summary = summary_table(concluded(rows, Observation::item_class));
   EXPECT_EQ(number(summary, "n", {"A"}), 2);
   EXPECT_EQ(number(summary, "n_shapes", {"A"}), 3);
   EXPECT_EQ(number(summary, "mean", {"A"}), (1.5 + 5) / 2);
@@ -155,7 +155,7 @@ TEST(Conclusions, OfPoorDataHaveEmptyCells) {
       {},
   };
   for (const std::vector<ResultRow>& rows : poor)
-    for (const Unit unit : {Unit::mesh, Unit::item_class, Unit::shape}) {
+    for (const Observation unit : {Observation::mesh, Observation::item_class, Observation::shape}) {
       const Conclusions conclusions = concluded(rows, unit);
       for (const Table& table :
            {summary_table(conclusions), significance_table(conclusions), ranking_table(conclusions),
@@ -207,12 +207,12 @@ TEST(PerClassTable, AveragesCompetitorsShapeByShape) {
                                     scored("2", "0", "A", .6, "cup"),  scored("1", "0", "B", .2, "cup"),
                                     scored("1", "1", "B", .4, "cup"),  scored("2", "0", "B", .6, "cup"),
                                     scored("1", "0", "RS", .9, "cup"), scored("2", "0", "RS", .9, "cup")};
-  const Table table = per_class_table(rows, kAuc, Unit::mesh);
+  const Table table = per_class_table(rows, kAuc, Observation::mesh);
   EXPECT_EQ(number(table, "n", {"A"}), 2);
   EXPECT_NEAR(number(table, "mean", {"A"}), (.3 + .6) / 2, 1e-12);
   for (const char* column : {"n", "n_shapes", "mean", "ci95_low", "ci95_high"})
     EXPECT_DOUBLE_EQ(number(table, column, {"Avg"}), number(table, column, {"A"})) << column;
-  EXPECT_NEAR(number(per_class_table(rows, kAuc, Unit::shape), "mean", {"A"}), .4, 1e-12);
+  EXPECT_NEAR(number(per_class_table(rows, kAuc, Observation::shape), "mean", {"A"}), .4, 1e-12);
 }
 
 }  // namespace

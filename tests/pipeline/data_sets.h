@@ -28,11 +28,11 @@ class DataSets : public testing::Test {
     toy_->run();
   }
   GroundTruth truth(std::size_t item = 0) const {
-    return std::get<GroundTruth>(*toy_->runner.result({toy_->row("ground_truth"), Item::mesh(item)}));
+    return value_as<GroundTruth>(*toy_->resolver->value({toy_->index("ground_truth"), mesh_unit(item)}));
   }
   std::vector<std::string> failures() const {
     std::vector<std::string> causes;
-    for (const Failure& failure : toy_->runner.failures()) causes.push_back(failure.cause);
+    for (const Failure& failure : toy_->resolver->failures()) causes.push_back(failure.cause);
     return causes;
   }
   // Score of a model on the first mesh, or scan, of the table; NaN where the metric is undefined.

@@ -50,7 +50,7 @@ TEST_F(DataSets, Schelling) {
     run(layout);
     EXPECT_THAT(failures(), IsEmpty());
     EXPECT_THAT(truth().picks, SizeIs(4));
-    EXPECT_EQ(toy_->workload.families[0].source.category, "cup");
+    EXPECT_EQ(item_of(toy_->inputs.units, mesh_unit(0)).category, "cup");
     EXPECT_TRUE(std::isfinite(score_of("HS", "nss")));
   }
 }
@@ -69,14 +69,14 @@ TEST_F(DataSets, Princeton) {
   data_.write("SchellingData/Distributions/400.val", lines_of(heights(kSphere, 0)));
   run("princeton");
   EXPECT_EQ(truth().saliency, heights(kSphere, 0));
-  EXPECT_EQ(toy_->workload.families[0].source.category, "four-legged");
+  EXPECT_EQ(item_of(toy_->inputs.units, mesh_unit(0)).category, "four-legged");
 }
 
 TEST_F(DataSets, Folder) {
   data_.write("horse.off", off_text(kSphere));
   run("folder");
   EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(toy_->workload.families[0].truth_files, IsEmpty()) << "ground truth is optional";
+  EXPECT_THAT(toy_->inputs.truth_files->files[0], IsEmpty()) << "ground truth is optional";
 }
 
 TEST_F(DataSets, Dutagaci) {
@@ -167,7 +167,7 @@ TEST_F(DataSets, MeshMamba) {
     EXPECT_NEAR(truth().saliency[i], on_vertices[i] - 1, 1e-12);
   run("meshmamba");
   EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_EQ(toy_->workload.families[0].source.name, "Apple_v01");
+  EXPECT_EQ(toy_->inputs.units.families()[0].name, "Apple_v01");
   for (std::size_t i = 0; i < on_vertices.size(); ++i)
     EXPECT_NEAR(truth().saliency[i], on_vertices[i] - 2, 1e-12);
   EXPECT_TRUE(std::isfinite(score_of("RS", "cc")));
@@ -207,7 +207,7 @@ TEST_F(DataSets, HowFilesAreReadIsPartOfTheKeyUnlessItIsAsEver) {
   const auto names = [&](const std::string& yaml) {
     run(yaml.empty() ? "schelling" : description(yaml));
     std::vector<std::string> found;
-    for (const SourceFile& file : toy_->workload.families[0].truth_files) found.push_back(file.name);
+    for (const File& file : toy_->inputs.truth_files->files[0]) found.push_back(file.name);
     return found;
   };
   const std::string places =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/catalog/depended_files.h"
+#include "pipeline/rules/depended_files.h"
 
 #include <chrono>
 

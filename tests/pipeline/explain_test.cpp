@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
-#include "pipeline/plan/causes.h"
+#include "pipeline/commands/why.h"
 #include "stages/core/errors.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/temporary_folder.h"
@@ -30,7 +30,7 @@ using testing::Pair;
 using testing::SizeIs;
 using testing::StartsWith;
 
-constexpr const char* kMeshes = "dataset: {scans: false}\nmodels: {PS: , RS: }\n";
+constexpr const char* kOnMeshes = "dataset: {scans: false}\nmodels: {PS: , RS: }\n";
 constexpr const char* kOtherPs = "dataset: {scans: false}\nmodels: {PS: {absolute: true}, RS: }\n";
 
 using Counts = std::vector<std::pair<std::string, std::size_t>>;
@@ -45,13 +45,13 @@ class ExplainTest : public testing::Test {
   fs::path cache() const { return cache_ / "cache"; }
 
   // Reasons of what the run computed, as run.yaml counts them.
-  Counts run(const std::string& yaml = kMeshes, const std::string& stage = "mesh") const {
+  Counts run(const std::string& yaml = kOnMeshes, const std::string& stage = "mesh") const {
     FolderStore store(cache(), Access::read_write);
     ToyRun toy(data_.path(), store, yaml);
     toy.run();
     toy.results();
-    Causes causes(toy.context, toy.plan, cache(), kOpenedForCounting);
-    return counts(toy, stage, causes.words_of_computed());
+    Causes causes(toy.project, toy.plan(), cache(), kOpenedForCounting);
+    return counts(toy, stage, why_computed(causes));
   }
 
   // Reasons as `salbench plan` counts them.
@@ -59,31 +59,28 @@ class ExplainTest : public testing::Test {
                  std::size_t limit = kOpenedForCounting) const {
     FolderStore store(cache(), Access::read_only);
     const ToyRun toy(data_.path(), store, yaml);
-    Causes causes(toy.context, toy.plan, cache(), limit);
-    return counts(toy, stage, causes.words());
+    Causes causes(toy.project, toy.plan(), cache(), limit);
+    return counts(toy, stage, why_open(causes));
   }
 
   static Counts counts(const ToyRun& toy, const std::string& stage, const Why& why) {
-    for (const RowCount& count : count_by_name(toy.context, toy.plan, why))
+    for (const StageCount& count : count_by_stage(toy.project, toy.plan(), why))
       if (count.stage == stage) return count.reasons;
     ADD_FAILURE() << "no stage " << stage;
     return {};
   }
 
-  using Change = std::function<void(Catalog&)>;
+  using Change = std::function<void(Rules&)>;
   std::vector<Explanation> explained(const std::string& yaml, const std::string& item,
                                      const std::string& stage = "", const Change& change = {}) const {
     FolderStore store(cache(), Access::read_only);
     ToyRun toy(data_.path(), store, yaml);
-    if (change) {
-      change(toy.catalog);
-      toy.plan = make_plan(toy.context, store);
-    }
-    return explain(toy.context, toy.plan, cache(), {item, stage});
+    if (change) change(toy.project.rules);
+    return explain(toy.project, store, cache(), {item, stage});
   }
 
   // "state: why" of one stage of the mesh "1".
-  std::string asked(const std::string& stage, const std::string& yaml = kMeshes,
+  std::string asked(const std::string& stage, const std::string& yaml = kOnMeshes,
                     const std::string& item = "1", const Change& change = {}) const {
     const auto found = explained(yaml, item, stage, change);
     EXPECT_THAT(found, SizeIs(1));
@@ -114,8 +111,8 @@ class ExplainTest : public testing::Test {
 
 TEST_F(ExplainTest, AHitNeedsNoReason) {
   run();
-  const auto all = explained(kMeshes, "1");
-  EXPECT_THAT(all, SizeIs(JobCounts(kMeshes, 1).of_shapes()));
+  const auto all = explained(kOnMeshes, "1");
+  EXPECT_THAT(all, SizeIs(JobCounts(kOnMeshes, 1).of_shapes()));
   EXPECT_THAT(all, Each(AllOf(Field(&Explanation::state, "cached"), Field(&Explanation::why, ""))));
   EXPECT_EQ(all[0].file, artefact("mesh", "1"));
 }
@@ -133,7 +130,7 @@ TEST_F(ExplainTest, AnOptionIsNamedWithItsPathAndBothValues) {
   EXPECT_EQ(asked("scores.PS", kOtherPs),
             "waiting: waits for matched.PS, waits for map.PS: models.PS.absolute false -> true");
   EXPECT_EQ(asked("map.RS", kOtherPs), "cached: ");
-  EXPECT_EQ(asked("scores.RS", std::string(kMeshes) + "metrics: {splits: 7, thresholds: 50}\n"),
+  EXPECT_EQ(asked("scores.RS", std::string(kOnMeshes) + "metrics: {splits: 7, thresholds: 50}\n"),
             "to compute: metrics.splits 100 -> 7, metrics.thresholds 20 -> 50");
 }
 
@@ -146,17 +143,15 @@ TEST_F(ExplainTest, OptionsOfTwoSectionsKeepTheirPaths) {
 
 TEST_F(ExplainTest, ARaisedStageVersionIsNamed) {
   run();
-  const Change raise = [](Catalog& catalog) {
-    catalog.rows[catalog.index(Shapes::meshes, "fpfh")].version = 2;
-  };
-  EXPECT_EQ(asked("fpfh", kMeshes, "1", raise), "to compute: stage version 1 -> 2");
-  EXPECT_EQ(asked("map.PS", kMeshes, "1", raise), "waiting: waits for fpfh: stage version 1 -> 2");
-  EXPECT_EQ(asked("map.RS", kMeshes, "1", raise), "cached: ");
+  const Change raise = [](Rules& rules) { rules[find_rule(rules, kMeshes, "fpfh")].version = 2; };
+  EXPECT_EQ(asked("fpfh", kOnMeshes, "1", raise), "to compute: stage version 1 -> 2");
+  EXPECT_EQ(asked("map.PS", kOnMeshes, "1", raise), "waiting: waits for fpfh: stage version 1 -> 2");
+  EXPECT_EQ(asked("map.RS", kOnMeshes, "1", raise), "cached: ");
 }
 
 TEST_F(ExplainTest, AnotherSeedIsNamed) {
   run();
-  const std::string reseeded = std::string(kMeshes) + "seed: 7\n";
+  const std::string reseeded = std::string(kOnMeshes) + "seed: 7\n";
   EXPECT_EQ(asked("map.RS", reseeded), "to compute: seed 2016/1 -> 7/1");
   EXPECT_THAT(planned(reseeded, "map.RS"), ElementsAre(Pair("seed 2016 -> 7", 2)));
 }
@@ -166,8 +161,8 @@ TEST_F(ExplainTest, AnEditedMeshIsNamedByItsFile) {
   edit_mesh();
   EXPECT_EQ(asked("mesh"), "to compute: mesh file 1.off changed");
   EXPECT_EQ(asked("map.PS"), "waiting: waits for mesh: mesh file 1.off changed");
-  EXPECT_EQ(asked("mesh", kMeshes, "2"), "cached: ");
-  EXPECT_THAT(planned(kMeshes, "mesh"), ElementsAre(Pair("mesh file .off changed", 1)));
+  EXPECT_EQ(asked("mesh", kOnMeshes, "2"), "cached: ");
+  EXPECT_THAT(planned(kOnMeshes, "mesh"), ElementsAre(Pair("mesh file .off changed", 1)));
 }
 
 TEST_F(ExplainTest, AChangedInputIsTracedToWhatChangedIt) {
@@ -175,7 +170,7 @@ TEST_F(ExplainTest, AChangedInputIsTracedToWhatChangedIt) {
   edit_mesh();
   run("dataset: {scans: false}\nmodels: {PS: }\n");  // the new mesh is now in the cache, a map of it is not
   EXPECT_EQ(asked("map.RS"), "to compute: input mesh changed (mesh file 1.off changed)");
-  EXPECT_THAT(planned(kMeshes, "map.RS"), ElementsAre(Pair("input mesh changed", 1)));
+  EXPECT_THAT(planned(kOnMeshes, "map.RS"), ElementsAre(Pair("input mesh changed", 1)));
 }
 
 TEST_F(ExplainTest, AChangedReferenceIsTracedToTheItemsItIsTheMeanOf) {
@@ -184,14 +179,14 @@ TEST_F(ExplainTest, AChangedReferenceIsTracedToTheItemsItIsTheMeanOf) {
   for (int i = 0; i < 162; ++i) values += fmt::format("{}\n", i);
   write_file(data_ / "Distributions/1.val", values);
   run("dataset: {scans: false}\nmodels: {PS: }\n");
-  EXPECT_EQ(asked("matched.RS", kMeshes, "2"), "to compute: input reference changed (that of 1 changed)");
+  EXPECT_EQ(asked("matched.RS", kOnMeshes, "2"), "to compute: input reference changed (that of 1 changed)");
 }
 
 TEST_F(ExplainTest, AnEditedGroundTruthIsNamedByItsFile) {
   run();
   write_file(data_ / "RawData/1_3.pid", "0\n5\n");
   EXPECT_EQ(asked("ground_truth"), "to compute: picks 3 changed");
-  EXPECT_EQ(asked("matched.PS", kMeshes, "2"),
+  EXPECT_EQ(asked("matched.PS", kOnMeshes, "2"),
             "waiting: waits for reference, waits for ground_truth of 1: picks 3 changed");
   EXPECT_EQ(asked("map.PS"), "cached: ");
   fs::remove(data_ / "RawData/1_3.pid");
@@ -206,8 +201,8 @@ TEST_F(ExplainTest, OfADeletedArtefactThereIsNone) {
   EXPECT_EQ(asked("normals"), "to compute: no artefact of this stage and item");
   EXPECT_EQ(asked("map.PS"),
             "waiting: waits for fpfh, waits for normals: no artefact of this stage and item");
-  EXPECT_EQ(asked("normals", kMeshes, "2"), "cached: ");
-  EXPECT_THAT(run(kMeshes, "normals"), ElementsAre(Pair("not in the cache", 1)));
+  EXPECT_EQ(asked("normals", kOnMeshes, "2"), "cached: ");
+  EXPECT_THAT(run(kOnMeshes, "normals"), ElementsAre(Pair("not in the cache", 1)));
 }
 
 TEST_F(ExplainTest, ADamagedArtefactIsNamed) {
@@ -217,7 +212,7 @@ TEST_F(ExplainTest, ADamagedArtefactIsNamed) {
   EXPECT_EQ(asked("fpfh"), "damaged: " + file.string() + ": checksum mismatch");
   EXPECT_EQ(asked("map.PS"), "cached: ");  // what was made of it is sound
   fs::remove(artefact("map.PS", "1"));
-  EXPECT_THAT(run(kMeshes, "fpfh"), ElementsAre(Pair("damaged", 1)));
+  EXPECT_THAT(run(kOnMeshes, "fpfh"), ElementsAre(Pair("damaged", 1)));
   EXPECT_EQ(asked("fpfh"), "cached: ");
 }
 
@@ -226,17 +221,17 @@ TEST_F(ExplainTest, ATruncatedArtefactIsNamedWhereItLiesAndWhereItWasMoved) {
   const fs::path file = artefact("mesh", "1");
   fs::resize_file(file, 10);
   EXPECT_THAT(asked("mesh"), AllOf(StartsWith("damaged: " + file.string() + ": truncated: 10 of ")));
-  EXPECT_THAT(planned(kMeshes, "mesh"), ElementsAre(Pair("damaged", 1)));
+  EXPECT_THAT(planned(kOnMeshes, "mesh"), ElementsAre(Pair("damaged", 1)));
   { const FolderStore moves_it_aside(cache(), Access::read_write); }
   EXPECT_EQ(asked("mesh"),
             "damaged: " + (cache() / "damaged" / file.filename()).string() + ": a run moved it aside");
-  EXPECT_THAT(run(kMeshes, "mesh"), ElementsAre(Pair("damaged", 1)));
+  EXPECT_THAT(run(kOnMeshes, "mesh"), ElementsAre(Pair("damaged", 1)));
 }
 
 TEST_F(ExplainTest, TheNearestArtefactIsTheOneHeldAgainst) {
   run();
-  run(std::string(kMeshes) + "seed: 3\nmetrics: {splits: 7}\n");
-  const std::string splits_eight = std::string(kMeshes) + "metrics: {splits: 8}\n";
+  run(std::string(kOnMeshes) + "seed: 3\nmetrics: {splits: 7}\n");
+  const std::string splits_eight = std::string(kOnMeshes) + "metrics: {splits: 8}\n";
   EXPECT_EQ(asked("scores.PS", splits_eight), "to compute: metrics.splits 100 -> 8");
   EXPECT_EQ(asked("scores.PS", splits_eight + "seed: 3\n"), "to compute: metrics.splits 7 -> 8");
 }
@@ -252,22 +247,22 @@ TEST_F(ExplainTest, ScansWaitForTheirMesh) {
 }
 
 TEST_F(ExplainTest, ARunSaysWhyItComputed) {
-  EXPECT_THAT(run(kMeshes, "map.PS"), ElementsAre(Pair("not in the cache", 2)));
-  EXPECT_THAT(run(kMeshes, "map.PS"), IsEmpty());
+  EXPECT_THAT(run(kOnMeshes, "map.PS"), ElementsAre(Pair("not in the cache", 2)));
+  EXPECT_THAT(run(kOnMeshes, "map.PS"), IsEmpty());
   EXPECT_THAT(run(kOtherPs, "matched.PS"), ElementsAre(Pair("input map.PS changed", 2)));
-  EXPECT_THAT(run(std::string(kMeshes) + "metrics: {splits: 7}\n", "scores.RS"),
+  EXPECT_THAT(run(std::string(kOnMeshes) + "metrics: {splits: 7}\n", "scores.RS"),
               ElementsAre(Pair("metrics.splits 100 -> 7", 2)));
 }
 
 TEST_F(ExplainTest, AMeanSaysWhatItIsTakenOver) {
-  EXPECT_THAT(run(kMeshes, "mean_histogram.PS"), ElementsAre(Pair("not in the cache", 1)));
-  EXPECT_THAT(planned(kMeshes, "mean_histogram.PS"), IsEmpty());
+  EXPECT_THAT(run(kOnMeshes, "mean_histogram.PS"), ElementsAre(Pair("not in the cache", 1)));
+  EXPECT_THAT(planned(kOnMeshes, "mean_histogram.PS"), IsEmpty());
   EXPECT_THAT(planned(kOtherPs, "mean_histogram.PS"), ElementsAre(Pair("waits for map.PS", 1)));
   EXPECT_THAT(run(kOtherPs, "mean_histogram.PS"), ElementsAre(Pair("2 map.PS changed", 1)));
   fs::resize_file(artefact("reference", "meshes"), 10);
-  EXPECT_THAT(run(kMeshes, "reference"), ElementsAre(Pair("damaged", 1)));
+  EXPECT_THAT(run(kOnMeshes, "reference"), ElementsAre(Pair("damaged", 1)));
   write_toy_item(data_.path(), "3", shapes::bumpy_sphere(2, 0.1));
-  EXPECT_THAT(run(kMeshes, "reference"), ElementsAre(Pair("1 ground_truth added", 1)));
+  EXPECT_THAT(run(kOnMeshes, "reference"), ElementsAre(Pair("1 ground_truth added", 1)));
 }
 
 TEST_F(ExplainTest, CountingOpensNoMoreArtefactsThanItMay) {
@@ -280,7 +275,7 @@ TEST_F(ExplainTest, CountingOpensNoMoreArtefactsThanItMay) {
 
 TEST_F(ExplainTest, WordsThatNameNothingAreRefused) {
   const auto expect_refusal = [&](const std::string& item, const std::string& stage, const auto& words) {
-    EXPECT_THAT([&] { explained(kMeshes, item, stage); }, testing::ThrowsMessage<ConfigError>(words));
+    EXPECT_THAT([&] { explained(kOnMeshes, item, stage); }, testing::ThrowsMessage<ConfigError>(words));
   };
   expect_refusal("3", "", HasSubstr("no item '3'"));
   expect_refusal("1_0", "", HasSubstr("no item '1_0'"));  // no scans in this configuration

@@ -140,10 +140,11 @@ std::vector<GoldenChange> golden_changes(std::span<const GoldenRow> now, std::sp
     } else if (!agree(row.fingerprint, found->second.fingerprint)) {
       const bool forbidden = !excused.contains(stage_of(row));
       changes.push_back(
-          {forbidden ? fmt::format("{} comes out otherwise under the same version {}: raise the "
-                                   "stage's version in the catalog, or artefacts of before pass for new",
-                                   subject, row.version)
-                     : subject + " comes out otherwise, by its options or by what it reads",
+          {forbidden
+               ? fmt::format("{} comes out otherwise under the same version {}: raise the "
+                             "stage's version in the table of rules, or artefacts of before pass for new",
+                             subject, row.version)
+               : subject + " comes out otherwise, by its options or by what it reads",
            forbidden});
     }
   }

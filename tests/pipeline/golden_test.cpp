@@ -182,9 +182,10 @@ void collect(const std::string& protocol, const std::vector<RecordingStore::Reco
       GoldenRow row{protocol,
                     recipe.stage,
                     recipe.stage_version,
-                    std::string(name_of(is_scan    ? Scope::scan
-                                        : is_cloud ? Scope::cloud
-                                                   : Scope::mesh)),
+                    std::string(levels()[is_scan    ? kScans
+                                         : is_cloud ? kClouds
+                                                    : kMeshes]
+                                    .unit),
                     array.name,
                     options_digest(recipe),
                     {}};
@@ -199,23 +200,23 @@ void collect(const std::string& protocol, const std::vector<RecordingStore::Reco
   }
 }
 
-// What each row reads.
+// What each rule reads.
 void collect_inputs(const std::string& protocol, const ToyRun& toy, Outputs& outputs) {
   const std::string prefix = protocol + "/";
-  for (const Row& row : toy.catalog.rows)
-    for (const std::size_t input : row.inputs)
-      outputs.inputs.emplace_back(prefix + row.name, prefix + toy.catalog.rows[input].name);
+  for (const Rule& rule : toy.project.rules)
+    for (const std::size_t input : rule.inputs)
+      outputs.inputs.emplace_back(prefix + rule.stage, prefix + toy.project.rules[input].stage);
 }
 
-void expect_every_row(const std::string& protocol, const Catalog& catalog, const Outputs& outputs) {
-  for (const Row& row : catalog.rows) {
-    const std::string_view shape = name_of(scope_of(row.shapes));
+void expect_every_rule(const std::string& protocol, const Rules& rules, const Outputs& outputs) {
+  for (const Rule& rule : rules) {
+    const std::string_view shape = levels()[rule.over].unit;
     EXPECT_TRUE(std::any_of(outputs.rows.begin(), outputs.rows.end(),
                             [&](const GoldenRow& golden) {
-                              return golden.protocol == protocol && golden.stage == row.name &&
+                              return golden.protocol == protocol && golden.stage == rule.stage &&
                                      golden.shape == shape;
                             }))
-        << row.name << " did not run on a " << shape << ": the toy data must reach every row";
+        << rule.stage << " did not run on a " << shape << ": the toy data must reach every rule";
   }
 }
 
@@ -240,12 +241,12 @@ Outputs toy_outputs() {
         data.path(), store,
         "protocol: " + protocol + "\nscan: {step_degrees: 0.5}\npicture: {size: 64}\n" + every_model());
     toy.run();
-    for (const Failure& failure : toy.runner.failures())
-      ADD_FAILURE() << toy.context.name(failure.job) << ": " << toy.context.row(failure.job).name << ": "
+    for (const Failure& failure : toy.resolver->failures())
+      ADD_FAILURE() << toy.project.name(failure.job) << ": " << toy.project.rule(failure.job).stage << ": "
                     << failure.cause;
     collect(protocol, store.records(), outputs);
     collect_inputs(protocol, toy, outputs);
-    expect_every_row(protocol, toy.catalog, outputs);
+    expect_every_rule(protocol, toy.project.rules, outputs);
   }
   return outputs;
 }

@@ -41,7 +41,7 @@ MeshCurve curve_of(const std::string& item, const std::vector<double>& values,
   return mesh;
 }
 
-Conclusions concluded(const std::vector<ResultRow>& rows, Unit unit = Unit::mesh,
+Conclusions concluded(const std::vector<ResultRow>& rows, Observation unit = Observation::mesh,
                       const Metrics& metrics = kAuc) {
   return conclude(rows, metrics, {.unit = unit}, 1);
 }
@@ -82,7 +82,7 @@ struct People {
     }
   }
 
-  Table equivalents(Unit unit = Unit::mesh) const {
+  Table equivalents(Observation unit = Observation::mesh) const {
     return human_equivalents_table(curves, rows, concluded(rows, unit));
   }
 };
@@ -108,7 +108,7 @@ TEST(HumanCurveByMesh, HalvesThatDoNotAgreeHaveNoReliabilityAndOtherMetricsNone)
 TEST(HumanCurveDifferences, ArePairedByMesh) {
   const std::vector<MeshCurve> curves{curve_of("1", {.1, .2, .35}), curve_of("2", {.5, .61, .7}),
                                       curve_of("3", {.9, .99, 1.1})};
-  const Table table = human_curve_differences_table(curves, kAuc, Unit::mesh);
+  const Table table = human_curve_differences_table(curves, kAuc, Observation::mesh);
   ASSERT_THAT(table.rows, SizeIs(3));  // 1 to 2, 1 to 3, 2 to 3
   const PairedComparison expected = compare_paired(std::vector{.2, .61, .99}, std::vector{.1, .5, .9});
   EXPECT_EQ(number(table, 0, "from_participants"), 1);
@@ -126,7 +126,7 @@ TEST(HumanCurveDifferences, ArePairedByMesh) {
 TEST(HumanCurveDifferences, TakeTheMeshesThatHaveBothNumbers) {
   const std::vector<MeshCurve> curves{curve_of("1", {.1, .2, .4}), curve_of("2", {.5, .9}),
                                       curve_of("3", {.9, kNone, 1.1})};
-  const Table table = human_curve_differences_table(curves, kAuc, Unit::mesh);
+  const Table table = human_curve_differences_table(curves, kAuc, Observation::mesh);
   EXPECT_EQ(number(table, 0, "n"), 2);
   EXPECT_DOUBLE_EQ(number(table, 0, "mean_difference"), (.1 + .4) / 2);
   EXPECT_EQ(number(table, 1, "n"), 2);
@@ -138,7 +138,7 @@ TEST(HumanCurveDifferences, TakeTheMeshesThatHaveBothNumbers) {
 TEST(HumanCurveDifferences, OfClassesAreOfTheirMeans) {
   const std::vector<MeshCurve> curves{curve_of("1", {0, 1}, "cup"), curve_of("2", {0, 3}, "cup"),
                                       curve_of("3", {0, 5}, "ant"), curve_of("4", {0, 99})};
-  const Table table = human_curve_differences_table(curves, kAuc, Unit::item_class);
+  const Table table = human_curve_differences_table(curves, kAuc, Observation::item_class);
   EXPECT_EQ(number(table, 0, "n"), 2);
   EXPECT_EQ(number(table, 0, "n_shapes"), 3);
   EXPECT_EQ(number(table, 0, "mean_difference"), (2. + 5.) / 2);
@@ -146,7 +146,7 @@ TEST(HumanCurveDifferences, OfClassesAreOfTheirMeans) {
 
 TEST(HumanCurveDifferences, OfTwoParticipantsThereAreNone) {
   EXPECT_THAT(
-      human_curve_differences_table({curve_of("1", {.5}), curve_of("2", {.6})}, kAuc, Unit::mesh).rows,
+      human_curve_differences_table({curve_of("1", {.5}), curve_of("2", {.6})}, kAuc, Observation::mesh).rows,
       IsEmpty());
 }
 
@@ -185,7 +185,7 @@ TEST(HumanEquivalents, LowerMayBeBetter) {
   for (MeshCurve& mesh : people.curves)
     for (Scores& scores : mesh.curve) scores.values[0] *= -1;
   const Table turned = human_equivalents_table(people.curves, people.rows,
-                                               concluded(people.rows, Unit::mesh, kKl)),
+                                               concluded(people.rows, Observation::mesh, kKl)),
               table = People(24).equivalents();
   for (const char* column : {"k", "ci95_low", "ci95_high"})
     EXPECT_EQ(number(turned, 0, column), number(table, 0, column)) << column;
@@ -224,12 +224,12 @@ TEST(HumanEquivalents, FollowTheUnitOfInference) {
   };
   for (ResultRow& row : people.rows) row.category = class_of(row.item);
   for (MeshCurve& mesh : people.curves) mesh.category = class_of(mesh.item);
-  const Table by_class = people.equivalents(Unit::item_class), by_mesh = people.equivalents();
+  const Table by_class = people.equivalents(Observation::item_class), by_mesh = people.equivalents();
   EXPECT_EQ(number(by_class, 0, "n"), 8);
   EXPECT_EQ(number(by_class, 0, "n_shapes"), 24);
   EXPECT_NEAR(number(by_class, 0, "k"), number(by_mesh, 0, "k"), 1e-9) << "classes of equal size";
   EXPECT_NE(number(by_class, 0, "ci95_low"), number(by_mesh, 0, "ci95_low"));
-  EXPECT_EQ(to_csv(people.equivalents(Unit::shape)), to_csv(by_mesh)) << "a mesh is a shape";
+  EXPECT_EQ(to_csv(people.equivalents(Observation::shape)), to_csv(by_mesh)) << "a mesh is a shape";
 }
 
 TEST(HumanEquivalents, AReferenceBoundsItsOwnRowAlone) {
@@ -247,7 +247,7 @@ TEST(HumanEquivalents, OfPoorDataHaveRemarks) {
   EXPECT_EQ(remark(People(1)), "no interval: fewer than 6 units");
   EXPECT_EQ(remark(People(5)), "no interval: fewer than 6 units");
   EXPECT_EQ(remark(People(7, 1)), "") << "two participants";
-  EXPECT_THAT(People(7).equivalents(Unit::item_class).rows, IsEmpty()) << "no mesh has a class";
+  EXPECT_THAT(People(7).equivalents(Observation::item_class).rows, IsEmpty()) << "no mesh has a class";
   People undefined(8);
   for (ResultRow& row : undefined.rows)
     if (row.model == "A") row.scores.values = {kNone};
@@ -265,7 +265,7 @@ TEST(HumanEquivalents, OfPoorDataHaveRemarks) {
 
 TEST(HumanReliability, IsTheMeanOverTheMeshesByTheirLargestGroups) {
   const Table table = human_reliability_table(
-      {curve_of("1", {.2, .5}), curve_of("2", {.2, .3, .6}), curve_of("3", {-.1})}, kCc, Unit::mesh);
+      {curve_of("1", {.2, .5}), curve_of("2", {.2, .3, .6}), curve_of("3", {-.1})}, kCc, Observation::mesh);
   ASSERT_THAT(table.rows, SizeIs(1));
   EXPECT_EQ(number(table, 0, "n"), 3);
   EXPECT_EQ(number(table, 0, "fewest_participants"), 2);
@@ -277,12 +277,12 @@ TEST(HumanReliability, IsTheMeanOverTheMeshesByTheirLargestGroups) {
 
 TEST(HumanReliability, TakesThePointsWhereItIsDefined) {
   const Table table =
-      human_reliability_table({curve_of("1", {.5, kNone}), curve_of("2", {kNone})}, kCc, Unit::mesh);
+      human_reliability_table({curve_of("1", {.5, kNone}), curve_of("2", {kNone})}, kCc, Observation::mesh);
   EXPECT_EQ(number(table, 0, "n"), 1);
   EXPECT_EQ(number(table, 0, "most_participants"), 2);
   EXPECT_TRUE(std::isnan(number(table, 0, "ci95_low")));
-  EXPECT_THAT(human_reliability_table({curve_of("1", {kNone})}, kCc, Unit::mesh).rows, IsEmpty());
-  EXPECT_THAT(human_reliability_table({curve_of("1", {.5})}, kAuc, Unit::mesh).rows, IsEmpty());
+  EXPECT_THAT(human_reliability_table({curve_of("1", {kNone})}, kCc, Observation::mesh).rows, IsEmpty());
+  EXPECT_THAT(human_reliability_table({curve_of("1", {.5})}, kAuc, Observation::mesh).rows, IsEmpty());
 }
 
 TEST(HumanShare, IsTheWayFromChanceToPeople) {
@@ -308,7 +308,7 @@ TEST(HumanShare, IsOfTheShapesThatAllHave) {
 
 TEST(HumanShare, OfPoorDataHasRemarks) {
   const auto remark = [](const std::vector<ResultRow>& rows, const Metrics& metrics = kAuc) {
-    const Table table = human_share_table(concluded(rows, Unit::mesh, metrics));
+    const Table table = human_share_table(concluded(rows, Observation::mesh, metrics));
     for (const char* end : {"ci95_low", "ci95_high"})
       EXPECT_EQ(text(table, 0, "remark").empty(), !std::isnan(number(table, 0, end)));
     return text(table, 0, "remark");
@@ -343,7 +343,7 @@ TEST(HumanTables, AreTheSameOnAnyNumberOfThreads) {
     const Conclusions conclusions = concluded(people.rows);
     return to_csv(human_equivalents_table(people.curves, people.rows, conclusions)) +
            to_csv(human_share_table(conclusions)) +
-           to_csv(human_curve_differences_table(people.curves, kAuc, Unit::mesh));
+           to_csv(human_curve_differences_table(people.curves, kAuc, Observation::mesh));
   });
 }
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/commands/gc.h"
+#include "pipeline/engine/maintain.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
@@ -41,15 +41,15 @@ class PicturesTest : public testing::Test {
   std::vector<std::string> run(const std::string& yaml, int threads = 2) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run(threads);
-    EXPECT_THAT(toy.runner.failures(), IsEmpty());
+    EXPECT_THAT(toy.resolver->failures(), IsEmpty());
     results_ = to_csv(results_table(toy.results()));
     return store_.take_saved();
   }
   // As `salbench pictures` does.
   std::vector<std::string> take_pictures() {
     ToyRun toy(data_.path(), store_, toy_config_with(Pictures::computed));
-    toy.runner.run_rows("pictures",
-                        ancestors(toy.catalog, {toy.row("picture"), toy.row("picture", Shapes::scans)}), 2);
+    const auto rules = toy.project.ancestors({toy.index("picture"), toy.index("picture", kScans)});
+    salbench::run(*toy.resolver, {.threads = 2, .rules = rules}, toy.progress, toy.stop);
     return store_.take_saved();
   }
 
@@ -59,17 +59,17 @@ class PicturesTest : public testing::Test {
 };
 
 TEST(PictureRows, AreThereWhereTheConfigurationHasTheirSection) {
-  EXPECT_FALSE(make_catalog(toy_config()).has(Shapes::meshes, "picture"));
+  EXPECT_FALSE(has_rule(make_rules(toy_config()), kMeshes, "picture"));
   EXPECT_THAT(config_yaml(toy_config()), Not(HasSubstr("picture")));
   for (const std::string yaml : {"picture:\n", "picture: {size: 77}\n"}) {
     const Config config = toy_config(yaml);
-    const Catalog catalog = make_catalog(config);
-    EXPECT_TRUE(catalog.has(Shapes::meshes, "picture") && catalog.has(Shapes::scans, "picture"));
+    const Rules rules = make_rules(config);
+    EXPECT_TRUE(has_rule(rules, kMeshes, "picture") && has_rule(rules, kScans, "picture"));
     EXPECT_EQ(config_yaml(toy_config(config_yaml(config))), config_yaml(config));
     EXPECT_EQ(config_yaml(toy_config(annotated_config_yaml(config))), config_yaml(config));
   }
   EXPECT_EQ(toy_config("picture: {size: 77}").picture.size, 77);
-  EXPECT_FALSE(make_catalog(toy_config("picture:\ndataset: {scans: false}")).has(Shapes::scans, "picture"));
+  EXPECT_FALSE(has_rule(make_rules(toy_config("picture:\ndataset: {scans: false}")), kScans, "picture"));
 }
 
 TEST(PictureRows, TheirOptionsAreACommentWhereTheyAreOff) {
@@ -105,10 +105,10 @@ TEST_F(PicturesTest, FromTheCacheOnlyTheyAreFoundOrNotApplicable) {
   const auto find = [&] {
     ToyRun toy(data_.path(), store_, toy_config_with(Pictures::cached));
     toy.run();
-    EXPECT_THAT(toy.runner.failures(), IsEmpty());
+    EXPECT_THAT(toy.resolver->failures(), IsEmpty());
     std::size_t found = 0;
-    for (const Shapes shapes : {Shapes::meshes, Shapes::scans})
-      for (const Job& job : toy.plan.jobs[toy.row("picture", shapes)]) {
+    for (const Level level : {kMeshes, kScans})
+      for (const Decision& job : toy.plan().decisions[toy.index("picture", level)]) {
         found += job.known() ? 1U : 0U;
         EXPECT_TRUE(job.known() || job.reason == Reason::only_cached);
       }
@@ -127,12 +127,12 @@ TEST_F(PicturesTest, AreCollectedOnlyWithTheirOptions) {
   const auto needed = [&](Config config) {
     const ToyRun toy(data_.path(), store_, std::move(config));
     KeepSet keep;
-    add_needed(toy.context, toy.plan, keep);
-    const JobRef picture{toy.row("picture"), Item::mesh(0)};
+    add_needed(toy.project, toy.plan(), keep);
+    const Job picture{toy.index("picture"), mesh_unit(0)};
     ArtefactName name;
     name.item = "1";
-    name.key = toy.plan[picture].key;
-    return toy.plan[picture].known() && keep.covers("picture", name);
+    name.key = toy.plan()[picture].key;
+    return toy.plan()[picture].known() && keep.covers("picture", name);
   };
   EXPECT_TRUE(needed(toy_config_with(Pictures::cached)));
   Config other = toy_config_with(Pictures::cached);
@@ -146,8 +146,9 @@ TEST_F(PicturesTest, AreTheSameWithAnyNumberOfThreads) {
     ToyRun toy(data_.path(), store_, kWithPictures);
     toy.run(threads);
     std::vector<std::string> digests;
-    for (const Shapes shapes : {Shapes::meshes, Shapes::scans})
-      for (const Job& job : toy.plan.jobs[toy.row("picture", shapes)]) digests.push_back(job.content.hex());
+    for (const Level level : {kMeshes, kScans})
+      for (const Decision& job : toy.plan().decisions[toy.index("picture", level)])
+        digests.push_back(job.content.hex());
     return digests;
   };
   const auto one = contents(1);

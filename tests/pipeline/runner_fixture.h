@@ -18,8 +18,8 @@ namespace salbench {
 
 // Does something before what the stage does anyway.
 using Before = std::function<void(const JobInputs&)>;
-inline void do_before(Row& row, const Before& before) {
-  row.run = [before, was = row.run](const JobInputs& in) {
+inline void do_before(Rule& rule, const Before& before) {
+  rule.compute = [before, was = rule.compute](const JobInputs& in) {
     before(in);
     return was(in);
   };
@@ -36,8 +36,8 @@ class RunnerTest : public testing::Test {
   std::vector<std::string> run(const std::string& yaml = kToyConfig, int threads = 2) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run(threads);
-    for (const Failure& failure : toy.runner.failures())
-      failures_.push_back(toy.context.name(failure.job) + ": " + toy.context.row(failure.job).name + ": " +
+    for (const Failure& failure : toy.resolver->failures())
+      failures_.push_back(toy.project.name(failure.job) + ": " + toy.project.rule(failure.job).stage + ": " +
                           failure.cause);
     results_ = to_csv(results_table(toy.results(), chosen_metrics(toy.config.metrics)));
     return store_.take_saved();

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run computes, counted: the engine's promise is that it is exactly what is missing.
-#include "pipeline/run/runner.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/engine/run.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
@@ -81,7 +80,7 @@ TEST_F(RunnerTest, ResultsOfAnUnfinishedRunAreThoseOfTheScoresThatThereAre) {
   std::vector<std::string> found;
   for (const ResultRow& row : planned.results()) {
     found.push_back(line_of(row));
-    EXPECT_EQ(planned.plan[row.job].verdict, Verdict::cached);
+    EXPECT_EQ(planned.plan()[row.job].verdict, Verdict::cached);
   }
   EXPECT_EQ(found, expected);
   EXPECT_THAT(store_.take_saved(), IsEmpty());
@@ -157,9 +156,9 @@ TEST_F(RunnerTest, AFailingItemStopsNoOther) {
   write_file(data_ / "Meshes/3.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
   ToyRun toy(data_.path(), store_);
   toy.run();
-  ASSERT_THAT(toy.runner.failures(), SizeIs(1));
-  EXPECT_EQ(toy.context.row(toy.runner.failures()[0].job).name, "mesh");
-  EXPECT_THAT(toy.runner.failures()[0].cause, HasSubstr("3.off"));
+  ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
+  EXPECT_EQ(toy.project.rule(toy.resolver->failures()[0].job).stage, "mesh");
+  EXPECT_THAT(toy.resolver->failures()[0].cause, HasSubstr("3.off"));
   EXPECT_EQ(toy.count(Verdict::done), jobs_.of_shapes());
   EXPECT_EQ(toy.count(Verdict::failed), 1U);
   EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::not_applicable),
@@ -171,8 +170,8 @@ TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
   std::filesystem::create_directories(data_ / "Meshes");
   write_file(data_ / "Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.1)));
   const auto computed = run();
-  const std::size_t unscored = JobCounts(kToyConfig, 1).where([](const Row& row) {
-    return !row.gathers && row.kind != "ground_truth" && row.kind != "scores";
+  const std::size_t unscored = JobCounts(kToyConfig, 1).where([](const Rule& rule) {
+    return !rule.gathers && !has_role(rule, Role::ground_truth) && !has_role(rule, Role::scores);
   });
   EXPECT_THAT(computed, SizeIs(jobs_.all() + unscored));
   EXPECT_THAT(failures_, IsEmpty());
@@ -185,7 +184,7 @@ TEST_F(RunnerTest, WithoutAnyGroundTruthMapsAreAllThereIs) {
   write_file(plain / "a.off", off_text(shapes::sphere(2)));
   ToyRun toy(plain.path(), store_);
   toy.run();
-  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  EXPECT_THAT(toy.resolver->failures(), IsEmpty());
   const auto computed = store_.take_saved();
   EXPECT_THAT(computed, Contains("map.PS@a_5"));
   EXPECT_THAT(computed, Not(Contains("matched.PS@a_5")));
@@ -198,8 +197,8 @@ TEST_F(RunnerTest, AStoppedRunResumesToTheSameResults) {
   std::size_t stored = 0;
   for (const char* stage : {"mesh", "surface", "fpfh", "matched.PS"}) {
     ToyRun toy(data_.path(), store_);
-    const Shapes shapes = toy.catalog.has(Shapes::scans, stage) ? Shapes::scans : Shapes::meshes;
-    do_before(toy.catalog.rows[toy.row(stage, shapes)], [&](const JobInputs&) { toy.stop = true; });
+    const bool of_scans = has_rule(toy.project.rules, kScans, stage);
+    do_before(toy.rule(stage, of_scans ? kScans : kMeshes), [&](const JobInputs&) { toy.stop = true; });
     toy.run();
     const std::size_t here = store_.take_saved().size();
     EXPECT_GT(here, 0U) << "what was at work when the run was stopped, at " << stage;
@@ -213,8 +212,8 @@ TEST_F(RunnerTest, AGivenReferenceReplacesTheMean) {
   ToyRun toy(data_.path(), store_);
   Histogram flat;
   flat.fill(1);
-  toy.catalog = make_catalog(toy.config, flat);
-  toy.plan = make_plan(toy.context, store_);
+  toy.project.rules = make_rules(toy.config, toy.inputs, flat);
+  toy.make_plan_again();
   toy.run();
   const auto computed = store_.take_saved();
   EXPECT_THAT(computed, SizeIs(jobs_.all() - jobs_.of("reference")));

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/run/runner.h"
+#include "pipeline/engine/run.h"
 #include "tests/pipeline/runner_fixture.h"
 #include "tests/support/meeting.h"
 
@@ -25,7 +25,7 @@ TEST_F(RunnerTest, ResultsDoNotDependOnThreads) {
 TEST_F(RunnerTest, WithTwoThreadsTwoMeshesAreWorkedOnAtTheSameTime) {
   ToyRun toy(data_.path(), store_);
   Meeting both(2);
-  do_before(toy.catalog.rows[toy.row("normals")], [&](const JobInputs&) { EXPECT_TRUE(both.join()); });
+  do_before(toy.rule("normals"), [&](const JobInputs&) { EXPECT_TRUE(both.join()); });
   toy.run(2);
   EXPECT_TRUE(both.met());
 }
@@ -33,8 +33,8 @@ TEST_F(RunnerTest, WithTwoThreadsTwoMeshesAreWorkedOnAtTheSameTime) {
 TEST_F(RunnerTest, WithTwoThreadsTwoScansOfAMeshAreWorkedOnAtTheSameTime) {
   ToyRun toy(data_.path(), store_, kToyConfig, "1");
   Meeting both(2);
-  do_before(toy.catalog.rows[toy.row("scan_normals", Shapes::scans)], [&](const JobInputs& in) {
-    if (in.view == 3 || in.view == 7) {
+  do_before(toy.rule("scan_normals", kScans), [&](const JobInputs& in) {
+    if (in.place == 3 || in.place == 7) {
       EXPECT_TRUE(both.join());
     }
   });
@@ -46,7 +46,7 @@ TEST_F(RunnerTest, WithTwoThreadsTwoModelsOfOneShapeRunAtTheSameTime) {
   ToyRun toy(data_.path(), store_, kToyConfig, "1");
   Meeting both(2);
   for (const char* model : {"map.PS", "map.RS"})
-    do_before(toy.catalog.rows[toy.row(model)], [&](const JobInputs&) { EXPECT_TRUE(both.join()); });
+    do_before(toy.rule(model), [&](const JobInputs&) { EXPECT_TRUE(both.join()); });
   toy.run(2);
   EXPECT_TRUE(both.met());
 }
@@ -55,10 +55,10 @@ TEST_F(RunnerTest, EveryComputedArtefactPassedThroughTheNodeOfItsRow) {
   ToyRun toy(data_.path(), store_);
   toy.run();
   std::map<std::string, std::size_t> computed, saved;
-  for (std::size_t row = 0; row < toy.catalog.rows.size(); ++row) {
-    const NodeRecord& node = toy.runner.records()[row];
-    EXPECT_EQ(node.settled, toy.plan.jobs[row].size()) << toy.catalog.rows[row].name;
-    computed[toy.catalog.rows[row].name] += node.seconds.size();
+  for (std::size_t rule = 0; rule < toy.project.rules.size(); ++rule) {
+    const RuleRecord& node = toy.resolver->records()[rule];
+    EXPECT_EQ(node.finished, toy.plan().decisions[rule].size()) << toy.project.rules[rule].stage;
+    computed[toy.project.rules[rule].stage] += node.seconds.size();
   }
   for (const std::string& artefact : store_.take_saved()) ++saved[artefact.substr(0, artefact.find('@'))];
   EXPECT_EQ(computed, saved);
@@ -69,8 +69,8 @@ TEST_F(RunnerTest, WithOneThreadEveryStageRunsInTheCallersThread) {
   ToyRun toy(data_.path(), store_);
   const auto caller = std::this_thread::get_id();
   Meeting somebody_else(2, std::chrono::milliseconds(200));
-  for (Row& row : toy.catalog.rows)
-    do_before(row, [&](const JobInputs&) {
+  for (Rule& rule : toy.project.rules)
+    do_before(rule, [&](const JobInputs&) {
       EXPECT_EQ(std::this_thread::get_id(), caller);
       somebody_else.join();
     });

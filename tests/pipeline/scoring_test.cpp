@@ -51,24 +51,25 @@ TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
 // Readers refuse infinite values; a cache may hold them that an older program filled.
 TEST(MeanHistograms, LeaveOutItemsWithAnInfiniteValue) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const Catalog catalog = make_catalog(toy_config());
-  const auto mean = [&](std::string_view row, const std::vector<Value>& members) {
+  const Rules rules = make_rules(toy_config());
+  const auto mean = [&](std::string_view stage, const std::vector<ValuePtr>& members) {
     JobInputs in;
     in.members = members.size();
-    in.member = [&](std::size_t i) { return std::make_shared<const Value>(members[i]); };
-    return std::get<Histogram>(catalog.rows[catalog.index(Shapes::meshes, row)].run(in));
+    in.member = [&](std::size_t i) { return members[i]; };
+    return value_as<Histogram>(*rules[find_rule(rules, kMeshes, stage)].compute(in));
   };
   const ScalarField sound = {0, 0.2, 1}, huge = {-1.7e308, 0, 1.7e308}, endless = {0, -infinity, 1};
-  const std::vector<Value> maps = {sound, huge, endless};
-  EXPECT_EQ(mean("mean_histogram.PS", maps), mean("mean_histogram.PS", {sound, huge}));
-  const std::vector<Value> truths = {GroundTruth{sound, {}}, GroundTruth{endless, {}}, GroundTruth{huge, {}}};
-  EXPECT_EQ(mean("reference", truths), mean("mean_histogram.PS", {sound, huge}));
+  const std::vector<ValuePtr> maps = {held(sound), held(huge), held(endless)};
+  EXPECT_EQ(mean("mean_histogram.PS", maps), mean("mean_histogram.PS", {held(sound), held(huge)}));
+  const std::vector<ValuePtr> truths = {held(GroundTruth{sound, {}}), held(GroundTruth{endless, {}}),
+                                        held(GroundTruth{huge, {}})};
+  EXPECT_EQ(mean("reference", truths), mean("mean_histogram.PS", {held(sound), held(huge)}));
 }
 
 TEST_F(RunnerTest, EveryMetricIsFiniteOnMeshesAndScansAndForPeople) {
   ToyRun toy(data_.path(), store_, "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\nmetrics: all\n");
   toy.run();
-  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  EXPECT_THAT(toy.resolver->failures(), IsEmpty());
   for (const ResultRow& row : toy.results()) {
     ASSERT_THAT(row.scores.values, SizeIs(metric_table().size()));
     for (std::size_t m = 0; m < metric_table().size() && row.scores.n_picks > 0; ++m)
@@ -79,10 +80,10 @@ TEST_F(RunnerTest, EveryMetricIsFiniteOnMeshesAndScansAndForPeople) {
 
 TEST_F(RunnerTest, ScoresReadWhatTheirMetricsDo) {
   const auto inputs_of = [&](const std::string& metrics) {
-    const ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
+    ToyRun toy(data_.path(), store_, std::string(kToyConfig) + metrics);
     std::vector<std::string> names;
-    for (const std::size_t input : toy.catalog.rows[toy.row("scores.PS", Shapes::scans)].inputs)
-      names.push_back(toy.catalog.rows[input].name);
+    for (const std::size_t input : toy.rule("scores.PS", kScans).inputs)
+      names.push_back(toy.project.rules[input].stage);
     return names;
   };
   EXPECT_THAT(inputs_of(""), ElementsAre("matched.PS", "scan_ground_truth"));
@@ -169,12 +170,12 @@ TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
   for (const char* participant : {"1", "2", "3"})
     std::filesystem::remove(data_ / "RawData" / ("2_" + std::string(participant) + ".pid"));
   ToyRun toy(data_.path(), store_, kWithPeople);
-  const auto job = [&](std::size_t family) { return toy.mesh_job("scores.HS", family); };
+  const auto job = [&](std::size_t family) { return toy.decision("scores.HS", family); };
   EXPECT_TRUE(job(0).open());
   EXPECT_EQ(job(1).verdict, Verdict::not_applicable);
   EXPECT_EQ(job(1).reason, Reason::inapplicable);
   toy.run();
-  EXPECT_THAT(toy.runner.failures(), IsEmpty());
+  EXPECT_THAT(toy.resolver->failures(), IsEmpty());
   const std::string results = to_csv(results_table(toy.results()));
   EXPECT_THAT(results, HasSubstr("\nmeshes,1,human,,HS,"));
   EXPECT_THAT(results, HasSubstr("\nmeshes,2,human,,PS,"));

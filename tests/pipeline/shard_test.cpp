@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/plan/shard.h"
+#include "pipeline/inputs/shard.h"
 
 #include <algorithm>
 

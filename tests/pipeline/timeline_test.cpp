@@ -16,14 +16,14 @@ using std::chrono::milliseconds;
 double number(const Cell& cell) { return std::get<double>(cell); }
 
 TEST(Timeline, SharesTheTimeOfEachJobAmongTheIntervalsItLasts) {
-  const Catalog catalog = make_catalog(toy_config());
+  const Rules rules = make_rules(toy_config());
   const auto began = Clock::now();
-  std::vector<NodeRecord> records(catalog.rows.size());
-  const std::size_t mesh = catalog.index(Shapes::meshes, "mesh"), scan = catalog.index(Shapes::scans, "scan");
+  std::vector<RuleRecord> records(rules.size());
+  const std::size_t mesh = find_rule(rules, kMeshes, "mesh"), scan = find_rule(rules, kScans, "scan");
   records[mesh] = {.seconds = {0.25F, 1},
                    .started = {began + milliseconds(500), began + milliseconds(23'000)}};
   records[scan] = {.seconds = {3, 3}, .started = {began, began + milliseconds(1000)}};  // two cores
-  const Table table = timeline_table(catalog, records, began, 24);
+  const Table table = timeline_table(rules, records, began, 24);
   EXPECT_THAT(table.columns, testing::ElementsAre("start", "end", "node", "busy"));
   std::map<std::string, double> sums;
   for (const auto& row : table.rows) {
@@ -42,10 +42,10 @@ TEST(Timeline, SharesTheTimeOfEachJobAmongTheIntervalsItLasts) {
 }
 
 TEST(Timeline, OfNothingIsEmpty) {
-  const Catalog catalog = make_catalog(toy_config());
-  const std::vector<NodeRecord> records(catalog.rows.size());
-  EXPECT_THAT(timeline_table(catalog, records, Clock::now(), 0).rows, testing::IsEmpty());
-  EXPECT_THAT(timeline_table(catalog, records, Clock::now(), 5).rows, testing::IsEmpty());
+  const Rules rules = make_rules(toy_config());
+  const std::vector<RuleRecord> records(rules.size());
+  EXPECT_THAT(timeline_table(rules, records, Clock::now(), 0).rows, testing::IsEmpty());
+  EXPECT_THAT(timeline_table(rules, records, Clock::now(), 5).rows, testing::IsEmpty());
 }
 
 }  // namespace

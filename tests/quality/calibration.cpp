@@ -132,7 +132,7 @@ void add_equal_models(Rates& rates, const std::vector<ResultRow>& rows, std::uin
     all &= covers;
   }
   rates.add("intervals of all ranks", kConfidence, all);
-  for (const ModelPair& pair : model_pairs(DatasetScores(rows, "scans", Unit::shape), 0))
+  for (const ModelPair& pair : model_pairs(DatasetScores(rows, "scans", Observation::shape), 0))
     rates.add("unit shape: interval of a difference", kConfidence,
               pair.by_unit.interval.low <= 0 && 0 <= pair.by_unit.interval.high);
   rates.add_tests("unit shape: rank-sum test", pairs, "rank_sum_p");
@@ -141,7 +141,7 @@ void add_equal_models(Rates& rates, const std::vector<ResultRow>& rows, std::uin
 // Two models that differ by exactly the margin, which half of the tests would find equal if they took no
 // care.
 void add_equivalence(Rates& rates, const std::vector<ResultRow>& rows, double margin) {
-  const DatasetScores scores(rows, "scans", Unit::mesh);
+  const DatasetScores scores(rows, "scans", Observation::mesh);
   const Interval interval = compare_models(scores, 0, 0, 1).by_unit.equivalence_interval;
   rates.add("equivalence at its margin", 1 - kConfidence, -margin < interval.low && interval.high < margin);
 }
@@ -149,9 +149,9 @@ void add_equivalence(Rates& rates, const std::vector<ResultRow>& rows, double ma
 }  // namespace
 
 ScoreModel score_model(const std::vector<ResultRow>& rows, std::string_view dataset, std::size_t metric) {
-  const DatasetScores scores(rows, dataset, Unit::shape);
+  const DatasetScores scores(rows, dataset, Observation::shape);
   const UnitScores shapes = scores.compared(metric, scores.competitors(metric));
-  const DatasetScores by_mesh(rows, dataset, Unit::mesh);
+  const DatasetScores by_mesh(rows, dataset, Observation::mesh);
   const std::vector<std::size_t> mesh_of = by_mesh.units_of_shapes();
   const std::size_t k = shapes.models.size();
   std::map<std::size_t, std::vector<double>> shared;

@@ -60,7 +60,7 @@ class PeopleRates {
     const Conclusions conclusions = conclude(data.rows, metrics, {}, seed);
     add_shares(human_share_table(conclusions));
     add_places(human_equivalents_table(data.curves, data.rows, conclusions));
-    add_differences(human_curve_differences_table(data.curves, metrics, Unit::mesh));
+    add_differences(human_curve_differences_table(data.curves, metrics, Observation::mesh));
   }
 
   // Those that there were cases of.
@@ -131,7 +131,7 @@ class PeopleRates {
 
 PeopleModel people_model(const ScoreFile& scores, const std::filesystem::path& curve_by_mesh,
                          std::size_t metric) {
-  const DatasetScores all(scores.rows, "meshes", Unit::mesh);
+  const DatasetScores all(scores.rows, "meshes", Observation::mesh);
   const Table table = read_csv(curve_by_mesh);
   const auto items = text_column(table, "item"), metrics = text_column(table, "metric");
   const auto n = number_column(table, "n"), value = number_column(table, "value");

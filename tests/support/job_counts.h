@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How many jobs a first run has, counted in the catalog: a new model or stage changes no number in a test.
+// How many jobs a first run has, counted in the table of rules: a new model or stage changes no number in a
+// test.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/catalog/catalog.h"
+#include "pipeline/rules/rules.h"
 #include "stages/scan/scan.h"
 #include "tests/support/toy_data.h"
 
@@ -17,74 +18,74 @@ namespace salbench {
 // Of so many meshes, all of them with ground truth, and their scans.
 class JobCounts {
  public:
-  JobCounts(const Config& config, std::size_t meshes) : catalog_(make_catalog(config)), meshes_(meshes) {}
+  JobCounts(const Config& config, std::size_t meshes) : rules_(make_rules(config)), meshes_(meshes) {}
   explicit JobCounts(const std::string& yaml = kToyConfig, std::size_t meshes = 2)
       : JobCounts(toy_config(yaml), meshes) {}
 
   std::size_t meshes() const { return meshes_; }
-  std::size_t scans() const { return has(Scope::scan) ? meshes_ * kViews : 0; }
+  std::size_t scans() const { return has_scans() ? meshes_ * kViews : 0; }
   std::size_t shapes() const { return meshes() + scans(); }
 
-  template <class Predicate>  // of a Row
+  template <class Predicate>  // of a Rule
   std::size_t where(const Predicate& wanted) const {
     std::size_t sum = 0;
-    for (const Row& row : catalog_.rows)
-      if (wanted(row)) sum += jobs_of(row);
+    for (const Rule& rule : rules_)
+      if (wanted(rule)) sum += jobs_of(rule);
     return sum;
   }
 
   std::size_t of_shapes() const {
-    return where([](const Row& row) { return !row.gathers; });
+    return where([](const Rule& rule) { return !rule.gathers; });
   }
   std::size_t of_the_data_set() const { return all() - of_shapes(); }
   std::size_t all() const {
-    return where([](const Row&) { return true; });
+    return where([](const Rule&) { return true; });
   }
 
   // What can be had without the rest of the data set: nothing that reads a mean, and no means.
   std::size_t before_reference() const {
-    std::vector<bool> after(catalog_.rows.size(), false);
+    std::vector<bool> after(rules_.size(), false);
     std::size_t sum = 0;
-    for (std::size_t r = 0; r < catalog_.rows.size(); ++r) {
-      const Row& row = catalog_.rows[r];
-      after[r] = row.gathers;
-      for (const std::size_t input : row.inputs) after[r] = after[r] || after[input];
-      if (!after[r]) sum += jobs_of(row);
+    for (std::size_t r = 0; r < rules_.size(); ++r) {
+      const Rule& rule = rules_[r];
+      after[r] = rule.gathers;
+      for (const std::size_t input : rule.inputs) after[r] = after[r] || after[input];
+      if (!after[r]) sum += jobs_of(rule);
     }
     return sum;
   }
 
-  // Of one row name. A name that the catalog does not have is a mistake of the test.
+  // Of one stage. A name that no rule has is a mistake of the test.
   std::size_t of(std::string_view name) const {
-    return expect_some(where([&](const Row& row) { return row.name == name; }), name);
+    return expect_some(where([&](const Rule& rule) { return rule.stage == name; }), name);
   }
 
   // Map, matched map, scores, their table and mean histogram, as far as the model has them.
   std::size_t of_model(std::string_view model) const {
     return expect_some(
-        where([end = "." + std::string(model)](const Row& row) { return row.name.ends_with(end); }), model);
+        where([end = "." + std::string(model)](const Rule& rule) { return rule.stage.ends_with(end); }),
+        model);
   }
 
   // Of one layout, such as "scores"; for scores, the rows of results.csv.
   std::size_t of_kind(std::string_view kind) const {
-    return expect_some(where([&](const Row& row) { return row.kind == kind; }), kind);
+    return expect_some(where([&](const Rule& rule) { return rule.kind == kind; }), kind);
   }
 
  private:
-  bool has(Scope scope) const {
-    return std::any_of(catalog_.rows.begin(), catalog_.rows.end(),
-                       [&](const Row& row) { return row.scope() == scope; });
+  bool has_scans() const {
+    return std::any_of(rules_.begin(), rules_.end(), [](const Rule& rule) { return rule.level() == kScans; });
   }
-  std::size_t jobs_of(const Row& row) const {
-    if (row.gathers) return 1;
-    return row.shapes == Shapes::meshes ? meshes_ : meshes_ * kViews;
+  std::size_t jobs_of(const Rule& rule) const {
+    if (rule.gathers) return 1;
+    return rule.over == kMeshes ? meshes_ : meshes_ * kViews;
   }
   static std::size_t expect_some(std::size_t count, std::string_view name) {
     if (count == 0) throw std::out_of_range("no job of " + std::string(name));
     return count;
   }
 
-  Catalog catalog_;
+  Rules rules_;
   std::size_t meshes_;
 };
 

@@ -3,6 +3,7 @@
 // it.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <string>
@@ -12,6 +13,7 @@
 #include "io/dataset.h"
 #include "io/file.h"
 #include "pipeline/config/section.h"
+#include "pipeline/engine/run.h"
 #include "pipeline/results/results.h"
 #include "stages/ground_truth/simulation.h"
 #include "tests/support/shapes.h"
@@ -55,6 +57,16 @@ inline Config toy_config(const std::string& yaml = kToyConfig) {
   return read_config(Section::from_text(yaml, "toy.yaml"), "toy");
 }
 
+inline Unit mesh_unit(std::size_t family) { return {kMeshes, static_cast<std::uint32_t>(family)}; }
+inline Unit scan_unit(std::size_t family, int view) {
+  return {kScans, static_cast<std::uint32_t>(family * kViews + static_cast<std::size_t>(view))};
+}
+
+inline bool has_rule(const Rules& rules, Level over, std::string_view stage) {
+  return std::any_of(rules.begin(), rules.end(),
+                     [&](const Rule& rule) { return rule.over == over && rule.stage == stage; });
+}
+
 // One planned and executed run. The store is the caller's, so that runs can follow each other.
 struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, const std::string& yaml = kToyConfig,
@@ -64,41 +76,43 @@ struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
       : config(std::move(the_config)),
-        workload(make_workload(find_dataset(root, layouts_of(config.dataset.layout), config.dataset.twins),
-                               items)),
-        catalog(make_catalog(config, {}, kinds_of(workload))),
-        context{catalog, workload, config.seed},
-        store(the_store),
-        plan(make_plan(context, store)),
-        progress(std::make_unique<NoProgress>()),
-        runner(context, plan, store, *progress, stop) {}
+        inputs(
+            read_inputs(find_dataset(root, layouts_of(config.dataset.layout), config.dataset.twins), items)),
+        project(make_project(config, inputs)),
+        store(the_store) {
+    make_plan_again();
+  }
   ToyRun(const ToyRun&) = delete;
   ToyRun& operator=(const ToyRun&) = delete;
 
-  void run(int threads = 2) { runner.run(threads); }
-  RunState state() { return {config, context, plan, runner}; }
+  void make_plan_again() { resolver = std::make_unique<Resolver>(project, make_plan(project, store), store); }
+  void run(int threads = 2) { salbench::run(*resolver, {.threads = threads}, progress, stop); }
+  RunState state() { return {config, inputs, *resolver}; }
   std::vector<ResultRow> results() { return collect_results(state()); }
-  std::size_t row(std::string_view name, Shapes shapes = Shapes::meshes) const {
-    return catalog.index(shapes, name);
+  const Plan& plan() const { return resolver->plan(); }
+
+  std::size_t index(std::string_view stage, Level level = kMeshes) const {
+    return find_rule(project.rules, level, stage);
   }
-  Job& mesh_job(std::string_view name, std::size_t family) { return plan[{row(name), Item::mesh(family)}]; }
+  Rule& rule(std::string_view stage, Level level = kMeshes) { return project.rules[index(stage, level)]; }
+  const Decision& decision(std::string_view stage, std::size_t family) const {  // of a mesh
+    return plan()[{index(stage), mesh_unit(family)}];
+  }
   std::size_t count(Verdict verdict) const {  // of shapes, not of the data set
     std::size_t n = 0;
-    for (const Item& item : all_items(context))
-      for (const JobRef& job : jobs_of(catalog, item)) n += plan[job].verdict == verdict ? 1U : 0U;
+    for (const Job& job : project.jobs())
+      n += job.unit.level != kRoot && plan()[job].verdict == verdict ? 1U : 0U;
     return n;
   }
   std::size_t open() const { return count(Verdict::wait) + count(Verdict::compute); }
 
   Config config;
-  Workload workload;
-  Catalog catalog;
-  Context context;
+  Inputs inputs;
+  Project project;
   Store& store;
-  Plan plan;
-  std::unique_ptr<Progress> progress;
+  std::unique_ptr<Resolver> resolver;
+  NoProgress progress;
   std::atomic<bool> stop = false;
-  Runner runner;
 };
 
 }  // namespace salbench

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/commands/why.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pipeline/inputs/inputs.h"
+#include "pipeline/rules/depended_files.h"
+#include "pipeline/rules/rules.h"
+
+namespace salbench {
+namespace {
+
+using Part = RecipeDifference::Part;
+
+constexpr std::size_t kMaxNamed = 4;  // differences in one line; the others are counted
+
+std::string joined(const std::vector<std::string>& parts) {
+  const std::size_t named = std::min(parts.size(), kMaxNamed);
+  std::string text =
+      fmt::format("{}", fmt::join(parts.begin(), parts.begin() + static_cast<long>(named), ", "));
+  return named == parts.size() ? text : fmt::format("{} and {} more", text, parts.size() - named);
+}
+
+std::string or_none(const std::string& value) { return value.empty() ? "none" : value; }
+
+// Fate of an input that a key names.
+std::string fate(const RecipeDifference& difference) {
+  if (difference.before.empty()) return "added";
+  return difference.after.empty() ? "removed" : "changed";
+}
+
+// The job that a key calls by this name among the inputs of another; nothing for a file.
+std::optional<Job> input_named(const Project& project, const Job& job, const std::string& name) {
+  for (std::size_t i = 0; i < project.rule(job).inputs.size(); ++i)
+    if (const Job input = project.input_job(job, i); project.rule(input).stage == name) return input;
+  return {};
+}
+
+// "mesh file .off" -> "mesh file 52.off": keys hold no names of files.
+std::string source_text(const DatasetItem& item, const std::string& name) {
+  for (const char* kind : {"mesh file ", "point cloud file "})
+    if (name.starts_with(kind)) return kind + item.mesh.filename().string();
+  if (name.starts_with("saliency file") && item.saliency.size() == 1)
+    return "saliency file " + item.saliency[0].filename().string();
+  return name;
+}
+
+// Words for a difference that are the same for every unit.
+std::string group_text(const Project& project, const Job& job, const RecipeDifference& difference) {
+  const auto without_unit = [&](const std::string& seed) {
+    return or_none(seed.substr(0, std::min(seed.size(), seed.find('/'))));
+  };
+  switch (difference.part) {
+    case Part::version:
+      return fmt::format("stage version {} -> {}", difference.before, difference.after);
+    case Part::option:
+      if (difference.name.starts_with(kDependsOption))
+        return fmt::format("{} {}", difference.name.substr(kDependsOption.size()), fate(difference));
+      return fmt::format("{} {} -> {}", option_path(project.rule(job), difference.name),
+                         or_none(difference.before), or_none(difference.after));
+    case Part::seed:
+      return fmt::format("seed {} -> {}", without_unit(difference.before), without_unit(difference.after));
+    case Part::input:
+      return fmt::format("{}{} {}", input_named(project, job, difference.name) ? "input " : "",
+                         difference.name, fate(difference));
+    default:
+      return "options or inputs in another order";
+  }
+}
+
+// What is gathered is counted by its fate: "3 map.LS changed, 1 map.LS added".
+std::vector<std::string> group_texts(const Project& project, const Job& job,
+                                     const std::vector<RecipeDifference>& differences) {
+  const Rule& rule = project.rule(job);
+  std::vector<std::string> parts;
+  std::map<std::string, std::size_t> members;
+  for (const RecipeDifference& difference : differences)
+    if (rule.gathers && difference.part == Part::input)
+      ++members[fate(difference)];
+    else
+      parts.push_back(group_text(project, job, difference));
+  for (const auto& [what, n] : members)
+    parts.push_back(fmt::format("{} {} {}", n, project.rules[rule.inputs[0]].stage, what));
+  return parts;
+}
+
+std::string line_of(Causes& causes, const Job& job) { return why_line(causes, job, causes.of(job)); }
+
+// From job to job, to the first that waits for nothing.
+std::string waits(Causes& causes, const Job& job) {
+  const Project& project = causes.project();
+  const std::vector<Job> awaited = causes.awaited(job);
+  if (awaited.empty()) return std::string(words_of(Reason::changed));
+  const Job& first = awaited[0];
+  std::string text = "waits for " + project.rule(first).stage;
+  if (first.unit.level == kRoot) return text + ", " + line_of(causes, first);
+  if (first.unit != job.unit) text += " of " + project.name(first);
+  if (awaited.size() > 1) text += fmt::format(" and {} more", awaited.size() - 1);
+  const bool goes_on = !project.rule(job).gathers && causes.of(first).reason == Reason::input_pending;
+  return text + (goes_on ? ", " : ": ") + line_of(causes, first);
+}
+
+std::string difference_line(Causes& causes, const Job& job, const RecipeDifference& difference) {
+  const Project& project = causes.project();
+  if (difference.part == Part::seed)
+    return fmt::format("seed {} -> {}", or_none(difference.before), or_none(difference.after));
+  if (difference.part != Part::input) return group_text(project, job, difference);
+  if (project.rule(job).gathers) return fmt::format("that of {} {}", difference.name, fate(difference));
+  const std::optional<Job> input = input_named(project, job, difference.name);
+  if (!input)
+    return fmt::format("{} {}", source_text(item_of(project.units, job.unit), difference.name),
+                       fate(difference));
+  std::vector<std::string> origin;
+  if (project.rule(*input).given)
+    origin.emplace_back("given by --reference");
+  else
+    for (const RecipeDifference& earlier : causes.since(*input, difference.before))
+      origin.push_back(difference_line(causes, *input, earlier));
+  return group_text(project, job, difference) + (origin.empty() ? "" : fmt::format(" ({})", joined(origin)));
+}
+
+std::string group(Causes& causes, const Job& job) {
+  const Decision& decision = causes.plan()[job];
+  if (decision.verdict == Verdict::cached && decision.reason == Reason::none)
+    return {};  // without looking for its file
+  const Cause cause = causes.of(job);
+  const Project& project = causes.project();
+  if (cause.reason == Reason::input_pending || cause.reason == Reason::input_failed)
+    return fmt::format("{} {}", words_of(cause.reason),
+                       project.rules[project.rule(job).inputs[decision.blocking_input]].stage);
+  if (cause.differences.empty()) return std::string(words_of(cause.reason));
+  return joined(group_texts(project, job, cause.differences));
+}
+
+}  // namespace
+
+std::string_view words_of(Reason reason) {
+  constexpr std::array<std::string_view, 12> kWords = {"",
+                                                       "not in the cache",
+                                                       "options, inputs, seed or version changed",
+                                                       "waits for",
+                                                       "failed input:",
+                                                       "no ground truth",
+                                                       "not given",
+                                                       "a source file cannot be read",
+                                                       "damaged",
+                                                       "does not apply",
+                                                       "not asked for",
+                                                       "needs the mean over all shards"};
+  return kWords.at(static_cast<std::size_t>(reason));
+}
+
+std::string why_line(Causes& causes, const Job& job, const Cause& cause) {
+  switch (cause.reason) {
+    case Reason::none:
+      return {};
+    case Reason::input_pending:
+      return waits(causes, job);
+    case Reason::input_failed:
+      return group(causes, job);
+    case Reason::never_computed:
+      return "no artefact of this stage and item";
+    case Reason::damaged:
+      return fmt::format("{}: {}", cause.file.string(), cause.fault);
+    case Reason::changed: {
+      std::vector<std::string> lines;
+      for (const RecipeDifference& difference : cause.differences)
+        lines.push_back(difference_line(causes, job, difference));
+      return joined(lines);
+    }
+    default:
+      return std::string(words_of(cause.reason));
+  }
+}
+
+Why why_open(Causes& causes) {
+  return [&causes](const Job& job) { return group(causes, job); };
+}
+
+Why why_computed(Causes& causes) {
+  return [&causes](const Job& job) { return causes.plan()[job].computed() ? group(causes, job) : ""; };
+}
+
+}  // namespace salbench

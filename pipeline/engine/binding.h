@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A rule is made from the function that does its work. What the rule reads, in which order, whether it draws
+// random numbers or opens files, and the layout of its result follow from the function's signature:
+//
+//   const Output<Normals> normals = table.add(level, {.stage = "normals"}, mesh_normals, mesh,
+//                                             section("normals", config.normals));
+//
+// The arguments stand for the function's parameters, one for one: an Output<T> for a T, or for Members<T>,
+// which gathers all units; only_if(needed, Output<V>) for a view V; prepared<P>(Output<T>) for a P that is
+// made of a T once per family; a SectionOf options for these; kRandom
+// for a RandomSource, kPlace for a UnitPlace, kRemark for a Remark, a FileColumnPtr for Files. Anything else
+// does not compile.
+#pragma once
+
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "pipeline/engine/rule.h"
+#include "pipeline/engine/value.h"
+
+namespace salbench {
+
+// --- parameters beside values and options ------------------------------------------------------------------
+
+struct UnitPlace {
+  std::uint32_t index = 0;  // of the unit below its parent; enters the key
+};
+
+// The files of a unit, as they were read for this job.
+struct Files {
+  const std::any& source;   // of the family
+  const std::string& name;  // of the unit
+  std::span<const FileData> data;
+};
+
+// Oddity of a unit that can be used all the same: one line, stored beside the result.
+struct Remark {
+  std::string& text;  // empty: nothing
+};
+
+// Results for all units of a level, in their order, as far as they are known. Each is loaded when asked for.
+template <class T>
+struct Members {
+  std::size_t size = 0;
+  const std::function<ValuePtr(std::size_t)>& value;
+
+  std::shared_ptr<const T> operator[](std::size_t i) const {
+    ValuePtr member = value(i);
+    const T& within = value_as<T>(*member);
+    return {std::move(member), &within};
+  }
+};
+
+// --- arguments: what each fits, what it makes the rule read, and what it takes from a job
+// -------------------
+
+template <class T>
+struct Output {
+  static constexpr std::size_t kNotRead = static_cast<std::size_t>(-1);
+  std::size_t rule = kNotRead;
+
+  Output() = default;
+  explicit Output(std::size_t the_rule) : rule(the_rule) {}
+  template <class Other>
+  requires kProvides<T, typename Tagged<Other>::Type> Output(const Output<Other>& other)
+      : rule(other.rule) {}  // NOLINT: a Mesh has Points
+
+  using Type = typename Tagged<T>::Type;
+  template <class Parameter>
+  static constexpr bool fits = kProvides<Parameter, Type> || std::is_same_v<Parameter, Members<Type>>;
+  void describe(Rule& reader) const {
+    if (rule != kNotRead) reader.inputs.push_back(rule);
+  }
+  template <class Parameter>
+  decltype(auto) take(const JobInputs& in, std::size_t& next) const {
+    if constexpr (std::is_same_v<Parameter, Members<Type>>) {
+      return Parameter{in.members, in.member};
+    } else {
+      if constexpr (!std::is_reference_v<decltype(Part<Parameter>::of(*in.values[0]))>)  // a view
+        if (rule == kNotRead) return Parameter{};
+      return Part<Parameter>::of(*in.values[next++]);
+    }
+  }
+};
+
+// Otherwise a view, or a pointer, that is empty.
+template <class T>
+Output<T> only_if(bool needed, const Output<T>& output) {
+  return needed ? output : Output<T>();
+}
+
+template <class T, class Source>
+struct PreparedOf {
+  Output<Source> source;
+
+  struct Lent {
+    std::shared_ptr<const T> object;
+    operator const T&() const { return *object; }  // NOLINT: stands for the parameter
+  };
+  template <class Parameter>
+  static constexpr bool fits = std::is_same_v<Parameter, T>;
+  void describe(Rule& reader) const {
+    source.describe(reader);
+    reader.prepares = true;
+  }
+  template <class Parameter>
+  Lent take(const JobInputs& in, std::size_t& next) const {
+    struct Made {  // the value lives as long as what was made of it
+      ValuePtr source;
+      T object;
+      explicit Made(ValuePtr from) : source(std::move(from)), object(value_as<Source>(*source)) {}
+    };
+    const auto preparation = in.preparation ? in.preparation : std::make_shared<Preparation>();
+    const auto made = std::static_pointer_cast<const Made>(
+        preparation->of([&] { return std::make_shared<const Made>(in.values[next]); }));
+    ++next;
+    return {std::shared_ptr<const T>(made, &made->object)};
+  }
+};
+template <class T, class Source>
+PreparedOf<T, Source> prepared(const Output<Source>& source) {
+  return {source};
+}
+
+template <class Options>
+struct SectionOf {
+  OptionLines lines;
+  Options options;
+
+  template <class Parameter>
+  static constexpr bool fits = std::is_same_v<Parameter, Options>;
+  void describe(Rule& reader) const { reader.options.push_back(lines); }
+  template <class Parameter>
+  const Options& take(const JobInputs&, std::size_t&) const {
+    return options;
+  }
+};
+
+// What the job itself has: how it is taken, and what it makes of the rule.
+template <class Parameter_>
+struct OfJob {
+  void (*describe)(Rule& reader);
+  Parameter_ (*get)(const JobInputs& in);
+
+  template <class Parameter>
+  static constexpr bool fits = std::is_same_v<Parameter, Parameter_>;
+  template <class>
+  Parameter_ take(const JobInputs& in, std::size_t&) const {
+    return get(in);
+  }
+};
+inline constexpr OfJob<RandomSource> kRandom = {[](Rule& reader) { reader.seeded = true; },
+                                                [](const JobInputs& in) { return in.random; }};
+inline constexpr OfJob<UnitPlace> kPlace = {[](Rule& reader) { reader.placed = true; },
+                                            [](const JobInputs& in) { return UnitPlace{in.place}; }};
+inline constexpr OfJob<Remark> kRemark = {[](Rule& reader) { reader.remarks = true; },
+                                          [](const JobInputs& in) { return Remark{*in.remark}; }};
+
+struct FilesOf {
+  FileColumnPtr column;
+
+  template <class Parameter>
+  static constexpr bool fits = std::is_same_v<Parameter, Files>;
+  void describe(Rule& reader) const { reader.files = column; }
+  template <class Parameter>
+  Files take(const JobInputs& in, std::size_t&) const {
+    return {*in.source, in.random.item, in.files};
+  }
+};
+
+// --- the table ---------------------------------------------------------------------------------------------
+
+template <class T>
+inline constexpr bool kGathers = false;
+template <class T>
+inline constexpr bool kGathers<Members<T>> = true;
+
+// Rules, every input before its reader.
+class RuleTable {
+ public:
+  explicit RuleTable(Rules rules = {}) : rules_(std::move(rules)) {}
+
+  // Adds the rule that a function makes of its arguments; Tag tells its output from others of its type.
+  template <class Tag = void, class Function, class... Arguments>
+  auto add(Level over, RuleHead head, const Function& function, const Arguments&... arguments) {
+    return add_rule<Tag>(over, std::move(head), std::function(function), arguments...);
+  }
+  Rule& operator[](std::size_t rule) { return rules_[rule]; }
+  const Rules& rules() const { return rules_; }
+  Rules take() && { return std::move(rules_); }
+
+ private:
+  template <class Tag, class Result, class... Parameters, class... Arguments>
+  auto add_rule(Level over, RuleHead head, const std::function<Result(Parameters...)>& function,
+                const Arguments&... arguments) {
+    static_assert(sizeof...(Parameters) == sizeof...(Arguments), "one argument for each parameter");
+    static_assert((Arguments::template fits<std::decay_t<Parameters>> && ...), "each argument fits");
+    Rule rule{{std::move(head)}, over};
+    (arguments.describe(rule), ...);
+    rule.gathers = (kGathers<std::decay_t<Parameters>> || ...);
+    using Codec = typename Holder<Result>::Codec;
+    rule.kind = Codec::kind(Result());
+    rule.read = [kind = rule.kind](const Arrays& arrays) -> ValuePtr {
+      return std::make_shared<const Held<Codec>>(Codec::read(kind, arrays));
+    };
+    rule.compute = [function, arguments...](const JobInputs& in) -> ValuePtr {
+      std::size_t next = 0;
+      // In braces the parameters are made from left to right.
+      const std::tuple<decltype(arguments.template take<std::decay_t<Parameters>>(in, next))...> parameters{
+          arguments.template take<std::decay_t<Parameters>>(in, next)...};
+      return held<Result>(std::apply(function, parameters));
+    };
+    rules_.push_back(std::move(rule));
+    return Output<std::conditional_t<std::is_void_v<Tag>, Result, Tag>>(rules_.size() - 1);
+  }
+
+  Rules rules_;
+};
+
+}  // namespace salbench

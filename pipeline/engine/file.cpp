@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/engine/file.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "io/file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+FileData read(const File& file) {
+  if (file.read) return (*file.read)();
+  std::string text = read_file(file.place, kMaxItemBytes);
+  return {file_digest(text), std::move(text)};
+}
+
+FileData read_now(File& file) {
+  FileData data;
+  try {
+    data = read(file);
+  } catch (const InputError& error) {
+    data.error = error.what();
+  }
+  file.digest = data.digest;
+  file.is_read = true;
+  return data;
+}
+
+}  // namespace
+
+void look(File& file, FileData* data) {
+  if (file.is_read && data == nullptr) return;
+  FileData now = read_now(file);
+  if (data != nullptr) *data = std::move(now);
+}
+
+std::vector<FileData> read_again(FilesOfUnit& files) {
+  std::vector<FileData> all;
+  for (File& file : files) {
+    const std::optional<Digest> planned = file.digest;
+    all.push_back(read_now(file));
+    if (planned && file.digest && file.digest != planned)
+      spdlog::warn("{}: changed since this run was planned; the results are of what it holds now",
+                   file.place);
+  }
+  return all;
+}
+
+std::vector<FileData> read_unchanged(const FilesOfUnit& files) {
+  std::vector<FileData> all;
+  for (const File& file : files) {
+    all.push_back(read(file));
+    if (all.back().digest != file.digest)
+      throw InputError(fmt::format("{}: changed since this run was planned; run it again", file.place));
+  }
+  return all;
+}
+
+}  // namespace salbench

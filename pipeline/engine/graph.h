@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The flow graph: a node per rule, an edge per input within a stratum. Tickets for units stream along the
+// edges, from a unit to those below it and to what gathers it, and a node finishes a job when the last open
+// input of it has arrived.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+
+#include "pipeline/engine/plan.h"
+
+namespace salbench {
+
+// Bodies of the nodes; they know no TBB. Called from several threads at once, for different jobs.
+struct GraphBodies {
+  // True if a job is to be finished in this stream. Asked once for each, before the first is.
+  std::function<bool(const Job&)> open = {};
+  // A family has a token and may begin. False: it cannot now, and its jobs stay open.
+  std::function<bool(std::size_t family)> enter = {};
+  // Everything that the job reads is finished. False: it cannot be done now (jobs of the root only).
+  std::function<bool(const Job&)> finish = {};
+  // The last job of a family is finished, or the stream has ended early; once per family that entered.
+  std::function<void(std::size_t family)> leave = {};
+};
+
+struct GraphLimits {
+  int threads = 1;
+  int families = 2;  // entered and not left: what bounds the memory
+};
+
+// Returns when every job that could be finished is; once `stop` is set, when the jobs at work are. If a body
+// throws, the rest is abandoned and the first exception is thrown again here.
+void stream(const Project& project, const GraphLimits& limits, const std::atomic<bool>& stop,
+            const GraphBodies& bodies);
+
+}  // namespace salbench

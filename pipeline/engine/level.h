@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Levels and units: what there is to work on, and the only arithmetic on indices. Levels are kinds of things
+// and form a tree below a root, which has one unit, the whole. A unit of a level directly below the root is,
+// with all units below it, a family: what is claimed, entered and held in memory at a time.
+#pragma once
+
+#include <any>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace salbench {
+
+using Level = std::uint8_t;  // index of a LevelInfo; a subject has names for its own
+inline constexpr Level kRoot = 0;
+
+struct LevelInfo {
+  std::string_view unit;        // one of them, for people: "scan"
+  std::string_view units;       // all of them together: "scans"
+  Level parent = kRoot;         // before its children
+  std::uint32_t parts = 1;      // units below each unit of the parent; below the root 1
+  std::string_view place = {};  // name in keys of a unit's place below its parent: "view"
+};
+
+struct Unit {
+  Level level = kRoot;
+  std::uint32_t index = 0;
+
+  auto operator<=>(const Unit&) const = default;
+};
+
+struct Family {
+  Level level;       // directly below the root
+  std::string name;  // for people and in seeds
+  std::any source;   // handed to rules; the engine never asks what it is
+};
+
+class Units {
+ public:
+  Units() = default;
+  Units(std::vector<LevelInfo> levels, std::vector<Family> families);
+
+  const std::vector<LevelInfo>& levels() const { return levels_; }
+  const std::vector<Family>& families() const { return families_; }
+
+  // Indices of a level, of which only those belong to units whose families have the level.
+  std::size_t slots(Level level) const { return level == kRoot ? 1 : families_.size() * width_[level]; }
+  bool exists(Unit unit) const;
+  std::size_t family_of(Unit unit) const { return unit.index / width_[unit.level]; }  // not of the root
+  const Family& source_of(Unit unit) const { return families_[family_of(unit)]; }
+  std::uint32_t place(Unit unit) const { return unit.index % levels_[unit.level].parts; }
+  Unit above(Unit unit, Level level) const;  // itself, its ancestor of that level, or the root
+  bool is_above(Level ancestor, Level level) const;
+
+  // All in the order of the families.
+  std::vector<Unit> of(Level level) const;
+  std::vector<Unit> below(Unit unit, Level level) const;
+  std::vector<Unit> of_family(std::size_t family) const;  // each before those below it
+
+  std::string name(Unit unit) const;  // "52", "52_3"
+
+ private:
+  std::vector<LevelInfo> levels_;
+  std::vector<std::uint32_t> width_;  // units of each level in a family that has the level
+  std::vector<Family> families_;
+};
+
+}  // namespace salbench

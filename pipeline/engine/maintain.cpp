@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/engine/maintain.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pipeline/engine/resolver.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+
+std::size_t add_needed(const Project& project, const Plan& plan, KeepSet& needed) {
+  std::size_t unknown = 0;
+  for (const Job& job : project.jobs()) {
+    const Decision& decision = plan[job];
+    const Rule& rule = project.rule(job);
+    if (rule.given || decision.verdict == Verdict::not_applicable) continue;
+    if (decision.key_is_unknown()) {
+      needed.add_every_key(rule.stage, project.name(job));
+      if (rule.remarks) needed.add_every_key(kRemarkStage, project.name(job));
+      ++unknown;
+    } else {
+      needed.add(rule.stage, decision.key);  // also of a job to compute: another process may store it
+      if (rule.remarks) needed.add(kRemarkStage, remark_key(rule.stage, decision.key));
+    }
+  }
+  return unknown;
+}
+
+namespace {
+
+// Recomputes a cached job and describes the first difference; empty if there is none.
+std::string recomputed_fault(Resolver& resolver, const Job& job) try {
+  const Digest content = content_digest(resolver.recompute(job)->arrays());
+  if (content == resolver.plan()[job].content) return {};
+  return fmt::format(
+      "computed again, its content is {}: the stage is not deterministic, or its version was not raised",
+      content.hex());
+} catch (const InputError& error) {
+  return fmt::format("cannot be computed again: {}", error.what());
+} catch (const StorageError&) {
+  throw;
+} catch (...) {
+  return current_defect();
+}
+
+}  // namespace
+
+Recomputation recompute_sample(const Project& project, const Plan& plan, FolderStore& store,
+                               std::size_t sample, const std::atomic<bool>& stop) {
+  std::vector<Job> jobs = project.jobs();
+  std::erase_if(jobs, [&](const Job& job) { return plan[job].verdict != Verdict::cached; });
+  Rng rng(project.seed, "verify", "");
+  Resolver resolver(project, plan, store, Resolver::Damaged::report);
+  Recomputation result;
+  for (std::size_t i = 0; i < std::min(sample, jobs.size()) && !stop; ++i) {
+    std::swap(jobs[i], jobs[i + rng.below(jobs.size() - i)]);
+    const std::string& stage = project.rule(jobs[i]).stage;
+    const auto file = store.path(stage, plan[jobs[i]].key);
+    std::string fault = recomputed_fault(resolver, jobs[i]);
+    resolver.forget_all();
+    if (!fault.empty()) result.faults.push_back({file.value_or(stage), std::move(fault)});
+    ++result.jobs;
+  }
+  return result;
+}
+
+}  // namespace salbench

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/engine/plan.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "stages/core/parallel.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::size_t kUnitGrain = 8;  // units of a rule that are decided by one thread at a time
+
+Decision without_key(Verdict verdict, Reason reason, std::size_t blocking_input = 0) {
+  return {verdict, reason, static_cast<std::uint8_t>(blocking_input), {}, {}};
+}
+
+// Takes over the verdict of an input that is not known; nothing where it is.
+std::optional<Decision> stopped_by(const Decision& input, std::size_t index) {
+  switch (input.verdict) {
+    case Verdict::cached:
+    case Verdict::done:
+      return {};
+    case Verdict::not_applicable:
+      return without_key(Verdict::not_applicable, input.reason, index);
+    case Verdict::failed:
+    case Verdict::blocked:
+      return without_key(Verdict::blocked, Reason::input_failed, index);
+    default:
+      return without_key(Verdict::wait, Reason::input_pending, index);
+  }
+}
+
+// An input that does not apply goes before one to wait for: there is nothing to wait for then.
+std::optional<Decision> stopped_by_inputs(const Project& project, const Plan& plan, const Job& job) {
+  std::optional<Decision> stopped;
+  for (std::size_t i = 0; i < project.rule(job).inputs.size(); ++i) {
+    const std::optional<Decision> by_this = stopped_by(plan[project.input_job(job, i)], i);
+    if (by_this && (!stopped || by_this->verdict == Verdict::not_applicable)) stopped = by_this;
+  }
+  return stopped;
+}
+
+// Units that fail or do not apply are left out: one bad file must not stop the whole.
+std::optional<Decision> stopped_by_members(const Project& project, const Plan& plan, const Job& job) {
+  if (project.is_share) return without_key(Verdict::not_applicable, Reason::needs_all);
+  bool any_known = false;
+  for (const Job& member : project.input_jobs(job, 0)) {
+    if (plan[member].open()) return without_key(Verdict::wait, Reason::input_pending);
+    any_known |= plan[member].known();
+  }
+  if (any_known) return {};
+  return without_key(Verdict::not_applicable, Reason::no_files);
+}
+
+std::optional<Decision> stopped_by_files(const Project& project, const Job& job) {
+  const FileColumnPtr& column = project.rule(job).files;
+  if (column == nullptr) return {};
+  FilesOfUnit& files = project.files(job);
+  if (files.empty())
+    return without_key(Verdict::not_applicable, column->expected ? Reason::no_files : Reason::not_given);
+  for (File& file : files) look(file);
+  if (std::any_of(files.begin(), files.end(), [](const File& file) { return !file.digest; }))
+    return without_key(Verdict::compute, Reason::unreadable);
+  return {};
+}
+
+// Why a job cannot be looked up; nothing where its recipe is complete.
+std::optional<Decision> stopped(const Project& project, const Plan& plan, const Job& job) {
+  const Rule& rule = project.rule(job);
+  if (rule.applies && !rule.applies(project.units.source_of(job.unit).source))
+    return without_key(Verdict::not_applicable, Reason::inapplicable);
+  if (rule.gathers) return stopped_by_members(project, plan, job);
+  if (const auto by_input = stopped_by_inputs(project, plan, job)) return by_input;
+  return stopped_by_files(project, job);
+}
+
+Plan nothing_decided(const Project& project) {
+  Plan plan;
+  for (const Rule& rule : project.rules)
+    plan.decisions.emplace_back(project.units.slots(rule.level()),
+                                without_key(Verdict::not_applicable, Reason::none));
+  return plan;
+}
+
+void decide_all(const Project& project, const Index& index, const std::vector<Job>& jobs, Plan& plan) {
+  const Lookup lookup = [&](std::string_view stage, const Digest& key) { return index.find(stage, key); };
+  parallel_ranges(jobs.size(), kUnitGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      Decision decision = decide(project, plan, jobs[i], lookup);
+      if (decision.reason == Reason::never_computed &&
+          index.has_item(project.rule(jobs[i]).stage, project.name(jobs[i])))
+        decision.reason = Reason::changed;
+      plan[jobs[i]] = decision;
+    }
+  });
+}
+
+}  // namespace
+
+std::string Project::name(const Job& job) const {
+  return rule(job).gathers ? std::string(units.levels()[rule(job).over].units) : units.name(job.unit);
+}
+
+std::vector<Job> Project::jobs_of(Unit unit) const {
+  std::vector<Job> jobs;
+  for (std::size_t r = 0; r < rules.size(); ++r)
+    if (rules[r].level() == unit.level) jobs.push_back({r, unit});
+  return jobs;
+}
+
+std::vector<Job> Project::jobs() const {
+  std::vector<Job> jobs;
+  for (std::size_t r = 0; r < rules.size(); ++r)
+    for (const Unit unit : units_of(r)) jobs.push_back({r, unit});
+  return jobs;
+}
+
+Job Project::input_job(const Job& job, std::size_t input) const {
+  const std::size_t read = rule(job).inputs[input];
+  return {read, units.above(job.unit, rules[read].level())};
+}
+
+std::vector<Job> Project::input_jobs(const Job& job, std::size_t input) const {
+  if (!rule(job).gathers) return {input_job(job, input)};
+  const std::size_t read = rule(job).inputs[input];
+  std::vector<Job> members;
+  for (const Unit unit : units_of(read)) members.push_back({read, unit});
+  return members;
+}
+
+FilesOfUnit& Project::files(const Job& job) const {
+  static FilesOfUnit none;
+  const FileColumnPtr& column = rule(job).files;
+  return column == nullptr ? none : column->files.at(job.unit.index);
+}
+
+std::vector<bool> Project::ancestors(const std::vector<std::size_t>& rules_given) const {
+  std::vector<bool> needed(rules.size(), false);
+  for (const std::size_t rule : rules_given) needed[rule] = true;
+  for (std::size_t rule = needed.size(); rule-- > 0;)
+    if (needed[rule] && !rules[rule].given)
+      for (const std::size_t input : rules[rule].inputs) needed[input] = true;
+  return needed;
+}
+
+bool Decision::key_is_unknown() const {
+  if (known() || verdict == Verdict::not_applicable) return false;
+  return verdict != Verdict::compute || reason == Reason::unreadable;
+}
+
+std::size_t Plan::open(std::size_t rule) const {
+  return static_cast<std::size_t>(std::count_if(decisions[rule].begin(), decisions[rule].end(),
+                                                [](const Decision& decision) { return decision.open(); }));
+}
+
+Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
+  const Rule& rule = project.rule(job);
+  Recipe recipe{rule.stage, rule.version, {}, {}, {}};
+  for (const OptionLines& options : rule.options) recipe.options += options.in_key;
+  if (rule.placed)
+    recipe.options +=
+        fmt::format("{}: {}\n", project.units.levels()[rule.over].place, project.units.place(job.unit));
+  if (rule.seeded) recipe.seed = fmt::format("{}/{}", project.seed, project.name(job));
+  for (std::size_t i = 0; i < rule.inputs.size(); ++i)
+    if (!rule.gathers)
+      recipe.inputs.emplace_back(project.rules[rule.inputs[i]].stage,
+                                 plan[project.input_job(job, i)].content);
+    else
+      for (const Job& member : project.input_jobs(job, i))
+        if (plan[member].known()) recipe.inputs.emplace_back(project.name(member), plan[member].content);
+  for (const File& file : project.files(job))
+    if (file.digest) recipe.inputs.emplace_back(file.name, *file.digest);
+  return recipe;
+}
+
+Decision decide(const Project& project, const Plan& plan, const Job& job, const Lookup& lookup) {
+  if (const ValuePtr& given = project.rule(job).given) {
+    Decision known = without_key(Verdict::done, Reason::none);
+    known.content = content_digest(given->arrays());
+    return known;
+  }
+  if (const auto no_key = stopped(project, plan, job)) return *no_key;
+  Decision decided = without_key(Verdict::compute, Reason::never_computed);
+  decided.key = key_of(recipe_of(project, plan, job));
+  if (const auto content = lookup(project.rule(job).stage, decided.key)) {
+    decided.verdict = Verdict::cached;
+    decided.reason = Reason::none;
+    decided.content = *content;
+  } else if (project.rule(job).only_if_cached) {
+    return without_key(Verdict::not_applicable, Reason::only_cached);
+  }
+  return decided;
+}
+
+Plan make_plan(const Project& project, const Index& index) {
+  Plan plan = nothing_decided(project);
+  for (std::size_t r = 0; r < project.rules.size(); ++r) {
+    std::vector<Job> jobs;
+    for (const Unit unit : project.units_of(r)) jobs.push_back({r, unit});
+    decide_all(project, index, jobs, plan);
+  }
+  return plan;
+}
+
+Plan make_plan_of(const Project& project, const Index& index, const std::vector<Job>& jobs) {
+  std::vector<std::vector<Job>> needed(project.rules.size());
+  for (const Job& job : jobs) needed[job.rule].push_back(job);
+  for (std::size_t r = needed.size(); r-- > 0;) {
+    std::ranges::sort(needed[r]);
+    needed[r].erase(std::unique(needed[r].begin(), needed[r].end()), needed[r].end());
+    for (const Job& job : needed[r])
+      for (std::size_t i = 0; i < project.rules[r].inputs.size() && !project.rules[r].given; ++i)
+        for (const Job& input : project.input_jobs(job, i)) needed[input.rule].push_back(input);
+  }
+  Plan plan = nothing_decided(project);
+  for (const std::vector<Job>& of_rule : needed) decide_all(project, index, of_rule, plan);
+  return plan;
+}
+
+}  // namespace salbench

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Decides, without computing anything, what there is to do: rules x units x what the cache has -> decisions.
+// Keys are made of the content digests of what a rule reads. Where an input still has to be computed, the key
+// is not known yet: such a job waits, and may yet turn out to be in the cache when the input comes out as
+// before.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cache/store.h"
+#include "pipeline/engine/rule.h"
+
+namespace salbench {
+
+// All that is fixed before the first job.
+struct Project {
+  Rules rules;
+  Units units;
+  std::uint64_t seed = 0;
+  Attributes attributes = {};  // written to every artefact
+  bool is_share = false;       // other processes have the other units: nothing gathers a share
+
+  const Rule& rule(const Job& job) const { return rules[job.rule]; }
+  std::string name(const Job& job) const;  // of its unit; "scans" where it gathers them
+
+  std::vector<Unit> units_of(std::size_t rule) const { return units.of(rules[rule].level()); }
+  std::vector<Job> jobs_of(Unit unit) const;  // in the order of the rules
+  std::vector<Job> jobs() const;              // of each rule for all units
+  // The job whose result a job reads through one of its inputs, unless it gathers; those of all units then.
+  Job input_job(const Job& job, std::size_t input) const;
+  std::vector<Job> input_jobs(const Job& job, std::size_t input) const;
+  FilesOfUnit& files(const Job& job) const;  // empty where it reads none
+
+  // The rules given and all that they read, directly or not: [rule].
+  std::vector<bool> ancestors(const std::vector<std::size_t>& rules_given) const;
+};
+
+enum class Verdict : std::uint8_t {
+  wait,            // an input is not known yet
+  compute,         // all inputs are known, the result is not in the cache
+  cached,          // in the cache
+  done,            // computed by this run, or given
+  not_applicable,  // there is nothing to be computed of this unit
+  failed,          // this rule failed
+  blocked,         // something it reads failed
+};
+
+enum class Reason : std::uint8_t {
+  none,
+  never_computed,  // nothing in the cache for this rule and unit
+  changed,         // the cache has this rule of the unit for other inputs, options, seed or version
+  input_pending,   // waits for the blocking input
+  input_failed,    // the blocking input failed
+  no_files,        // the unit has no files of a kind that units have; or no unit that is gathered is known
+  not_given,       // nothing was given for this unit
+  unreadable,      // a file cannot be read
+  damaged,         // the artefact is truncated or fails its checksum
+  inapplicable,    // the rule has nothing to say of the unit
+  only_cached,     // not in the cache, and not to be computed
+  needs_all,       // gathers all units, of which these are a share
+};
+
+struct Decision {
+  Verdict verdict = Verdict::wait;
+  Reason reason = Reason::none;
+  std::uint8_t blocking_input = 0;  // index among the rule's inputs
+  Digest key, content;              // known where cached or done
+
+  bool known() const { return verdict == Verdict::cached || verdict == Verdict::done; }
+  bool open() const { return verdict == Verdict::wait || verdict == Verdict::compute; }
+  bool computed() const { return verdict == Verdict::done || reason == Reason::damaged; }  // after a run
+  bool key_is_unknown() const;  // an input is missing or unreadable
+};
+
+struct Plan {
+  std::vector<std::vector<Decision>> decisions;  // [rule][unit's index]; of no unit: not applicable
+
+  Decision& operator[](const Job& job) { return decisions[job.rule][job.unit.index]; }
+  const Decision& operator[](const Job& job) const { return decisions[job.rule][job.unit.index]; }
+  std::size_t open(std::size_t rule) const;  // jobs to compute or waiting
+};
+
+// Everything the job's result is a function of, as far as its inputs are known.
+Recipe recipe_of(const Project& project, const Plan& plan, const Job& job);
+
+// Decides one job from the decisions on its inputs and what the cache has under its key.
+using Lookup = std::function<std::optional<Digest>(std::string_view stage, const Digest& key)>;
+Decision decide(const Project& project, const Plan& plan, const Job& job, const Lookup& lookup);
+
+Plan make_plan(const Project& project, const Index& index);
+
+// Decides the jobs of some units only, and what they read: all others are not applicable.
+Plan make_plan_of(const Project& project, const Index& index, const std::vector<Job>& jobs);
+
+}  // namespace salbench

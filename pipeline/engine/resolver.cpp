@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Remarks on odd units are artefacts of their own, beside the results: a run that finds a result in the cache
+// finds the remark on it, too. A usual unit has none, so nothing is read for it.
+#include "pipeline/engine/resolver.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <new>
+#include <stdexcept>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+// Counts a job as long as it lives, however the job ends.
+class AtWork {
+ public:
+  explicit AtWork(std::atomic<int>& jobs) : jobs_(jobs) { ++jobs_; }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork() { --jobs_; }
+
+ private:
+  std::atomic<int>& jobs_;
+};
+
+Recipe recipe_of_remark(const std::string& stage, const Digest& key) {
+  return {std::string(kRemarkStage), 1, {}, {}, {{stage, key}}};
+}
+
+std::string no_memory_text(const FilesOfUnit& files) {
+  return fmt::format(
+      "{}{}: no memory for what it holds; use fewer --threads, or leave the item out with --items",
+      files[0].place, files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1));
+}
+
+}  // namespace
+
+Digest remark_key(const std::string& stage, const Digest& key) {
+  return key_of(recipe_of_remark(stage, key));
+}
+
+Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged damaged)
+    : project_(project),
+      plan_(std::move(plan)),
+      store_(store),
+      damaged_(damaged),
+      records_(project.rules.size()),
+      running_(project.rules.size()) {}
+
+void Resolver::finish(const Job& job) {
+  Decision& decision = plan_[job];
+  // The key is of what the files hold now: they may have been edited since they were planned with.
+  std::vector<FileData> files = read_again(project_.files(job));
+  // The plan's reason is kept: why the job was computed is asked afterwards.
+  const Reason reason = decision.reason;
+  decision = decide(project_, plan_, job, [&](std::string_view stage, const Digest& key) {
+    return store_.refresh_and_find(stage, key);
+  });
+  if (decision.verdict == Verdict::compute) {
+    if (decision.reason != Reason::unreadable) decision.reason = reason;
+    compute(job, std::move(files));
+    if (decision.open()) return;
+  }
+  const std::lock_guard lock(mutex_);
+  ++records_[job.rule].finished;
+}
+
+void Resolver::compute(const Job& job, std::vector<FileData> files) {
+  for (const FileData& file : files)
+    if (!file.digest) return fail(job, file.error);
+  try {
+    Result result = run(job, std::move(files));
+    plan_[job].content = save(job, result);
+    plan_[job].verdict = Verdict::done;
+    hold(job, std::move(result.value));
+  } catch (const StorageError&) {
+    throw;
+  } catch (const Interrupted&) {  // the job stays open: a later run computes it
+  } catch (const InputError& error) {
+    fail(job, error.what());
+  } catch (const std::bad_alloc&) {
+    const FilesOfUnit& read = project_.files(job);
+    read.empty() ? fail(job, current_defect(), true) : fail(job, no_memory_text(read));
+  } catch (...) {
+    fail(job, current_defect(), true);
+  }
+}
+
+void Resolver::fail(const Job& job, std::string cause, bool defect) {
+  plan_[job].verdict = Verdict::failed;
+  spdlog::error("{}: {}: {}", project_.name(job), project_.rule(job).stage, cause);
+  const std::lock_guard lock(mutex_);
+  failures_.push_back({job, std::move(cause), defect});
+}
+
+ValuePtr Resolver::held(const Job& job) {
+  const std::lock_guard lock(mutex_);
+  const auto found = values_.find(job);
+  return found == values_.end() ? nullptr : found->second;
+}
+
+void Resolver::hold(const Job& job, ValuePtr value) {
+  const std::lock_guard lock(mutex_);
+  values_[job] = std::move(value);
+}
+
+void Resolver::forget(Unit unit) {
+  const std::vector<Job> jobs = project_.jobs_of(unit);
+  const std::lock_guard lock(mutex_);
+  for (const Job& job : jobs) values_.erase(job);
+  if (unit.level == kRoot || project_.units.levels()[unit.level].parent != kRoot) return;
+  std::erase_if(prepared_, [&](const auto& entry) { return entry.first.second == unit.index; });
+}
+
+void Resolver::forget_all() {
+  const std::lock_guard lock(mutex_);
+  values_.clear();
+  prepared_.clear();
+}
+
+std::shared_ptr<Preparation> Resolver::preparation(const Job& job) {
+  if (!project_.rule(job).prepares) return nullptr;
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<Preparation>& kept = prepared_[{job.rule, project_.units.family_of(job.unit)}];
+  if (kept == nullptr) kept = std::make_shared<Preparation>();
+  return kept;
+}
+
+ValuePtr Resolver::value(const Job& job) {
+  const Rule& rule = project_.rule(job);
+  if (rule.given) return rule.given;
+  if (ValuePtr value = held(job)) return value;
+  if (const auto arrays = store_.load(rule.stage, plan_[job].key)) return rule.read(*arrays);
+  if (damaged_ == Damaged::report)
+    throw InputError(fmt::format("the artefact of {} that it reads is damaged", rule.stage));
+  return restored(job);
+}
+
+ValuePtr Resolver::restored(const Job& job) {
+  const std::lock_guard lock(restoring_);
+  if (ValuePtr value = held(job)) return value;
+  plan_[job].reason = Reason::damaged;
+  const Result result = run(job, read_unchanged(project_.files(job)));
+  if (save(job, result) != plan_[job].content)
+    throw std::logic_error(
+        fmt::format("stage {} gave another result than before for the same inputs: it is not deterministic; "
+                    "please report this",
+                    project_.rule(job).stage));
+  hold(job, result.value);  // for those that wait for the same one
+  return result.value;
+}
+
+ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
+
+ValuePtr Resolver::recompute(const Job& job) { return run(job, read_unchanged(project_.files(job))).value; }
+
+Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
+  const Rule& rule = project_.rule(job);
+  Result result;
+  JobInputs inputs{.files = std::move(files),
+                   .random = {project_.seed, project_.name(job)},
+                   .remark = &result.remark,
+                   .preparation = preparation(job)};
+  if (!rule.gathers) {
+    inputs.source = &project_.units.source_of(job.unit).source;
+    inputs.place = project_.units.place(job.unit);
+  }
+  std::vector<Job> members;
+  for (std::size_t i = 0; i < rule.inputs.size(); ++i)
+    for (const Job& read : project_.input_jobs(job, i)) {
+      if (!rule.gathers) {
+        // Two rules that ask at the same time may load it twice; neither waits for the other.
+        inputs.values.push_back(value(read));
+        hold(read, inputs.values.back());
+      } else if (plan_[read].known()) {
+        members.push_back(read);
+      }
+    }
+  inputs.members = members.size();
+  inputs.member = [&](std::size_t i) { return value(members[i]); };
+
+  const AtWork at_work(running_[job.rule]);
+  result.started = Clock::now();
+  result.value = rule.compute(inputs);
+  result.seconds = std::chrono::duration<double>(Clock::now() - result.started).count();
+  return result;
+}
+
+Digest Resolver::save(const Job& job, const Result& result) {
+  const Recipe recipe = recipe_of(project_, plan_, job);
+  const ArtefactNote note{project_.name(job), result.seconds, project_.attributes};
+  // The remark first: who finds the result in the cache finds it.
+  if (!result.remark.empty()) {
+    const std::vector<std::uint8_t> text(result.remark.begin(), result.remark.end());
+    store_.save(recipe_of_remark(recipe.stage, key_of(recipe)), kRemarkStage,
+                {{"text", {text.size()}, text, "1", "UTF-8, one line"}}, note);
+  }
+  const Digest content = store_.save(recipe, project_.rule(job).kind, result.value->arrays(), note);
+  const std::lock_guard lock(mutex_);
+  records_[job.rule].seconds.push_back(static_cast<float>(result.seconds));
+  records_[job.rule].started.push_back(result.started);
+  return content;
+}
+
+std::string Resolver::remark(const Job& job) {
+  const auto arrays = store_.load(kRemarkStage, remark_key(project_.rule(job).stage, plan_[job].key));
+  const Array* text = arrays ? find_array(*arrays, "text") : nullptr;
+  const auto* bytes = text == nullptr ? nullptr : std::get_if<std::vector<std::uint8_t>>(&text->values);
+  return bytes == nullptr ? std::string() : std::string(bytes->begin(), bytes->end());
+}
+
+std::vector<Failure> Resolver::failures() const {
+  std::vector<Failure> failures = failures_;
+  const auto place = [&](const Failure& failure) {
+    const Unit unit = failure.job.unit;
+    const std::size_t family = unit.level == kRoot ? 0 : project_.units.family_of(unit);
+    return std::tuple(family, unit, failure.job.rule);
+  };
+  std::ranges::stable_sort(failures, {}, place);
+  return failures;
+}
+
+std::size_t Resolver::computed() const {
+  std::size_t sum = 0;
+  for (const RuleRecord& record : records_) sum += record.seconds.size();
+  return sum;
+}
+
+std::string Resolver::at_work() const {
+  std::map<std::string_view, int> jobs;
+  for (std::size_t rule = 0; rule < running_.size(); ++rule)
+    if (const int n = running_[rule]; n > 0) jobs[project_.rules[rule].stage] += n;
+  std::string text;
+  for (const auto& [stage, n] : jobs)
+    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", n > 1 ? fmt::format("{} ", n) : "", stage);
+  return text;
+}
+
+}  // namespace salbench

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Carries out single jobs: loads what a job reads, calls its rule's function, stores the result. The one
+// place where rules are computed, for a run, for a check of the cache and for an export.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cache/store.h"
+#include "pipeline/engine/plan.h"
+
+namespace salbench {
+
+struct Failure {
+  Job job;
+  std::string cause;
+  bool defect = false;  // of the program, or memory ran out: nothing is wrong with the unit
+};
+
+using Clock = std::chrono::steady_clock;
+
+// Statistics of one rule.
+struct RuleRecord {
+  std::size_t finished = 0;                     // jobs that a run decided, computed or not
+  std::vector<float> seconds = {};              // of each job that was computed
+  std::vector<Clock::time_point> started = {};  // of the same jobs
+};
+
+class Resolver {
+ public:
+  // Treatment of an artefact that turns out to be damaged.
+  enum class Damaged { restore, report };
+
+  // Keeps references to the project and the store; the plan becomes its own and is updated as jobs finish.
+  Resolver(const Project& project, Plan plan, Store& store, Damaged damaged = Damaged::restore);
+
+  const Project& project() const { return project_; }
+  const Plan& plan() const { return plan_; }
+  Store& store() const { return store_; }
+
+  // Brings an open job to its end: from wait or compute to done, cached, not applicable, failed or blocked.
+  // Its inputs have ended. Several threads may finish different jobs. Throws StorageError.
+  void finish(const Job& job);
+
+  // The result of a known job: in memory, from the cache, or given. A damaged artefact is computed again;
+  // only the same content will do. With Damaged::report it is an InputError.
+  ValuePtr value(const Job& job);
+
+  // The same of a job that gathers, which may be open: then over the units that are known so far.
+  ValuePtr value_so_far(const Job& job);
+
+  // Computes a job again from what the cache has, and stores nothing.
+  ValuePtr recompute(const Job& job);
+
+  // The remark that was made with a known result; empty if there is none.
+  std::string remark(const Job& job);
+
+  // Drops the values of a unit; with the unit of a family, what was prepared for its jobs.
+  void forget(Unit unit);
+  void forget_all();
+
+  std::vector<Failure> failures() const;                               // by family and unit, then by rule
+  const std::vector<RuleRecord>& records() const { return records_; }  // [rule]
+  std::size_t computed() const;
+  std::string at_work() const;  // "map.LS, 2 map.CS"
+
+ private:
+  struct Result {
+    ValuePtr value;
+    std::string remark;
+    Clock::time_point started;
+    double seconds = 0;
+  };
+  ValuePtr held(const Job& job);
+  void hold(const Job& job, ValuePtr value);
+  ValuePtr restored(const Job& job);
+  std::shared_ptr<Preparation> preparation(const Job& job);
+  Result run(const Job& job, std::vector<FileData> files);
+  Digest save(const Job& job, const Result& result);
+  void compute(const Job& job, std::vector<FileData> files);
+  void fail(const Job& job, std::string cause, bool defect = false);
+
+  const Project& project_;
+  Plan plan_;
+  Store& store_;
+  Damaged damaged_;
+  mutable std::mutex mutex_;        // of the containers below; held for moments only
+  std::recursive_mutex restoring_;  // a damaged value may need other damaged ones
+  std::map<Job, ValuePtr> values_;  // of families at work, and of the root
+  std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<Preparation>> prepared_;  // (rule, family)
+  std::vector<Failure> failures_;
+  std::vector<RuleRecord> records_;
+  std::vector<std::atomic<int>> running_;  // [rule]: jobs being computed
+};
+
+// Key of the remark on the result that has this key, and where it is stored.
+inline constexpr std::string_view kRemarkStage = "remark";
+Digest remark_key(const std::string& stage, const Digest& key);
+
+}  // namespace salbench

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A rule: how one output of a level is made, from what. A job is a rule for one unit. What a rule computes,
+// and what its role means, only its subject knows; binding.h makes rules from functions.
+#pragma once
+
+#include <any>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/engine/file.h"
+#include "pipeline/engine/level.h"
+#include "pipeline/engine/value.h"
+#include "stages/core/rng.h"
+
+namespace salbench {
+
+// Something made of a value once, for all jobs of a rule and family that ask for it. Its owner decides how
+// long it is kept.
+class Preparation {
+ public:
+  using Made = std::shared_ptr<const void>;
+
+  // Always asked for the same thing; several jobs may ask at once. It is not made under the lock: a thread
+  // that waits within may take up another job, which may ask for the same. Of two, the first is kept.
+  template <class Make>
+  Made of(const Make& make) {
+    if (Made known = kept({})) return known;
+    return kept(make());
+  }
+
+ private:
+  Made kept(Made made) {
+    const std::lock_guard lock(mutex_);
+    if (kept_ == nullptr) kept_ = std::move(made);
+    return kept_;
+  }
+
+  std::mutex mutex_;
+  Made kept_;
+};
+
+// What the function of a rule gets for one job.
+struct JobInputs {
+  std::vector<ValuePtr> values = {};  // of the rules that are read, in their order
+  std::size_t members = 0;            // of a rule that gathers: units whose value is known
+  std::function<ValuePtr(std::size_t)> member = {};
+  std::vector<FileData> files = {};
+  const std::any* source = nullptr;  // of the family
+  RandomSource random = {};          // the seed, and the unit's name
+  std::uint32_t place = 0;
+  std::string* remark = nullptr;                  // set where a rule makes one
+  std::shared_ptr<Preparation> preparation = {};  // of the rule and family; none: the job's own
+};
+
+// Options as text, one `key: value` per line, with the path of their section in a configuration.
+struct OptionLines {
+  std::string section;  // "fpfh", "models.PS"
+  std::string text;     // all options
+  std::string in_key;   // those that enter the key
+};
+
+struct RuleHead {
+  int role = 0;              // what its output is; the subject's enum, which the engine only hands back
+  std::string subject = {};  // whose output, where several have one of this role: the name of a model
+  std::string stage = {};    // folder in the cache; the same at all levels where the work is the same
+  std::int32_t version = 1;  // raised when the output changes
+  std::function<bool(const std::any& source)> applies = {};  // to a family; empty: to every one
+  std::size_t limit = 0;        // jobs at work at the same time, rules of one stage together; 0: no limit
+  bool only_if_cached = false;  // taken from the cache where it is there, and never computed
+};
+
+struct Rule : RuleHead {
+  Level over = kRoot;          // the level that the output is about
+  std::string_view kind = {};  // layout of its result
+  std::vector<OptionLines> options = {};
+  std::vector<std::size_t> inputs = {};  // rules, each before this one
+  FileColumnPtr files = {};
+  bool seeded = false;    // draws random numbers: seed and unit enter the key
+  bool placed = false;    // the unit's place enters the key
+  bool prepares = false;  // jobs of a family share a Preparation
+  bool remarks = false;   // may make a remark, an artefact of its own
+  bool gathers = false;   // one job of the root, over all units of `over`
+  ValuePtr given = {};    // in place of a result: known before the run, and not stored
+  std::function<ValuePtr(const JobInputs&)> compute = {};
+  std::function<ValuePtr(const Arrays&)> read = {};  // the result from its artefact; throws InputError
+
+  Level level() const { return gathers ? kRoot : over; }  // of its units
+};
+using Rules = std::vector<Rule>;
+
+struct Job {
+  std::size_t rule = 0;
+  Unit unit;
+
+  auto operator<=>(const Job&) const = default;
+};
+
+}  // namespace salbench

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/engine/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include "pipeline/engine/graph.h"
+
+namespace salbench {
+namespace {
+
+// Between two looks at whether another process has given up a claim: longer and longer, so that waiting costs
+// nothing.
+constexpr std::chrono::milliseconds kFirstPoll(20), kLongestPoll(500);
+// The large arrays of a family leave holes that small, lasting ones pin: unless it is handed back, memory
+// that is free grows with every family that has passed, to ten times what is in use.
+constexpr std::size_t kFamiliesPerTrim = 16;
+
+using Mask = std::vector<bool>;  // [rule]
+
+std::size_t open_jobs(const Plan& plan, const Mask& rules) {
+  std::size_t jobs = 0;
+  for (std::size_t rule = 0; rule < rules.size(); ++rule)
+    if (rules[rule]) jobs += plan.open(rule);
+  return jobs;
+}
+
+// By the content of its first file: families of one name in two data sets are not the same work.
+std::string work_of(const Project& project, std::size_t family) {
+  const Family& entering = project.units.families()[family];
+  for (const Job& job : project.jobs_of({entering.level, static_cast<std::uint32_t>(family)}))
+    if (const FilesOfUnit& files = project.files(job); !files.empty() && files[0].digest)
+      return "family " + files[0].digest->hex();
+  return "family " + entering.name;
+}
+
+class Run {
+ public:
+  Run(Resolver& resolver, const RunOptions& options, Progress& progress, const std::atomic<bool>& stop)
+      : project_(resolver.project()),
+        resolver_(resolver),
+        options_(options),
+        chosen_(options.rules.empty() ? Mask(project_.rules.size(), true) : options.rules),
+        progress_(progress),
+        stop_(stop) {}
+
+  std::size_t open(const Mask& rules) const { return open_jobs(resolver_.plan(), rules); }
+  std::size_t open() const { return open(chosen_); }
+
+  void run() {
+    const std::vector<std::size_t> stratum = strata(project_.rules);
+    for (std::size_t s = 0; open() > 0 && !stop_; ++s) {
+      Mask now = chosen_;
+      for (std::size_t rule = 0; rule < now.size(); ++rule) now[rule] = now[rule] && stratum[rule] <= s;
+      finish(ends_of(stratum, s), now);
+    }
+    resolver_.store().sync();
+  }
+
+ private:
+  // What a stratum is for: what it gathers that later ones read.
+  std::string ends_of(const std::vector<std::size_t>& stratum, std::size_t number) const {
+    if (number == std::ranges::max(stratum)) return options_.what;
+    for (std::size_t rule = 0; rule < stratum.size(); ++rule)
+      if (stratum[rule] == number && project_.rules[rule].gathers) return project_.rules[rule].stage;
+    return {};
+  }
+
+  // No claim is held while waiting for others, so that two processes never wait for each other. Where others
+  // hold what is to be gathered, there is still work that does without it.
+  void finish(const std::string& what, const Mask& rules) {
+    while (open(rules) > 0 && !stop_) {
+      const std::vector<std::string> claimed = advance(what, rules);
+      if (open(rules) == 0 || stop_) return;
+      const Mask without = without_gathered();
+      const std::size_t before = open(without);
+      if (before > 0) advance("stages ahead of the " + what, without);
+      if (open(without) < before) continue;
+      if (claimed.empty()) throw std::logic_error(deadlock_text(rules));
+      await_any(claimed);
+    }
+  }
+
+  std::string deadlock_text(const Mask& rules) const {
+    for (const Job& job : project_.jobs())
+      if (rules[job.rule] && resolver_.plan()[job].open())
+        return fmt::format("deadlock: {} open jobs have no runnable input (first: {} of {})", open(rules),
+                           project_.rule(job).stage, project_.name(job));
+    return "deadlock";
+  }
+
+  // Rules that need nothing that is gathered and not known yet.
+  Mask without_gathered() const {
+    Mask without(project_.rules.size(), false);
+    for (std::size_t rule = 0; rule < without.size(); ++rule)
+      without[rule] =
+          chosen_[rule] && !project_.rules[rule].gathers &&
+          std::ranges::all_of(project_.rules[rule].inputs, [&](std::size_t input) {
+            return project_.rules[input].gathers ? resolver_.plan().open(input) == 0 : without[input];
+          });
+    return without;
+  }
+
+  // Until all that is left is claimed by other processes: the claims.
+  std::vector<std::string> advance(const std::string& what, const Mask& rules) {
+    std::size_t left = open(rules), before = left;
+    std::vector<std::string> claimed;
+    resolver_.store().prepare();
+    progress_.begin(what, left, [this] { return resolver_.at_work(); });
+    do {
+      before = left;
+      claimed = stream_once(rules);
+      left = open(rules);
+    } while (left < before && left > 0 && !stop_);
+    progress_.end();
+    return claimed;
+  }
+
+  // Returns when one of them is free: others may be held for hours yet.
+  void await_any(const std::vector<std::string>& claimed) const {
+    const auto is_claimed = [&](const std::string& work) { return resolver_.store().is_claimed(work); };
+    for (auto pause = kFirstPoll; !stop_ && std::ranges::all_of(claimed, is_claimed);
+         pause = std::min(2 * pause, kLongestPoll))
+      std::this_thread::sleep_for(pause);
+  }
+
+  // Nothing reads the values of a unit that has none below it but its own jobs: they go with the last.
+  bool goes_alone(Unit unit) const {
+    if (unit.level == kRoot) return false;
+    const auto& levels = project_.units.levels();
+    return levels[unit.level].parent != kRoot &&
+           std::ranges::none_of(levels, [&](const LevelInfo& level) { return level.parent == unit.level; });
+  }
+
+  // Returns the families and gathered values that other processes have claimed.
+  std::vector<std::string> stream_once(const Mask& rules) {
+    std::vector<std::unique_ptr<Claim>> claims(project_.units.families().size());
+    std::vector<std::string> claimed_by_others;
+    std::mutex refusing;
+    const auto claim_of = [&](const std::string& work) {
+      std::unique_ptr<Claim> claim = resolver_.store().claim(work);
+      const std::scoped_lock lock(refusing);
+      if (!claim) claimed_by_others.push_back(work);
+      return claim;
+    };
+    std::vector<std::vector<std::atomic<std::size_t>>> open_of_unit;  // [level][index]
+    for (std::size_t level = 0; level < project_.units.levels().size(); ++level)
+      open_of_unit.emplace_back(project_.units.slots(static_cast<Level>(level)));
+    const auto open = [&](const Job& job) {
+      const bool is_open = rules[job.rule] && resolver_.plan()[job].open();
+      if (is_open) ++open_of_unit[job.unit.level][job.unit.index];
+      return is_open;
+    };
+    const auto finish = [&](const Job& job) {
+      std::unique_ptr<Claim> claim;
+      if (job.unit.level == kRoot) {
+        claim = claim_of(project_.rule(job).stage + " " + project_.name(job));
+        if (!claim) return false;
+      }
+      resolver_.finish(job);
+      if (--open_of_unit[job.unit.level][job.unit.index] == 0 && goes_alone(job.unit))
+        resolver_.forget(job.unit);
+      progress_.item_done();
+      return true;
+    };
+    const auto enter = [&](std::size_t family) {
+      claims[family] = claim_of(work_of(project_, family));
+      return claims[family] != nullptr;
+    };
+    std::atomic<std::size_t> left = 0;
+    const auto leave = [&](std::size_t family) {
+      for (const Unit unit : project_.units.of_family(family)) resolver_.forget(unit);
+      claims[family].reset();
+      if (++left % kFamiliesPerTrim == 0) malloc_trim(0);
+    };
+    stream(project_, {.threads = options_.threads, .families = options_.threads + 1}, stop_,
+           {open, enter, finish, leave});
+    return claimed_by_others;
+  }
+
+  const Project& project_;
+  Resolver& resolver_;
+  const RunOptions& options_;
+  const Mask chosen_;
+  Progress& progress_;
+  const std::atomic<bool>& stop_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> strata(const Rules& rules) {
+  // Gathered values that a rule needs, one made of the other, at the longest.
+  std::vector<std::size_t> gathered(rules.size(), 0);
+  std::size_t last = 0;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    for (const std::size_t input : rules[r].inputs)
+      gathered[r] = std::max(gathered[r], gathered[input] + (rules[input].gathers ? 1 : 0));
+    last = std::max(last, gathered[r]);
+  }
+  // As late as what needs the rule allows: a value that is gathered for others ends its stratum, and all that
+  // it is made of lies there or before.
+  std::vector<std::size_t> of_rule(rules.size(), last);
+  for (std::size_t r = rules.size(); r-- > 0;)
+    for (const std::size_t input : rules[r].inputs)
+      of_rule[input] = std::min(of_rule[input], rules[input].gathers ? gathered[input] : of_rule[r]);
+  return of_rule;
+}
+
+bool has_work(const Resolver& resolver) {
+  return open_jobs(resolver.plan(), Mask(resolver.project().rules.size(), true)) > 0;
+}
+
+void run(Resolver& resolver, const RunOptions& options, Progress& progress, const std::atomic<bool>& stop) {
+  Run(resolver, options, progress, stop).run();
+}
+
+}  // namespace salbench

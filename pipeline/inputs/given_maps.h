@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Saliency maps made outside of the program, which stand where a model's would be computed.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "pipeline/inputs/inputs.h"
+#include "stages/core/point_cloud.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+struct GivenMaps {
+  std::filesystem::path source;      // a folder with ITEM.val, or an HDF5 file with a data set ITEM
+  bool matched = false;              // the values are histogram-matched already: they lie in [0, 1]
+  std::set<std::string> items = {};  // that there are maps of: "52", "52_3"
+
+  // Reads the map of one of these items. Throws InputError.
+  std::function<FileData(const std::string& item)> read = {};
+  // The data as a map of n_points finite numbers; of a point cloud they may count all points of its file.
+  // Throws InputError.
+  ScalarField checked(const FileData& data, const std::string& item, std::size_t n_points,
+                      const PointCloud* cloud = nullptr) const;
+
+  std::string place(const std::string& item) const;  // for a message: where the item's map is looked for
+};
+
+// Lists the folder, or the data sets of the file. Throws ConfigError where it is neither.
+GivenMaps find_given_maps(const std::filesystem::path& source, bool matched);
+
+// The maps as files of the units of the levels given: [level]. Where no shape of a level has a map, none is
+// expected of any; otherwise a missing one is its unit's failure. Throws ConfigError if no unit has one.
+std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
+                                         const std::vector<Level>& levels);
+
+}  // namespace salbench

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/inputs/given_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/ground_truth_file.h"
+#include "io/mat_file.h"
+#include "io/mesh_file.h"
+#include "io/values_file.h"
+#include "pipeline/config/option_text.h"
+#include "pipeline/inputs/inputs.h"
+#include "pipeline/inputs/loading.h"
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/seen.h"
+#include "stages/core/smoothing.h"
+#include "stages/ground_truth/carried.h"
+#include "stages/models/hs.h"
+
+namespace salbench {
+namespace {
+
+const TruthFormat& format_of(const DatasetItem& item) {
+  static const TruthFormat defaults;
+  return item.format ? *item.format : defaults;
+}
+
+// " (per: face, column: 3)"; nothing for the defaults, which older keys imply.
+template <class Format>
+std::string described(const Format& format) {
+  std::string lines = key_text(format);
+  if (lines.empty()) return {};
+  lines.pop_back();
+  for (std::size_t end = lines.find('\n'); end != std::string::npos; end = lines.find('\n', end))
+    lines.replace(end, 1, ", ");
+  return fmt::format(" ({})", lines);
+}
+
+std::string saliency_name(const DatasetItem& item, std::size_t k) {
+  const std::string name = item.by_viewer             ? fmt::format("saliency of viewer {}", k)
+                           : item.saliency.size() > 1 ? fmt::format("saliency file {}", k)
+                                                      : "saliency file";
+  return name + described(format_of(item).values);
+}
+
+bool are_in_file_order(const DatasetItem& item) {
+  return format_of(item).values.per == ValuePer::face && !item.saliency.empty();
+}
+
+// The points that the files describe. A cloud may have left out some that its file has.
+struct Target {
+  Points points;
+  const PointCloud* cloud = nullptr;  // none: a mesh
+  Mesh as_written = {};               // with the faces of the mesh's file, where values are per face
+
+  Elements in_file() const {
+    if (cloud != nullptr) return {cloud->size_in_file(), "point cloud", "point", "points"};
+    return {points.size()};
+  }
+  Elements described_by(const ValuesFormat& format) const {
+    if (format.per == ValuePer::face) return {as_written.faces.size(), "mesh", "face", "faces"};
+    return in_file();
+  }
+  ScalarField left(ScalarField values) const {
+    return cloud != nullptr ? values_left(*cloud, values) : std::move(values);
+  }
+};
+
+// The values of one file, on the points.
+ScalarField on_points(const Target& target, const ValuesFormat& format, std::string_view bytes,
+                      std::string_view name) {
+  if (key_text(format).empty() && !is_npy(bytes) && !is_mat(bytes))
+    return target.left(parse_saliency(bytes, name, target.in_file()));
+  const Mesh& written = target.as_written;
+  TruthValues truth = parse_truth_values(bytes, name, format, target.described_by(format));
+  if (format.per == ValuePer::face)
+    return vertex_values_of_faces(written.vertices, written.faces, truth.values);
+  if (format.per == ValuePer::vertex) return target.left(std::move(truth.values));
+  return vertex_values_of_samples(target.points, truth.points, truth.values,
+                                  format.max_distance * bounding_radius(target.points));
+}
+
+void add_saliency(GroundTruth& truth, const DatasetItem& item, std::vector<ScalarField> maps) {
+  if (maps.empty()) return;
+  std::vector<std::size_t> all(maps.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  truth.saliency = maps.size() == 1 ? maps[0] : mean_of_seen(maps, all);
+  if (std::all_of(truth.saliency.begin(), truth.saliency.end(),
+                  [](double value) { return std::isnan(value); }))
+    throw InputError(
+        fmt::format("{}: no point of the shape has a value; expected are values of what was seen, and points "
+                    "within max_distance of it",
+                    item.saliency[0].string()));
+  if (item.by_viewer && maps.size() >= kMinParticipants) truth.viewers = std::move(maps);
+}
+
+// All but the saliency of picks alone. Picks count the points of the file.
+GroundTruth read_truth(Target target, const Files& files) {
+  const DatasetItem& item = item_of(files.source);
+  const TruthFormat& format = format_of(item);
+  auto file = files.data.begin();
+  if (are_in_file_order(item)) target.as_written = parse_mesh((file++)->text(), item.mesh);
+  std::vector<ScalarField> maps;
+  for (const auto& path : item.saliency)
+    maps.push_back(on_points(target, format.values, (file++)->text(), path.string()));
+
+  GroundTruth truth;
+  add_saliency(truth, item, std::move(maps));
+  for (const auto& path : item.picks)
+    truth.picks.push_back(
+        parse_truth_picks((file++)->text(), path.string(), format.indices, target.in_file()));
+  if (std::all_of(truth.picks.begin(), truth.picks.end(), [](const auto& picks) { return picks.empty(); }))
+    truth.picks.clear();
+  if (truth.saliency.empty() && truth.picks.empty())
+    throw InputError(
+        fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty {} files",
+                    item.picks.front().string(), item.picks.front().extension().string()));
+  return truth;
+}
+
+}  // namespace
+
+File mesh_file_of(const DatasetItem& item) {
+  return {.name = "mesh file " + lower_case_extension(item.mesh), .place = item.mesh};
+}
+
+FilesOfUnit truth_files_of(const DatasetItem& item) {
+  FilesOfUnit files;
+  if (are_in_file_order(item)) files.push_back(mesh_file_of(item));
+  for (std::size_t k = 0; k < item.saliency.size(); ++k)
+    files.push_back({.name = saliency_name(item, k), .place = item.saliency[k]});
+  for (std::size_t k = 0; k < item.picks.size(); ++k)
+    files.push_back(
+        {.name = fmt::format("picks {}{}", k, described(format_of(item).indices)), .place = item.picks[k]});
+  return files;
+}
+
+GroundTruth given_truth(const Mesh& mesh, const Files& files) {
+  GroundTruth truth = read_truth({.points = mesh.vertices}, files);
+  if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh, truth.picks);
+  return truth;
+}
+
+GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files) {
+  const DatasetItem& item = item_of(files.source);
+  if (are_in_file_order(item))
+    throw InputError(fmt::format("{}: has values per face, but {} is a point cloud, which has none",
+                                 item.saliency[0].string(), item.mesh.string()));
+  GroundTruth truth = read_truth({.points = cloud.points, .cloud = &cloud}, files);
+  truth.picks = picks_left(cloud, std::move(truth.picks));
+  if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh_of(cloud, surface), truth.picks);
+  return truth;
+}
+
+bool has_participants(const DatasetItem& item) {
+  return item.picks.size() >= kMinParticipants ||
+         (item.by_viewer && item.saliency.size() >= kMinParticipants);
+}
+
+}  // namespace salbench

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/inputs/inputs.h"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "io/cloud_file.h"
+#include "io/file.h"
+#include "pipeline/inputs/given_truth.h"
+#include "stages/core/errors.h"
+#include "stages/core/parallel.h"
+#include "stages/scan/scan.h"
+
+namespace salbench {
+namespace {
+
+std::optional<int> as_number(std::string_view text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+struct Range {
+  int first = 0, last = 0;
+};
+
+// "3-17"; nothing where it is no range of numbers, or an empty one.
+std::optional<Range> as_range(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  if (dash == std::string_view::npos) return {};
+  const auto first = as_number(text.substr(0, dash)), last = as_number(text.substr(dash + 1));
+  if (!first || !last || *first > *last) return {};
+  return Range{*first, *last};
+}
+
+// A number range takes the items that exist in it: data sets have gaps. A single name must exist.
+std::set<std::string> selected_names(const std::string& selection, const std::set<std::string>& present) {
+  std::set<std::string> names;
+  for (const std::string& part : split_list(selection)) {
+    if (present.contains(part)) {
+      names.insert(part);
+      continue;
+    }
+    const std::optional<Range> range = as_range(part);
+    if (!range) throw ConfigError(fmt::format("--items {}: the data set has no item '{}'", selection, part));
+    const std::size_t before = names.size();
+    for (const std::string& name : present)
+      if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
+        names.insert(name);
+    if (names.size() == before)
+      throw ConfigError(fmt::format("--items {}: the data set has no item in the range {}", selection, part));
+  }
+  return names;
+}
+
+// The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
+// a name that says so.
+std::pair<Level, File> shape_file_of(const DatasetItem& item) {
+  File file = mesh_file_of(item);
+  const std::string extension = lower_case_extension(item.mesh);
+  FileData data;
+  if (extension == ".ply") look(file, &data);
+  const bool is_cloud = is_point_cloud(data.text(), item.mesh);
+  if (is_cloud) file.name = "point cloud file " + extension;
+  return {is_cloud ? kClouds : kMeshes, std::move(file)};
+}
+
+}  // namespace
+
+const std::vector<LevelInfo>& levels() {
+  static const std::vector<LevelInfo> levels = {
+      {.unit = "set", .units = "data set"},
+      {.unit = "mesh", .units = shapes_name(kMeshes)},
+      {.unit = "scan", .units = shapes_name(kScans), .parent = kMeshes, .parts = kViews, .place = "view"},
+      {.unit = "cloud", .units = shapes_name(kClouds)}};
+  return levels;
+}
+
+const DatasetItem& item_of(const std::any& source) { return std::any_cast<const DatasetItem&>(source); }
+
+bool Inputs::has(Level level) const {
+  const auto& families = units.families();
+  return families.empty() ? level != kClouds : std::ranges::any_of(families, [&](const Family& family) {
+    return units.is_above(family.level, level);
+  });
+}
+
+std::string Inputs::text() const {
+  const std::size_t clouds = count(kClouds), meshes = count(kMeshes);
+  if (clouds == 0) return fmt::format("{} meshes", meshes);
+  return fmt::format("{}{} point clouds", meshes > 0 ? fmt::format("{} meshes, ", meshes) : "", clouds);
+}
+
+DataIdentity identity_of(const Inputs& inputs) {
+  DataIdentity identity;
+  Hasher hasher;
+  for (std::size_t family = 0; family < inputs.units.families().size(); ++family) {
+    hasher.add(inputs.units.families()[family].name);
+    for (const FileColumnPtr& column : {inputs.shape_files, inputs.truth_files})
+      for (File& file : column->files[family]) {
+        look(file);
+        hasher.add(file.name);
+        hasher.add(file.digest ? file.digest->hex() : "unreadable");
+        ++identity.files;
+      }
+  }
+  identity.digest = hasher.digest();
+  return identity;
+}
+
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (begin <= list.size()) {
+    const std::size_t comma = std::min(list.find(',', begin), list.size());
+    std::string part = list.substr(begin, comma - begin);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    if (!part.empty()) parts.push_back(part);
+    begin = comma + 1;
+  }
+  return parts;
+}
+
+Inputs read_inputs(const Dataset& dataset, const std::string& selection, const std::optional<Shard>& shard) {
+  std::set<std::string> present;
+  for (const DatasetItem& item : dataset.items) present.insert(item.name);
+  const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
+  if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
+
+  std::vector<DatasetItem> items = dataset.items;
+  std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
+  if (shard) items = share_of(items, *shard);
+  std::vector<Family> families(items.size());
+  FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;
+  parallel_ranges(items.size(), 1, [&](std::size_t i, std::size_t) {
+    auto [level, file] = shape_file_of(items[i]);
+    families[i] = {level, items[i].name, items[i]};
+    shapes.files[i] = {std::move(file)};
+    truths.files[i] = truth_files_of(items[i]);
+  });
+  return {dataset.layout,
+          dataset.notes,
+          Units(levels(), std::move(families)),
+          std::make_shared<FileColumn>(std::move(shapes)),
+          std::make_shared<FileColumn>(std::move(truths)),
+          shard};
+}
+
+}  // namespace salbench

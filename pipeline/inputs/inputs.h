@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The room of what a run reads: data sets and their ground truth, given maps, a given reference. Folders and
+// files come in; units with the digests of their files go out, and functions that read them. It includes the
+// engine, config/, io/ and stages/, and knows no rule.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/dataset.h"
+#include "pipeline/engine/file.h"
+#include "pipeline/engine/level.h"
+#include "pipeline/inputs/shard.h"
+
+namespace salbench {
+
+// The levels: a data set has meshes, of which each has kViews scans, and point clouds.
+inline constexpr Level kMeshes = 1, kScans = 2, kClouds = 3;
+inline constexpr std::array kShapeLevels = {kMeshes, kScans, kClouds};
+inline constexpr std::array<std::string_view, 3> kShapeNames = {"meshes", "scans", "clouds"};
+constexpr std::string_view shapes_name(Level level) { return kShapeNames.at(level - 1U); }
+const std::vector<LevelInfo>& levels();
+
+struct Inputs {
+  std::string layout = {};              // of the data set
+  std::vector<std::string> notes = {};  // on the data set, for the user
+  Units units = {};                     // a family is a mesh with its scans, or a point cloud
+  FileColumnPtr shape_files = {};       // [family]: one each
+  FileColumnPtr truth_files = {};       // [family]: none where nothing is known about the shape
+  std::optional<Shard> shard = {};      // the units are this share of the data set
+
+  // What the run may have rules for; of a data set that is not known yet, meshes.
+  bool has(Level level) const;
+  std::size_t count(Level level) const { return units.of(level).size(); }
+  std::string text() const;  // "3 meshes, 2 point clouds"
+};
+
+const DatasetItem& item_of(const std::any& source);  // the source of a family
+inline const DatasetItem& item_of(const Units& units, Unit unit) {
+  return item_of(units.source_of(unit).source);
+}
+
+// The files of the items that `selection` names ("1-20,52,125"; empty: all), or of one
+// share of them. Throws ConfigError where it names an item that is not there.
+Inputs read_inputs(const Dataset& dataset, const std::string& selection = {},
+                   const std::optional<Shard>& shard = {});
+
+// Identity of a run's data, wherever they lie.
+struct DataIdentity {
+  std::size_t files = 0;  // shapes and ground truth
+  Digest digest;          // of the items' names and of all bytes that are read of them
+};
+DataIdentity identity_of(const Inputs& inputs);
+
+std::vector<std::string> split_list(const std::string& list);  // at commas, without blanks and empty parts
+
+}  // namespace salbench

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/inputs/loading.h"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "io/cloud_file.h"
+#include "io/mesh_file.h"
+#include "pipeline/inputs/inputs.h"
+#include "stages/core/mesh_check.h"
+#include "stages/core/scale.h"
+
+namespace salbench {
+namespace {
+
+std::string polygons_text(const PolygonCounts& polygons) {
+  if (polygons.split == 0) return {};
+  return fmt::format("{} polygons split into triangles, {} of them concave", polygons.split,
+                     polygons.concave);
+}
+
+void make(const Remark& remark, const std::string& name, const std::string& polygons,
+          const std::string& scale) {
+  remark.text = polygons + (polygons.empty() || scale.empty() ? "" : "; ") + scale;
+  if (!remark.text.empty()) spdlog::warn("{}: {}", name, remark.text);
+}
+
+}  // namespace
+
+Mesh load_mesh(const Files& file, const Remark& remark) {
+  PolygonCounts polygons;
+  CheckedMesh checked = check_mesh(parse_mesh(file.data[0].text(), item_of(file.source).mesh, &polygons));
+  for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", file.name, warning);
+  make(remark, file.name, polygons_text(polygons), odd_scale(checked.mesh.vertices));
+  return std::move(checked.mesh);
+}
+
+PointCloud load_cloud(const Files& file, const Remark& remark) {
+  CheckedCloud checked = check_cloud(parse_cloud(file.data[0].text(), item_of(file.source).mesh));
+  for (const std::string& warning : checked.warnings) spdlog::warn("{}: {}", file.name, warning);
+  make(remark, file.name, {}, odd_scale(checked.cloud.points));
+  return std::move(checked.cloud);
+}
+
+Mesh mesh_of(const PointCloud& cloud, Surface surface) {
+  return {cloud.points, {surface.begin(), surface.end()}};
+}
+
+}  // namespace salbench

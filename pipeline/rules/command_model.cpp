@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The key of a map has the command line, its version, what it reads and the digests of the files it depends
+// on; not the timeout and the limits, which change no value. Paths of the files are those from where salbench
+// is started, like the folder of the data set; a link in the command's own folder leads to each.
+#include "pipeline/rules/command_model.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pipeline/rules/depended_files.h"
+#include "pipeline/rules/shape_command.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 5> kReadable = {"mesh", "points", "normals", "faces", "fpfh"};
+bool contains(const Words& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string yaml_list(const Words& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + yaml_quoted(word);
+  return "[" + list + "]";
+}
+
+// As options_text has it, but for quotes: a command line holds whatever YAML has other uses for.
+std::string command_text(const CommandOptions& options, bool annotated) {
+  std::string lines;
+  CommandOptions::fields(options,
+                         [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
+                           if (annotated) lines += fmt::format("# {}\n", option_note<Value>(help));
+                           if constexpr (std::is_same_v<Value, std::string>)
+                             lines += fmt::format("{}: {}\n", key, yaml_quoted(value));
+                           else if constexpr (std::is_same_v<Value, Words>)
+                             lines += fmt::format("{}: {}\n", key, yaml_list(value));
+                           else
+                             lines += fmt::format("{}: {}\n", key, option_text(value));
+                         });
+  return lines;
+}
+
+void check_reads(const CommandOptions& options, const Section& written) {
+  for (const std::string& word : options.reads)
+    if (std::find(kReadable.begin(), kReadable.end(), word) == kReadable.end())
+      written.fail("reads", fmt::format("names '{}', expected some of {}", word, fmt::join(kReadable, ", ")));
+  if (options.reads.empty()) written.fail("reads", "names nothing; leave the key out for [mesh]");
+}
+
+void check_command(const CommandOptions& options, const Section& written) {
+  const auto has = [&](std::string_view text) { return options.command.find(text) != std::string::npos; };
+  if (options.command.find('\0') != std::string::npos) written.fail("command", "holds a zero byte");
+  const bool list = has(kListOfMeshes), list_of_hdf5 = has(kListOfShapes);
+  const bool fpfh = contains(options.reads, "fpfh");
+  if (list || list_of_hdf5) {
+    if (std::any_of(kPlaceholders.begin(), kPlaceholders.end(),
+                    [&](const Placeholder& placeholder) { return has(placeholder.text); }))
+      written.fail(
+          "command",
+          "has {list}, whose lines name the files of each shape: it must not have {mesh}, {shape} or "
+          "{out} as well");
+    if (list && (list_of_hdf5 || fpfh))
+      written.fail("command",
+                   fpfh ? "must have {list.h5}, with HDF5 files, in place of {list}, since it reads "
+                          "fpfh, which a PLY file has no place for"
+                        : "has both {list} and {list.h5}");
+    return;
+  }
+  if (!has("{out}") && !has("{out.npy}") && !has("{out.h5}"))
+    written.fail("command", "must have {out} where the file is named that it writes its values to");
+  if (!has("{mesh}") && !has("{shape}"))
+    written.fail("command", "must have {mesh} or {shape}, the file it reads, or {list} for many shapes");
+  if (fpfh && !has("{shape}"))
+    written.fail("command",
+                 "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
+}
+
+// Files that the command reads but that would not be in the scratch folder where it runs.
+void check_depends(const CommandOptions& options, const Section& written) {
+  for (const std::string& file : options.depends) {
+    const fs::path path(file);
+    if (path.filename().empty() || std::find(path.begin(), path.end(), "..") != path.end())
+      written.fail(
+          "depends",
+          fmt::format("names '{}', expected a file below the present folder, or its whole path", file));
+    for (const Placeholder& taken : kPlaceholders)
+      if (file == taken.file)
+        written.fail("depends", fmt::format("names '{}', which salbench writes itself", file));
+  }
+  std::istringstream words(options.command);
+  for (std::string word; words >> word;) {
+    std::error_code ignored;
+    if (!contains(options.depends, word) && !fs::path(word).is_absolute() &&
+        fs::is_regular_file(word, ignored))
+      written.fail("command",
+                   fmt::format("names the file '{0}', which is not in the folder where the command runs: add "
+                               "depends: [{0}], or give its whole path",
+                               word));
+  }
+}
+
+CommandOptions read_options(const Section& written) {
+  CommandOptions options;
+  written.read(options);
+  check_reads(options, written);
+  check_command(options, written);
+  check_depends(options, written);
+  return options;
+}
+
+Output<Map> add_command(RuleTable& table, const ShapeOutputs& shape, const std::string& name,
+                        const CommandOptions& options, const std::shared_ptr<DependedFiles>& depends,
+                        const std::shared_ptr<ShapeCommand>& command) {
+  const auto reads = [&](std::string_view part) {
+    return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
+  };
+  RuleHead head = stage_of(name, Role::map, options.version);
+  head.limit = static_cast<std::size_t>(options.at_once > 0 ? options.at_once : options.gpu);
+  const OptionLines lines = {"models." + name, command_text(options, false),
+                             fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),
+                                         yaml_list(options.reads), depends->key_lines())};
+  return table.add<Map>(
+      shape.level, head,
+      [command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
+                const CommandOptions&) {
+        return command->map({points, normals, faces, fpfh});
+      },
+      shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
+      only_if(reads("fpfh"), shape.fpfh), SectionOf<CommandOptions>{lines, options});
+}
+
+}  // namespace
+
+std::vector<std::string> command_models(const Section& models) {
+  std::vector<std::string> names;
+  for (const std::string& name : models.keys()) {
+    const auto rows = model_rows();
+    const bool built_in =
+        std::any_of(rows.begin(), rows.end(), [&](const ModelRow& row) { return row.name == name; });
+    if (!built_in && models.has_mapping(name) && models.child(name).has("command")) names.push_back(name);
+  }
+  return names;
+}
+
+Model command_model(const std::string& name, const Section& models) {
+  if (const std::string wrong = wrong_with_model_name(name); !wrong.empty()) models.fail(name, wrong);
+  const Section written = models.child(name);
+  const CommandOptions options = read_options(written);
+  const auto depends = std::make_shared<DependedFiles>(options.depends, written);
+  const auto command = std::make_shared<ShapeCommand>(
+      name, options.command, std::chrono::duration<double>(options.timeout), depends);
+  return {.name = name,
+          .version = options.version,
+          .options = command_text(options, false),
+          .annotated_options = command_text(options, true),
+          .add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
+            return add_command(table, shape, name, options, depends, command);
+          }};
+}
+
+}  // namespace salbench

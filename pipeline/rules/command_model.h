@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models that are commands of the user: a section under `models` with a key `command`, whose name is none of
+// the built-in ones. Its rule writes the shape into a scratch folder, runs the command there, or has one that
+// is at work already read the file's name, and reads one value per point; from there on the map is like any
+// other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pipeline/config/section.h"
+#include "pipeline/rules/models.h"
+
+namespace salbench {
+
+struct CommandOptions {
+  std::string command = {};  // {mesh}, {shape} and {out} stand for files, {list} for a list of them
+  Words reads = {"mesh"};    // points, normals, faces, fpfh; mesh: the first three
+  std::int32_t version = 1;  // raised by the user when the command's output changes otherwise
+  double timeout = 600;      // s
+  std::int32_t at_once = 0;  // commands of this model at work at the same time; 0: no limit
+  std::int32_t gpu = 0;      // the same where the command keeps a GPU busy: so many GPUs
+  Words depends = {};        // files whose content counts
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("command", self.command,
+          {"run by sh; {mesh} is a PLY file, {shape} HDF5, {out} what it must write; {list} many shapes"});
+    visit("reads", self.reads, {"what it is given: mesh, or some of points, normals, faces, fpfh"});
+    visit("version", self.version,
+          {"to be raised when the output changes for other reasons", {}, at_least(1)});
+    visit("timeout", self.timeout, {"of one shape", "s", above(0)});
+    visit("at_once", self.at_once, {"commands at work at the same time, 0: no limit", {}, at_least(0)});
+    visit("gpu", self.gpu, {"GPUs: the same limit by another name", {}, at_least(0)});
+    visit("depends", self.depends, {"files whose content counts, linked into the command's folder"});
+  }
+};
+
+// Names of the sections under `models` that are commands, in the order of the file.
+std::vector<std::string> command_models(const Section& models);
+
+// Throws ConfigError. Its rule throws ConfigError when it is added, if a file of `depends` cannot be
+// read.
+Model command_model(const std::string& name, const Section& models);
+
+}  // namespace salbench

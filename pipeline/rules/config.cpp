@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/rules/config.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "pipeline/rules/command_model.h"
+
+namespace salbench {
+namespace {
+
+// The sections that are one options struct each: the only list of them.
+template <class Self, class Visit>
+void for_each_section(Self& config, Visit&& visit) {
+  visit("dataset", config.dataset);
+  visit("simulation", config.simulation);
+  visit("scan", config.scan);
+  visit("normals", config.normals);
+  visit("scan_normals", config.scan_normals);
+  visit("surface", config.surface);
+  visit("fpfh", config.fpfh);
+  visit("scan_fpfh", config.scan_fpfh);
+  visit("metrics", config.metrics);
+  visit("statistics", config.statistics);
+}
+
+std::vector<Model> read_models(const Section& root, Protocol protocol) {
+  const Section section = root.child("models");
+  std::vector<std::string_view> known;
+  for (const ModelRow& row : model_rows()) known.push_back(row.name);
+  const std::vector<std::string> commands = command_models(section);
+  known.insert(known.end(), commands.begin(), commands.end());
+  section.reject_unknown(known);
+  std::vector<Model> models;
+  for (const ModelRow& row : model_rows())
+    if (root.has("models") ? section.has(row.name) : row.by_default)
+      models.push_back(row.bind(section.child(row.name), protocol));
+  for (const std::string& name : commands) models.push_back(command_model(name, section));
+  if (models.empty()) root.fail("models", "names no model; leave the key out to run the paper's");
+  return models;
+}
+
+std::vector<std::string_view> known_metrics() {
+  std::vector<std::string_view> known;
+  for (const Metric& metric : metric_table()) known.push_back(metric.name);
+  return known;
+}
+
+void require_metric(const std::string& name, const Section& section, std::string_view key) {
+  const std::vector<std::string_view> known = known_metrics();
+  if (name == kEveryName || std::ranges::find(known, name) != known.end()) return;
+  const std::string nearest = nearest_word(name, known);
+  const std::string hint =
+      nearest.empty() ? "the README has a table of them" : fmt::format("did you mean '{}'?", nearest);
+  section.fail(key, fmt::format("has no metric '{}'; {}", name, hint));
+}
+
+// The metrics named, in the order of the table: the order in a file is no other choice, and must make no
+// other key.
+Words metrics_named(const Words& written, const Section& section, std::string_view key) {
+  const std::vector<std::string_view> known = known_metrics();
+  for (const std::string& name : written) require_metric(name, section, key);
+  if (std::ranges::find(written, kEveryName) != written.end()) return {known.begin(), known.end()};
+  if (written.empty()) section.fail(key, "names no metric; leave the key out for the paper's");
+  Words named;
+  for (const std::string_view name : known)
+    if (std::ranges::find(written, name) != written.end()) named.emplace_back(name);
+  return named;
+}
+
+// Matching of the metrics chosen where it is not the usual one.
+ByName<Matching> matching_of(const MetricsOptions& written, const Section& section) {
+  for (const auto& [name, matching] : written.matching) require_metric(name, section, "matching");
+  MetricsOptions usual = written;
+  usual.matching.clear();
+  ByName<Matching> chosen;
+  for (const Metric& metric : chosen_metrics(usual)) {
+    auto found = written.matching.find(metric.name);
+    if (found == written.matching.end()) found = written.matching.find(kEveryName);
+    const Matching matching = found == written.matching.end() ? metric.matching : found->second;
+    if (matching != metric.matching) chosen[metric.name] = matching;
+  }
+  return chosen;
+}
+
+// `metrics: [auc, nss]` stands for `metrics: {names: [auc, nss]}`.
+void read_metrics(const Section& root, MetricsOptions& metrics) {
+  if (!root.has("metrics")) return;
+  const bool brief = !root.has_mapping("metrics");
+  const Section section = brief ? root : root.child("metrics");
+  const std::string_view key = brief ? "metrics" : "names";
+  if (!brief) section.read(metrics);
+  if (section.has(key)) metrics.names = metrics_named(section.words(key), section, key);
+  metrics.matching = matching_of(metrics, section);
+}
+
+std::string indented(std::string_view lines, std::string_view by) {
+  std::istringstream stream{std::string(lines)};
+  std::string result, line;
+  while (std::getline(stream, line)) result += fmt::format("{}{}\n", by, line);
+  return result;
+}
+
+// An annotated configuration without pictures has their options as a comment.
+std::string picture_section(const Config& config, bool annotated) {
+  const std::string options = "picture:\n" + indented(options_text(config.picture, annotated), "  ");
+  if (config.pictures == Pictures::computed) return (annotated ? "\n" : "") + options;
+  return annotated ? "\n# Runs compute pictures of all shapes where this section is there:\n" +
+                         indented(options, "# ")
+                   : "";
+}
+
+std::string written(const Config& config, bool annotated) {
+  std::string yaml;
+  const auto add = [&](std::string_view key, std::string_view value, std::string_view note) {
+    if (annotated) yaml += fmt::format("# {}\n", note);
+    yaml += fmt::format("{}: {}\n", key, value);
+  };
+  const auto begin_section = [&](std::string_view key) {
+    yaml += fmt::format("{}{}:\n", annotated ? "\n" : "", key);
+  };
+  add("protocol", name_of(config.protocol),
+      option_note<Protocol>({"defaults of the options: what the authors ran, or the words of their paper"}));
+  add("seed", option_text(config.seed), "of all random numbers");
+  if (!config.data.empty()) add("data", yaml_quoted(config.data), "folder of the data set");
+  if (!config.cache.empty()) add("cache", yaml_quoted(config.cache), "folder of the artefacts");
+  if (!config.output.empty()) add("output", yaml_quoted(config.output), "folder of the tables");
+  for_each_section(config, [&](std::string_view key, const auto& options) {
+    begin_section(key);
+    yaml += indented(options_text(options, annotated), "  ");
+  });
+  yaml += picture_section(config, annotated);
+  begin_section("models");
+  for (const Model& model : config.models)
+    if (!model.given)
+      yaml += fmt::format("  {}:\n{}", model.name,
+                          indented(annotated ? model.annotated_options : model.options, "    "));
+  return yaml;
+}
+
+}  // namespace
+
+void check(const DatasetOptions& options) {
+  if (!is_layout(options.layout))
+    throw OptionError("layout", fmt::format("is '{}', expected one of {}, or a file NAME.yaml",
+                                            options.layout, fmt::join(layout_names(), ", ")));
+  if (!options.meshes && !options.scans) throw OptionError("scans", "must be true where meshes is false");
+}
+
+Config read_config(const Section& root, const std::string& name) {
+  Config config;
+  config.name = name;
+  std::vector<std::string_view> known = {"protocol", "seed", "data", "cache", "output", "models", "picture"};
+  for_each_section(config, [&](std::string_view key, auto&) { known.push_back(key); });
+  root.reject_unknown(known);
+
+  root.read_value("protocol", config.protocol);
+  root.read_value("seed", config.seed);
+  root.read_value("data", config.data);
+  root.read_value("cache", config.cache);
+  root.read_value("output", config.output);
+  for_each_section(config, [&]<class Options>(std::string_view key, Options& options) {
+    options = preset<Options>(config.protocol);
+    if constexpr (std::is_same_v<Options, MetricsOptions>)
+      read_metrics(root, options);
+    else
+      root.child(key).read(options);
+  });
+  if (root.has("picture")) {
+    config.pictures = Pictures::computed;
+    root.child("picture").read(config.picture);
+  }
+  config.models = read_models(root, config.protocol);
+  return config;
+}
+
+std::string config_yaml(const Config& config) { return written(config, false); }
+
+std::string annotated_config_yaml(const Config& config) { return written(config, true); }
+
+}  // namespace salbench

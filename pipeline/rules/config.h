@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Configuration of a run: parsed from YAML, validated, defaults filled in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/config/data_layout.h"
+#include "pipeline/config/section.h"
+#include "pipeline/rules/models.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/ground_truth/simulation.h"
+#include "stages/metrics/metrics.h"
+#include "stages/normals/normals.h"
+#include "stages/picture/picture.h"
+#include "stages/scan/scan.h"
+#include "stages/stats/unit.h"
+#include "stages/surface/surface.h"
+
+namespace salbench {
+
+enum class Participants { measured, simulated };
+template <>
+struct EnumNames<Participants> {
+  static constexpr std::array<std::string_view, 2> names{"measured", "simulated"};
+};
+
+struct DatasetOptions {
+  std::string layout{kAutomaticLayout};
+  Twins twins = Twins::refuse;
+  bool meshes = true;
+  bool scans = true;
+  Participants participants = Participants::measured;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("layout", self.layout,
+          {"how the folder is laid out: automatic, a name in configs/datasets, or a description of your own "
+           "(.yaml)"});
+    visit("twins", self.twins, {"of several shape files of one name, the extension of the one that counts"});
+    visit("meshes", self.meshes, {"evaluate the meshes themselves"});
+    visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
+    visit("participants", self.participants, {"ground truth from files, or made up for a demonstration"});
+  }
+};
+void check(const DatasetOptions& options);
+
+// Which pictures a run makes; no score needs them. In this order, each makes more than the one before.
+enum class Pictures { none, cached, computed };
+
+inline constexpr std::uint64_t kDefaultSeed = 2016;
+
+inline constexpr const char* kSimulatedNote =
+    "SIMULATED participants: the ground truth was made by the program; these scores say nothing about "
+    "people.";
+
+struct Config {
+  std::string name;                 // the file's stem
+  std::string data, cache, output;  // folders; empty where only the command line can say
+  Protocol protocol = Protocol::published;
+  std::uint64_t seed = kDefaultSeed;
+  DatasetOptions dataset;
+  SimulationOptions simulation;
+  ScanOptions scan;
+  MeshNormalsOptions normals;
+  ScanNormalsOptions scan_normals;
+  SurfaceOptions surface;
+  FpfhOptions fpfh;
+  ScanFpfhOptions scan_fpfh;
+  MetricsOptions metrics;
+  StatisticsOptions statistics;
+  PictureOptions picture;
+  Pictures pictures = Pictures::none;  // computed where the file has the section
+  std::vector<Model> models;           // in the order of the file
+
+  bool simulated() const { return dataset.participants == Participants::simulated; }
+};
+
+// Throws ConfigError: "file:line: key what is wrong".
+Config read_config(const Section& root, const std::string& name);
+
+// The complete configuration as YAML that read_config reads back as the same, but for models with given maps,
+// which no configuration names.
+std::string config_yaml(const Config& config);
+
+// The same with a comment above each option: its meaning, unit and the values accepted.
+std::string annotated_config_yaml(const Config& config);
+
+}  // namespace salbench

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/rules/human.h"
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pipeline/inputs/given_truth.h"
+#include "stages/core/centre.h"
+#include "stages/core/field.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/seen.h"
+#include "stages/matching/matching.h"
+
+namespace salbench {
+namespace {
+
+template <class Normalised>
+ScalarField where_seen(const ScalarField& map, const Normalised& normalised) {
+  const auto seen = seen_points(map);
+  if (!seen) return normalised(map);
+  ScalarField result = map;
+  const ScalarField values = normalised(values_at(map, *seen));
+  for (std::size_t i = 0; i < values.size(); ++i) result[static_cast<std::size_t>((*seen)[i])] = values[i];
+  return result;
+}
+
+// For metrics that read matched maps, a group's map is matched like a model's, and so is the map of the
+// others, which stands for the ground truth; for others both are as people marked them. What either group has
+// not seen is not compared.
+GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const MetricsOptions& options,
+                         const Rng& rng) {
+  const auto metrics = std::make_shared<const MetricsByMatching>(options);
+  // The same for every pair of groups.
+  const auto measures = std::make_shared<const Measures>(
+      mesh.vertices.size(),
+      any_by_area(metrics->all()) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{},
+      any_of_positions(metrics->all()) ? distances_from_centroid(mesh.vertices) : ScalarField{});
+  const auto draws = std::make_shared<Draws>(rng);
+  return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
+            return metrics->score([&](std::span<const Metric> of_part, Matching matching) {
+              const bool as_marked = matching == Matching::none;
+              const auto match = [&](const ScalarField& values) { return matched(values, reference); };
+              const ScalarField of_group =
+                  as_marked ? where_seen(map, min_max_normalised) : where_seen(map, match);
+              GroundTruth truth{as_marked ? others.saliency : where_seen(others.saliency, match),
+                                others.picks, others.simulated};
+              for (std::size_t i = 0; i < of_group.size(); ++i)
+                if (std::isnan(of_group[i])) truth.saliency[i] = of_group[i];
+              return score(of_part, of_group, truth, options, *draws, *measures);
+            });
+          }};
+}
+
+std::function<bool(const std::any&)> participants_of(const Config& config) {
+  if (!config.simulated()) return [](const std::any& source) { return has_participants(item_of(source)); };
+  const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
+  return [enough](const std::any&) { return enough; };
+}
+
+}  // namespace
+
+void add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const Output<Mesh>& mesh,
+                           const Config& config, const Model& model) {
+  const std::int32_t version =
+      model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // grows with either
+  RuleHead scores = stage_of(model.name, Role::scores, version);
+  RuleHead curve = stage_of(model.name, Role::curve, version);
+  scores.applies = curve.applies = participants_of(config);
+  table.add(
+      kMeshes, scores,
+      [name = scores.stage](const Mesh& shape, const GroundTruth& truth, const Histogram& reference,
+                            const MetricsOptions& options, const RandomSource& random) {
+        return leave_one_out(shape, truth, group_scorer(shape, reference, options, random.rng(name)));
+      },
+      mesh, meshes.ground_truth, meshes.reference, section("metrics", config.metrics), kRandom);
+  table.add(
+      kMeshes, curve,
+      [scores = scores.stage, name = curve.stage](const Mesh& shape, const GroundTruth& truth,
+                                                  const Histogram& reference, const HsOptions& options,
+                                                  const MetricsOptions& metrics, const RandomSource& random) {
+        return human_curve(shape, truth, options, group_scorer(shape, reference, metrics, random.rng(scores)),
+                           random.rng(name));
+      },
+      mesh, meshes.ground_truth, meshes.reference, section("models." + model.name, *model.human),
+      section("metrics", config.metrics), kRandom);
+}
+
+}  // namespace salbench

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rules of human performance. HS has no map: its scores come from the participants, who saw meshes only.
+#pragma once
+
+#include "pipeline/rules/config.h"
+
+namespace salbench {
+
+// Adds the scores of HS and its curve over the number of participants, for the meshes whose files tell them
+// apart.
+void add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const Output<Mesh>& mesh,
+                           const Config& config, const Model& model);
+
+}  // namespace salbench

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/rules/models.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "io/text_scanner.h"
+#include "stages/models/cb.h"
+#include "stages/models/cs.h"
+#include "stages/models/lce.h"
+#include "stages/models/ls.h"
+#include "stages/models/lvj.h"
+#include "stages/models/mc.h"
+#include "stages/models/ms.h"
+#include "stages/models/ps.h"
+#include "stages/models/rs.h"
+#include "stages/models/vis.h"
+
+namespace salbench {
+namespace {
+
+// In the tables and in the cache the name stands beside others: these mean something else there.
+constexpr std::array<std::string_view, 3> kTaken = {"GS", "Avg", kConstantMap};
+constexpr std::size_t kLongestName = 40;
+
+ModelRow human_row(std::string_view name, std::int32_t version) {
+  return {name, [=](const Section& written, Protocol protocol) {
+            auto options = preset<HsOptions>(protocol);
+            written.read(options);
+            return Model{.name = std::string(name),
+                         .version = version,
+                         .options = options_text(options),
+                         .annotated_options = annotated_options_text(options),
+                         .human = options};
+          }};
+}
+
+ModelRow only_if_named(ModelRow row) {
+  row.by_default = false;
+  return row;
+}
+
+ModelRow reference(ModelRow row) {
+  row.is_reference = true;
+  return row;
+}
+
+}  // namespace
+
+std::span<const ModelRow> model_rows() {
+  static const std::array rows = {
+      model_row("LS", 5, ls_saliency),
+      model_row("CS", 3, cs_saliency),
+      model_row("PS", 1, ps_saliency),
+      model_row("MS", 1, ms_saliency),
+      reference(human_row("HS", 1)),
+      reference(model_row("RS", 1, rs_saliency)),
+      // Beside the paper's: configs/extended.yaml has them.
+      only_if_named(model_row("MC", 1, mc_saliency)),
+      only_if_named(model_row("LVJ", 1, lvj_saliency)),
+      only_if_named(model_row("LCE", 1, lce_saliency)),
+      only_if_named(model_row("CB", 1, cb_saliency)),
+      only_if_named(model_row("VIS", 1, vis_saliency)),
+  };
+  return rows;
+}
+
+bool is_reference_model(std::string_view name) {
+  return name == kConstantMap || std::ranges::any_of(model_rows(), [&](const ModelRow& row) {
+           return row.is_reference && row.name == name;
+         });
+}
+
+std::string wrong_with_model_name(std::string_view name) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
+  if (name.empty() || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), plain))
+    return fmt::format("must be 1 to {} letters, digits, '-' and '_'", kLongestName);
+  const auto rows = model_rows();
+  if (std::find(kTaken.begin(), kTaken.end(), name) != kTaken.end() ||
+      std::any_of(rows.begin(), rows.end(), [&](const ModelRow& row) { return row.name == name; }))
+    return "is the name of something else in the tables; choose another";
+  return {};
+}
+
+// The points are read for their number alone.
+Model given_model(const std::string& name, GivenMaps given) {
+  if (const std::string wrong = wrong_with_model_name(name); !wrong.empty())
+    throw ConfigError(fmt::format("--name {}: {}", in_quotes(name), wrong));
+  const auto maps = std::make_shared<const GivenMaps>(std::move(given));
+  const auto of_cloud = [maps](const PointCloud& cloud, const Files& file) {
+    return maps->checked(file.data[0], file.name, cloud.points.size(), &cloud);
+  };
+  const auto of_shape = [maps](Points points, const Files& file) {
+    return maps->checked(file.data[0], file.name, points.size());
+  };
+  const auto add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
+    const RuleHead head = stage_of(name, maps->matched ? Role::matched : Role::map, 1);
+    const FilesOf files{shape.map_files};
+    return shape.level == kClouds
+               ? table.add<Map>(shape.level, head, of_cloud, Output<PointCloud>(shape.points.rule), files)
+               : table.add<Map>(shape.level, head, of_shape, shape.points, files);
+  };
+  return {.name = name, .version = 1, .add_map = add_map, .given = maps};
+}
+
+}  // namespace salbench

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table of models. A new saliency model is its file pair in stages/models and one row here; its section
+// in a configuration and what it reads follow from its signature. HS has a row like the others, and is scored
+// in its own way.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "pipeline/config/section.h"
+#include "pipeline/inputs/given_maps.h"
+#include "pipeline/rules/values.h"
+#include "stages/models/hs.h"
+
+namespace salbench {
+
+// An options struct as the section of a configuration.
+template <class Options>
+SectionOf<Options> section(const std::string& path, const Options& options) {
+  return {{path, options_text(options), key_text(options)}, options};
+}
+
+// The outputs of one level that a model may read, by the type of the parameter that they stand for.
+struct ShapeOutputs {
+  Level level = kMeshes;
+  Output<Points> points = {};
+  Output<Normals> normals = {};
+  Output<Surface> surface = {};  // of scans and point clouds: the partial mesh
+  Output<Descriptors> fpfh = {};
+  Output<GroundTruth> ground_truth = {};
+  Output<Reference> reference = {};
+  FileColumnPtr map_files = {};  // of a model that takes its maps from outside
+};
+
+// A model with its options bound: a map of every shape, computed or given, or, as HS alone, human
+// performance.
+struct Model {
+  std::string name;
+  std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
+  std::string options = {};  // canonical text
+  std::string annotated_options = {};  // with a comment above each option
+  std::function<Output<Map>(RuleTable&, const ShapeOutputs&)> add_map = {};
+  std::optional<HsOptions> human = {};
+  std::shared_ptr<const GivenMaps> given = {};  // where the map is read and not computed
+};
+
+struct ModelRow {
+  std::string_view name;
+  // Reads the model's section over the defaults of the protocol.
+  std::function<Model(const Section& section, Protocol protocol)> bind;
+  bool by_default = true;  // runs if a configuration names no models
+  // People or chance: what models are measured against, and no competitor in a ranking.
+  bool is_reference = false;
+};
+
+namespace binding {
+
+// The argument that stands for a model's parameter.
+template <class Parameter, class Options>
+auto argument_for(const ShapeOutputs& shape, const SectionOf<Options>& section) {
+  if constexpr (std::is_same_v<Parameter, Options>) return section;
+  if constexpr (std::is_same_v<Parameter, Points>) return shape.points;
+  if constexpr (std::is_same_v<Parameter, Normals>) return shape.normals;
+  if constexpr (std::is_same_v<Parameter, Surface>) return shape.surface;
+  if constexpr (std::is_same_v<Parameter, Descriptors>) return shape.fpfh;
+  if constexpr (std::is_same_v<Parameter, RandomSource>) return kRandom;
+}
+
+}  // namespace binding
+
+// The options of a model for the shapes of a level, where its struct tells scans apart. Point clouds count as
+// meshes: their points have been chosen by somebody, and are no grid of rays.
+template <class Options>
+Options options_for(const Options& options, Level level) {
+  if constexpr (requires { options.of_scans(); })
+    return level == kScans ? options.of_scans() : options.of_meshes();
+  else
+    return options;
+}
+
+// A row of the table, from the model's function; its options are the last parameter.
+template <class... Parameters>
+ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...)) {
+  using All = std::tuple<std::decay_t<Parameters>...>;
+  using Options = std::tuple_element_t<sizeof...(Parameters) - 1, All>;
+  return {name, [=](const Section& written, Protocol protocol) {
+            auto options = preset<Options>(protocol);
+            written.read(options);
+            const auto add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
+              const auto bound = section("models." + std::string(name), options_for(options, shape.level));
+              return table.add<Map>(shape.level, stage_of(std::string(name), Role::map, version), saliency,
+                                    binding::argument_for<std::decay_t<Parameters>>(shape, bound)...);
+            };
+            return Model{.name = std::string(name),
+                         .version = version,
+                         .options = options_text(options),
+                         .annotated_options = annotated_options_text(options),
+                         .add_map = add_map};
+          }};
+}
+
+std::span<const ModelRow> model_rows();
+
+// A map that has one value everywhere: a reference beside chance, with scores and without maps.
+inline constexpr std::string_view kConstantMap = "constant";
+inline constexpr std::string_view kChance = "RS";
+
+bool is_reference_model(std::string_view name);  // by its row; false for a name that has none
+
+// Why a model that is not in the table cannot have this name; empty if it can. Names stand in tables, folders
+// and keys.
+std::string wrong_with_model_name(std::string_view name);
+
+// A model that takes its maps from outside. Throws ConfigError for a name that is taken, or is no name.
+Model given_model(const std::string& name, GivenMaps maps);
+
+}  // namespace salbench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The room of the rules, and THE table of them: everything there is to compute for a data set, from what, and
+// how, in the order of the paper's pipeline: load, scan, normals, descriptors, models, histogram matching,
+// metrics. A configuration and the inputs come in; the engine's rules go out. It includes the engine,
+// inputs/, config/ and the stages, and knows no cache, no graph and no table of results.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/engine/plan.h"
+#include "pipeline/inputs/inputs.h"
+#include "pipeline/rules/config.h"
+#include "pipeline/rules/values.h"
+
+namespace salbench {
+
+// There are rules for what the data set has and the configuration asks for; point clouds are always
+// evaluated. A reference histogram that is given takes the place of the data set's own mean. Throws
+// ConfigError where maps are given of no shape.
+Rules make_rules(const Config& config, const Inputs& inputs = {},
+                 const std::optional<Histogram>& given_reference = {});
+
+// All that a run of the configuration over the inputs has to compute.
+Project make_project(const Config& config, const Inputs& inputs,
+                     const std::optional<Histogram>& given_reference = {});
+
+bool reference_is_given(const Rules& rules);  // in place of the data set's own mean
+
+// The rule with a role over a level; of a model where it has a subject. Throws std::out_of_range.
+std::size_t find_rule(const Rules& rules, Level over, std::string_view stage);
+
+std::string node_name(const Rule& rule);  // "fpfh of scans": levels may have stages of one name
+
+// Configuration path of a rule's option, such as "fpfh.radius"; the bare key if no section has it.
+std::string option_path(const Rule& rule, std::string_view key);
+
+}  // namespace salbench

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engine, over numbers and strings: it runs, is interrupted, explains, verifies and collects.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cache/layout.h"
+#include "pipeline/engine/causes.h"
+#include "pipeline/engine/maintain.h"
+#include "stages/core/errors.h"
+#include "tests/engine/toy.h"
+#include "tests/support/memory_store.h"
+
+namespace salbench {
+namespace {
+
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+enum Stage : std::size_t { kText, kWord, kLength, kLongest, kPadded };  // [rule]
+
+const std::vector<std::string> kTexts2 = {"a bb ccc", "dddd ee f"};
+
+struct EngineTest : testing::Test {
+  // Returns "stage@unit" of all that was computed, sorted.
+  std::vector<std::string> run(const Project& project, int threads = 2) {
+    Resolver resolver(project, make_plan(project, store), store);
+    salbench::run(resolver, {.threads = threads}, progress, stop);
+    failures = resolver.failures();
+    values.clear();
+    for (const Job& job : project.jobs())
+      if (job.rule == kPadded && resolver.plan()[job].known())
+        values.push_back(value_as<std::string>(*resolver.value(job)));
+    return store.take_saved();
+  }
+
+  TemporaryFolder folder;
+  MemoryStore store;
+  NoProgress progress;
+  std::atomic<bool> stop = false;
+  std::vector<Failure> failures;
+  std::vector<std::string> values;
+};
+
+TEST_F(EngineTest, ComputesEverythingOnceAndThenWhatAnOptionConcerns) {
+  const Project project = toy_project(folder, kTexts2);
+  EXPECT_THAT(run(project), SizeIs(2 + 3 * 6 + 1));
+  EXPECT_THAT(values, ElementsAre("a...", "bb..", "ccc.", "dddd", "ee..", "f..."));
+  EXPECT_THAT(run(project), IsEmpty());
+  const auto again = run(toy_project(folder, kTexts2, {'_'}));
+  EXPECT_THAT(again, SizeIs(6));
+  EXPECT_THAT(again, Each(StartsWith("padded@")));
+  EXPECT_THAT(values, Contains("a___"));
+}
+
+TEST_F(EngineTest, StopsWhereAnInputComesOutAsBefore) {
+  run(toy_project(folder, kTexts2));
+  EXPECT_THAT(run(toy_project(folder, {"a  bb  ccc", kTexts2[1]})),
+              ElementsAre("text@text0", "word@text0_0", "word@text0_1", "word@text0_2"));
+  EXPECT_THAT(run(toy_project(folder, {"aa bb ccc", kTexts2[1]})), Contains("padded@text0_0"));
+  EXPECT_THAT(store.take_saved(), IsEmpty());
+}
+
+TEST_F(EngineTest, AFailureStopsWhatReadsItAndNothingElse) {
+  EXPECT_THAT(run(toy_project(folder, {"a bb", kTexts2[1]})), Contains("padded@text0_1"));
+  ASSERT_THAT(failures, SizeIs(1));
+  EXPECT_EQ(failures[0].cause, "too few words");
+  EXPECT_THAT(values, SizeIs(5));
+}
+
+TEST_F(EngineTest, ResumesAfterAStop) {
+  Project project = toy_project(folder, kTexts2);
+  project.rules[kLength].compute = [this, was = project.rules[kLength].compute](const JobInputs& in) {
+    stop = true;
+    return was(in);
+  };
+  const std::size_t before = run(project).size();
+  stop = false;
+  EXPECT_THAT(run(toy_project(folder, kTexts2)), SizeIs(21 - before));
+  EXPECT_THAT(values, SizeIs(6));
+}
+
+// A rule that gathers ends a stratum; all that is not needed for it comes later.
+TEST_F(EngineTest, StrataFollowFromTheRules) {
+  EXPECT_THAT(strata(toy_project(folder, kTexts2).rules), ElementsAre(0, 0, 0, 0, 1));
+  RuleTable table(toy_project(folder, kTexts2).rules);
+  table.add(
+      kWords, {.stage = "widest"}, [](const Members<std::string>&) { return 0.0; },
+      Output<std::string>(kPadded));
+  table.add(
+      kWords, {.stage = "again"}, [](const std::string& s, double) { return s; },
+      Output<std::string>(kPadded), Output<double>(5));
+  EXPECT_THAT(strata(table.rules()), ElementsAre(0, 0, 0, 0, 1, 1, 2));
+}
+
+TEST_F(EngineTest, PlansAFewJobsWithoutTheOthers) {
+  const Project project = toy_project(folder, kTexts2);
+  const Job word{kWord, {kWords, 4}};
+  const Plan plan = make_plan_of(project, store, {word});
+  EXPECT_EQ(plan[word].reason, Reason::input_pending);
+  EXPECT_TRUE((plan[{kText, {kTexts, 1}}].open()));
+  EXPECT_FALSE((plan[{kText, {kTexts, 0}}].open()));
+  EXPECT_TRUE(project.files({kText, {kTexts, 1}})[0].is_read);
+  EXPECT_FALSE(project.files({kText, {kTexts, 0}})[0].is_read);
+}
+
+TEST(EngineCache, ExplainsVerifiesAndCollects) {
+  const TemporaryFolder folder, cache;
+  const std::atomic<bool> go_on = false;
+  NoProgress progress;
+  const auto run_with = [&](const Project& project) {
+    FolderStore store(cache.path(), Access::read_write);
+    Resolver resolver(project, make_plan(project, store), store);
+    run(resolver, {.threads = 2}, progress, go_on);
+  };
+  run_with(toy_project(folder, kTexts2));
+  const Project other = toy_project(folder, kTexts2, {'_'});
+  {
+    FolderStore store(cache.path(), Access::read_only);
+    const Plan plan = make_plan(other, store);
+    const Job padded{kPadded, {kWords, 0}};
+    EXPECT_EQ(plan[padded].reason, Reason::changed);
+    Causes causes(other, plan, cache.path());
+    EXPECT_THAT(causes.of(padded).differences,
+                ElementsAre(RecipeDifference{RecipeDifference::Part::option, "with", ".", "_"}));
+    EXPECT_EQ(causes.of({kWord, {kWords, 0}}).reason, Reason::none);
+    const Recomputation sample = recompute_sample(other, plan, store, 100, go_on);
+    EXPECT_EQ(sample.jobs, 2U + 2 * 6 + 1);
+    EXPECT_THAT(sample.faults, IsEmpty());
+  }
+  run_with(other);
+  FolderStore store(cache.path(), Access::read_only);
+  KeepSet needed;
+  EXPECT_EQ(add_needed(other, make_plan(other, store), needed), 0U);
+  collect_garbage(cache.path(), needed, false, progress);
+  EXPECT_THAT(list_cache(cache.path()).artefacts, SizeIs(21));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The graph over rules that do nothing: which jobs are finished, when, and by how many at once.
+#include "pipeline/engine/graph.h"
+
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/engine/toy.h"
+#include "tests/support/meeting.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const std::atomic<bool> kGoOn = false;
+
+std::string nothing() { return {}; }
+std::string of_one(const std::string&) { return {}; }
+std::string of_two(const std::string&, const std::string&) { return {}; }
+double of_all(const Members<std::string>&) { return 0; }
+
+// text -> note, text -> word -> letter -> second letter, and a sum over all second letters.
+struct GraphTest : testing::Test {
+  GraphTest() {
+    RuleTable table;
+    const auto loaded = table.add(kTexts, {.stage = "text"}, nothing);
+    text = loaded.rule;
+    note = table.add(kTexts, {.stage = "letter"}, of_one, loaded).rule;
+    const auto of_text = table.add(kWords, {.stage = "word"}, of_one, loaded);
+    word = of_text.rule;
+    const auto first = table.add(kWords, {.stage = "letter"}, of_one, of_text);
+    letter = first.rule;
+    const auto two = table.add(kWords, {.stage = "second"}, of_two, first, of_text);
+    second = two.rule;
+    sum = table.add(kWords, {.stage = "sum"}, of_all, two).rule;
+    project.rules = std::move(table).take();
+  }
+
+  void run(std::size_t families, const GraphLimits& limits, GraphBodies bodies,
+           const std::atomic<bool>& stop = kGoOn) {
+    project.units = toy_units(families);
+    if (!bodies.open) bodies.open = [](const Job&) { return true; };
+    if (!bodies.enter) bodies.enter = [](std::size_t) { return true; };
+    if (!bodies.leave) bodies.leave = [](std::size_t) {};
+    const auto finish = bodies.finish;
+    bodies.finish = [&, finish](const Job& job) {
+      const bool finished = !finish || finish(job);
+      const std::lock_guard lock(mutex);
+      if (finished) order.push_back(job);
+      return finished;
+    };
+    stream(project, limits, stop, bodies);
+  }
+  void run(std::size_t families, const GraphBodies& bodies = {}) { run(families, {2, 3}, bodies); }
+
+  std::size_t finished(std::size_t rule) const {
+    return static_cast<std::size_t>(
+        std::count_if(order.begin(), order.end(), [&](const Job& job) { return job.rule == rule; }));
+  }
+  std::size_t place(const Job& job) const {
+    return static_cast<std::size_t>(std::find(order.begin(), order.end(), job) - order.begin());
+  }
+
+  std::size_t text = 0, note = 0, word = 0, letter = 0, second = 0, sum = 0;
+  Project project;
+  std::mutex mutex;
+  std::vector<Job> order;
+};
+
+TEST_F(GraphTest, EveryJobIsFinishedOnceAfterEverythingItReads) {
+  for (const int threads : {1, 2, 8}) {
+    order.clear();
+    constexpr std::size_t kFamilies = 50;
+    run(kFamilies, {threads, threads + 1}, {});
+    EXPECT_THAT(order, SizeIs(kFamilies * (2 + 3 * kWordsPerText) + 1));
+    for (const Job& job : order)
+      for (std::size_t i = 0; i < project.rule(job).inputs.size(); ++i)
+        for (const Job& input : project.input_jobs(job, i)) ASSERT_LT(place(input), place(job));
+  }
+}
+
+TEST_F(GraphTest, FinishedJobsAreNeitherDoneAgainNorWaitedFor) {
+  const auto open = [&](const Job& job) {
+    return job.rule == second && project.units.place(job.unit) % 2 == 0;
+  };
+  run(3, {.open = open});
+  EXPECT_THAT(order, SizeIs(3 * 2));
+  order.clear();
+  run(3, {.open = [&](const Job& job) { return job.rule == sum; }});
+  EXPECT_THAT(order, SizeIs(1));
+  order.clear();
+  run(3, {.open = [](const Job&) { return false; },
+          .enter =
+              [](std::size_t) {
+                ADD_FAILURE() << "a family without work entered";
+                return true;
+              }});
+  EXPECT_THAT(order, IsEmpty());
+}
+
+TEST_F(GraphTest, TwoRulesOfOneFamilyRunAtTheSameTime) {
+  Meeting both(2);
+  run(1, {.finish = [&](const Job& job) {
+        if (job.rule == note || (job.rule == letter && project.units.place(job.unit) == 0)) {
+          EXPECT_TRUE(both.join());
+        }
+        return true;
+      }});
+  EXPECT_TRUE(both.met());
+}
+
+TEST_F(GraphTest, TwoPartsOfAUnitRunAtTheSameTime) {
+  Meeting both(2);
+  run(1, {.finish = [&](const Job& job) {
+        if (job.rule == word && (project.units.place(job.unit) == 0 || project.units.place(job.unit) == 2)) {
+          EXPECT_TRUE(both.join());
+        }
+        return true;
+      }});
+  EXPECT_TRUE(both.met());
+}
+
+TEST_F(GraphTest, TwoFamiliesRunAtTheSameTime) {
+  Meeting both(2);
+  run(2, {.finish = [&](const Job& job) {
+        if (job.rule == text) {
+          EXPECT_TRUE(both.join());
+        }
+        return true;
+      }});
+  EXPECT_TRUE(both.met());
+}
+
+// One thread, the caller's, cannot do two things at once. The meeting gives another thread, were there one,
+// the time to show itself.
+TEST_F(GraphTest, WithOneThreadEverythingRunsInTheCallersThread) {
+  const auto caller = std::this_thread::get_id();
+  Meeting somebody_else(2, std::chrono::milliseconds(200));
+  run(2, {1, 2}, {.finish = [&](const Job& job) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        if (job.rule == word) somebody_else.join();
+        return true;
+      }});
+  EXPECT_FALSE(somebody_else.met());
+}
+
+TEST_F(GraphTest, ARuleWithALimitRunsNoMoreOftenAtATime) {
+  project.rules[letter].limit = 1;
+  std::atomic<int> at_work = 0;
+  run(5, {8, 9}, {.finish = [&](const Job& job) {
+        if (job.rule == letter) {
+          EXPECT_EQ(++at_work, 1);
+          std::this_thread::yield();
+          --at_work;
+        }
+        return true;
+      }});
+  EXPECT_EQ(finished(letter), 5U * kWordsPerText);
+}
+
+// With one thread the order is that of the priorities: a family is finished before the next is begun.
+TEST_F(GraphTest, LaterRulesGoFirst) {
+  run(4, {1, 4}, {});
+  std::vector<std::size_t> families;
+  for (const Job& job : order)
+    if (job.unit.level != kRoot && (families.empty() || families.back() != project.units.family_of(job.unit)))
+      families.push_back(project.units.family_of(job.unit));
+  EXPECT_THAT(families, ElementsAre(0, 1, 2, 3));
+}
+
+TEST_F(GraphTest, AsManyFamiliesAreInsideAsThereAreTokensAndNoMore) {
+  std::atomic<int> inside = 0, most = 0;
+  Meeting first_three(3);
+  run(100, {4, 3},
+      {.enter =
+           [&](std::size_t) {
+             const int now = ++inside;
+             int seen = most;
+             while (now > seen && !most.compare_exchange_weak(seen, now)) {
+             }
+             return true;
+           },
+       .finish =
+           [&](const Job& job) {
+             if (job.rule == text && project.units.family_of(job.unit) < 3) first_three.join();
+             return true;
+           },
+       .leave = [&](std::size_t) { --inside; }});
+  EXPECT_EQ(inside, 0);
+  EXPECT_EQ(most, 3);
+}
+
+TEST_F(GraphTest, AFamilyThatCannotEnterKeepsItsJobsAndHoldsNobodyUp) {
+  run(10, {2, 1}, {.enter = [](std::size_t family) { return family % 3 != 0; }});
+  EXPECT_EQ(finished(second), 6U * kWordsPerText);
+  EXPECT_EQ(finished(sum), 0U) << "its members are not all there";
+}
+
+TEST_F(GraphTest, AJobOfTheRootThatCannotBeDoneStaysOpen) {
+  run(2, {.finish = [&](const Job& job) { return job.rule != sum; }});
+  EXPECT_EQ(finished(sum), 0U);
+  EXPECT_EQ(finished(second), 2U * kWordsPerText);
+}
+
+TEST_F(GraphTest, StopLetsTheJobsAtWorkEndAndStartsNoOthers) {
+  std::atomic<bool> stop = false;
+  std::atomic<int> jobs = 0, entered = 0, left = 0;
+  run(100, {2, 2},
+      {.enter = [&](std::size_t) { return ++entered, true; },
+       .finish =
+           [&](const Job&) {
+             if (++jobs == 100) stop = true;
+             return true;
+           },
+       .leave = [&](std::size_t) { ++left; }},
+      stop);
+  EXPECT_GE(jobs, 100);
+  EXPECT_LE(jobs, 101);  // the other thread's
+  EXPECT_EQ(entered, left);
+}
+
+TEST_F(GraphTest, TheFirstExceptionComesOutAfterTheGraphHasRunDry) {
+  std::atomic<int> entered = 0, left = 0;
+  const GraphBodies bodies{.enter = [&](std::size_t) { return ++entered, true; },
+                           .finish =
+                               [&](const Job& job) {
+                                 if (job.rule == word && project.units.family_of(job.unit) >= 5)
+                                   throw std::runtime_error("disk full");
+                                 return true;
+                               },
+                           .leave = [&](std::size_t) { ++left; }};
+  EXPECT_THAT([&] { run(1000, {2, 1}, bodies); }, testing::ThrowsMessage<std::runtime_error>("disk full"));
+  EXPECT_EQ(entered, left);
+  EXPECT_EQ(entered, 6);
+  EXPECT_EQ(finished(text), 6U);
+}
+
+TEST_F(GraphTest, NothingToDoIsFine) {
+  run(0);
+  EXPECT_THAT(order, ElementsAre(Job{sum, Unit{}}));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A file that is edited while a run is under way: what is stored under a key is of what the key names.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/engine/file.h"
+#include "pipeline/inputs/given_maps.h"
+#include "pipeline/results/results.h"
+#include "pipeline/rules/models.h"
+#include "stages/core/errors.h"
+#include "tests/support/memory_store.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+class EditedDuringARun : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
+    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
+  }
+
+  static std::string results_of(ToyRun& run) { return to_csv(results_table(run.results())); }
+  std::string results() {
+    ToyRun run(data_.path(), store_, kYaml);
+    run.run();
+    return results_of(run);
+  }
+
+  // Plans a run, writes the text in place of the file's, runs, and puts the file back.
+  void run_with(const std::filesystem::path& file, const std::string& text) {
+    const std::string before = read_file(data_ / file);
+    ToyRun run(data_.path(), store_, kYaml);
+    write_file(data_ / file, text);
+    testing::internal::CaptureStdout();
+    run.run();
+    said_ = testing::internal::GetCapturedStdout();
+    failures_ = run.resolver->failures();
+    during_ = results_of(run);
+    write_file(data_ / file, before);
+  }
+
+  static constexpr const char* kYaml = "dataset: {scans: false}\nmodels: {PS: , RS: }\n";
+  TemporaryFolder data_;
+  MemoryStore store_;
+  std::string said_, during_;
+  std::vector<Failure> failures_;
+};
+
+TEST_F(EditedDuringARun, AMeshPoisonsNothing) {
+  const std::string results_before = results();
+  store_.clear();
+  const std::string edited = off_text(shapes::bumpy_sphere(2, 0.1));
+  run_with("Meshes/2.off", edited);
+  EXPECT_THAT(said_, HasSubstr("Meshes/2.off: changed since this run was planned"));
+  EXPECT_THAT(failures_, IsEmpty());
+  EXPECT_EQ(results(), results_before)
+      << "results of the edited file stood under the key of the former content";
+
+  // And what was computed of the edited file is of the edited file.
+  write_file(data_ / "Meshes/2.off", edited);
+  store_.take_saved();
+  EXPECT_EQ(results(), during_);
+  EXPECT_THAT(store_.take_saved(), IsEmpty());
+}
+
+TEST_F(EditedDuringARun, GroundTruthPoisonsNothing) {
+  const std::string results_before = results();
+  for (const char* file : {"Distributions/1.val", "RawData/1_2.pid"}) {
+    store_.remove("ground_truth", "1");  // and not the mesh, so that the plan looks at these files
+    const std::string text = read_file(data_ / file);
+    run_with(file,
+             file == std::string("RawData/1_2.pid") ? "7\n" : "0.125\n" + text.substr(text.find('\n') + 1));
+    EXPECT_THAT(said_, HasSubstr(std::string(file) + ": changed since"));
+    EXPECT_NE(during_, results_before);
+    EXPECT_EQ(results(), results_before) << file;
+  }
+}
+
+TEST_F(EditedDuringARun, AFileThatIsGoneIsItsItemsFailure) {
+  ToyRun run(data_.path(), store_, kYaml);
+  std::filesystem::remove(data_ / "Meshes/2.off");
+  run.run();
+  ASSERT_EQ(run.resolver->failures().size(), 1U);
+  EXPECT_THAT(run.resolver->failures()[0].cause, HasSubstr("2.off: cannot be read: No such file"));
+  EXPECT_FALSE(run.resolver->failures()[0].defect);
+}
+
+TEST_F(EditedDuringARun, AGivenMapPoisonsNothing) {
+  const TemporaryFolder maps;
+  const auto values = [](double first) {
+    std::string text = fmt::format("{}\n", first);
+    for (std::size_t i = 1; i < shapes::bumpy_sphere(2).vertices.size(); ++i)
+      text += fmt::format("{}\n", i % 17);
+    return text;
+  };
+  for (const char* name : {"1.val", "2.val"}) maps.write(name, values(0));
+  const auto run_over = [&](const auto& before_it_runs) {
+    Config config = read_config(Section::from_text(kYaml, "toy.yaml"), "toy");
+    config.models.push_back(given_model("OWN", find_given_maps(maps.path(), false)));
+    ToyRun run(data_.path(), store_, config);
+    before_it_runs();
+    run.run();
+    return results_of(run);
+  };
+  const std::string results_before = run_over([] {});
+  store_.clear();
+  EXPECT_NE(run_over([&] { maps.write("1.val", values(40)); }), results_before);
+  maps.write("1.val", values(0));
+  EXPECT_EQ(run_over([] {}), results_before);
+}
+
+// Of a damaged artefact only the same content will do, and it cannot be had from another file.
+TEST_F(EditedDuringARun, ADamagedArtefactIsNotMadeAgainFromAnotherFile) {
+  results();
+  store_.damage("mesh", "1");
+  store_.remove("normals", "1");
+  ToyRun run(data_.path(), store_, kYaml);
+  write_file(data_ / "Meshes/1.off", off_text(shapes::bumpy_sphere(2, 0.3)));
+  run.run();
+  ASSERT_EQ(run.resolver->failures().size(), 1U);
+  EXPECT_EQ(run.project.rule(run.resolver->failures()[0].job).stage, "normals");
+  EXPECT_FALSE(run.resolver->failures()[0].defect);
+  EXPECT_THAT(run.resolver->failures()[0].cause,
+              HasSubstr("1.off: changed since this run was planned; run it again"));
+}
+
+TEST(Source, TheDigestIsOfTheBytesThatAreHandedOut) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("1.val", "1\n2\n");
+  FilesOfUnit files = {{.name = "saliency file", .place = path}};
+  look(files[0]);
+  const Digest planned = *files[0].digest;
+  EXPECT_EQ(read_unchanged(files)[0].text(), "1\n2\n");
+  folder.write("1.val", "3\n");
+  EXPECT_THAT([&] { read_unchanged(files); }, ThrowsMessage<InputError>(HasSubstr("1.val: changed")));
+  const std::vector<FileData> now = read_again(files);
+  EXPECT_EQ(now[0].text(), "3\n");
+  EXPECT_EQ(now[0].digest, file_digest("3\n"));
+  EXPECT_EQ(files[0].digest, file_digest("3\n"));
+  EXPECT_NE(*files[0].digest, planned);
+  std::filesystem::remove(path);
+  EXPECT_THAT(read_again(files)[0].error, HasSubstr("No such file"));
+  EXPECT_FALSE(files[0].digest);
+}
+
+// --- defects ----------------------------------------------------------------------------------------------
+
+// One stage of every mesh is replaced by a body that throws.
+class Thrown : public EditedDuringARun {
+ protected:
+  std::vector<Failure> failures_with(const std::function<ValuePtr(const JobInputs&)>& body,
+                                     const std::string& stage = "fpfh") {
+    ToyRun run(data_.path(), store_, kYaml);
+    run.rule(stage).compute = body;
+    run.run();
+    for (const Failure& failure : run.resolver->failures())
+      EXPECT_EQ(run.project.rule(failure.job).stage, stage);
+    return run.resolver->failures();
+  }
+};
+
+TEST_F(Thrown, BadDataIsTheItemsAndEverythingElseADefect) {
+  struct Case {
+    std::function<ValuePtr(const JobInputs&)> body;
+    bool defect;
+    const char* said;
+  };
+  const Case cases[] = {
+      {[](const JobInputs&) -> ValuePtr { throw InputError("1.off:3: bad"); }, false, "1.off:3: bad"},
+      {[](const JobInputs&) -> ValuePtr { throw std::logic_error("broken"); }, true,
+       "a defect of salbench, please report it: broken"},
+      {[](const JobInputs&) -> ValuePtr { throw std::bad_alloc(); }, true,
+       "out of memory; use fewer --threads"},
+      {[](const JobInputs&) -> ValuePtr { throw 5; }, true, "an unknown exception"}};
+  for (const Case& one : cases) {
+    const std::vector<Failure> failures = failures_with(one.body);
+    ASSERT_EQ(failures.size(), 2U) << one.said;
+    EXPECT_EQ(failures[0].defect, one.defect) << one.said;
+    EXPECT_THAT(failures[0].cause, HasSubstr(one.said));
+  }
+}
+
+TEST_F(Thrown, AFileThatMemoryDoesNotHoldIsTheItems) {
+  const auto no_memory = [](const JobInputs&) -> ValuePtr { throw std::bad_alloc(); };
+  const std::string advice =
+      ": no memory for what it holds; use fewer --threads, or leave the item out with --items";
+  std::vector<Failure> failures = failures_with(no_memory, "mesh");
+  ASSERT_EQ(failures.size(), 2U);
+  EXPECT_FALSE(failures[0].defect);
+  EXPECT_EQ(failures[0].cause, (data_ / "Meshes/1.off").string() + advice);
+  failures = failures_with(no_memory, "ground_truth");
+  ASSERT_EQ(failures.size(), 2U);
+  EXPECT_FALSE(failures[0].defect);
+  EXPECT_EQ(failures[0].cause, (data_ / "Distributions/1.val").string() + " and 4 more" + advice);
+}
+
+}  // namespace
+}  // namespace salbench

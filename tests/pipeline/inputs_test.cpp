@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/inputs/inputs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "tests/support/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Dataset numbered(const TemporaryFolder& folder) {
+  Dataset dataset;
+  for (const char* name : {"1", "2", "5", "10", "cow"})
+    dataset.items.push_back({name, "", folder.write(std::string(name) + ".off", name), {}, {}});
+  return dataset;
+}
+
+std::vector<std::string> names(const Inputs& inputs) {
+  std::vector<std::string> result;
+  for (const Family& family : inputs.units.families()) result.push_back(family.name);
+  return result;
+}
+
+TEST(Inputs, SelectsNamesAndRangesInTheDataSetsOrder) {
+  const TemporaryFolder folder;
+  const Dataset dataset = numbered(folder);
+  EXPECT_THAT(names(read_inputs(dataset, "")), ElementsAre("1", "2", "5", "10", "cow"));
+  EXPECT_THAT(names(read_inputs(dataset, "cow, 2-9")), ElementsAre("2", "5", "cow"));
+  EXPECT_THAT(names(read_inputs(dataset, "10,1")), ElementsAre("1", "10"));
+}
+
+TEST(Inputs, NamesWhatASelectionDoesNotFind) {
+  const TemporaryFolder folder;
+  const Dataset dataset = numbered(folder);
+  for (const char* bad : {"3", "20-30", "9-2", "horse", "1-x", ","})
+    EXPECT_THROW(read_inputs(dataset, bad), ConfigError) << bad;
+}
+
+TEST(Inputs, DigestsContentNotPaths) {
+  const TemporaryFolder a, b;
+  const Inputs first = read_inputs(numbered(a)), second = read_inputs(numbered(b));
+  for (const Inputs& inputs : {first, second})
+    for (FilesOfUnit& files : inputs.shape_files->files) look(files[0]);
+  EXPECT_EQ(first.shape_files->files[0][0].digest, second.shape_files->files[0][0].digest);
+  EXPECT_NE(first.shape_files->files[0][0].digest, first.shape_files->files[1][0].digest);
+}
+
+TEST(Inputs, AnUnreadableFileIsKeptForItsItem) {
+  Dataset dataset;
+  dataset.items.push_back({"gone", "", "/no/such/mesh.off", {}, {}});
+  const Inputs inputs = read_inputs(dataset);
+  FilesOfUnit& files = inputs.shape_files->files[0];
+  EXPECT_FALSE(files[0].digest);
+  EXPECT_THAT(read_again(files)[0].error, HasSubstr("/no/such/mesh.off"));
+}
+
+}  // namespace
+}  // namespace salbench
