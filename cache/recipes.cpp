@@ -77,15 +77,43 @@ RecipeBook::RecipeBook(fs::path folder) : folder_(std::move(folder)) {
       quarantined_.emplace(name->key, std::move(entry.path));
 }
 
-const std::vector<ArtefactFile>& RecipeBook::artefacts(const std::string& stage, std::string_view item) {
-  static const std::vector<ArtefactFile> none;
-  const auto [listed, fresh] = stages_.try_emplace(stage);
-  ByItem& by_item = listed->second;
-  if (fresh)
-    for (ArtefactFile& file : list_stage(folder_, stage).artefacts)
-      by_item[file.name.item].push_back(std::move(file));
-  const auto found = by_item.find(item_label(item));
-  return found == by_item.end() ? none : found->second;
+std::vector<std::string> RecipeBook::files_of(const std::string& stage, std::string_view prefix) const {
+  std::vector<std::string> files;
+  visit_names(folder_ / stage, [&](std::string_view shard, bool is_folder) {
+    if (!is_folder) return;
+    visit_names(folder_ / stage / shard, [&](std::string_view file, bool) {
+      if (file.starts_with(prefix)) files.emplace_back(file);
+    });
+  });
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+ArtefactFile RecipeBook::located(const std::string& stage, ArtefactName name) const {
+  return {folder_ / shard_of(stage, name.key) / name.text(), stage, std::move(name)};
+}
+
+std::vector<ArtefactFile> RecipeBook::artefacts(const std::string& stage, std::string_view item) {
+  const std::string prefix = item_label(item) + '.';
+  const bool only_one = first_asked_.try_emplace(stage, prefix).first->second == prefix;
+  if (stage != stage_ && !only_one) {
+    files_ = files_of(stage, {});
+    stage_ = stage;
+  }
+  const std::vector<std::string> few = stage == stage_ ? std::vector<std::string>() : files_of(stage, prefix);
+  const std::vector<std::string>& files = stage == stage_ ? files_ : few;
+  std::vector<ArtefactFile> found;
+  for (auto file = std::lower_bound(files.begin(), files.end(), prefix);
+       file != files.end() && file->starts_with(prefix); ++file)
+    if (auto name = parse_artefact_name(*file)) found.push_back(located(stage, std::move(*name)));
+  return found;
+}
+
+std::vector<ArtefactFile> RecipeBook::artefacts(const std::string& stage, const Digest& key) const {
+  std::vector<ArtefactFile> found;
+  for (ArtefactName& name : find_artefacts(folder_, stage, key))
+    found.push_back(located(stage, std::move(name)));
+  return found;
 }
 
 const fs::path* RecipeBook::quarantined(const Digest& key) const {
