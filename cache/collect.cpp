@@ -43,7 +43,7 @@ Collected collect_garbage(const fs::path& folder, const KeepSet& needed, bool dr
   Collected result;
   const CacheListing listing = list_cache(folder);
   progress.begin("collecting", listing.artefacts);
-  for (const Shard& shard : listing.shards) {
+  for (const ShardFolder& shard : listing.shards) {
     if (result.stages.empty() || result.stages.back().stage != shard.stage)
       result.stages.push_back({shard.stage, {}, {}});
     Collected::OfStage& stage = result.stages.back();

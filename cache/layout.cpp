@@ -29,7 +29,7 @@ bool is_own(std::string_view name) {
 }
 
 // Artefacts lie one level below the folder of their stage; any other file is foreign.
-void list_below(const fs::path& folder, Shard shard, int depth, CacheListing& listing) {
+void list_below(const fs::path& folder, ShardFolder shard, int depth, CacheListing& listing) {
   constexpr int kShardDepth = 1;
   std::vector<std::string> folders;
   visit_names(folder, [&](std::string_view name, bool is_folder) {
@@ -101,7 +101,7 @@ CacheListing list_cache(const fs::path& folder) {
   return listing;
 }
 
-std::vector<ArtefactFile> list_shard(const fs::path& folder, const Shard& shard) {
+std::vector<ArtefactFile> list_shard(const fs::path& folder, const ShardFolder& shard) {
   std::vector<ArtefactFile> files;
   for (FolderEntry& entry : list_folder(folder / shard.stage / shard.name))
     if (auto name = parse_artefact_name(entry.path.filename().native()); name && !entry.is_folder)

@@ -21,6 +21,9 @@ inline constexpr std::string_view kScratchFolder = "tmp";
 inline constexpr std::string_view kDamagedFolder = "damaged";
 inline constexpr std::string_view kClaimsFile = "claims";  // empty; see claim.cpp
 
+inline constexpr std::size_t kShards = 256;  // of a stage
+inline std::size_t shard_number(const Digest& key) { return key.high >> 56U; }
+
 // The folder of an artefact, below the cache's.
 std::filesystem::path shard_of(std::string_view stage, const Digest& key);
 
@@ -35,7 +38,7 @@ void require_cache(const std::filesystem::path& folder);
 void prepare_cache(const std::filesystem::path& folder);
 
 // A folder of artefacts.
-struct Shard {
+struct ShardFolder {
   std::string stage;
   std::string name;           // two digits, unless it is not the cache's
   std::size_t artefacts = 0;  // at least one
@@ -43,7 +46,7 @@ struct Shard {
 };
 
 struct CacheListing {
-  std::vector<Shard> shards;  // by path
+  std::vector<ShardFolder> shards;  // by path
   std::size_t artefacts = 0;
   std::size_t others = 0;  // files that are neither artefacts nor the cache's own
 };
@@ -57,7 +60,8 @@ struct ArtefactFile {
 // All three throw StorageError if a folder cannot be listed to its end; a missing folder is empty.
 std::vector<std::string> list_stages(const std::filesystem::path& folder);
 CacheListing list_cache(const std::filesystem::path& folder);
-std::vector<ArtefactFile> list_shard(const std::filesystem::path& folder, const Shard& shard);  // by path
+std::vector<ArtefactFile> list_shard(const std::filesystem::path& folder,
+                                     const ShardFolder& shard);  // by path
 
 // Artefacts of one key; several if the stage is not deterministic. Reads only the names of files.
 std::vector<ArtefactName> find_artefacts(const std::filesystem::path& folder, std::string_view stage,

@@ -55,7 +55,7 @@ std::string fault_of(const ArtefactFile& file, const fs::path& folder, Verificat
 }
 
 // Sound artefacts of one key lie in one shard.
-void verify_shard(const fs::path& folder, const Shard& shard, Verification& result) {
+void verify_shard(const fs::path& folder, const ShardFolder& shard, Verification& result) {
   std::map<Digest, const ArtefactFile*> sound;
   const std::vector<ArtefactFile> files = list_shard(folder, shard);
   for (const ArtefactFile& file : files) {
@@ -70,12 +70,12 @@ void verify_shard(const fs::path& folder, const Shard& shard, Verification& resu
 }
 
 // Shards that one process checks: enough of them to be worth a process, and few enough to stop soon.
-using Slice = std::span<const Shard>;
+using Slice = std::span<const ShardFolder>;
 constexpr std::size_t kSliceArtefacts = 512;
 constexpr std::uint64_t kSliceBytes = std::uint64_t{64} << 20U;
 constexpr ChildLimits kSliceLimits = {.processor_time = std::chrono::seconds(3600)};
 
-std::vector<Slice> slices_of(const std::vector<Shard>& shards) {
+std::vector<Slice> slices_of(const std::vector<ShardFolder>& shards) {
   std::vector<Slice> slices;
   for (std::size_t first = 0, next = 0; first < shards.size(); first = next) {
     std::size_t artefacts = 0;
@@ -91,7 +91,7 @@ std::vector<Slice> slices_of(const std::vector<Shard>& shards) {
 
 Verification verify_slice(const fs::path& folder, Slice slice) {
   Verification result;
-  for (const Shard& shard : slice) verify_shard(folder, shard, result);
+  for (const ShardFolder& shard : slice) verify_shard(folder, shard, result);
   return result;
 }
 

@@ -13,7 +13,7 @@ namespace salbench {
 
 inline std::vector<ArtefactFile> artefacts_of(const std::filesystem::path& cache) {
   std::vector<ArtefactFile> all;
-  for (const Shard& shard : list_cache(cache).shards)
+  for (const ShardFolder& shard : list_cache(cache).shards)
     std::ranges::move(list_shard(cache, shard), std::back_inserter(all));
   return all;
 }
