@@ -69,8 +69,7 @@ struct FolderStore::Impl {
   }
 
   void list_shard(std::string_view stage, std::size_t number) {
-    const Digest first{number << 56U, 0};
-    const fs::path shard = folder / shard_of(stage, first);
+    const fs::path shard = folder / shard_of(stage, first_key(number));
     std::vector<ArtefactName> found;
     visit_files(shard, [&](std::string_view file, std::uintmax_t bytes) {
       if (auto name = parse_artefact_name(file);

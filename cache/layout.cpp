@@ -35,9 +35,8 @@ void list_below(const fs::path& folder, ShardFolder shard, int depth, CacheListi
   visit_names(folder, [&](std::string_view name, bool is_folder) {
     if (is_folder) {
       folders.emplace_back(name);
-    } else if (const auto artefact = parse_artefact_name(name); artefact && depth == kShardDepth) {
+    } else if (depth == kShardDepth && parse_artefact_name(name)) {
       ++shard.artefacts;
-      shard.bytes += artefact->size;
     } else {
       ++listing.others;
     }

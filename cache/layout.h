@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -23,6 +22,7 @@ inline constexpr std::string_view kClaimsFile = "claims";  // empty; see claim.c
 
 inline constexpr std::size_t kShards = 256;  // of a stage
 inline std::size_t shard_number(const Digest& key) { return key.high >> 56U; }
+inline Digest first_key(std::size_t shard) { return {shard << 56U, 0}; }
 
 // The folder of an artefact, below the cache's.
 std::filesystem::path shard_of(std::string_view stage, const Digest& key);
@@ -42,7 +42,6 @@ struct ShardFolder {
   std::string stage;
   std::string name;           // two digits, unless it is not the cache's
   std::size_t artefacts = 0;  // at least one
-  std::uint64_t bytes = 0;    // of them, by their names
 };
 
 struct CacheListing {

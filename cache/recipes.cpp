@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "cache/verify.h"
 #include "io/file.h"
@@ -77,34 +78,22 @@ RecipeBook::RecipeBook(fs::path folder) : folder_(std::move(folder)) {
       quarantined_.emplace(name->key, std::move(entry.path));
 }
 
-std::vector<std::string> RecipeBook::files_of(const std::string& stage, std::string_view prefix) const {
-  std::vector<std::string> files;
-  visit_names(folder_ / stage, [&](std::string_view shard, bool is_folder) {
-    if (!is_folder) return;
-    visit_names(folder_ / stage / shard, [&](std::string_view file, bool) {
-      if (file.starts_with(prefix)) files.emplace_back(file);
-    });
-  });
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 ArtefactFile RecipeBook::located(const std::string& stage, ArtefactName name) const {
   return {folder_ / shard_of(stage, name.key) / name.text(), stage, std::move(name)};
 }
 
 std::vector<ArtefactFile> RecipeBook::artefacts(const std::string& stage, std::string_view item) {
-  const std::string prefix = item_label(item) + '.';
-  const bool only_one = first_asked_.try_emplace(stage, prefix).first->second == prefix;
-  if (stage != stage_ && !only_one) {
-    files_ = files_of(stage, {});
-    stage_ = stage;
+  if (std::exchange(stage_, stage) != stage) {
+    files_.clear();
+    for (std::size_t shard = 0; shard < kShards; ++shard)
+      visit_names(folder_ / shard_of(stage, first_key(shard)),
+                  [&](std::string_view file, bool) { files_.emplace_back(file); });
+    std::ranges::sort(files_);
   }
-  const std::vector<std::string> few = stage == stage_ ? std::vector<std::string>() : files_of(stage, prefix);
-  const std::vector<std::string>& files = stage == stage_ ? files_ : few;
   std::vector<ArtefactFile> found;
-  for (auto file = std::lower_bound(files.begin(), files.end(), prefix);
-       file != files.end() && file->starts_with(prefix); ++file)
+  const std::string begin = item_label(item) + '.';
+  for (auto file = std::ranges::lower_bound(files_, begin); file != files_.end() && file->starts_with(begin);
+       ++file)
     if (auto name = parse_artefact_name(*file)) found.push_back(located(stage, std::move(*name)));
   return found;
 }

@@ -37,24 +37,21 @@ class RecipeBook {
  public:
   explicit RecipeBook(std::filesystem::path folder);
 
-  // By path; truncated and damaged ones included, which no run will use. A look at one item of a stage keeps
-  // no other names; from the second item on, those of the stage last asked for are kept.
+  // Truncated and damaged ones included, which no run will use. Names are kept of the stage last asked for.
   std::vector<ArtefactFile> artefacts(const std::string& stage, std::string_view item);
 
-  // The same of a key, without a look at other folders than its own.
+  // Those of a key; looks at no other folder than its own.
   std::vector<ArtefactFile> artefacts(const std::string& stage, const Digest& key) const;
 
   // A quarantined artefact of this key; nullptr if there is none.
   const std::filesystem::path* quarantined(const Digest& key) const;
 
  private:
-  std::vector<std::string> files_of(const std::string& stage, std::string_view prefix) const;
   ArtefactFile located(const std::string& stage, ArtefactName name) const;
 
   std::filesystem::path folder_;
-  std::map<std::string, std::string> first_asked_;  // item of each stage, as its files begin
-  std::string stage_;                               // of files_
-  std::vector<std::string> files_;                  // names, sorted
+  std::string stage_;               // last asked for
+  std::vector<std::string> files_;  // its names, sorted
   std::map<Digest, std::filesystem::path> quarantined_;
 };
 

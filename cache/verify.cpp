@@ -54,44 +54,37 @@ std::string fault_of(const ArtefactFile& file, const fs::path& folder, Verificat
   return error.what();
 }
 
-// Sound artefacts of one key lie in one shard.
-void verify_shard(const fs::path& folder, const ShardFolder& shard, Verification& result) {
-  std::map<Digest, const ArtefactFile*> sound;
-  const std::vector<ArtefactFile> files = list_shard(folder, shard);
-  for (const ArtefactFile& file : files) {
-    std::string fault = fault_of(file, folder, result);
-    if (fault.empty()) {
-      const ArtefactFile* first = sound.try_emplace(file.name.key, &file).first->second;
-      if (first->name.content != file.name.content)
-        fault = "another content under the key of " + first->path.filename().string();
-    }
-    if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
-  }
-}
-
 // Shards that one process checks: enough of them to be worth a process, and few enough to stop soon.
 using Slice = std::span<const ShardFolder>;
-constexpr std::size_t kSliceArtefacts = 512;
-constexpr std::uint64_t kSliceBytes = std::uint64_t{64} << 20U;
+constexpr std::size_t kSliceArtefacts = 256;
 constexpr ChildLimits kSliceLimits = {.processor_time = std::chrono::seconds(3600)};
 
 std::vector<Slice> slices_of(const std::vector<ShardFolder>& shards) {
   std::vector<Slice> slices;
   for (std::size_t first = 0, next = 0; first < shards.size(); first = next) {
-    std::size_t artefacts = 0;
-    for (std::uint64_t bytes = 0; next < shards.size() && artefacts < kSliceArtefacts && bytes < kSliceBytes;
-         ++next) {
+    for (std::size_t artefacts = 0; next < shards.size() && artefacts < kSliceArtefacts; ++next)
       artefacts += shards[next].artefacts;
-      bytes += shards[next].bytes;
-    }
     slices.push_back(Slice(shards).subspan(first, next - first));
   }
   return slices;
 }
 
+// Sound artefacts of one key lie in one shard.
 Verification verify_slice(const fs::path& folder, Slice slice) {
   Verification result;
-  for (const ShardFolder& shard : slice) verify_shard(folder, shard, result);
+  for (const ShardFolder& shard : slice) {
+    std::map<Digest, const ArtefactFile*> sound;
+    const std::vector<ArtefactFile> files = list_shard(folder, shard);
+    for (const ArtefactFile& file : files) {
+      std::string fault = fault_of(file, folder, result);
+      if (fault.empty()) {
+        const ArtefactFile* first = sound.try_emplace(file.name.key, &file).first->second;
+        if (first->name.content != file.name.content)
+          fault = "another content under the key of " + first->path.filename().string();
+      }
+      if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
+    }
+  }
   return result;
 }
 
