@@ -41,17 +41,19 @@ bool KeepSet::covers(std::string_view stage, const ArtefactName& name) const {
 Collected collect_garbage(const fs::path& folder, const KeepSet& needed, bool dry_run, Progress& progress) {
   require_cache(folder);
   Collected result;
-  const std::vector<ArtefactFile> artefacts = list_cache(folder).artefacts;
-  progress.begin("collecting", artefacts.size());
-  for (const ArtefactFile& file : artefacts) {
-    if (result.stages.empty() || result.stages.back().stage != file.stage)
-      result.stages.push_back({file.stage, {}, {}});
+  const CacheListing listing = list_cache(folder);
+  progress.begin("collecting", listing.artefacts);
+  for (const ShardFolder& shard : listing.shards) {
+    if (result.stages.empty() || result.stages.back().stage != shard.stage)
+      result.stages.push_back({shard.stage, {}, {}});
     Collected::OfStage& stage = result.stages.back();
-    if (needed.covers(file.stage, file.name))
-      stage.kept.add(file.name.size);
-    else
-      remove_file(file.path, dry_run, stage.removed);
-    progress.item_done();
+    for (const ArtefactFile& file : list_shard(folder, shard)) {
+      if (needed.covers(file.stage, file.name))
+        stage.kept.add(file.name.size);
+      else
+        remove_file(file.path, dry_run, stage.removed);
+      progress.item_done();
+    }
   }
   progress.end();
   for (const FolderEntry& entry : list_folder(folder / kDamagedFolder))

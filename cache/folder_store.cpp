@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/folder_store.h"
 
+#include <algorithm>
 #include <atomic>
+#include <bitset>
 #include <map>
 #include <mutex>
-#include <shared_mutex>
-#include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -25,11 +24,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct StageEntries {
-  std::unordered_map<Digest, ArtefactName> by_key;
-  std::unordered_set<std::string> items;
-};
 
 constexpr std::size_t kShardGrain = 16;  // shards that are listed by one thread at a time
 
@@ -55,27 +49,14 @@ Attributes describe(const Recipe& recipe, std::string_view kind, const Digest& k
 struct FolderStore::Impl {
   fs::path folder;
   Access access;
-  mutable std::shared_mutex mutex;  // of stages
-  std::map<std::string, StageEntries, std::less<>> stages;
+  NameIndex names;
+  std::mutex listing;  // of `listed`, which on_demand needs
+  std::map<std::string, std::bitset<kShards>, std::less<>> listed;
   std::once_flag prepared;
   std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 
   fs::path path(std::string_view stage, const ArtefactName& name) const {
     return folder / shard_of(stage, name.key) / name.text();
-  }
-
-  const ArtefactName* entry(std::string_view stage, const Digest& key) const {
-    const auto entries = stages.find(stage);
-    if (entries == stages.end()) return nullptr;
-    const auto found = entries->second.by_key.find(key);
-    return found == entries->second.by_key.end() ? nullptr : &found->second;
-  }
-
-  static void insert(ArtefactName name, StageEntries& entries) {
-    entries.items.insert(name.item);
-    const auto [known, fresh] = entries.by_key.try_emplace(name.key);
-    // Two contents under one key: some stage is not deterministic. Every machine takes the smaller digest.
-    if (fresh || name.content < known->second.content) known->second = std::move(name);
   }
 
   // A file whose size is not the one in its name was truncated by others: not listed, so a miss. Moved aside,
@@ -87,37 +68,55 @@ struct FolderStore::Impl {
     return false;
   }
 
-  std::vector<ArtefactName> complete_artefacts(const fs::path& shard) const {
-    std::vector<ArtefactName> complete;
+  void list_shard(std::string_view stage, std::size_t number) {
+    const fs::path shard = folder / shard_of(stage, first_key(number));
+    std::vector<ArtefactName> found;
     visit_files(shard, [&](std::string_view file, std::uintmax_t bytes) {
-      if (auto name = parse_artefact_name(file); name && is_complete(shard, file, *name, bytes))
-        complete.push_back(std::move(*name));
+      if (auto name = parse_artefact_name(file);
+          name && shard_number(name->key) == number && is_complete(shard, file, *name, bytes))
+        found.push_back(std::move(*name));
     });
-    return complete;
+    std::ranges::sort(found, {}, &ArtefactName::key);
+    names.insert(stage, found);
+  }
+
+  void list_shards(std::string_view stage) {
+    parallel_ranges(kShards, kShardGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t shard = first; shard < last; ++shard) list_shard(stage, shard);
+    });
   }
 
   // Most of the time of a run with nothing to do: several stages at a time, and several shards of each.
   void list_all() {
-    std::vector<std::pair<const std::string, StageEntries>*> listed;
-    for (const std::string& stage : list_stages(folder)) listed.push_back(&*stages.try_emplace(stage).first);
-    parallel_ranges(listed.size(), 1, [&](std::size_t i, std::size_t) {
-      auto& [stage, entries] = *listed[i];
-      const std::vector<FolderEntry> shards = list_folder(folder / stage);
-      std::vector<std::vector<ArtefactName>> found(shards.size());
-      parallel_ranges(shards.size(), kShardGrain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t s = first; s < last; ++s)
-          if (shards[s].is_folder) found[s] = complete_artefacts(shards[s].path);
-      });
-      for (std::vector<ArtefactName>& names : found)
-        for (ArtefactName& name : names) insert(std::move(name), entries);
-    });
-    std::erase_if(stages, [](const auto& stage) { return stage.second.by_key.empty(); });
+    const std::vector<std::string> stages = list_stages(folder);
+    parallel_ranges(stages.size(), 1, [&](std::size_t i, std::size_t) { list_shards(stages[i]); });
+  }
+
+  bool needs_listing(std::string_view stage, std::size_t shard) {
+    const std::lock_guard lock(listing);
+    return !listed[std::string(stage)][shard];
+  }
+
+  // Before a question about one key, or about all of a stage. Two threads may list the same shard.
+  void list_for(std::string_view stage, const std::optional<Digest>& key) {
+    if (access != Access::on_demand) return;
+    for (std::size_t shard = 0; shard < kShards; ++shard) {
+      if ((key && shard != shard_number(*key)) || !needs_listing(stage, shard)) continue;
+      list_shard(stage, shard);
+      const std::lock_guard lock(listing);
+      listed[std::string(stage)].set(shard);
+    }
+  }
+
+  std::optional<ArtefactName> find(std::string_view stage, const Digest& key) {
+    list_for(stage, key);
+    return names.find(stage, key);
   }
 
   // A file that is gone (another process collects, or quarantines the same file) needs no warning.
   void quarantine(const fs::path& file, std::string_view why) const {
     std::error_code error;
-    if (access == Access::read_only) {
+    if (access != Access::read_write) {
       spdlog::warn("{}: {}; a run will compute it again", file.string(), why);
       return;
     }
@@ -135,11 +134,7 @@ struct FolderStore::Impl {
   // A missing file is a miss; one that the system does not let us read is an error, not damage.
   template <class Result, class Parse>
   std::optional<Result> read(std::string_view stage, const Digest& key, const Parse& parse) {
-    std::optional<ArtefactName> name;
-    {
-      const std::shared_lock lock(mutex);
-      if (const ArtefactName* known = entry(stage, key)) name = *known;
-    }
+    const std::optional<ArtefactName> name = find(stage, key);
     if (!name) return {};
     const fs::path file = path(stage, *name);
     if (auto bytes = read_bytes(file)) {
@@ -147,13 +142,8 @@ struct FolderStore::Impl {
       if (fault.empty()) return std::move(result);
       quarantine(file, fault);
     }
-    forget(stage, key);
+    names.erase(stage, key);
     return {};
-  }
-
-  void forget(std::string_view stage, const Digest& key) {
-    const std::unique_lock lock(mutex);
-    stages.find(stage)->second.by_key.erase(key);
   }
 };
 
@@ -167,32 +157,28 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
   check_format(impl_->folder);
   if (access == Access::read_write)
     visit_abandoned(impl_->folder / kScratchFolder, [&](const fs::path& file) { fs::remove(file, error); });
-  impl_->list_all();
+  if (access != Access::on_demand) impl_->list_all();
 }
 
 FolderStore::~FolderStore() = default;
 
 std::optional<Digest> FolderStore::find(std::string_view stage, const Digest& key) const {
-  const std::shared_lock lock(impl_->mutex);
-  const ArtefactName* entry = impl_->entry(stage, key);
-  return entry == nullptr ? std::nullopt : std::optional(entry->content);
+  const auto name = impl_->find(stage, key);
+  return name ? std::optional(name->content) : std::nullopt;
 }
 
 bool FolderStore::has_item(std::string_view stage, std::string_view item) const {
-  const std::shared_lock lock(impl_->mutex);
-  const auto entries = impl_->stages.find(stage);
-  return entries != impl_->stages.end() && entries->second.items.contains(item_label(item));
+  impl_->list_for(stage, {});
+  return impl_->names.has_item(stage, item);
 }
 
-// The names are read without the lock: on a network file system that takes its time.
 std::optional<Digest> FolderStore::refresh_and_find(std::string_view stage, const Digest& key) {
   if (const auto content = find(stage, key)) return content;
   for (const ArtefactName& name : find_artefacts(impl_->folder, stage, key)) {
     const fs::path file = impl_->path(stage, name);
     const auto bytes = size_of_file(file);
     if (!bytes || !impl_->is_complete(file.parent_path(), file.filename().native(), name, *bytes)) continue;
-    const std::unique_lock lock(impl_->mutex);
-    Impl::insert(name, impl_->stages[std::string(stage)]);
+    impl_->names.insert(stage, {&name, 1});
   }
   return find(stage, key);
 }
@@ -230,9 +216,8 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   UnfinishedFile file(impl_->folder / kScratchFolder);
   file.append(image);
   file.finish_unsynced(target);
-  const std::unique_lock lock(impl_->mutex);
   impl_->is_synced = false;
-  Impl::insert(name, impl_->stages[recipe.stage]);
+  impl_->names.insert(recipe.stage, {&name, 1});
   return content;
 }
 
@@ -244,26 +229,15 @@ std::unique_ptr<Claim> FolderStore::claim(std::string_view work) { return claim_
 bool FolderStore::is_claimed(std::string_view work) const { return is_claimed_in(impl_->folder, work); }
 
 std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& key) const {
-  const std::shared_lock lock(impl_->mutex);
-  const ArtefactName* entry = impl_->entry(stage, key);
-  return entry == nullptr ? std::nullopt : std::optional(impl_->path(stage, *entry));
+  const auto name = impl_->find(stage, key);
+  return name ? std::optional(impl_->path(stage, *name)) : std::nullopt;
 }
 
 std::optional<std::uint64_t> FolderStore::bytes_of(std::string_view stage, const Digest& key) const {
-  const std::shared_lock lock(impl_->mutex);
-  const ArtefactName* entry = impl_->entry(stage, key);
-  return entry == nullptr ? std::nullopt : std::optional<std::uint64_t>(entry->size);
+  const auto name = impl_->find(stage, key);
+  return name ? std::optional(name->size) : std::nullopt;
 }
 
-std::vector<FolderStore::Usage> FolderStore::usage() const {
-  const std::shared_lock lock(impl_->mutex);
-  std::vector<Usage> result;
-  for (const auto& [stage, entries] : impl_->stages) {
-    Usage usage{stage, entries.by_key.size(), 0};
-    for (const auto& [key, entry] : entries.by_key) usage.bytes += entry.size;
-    result.push_back(usage);
-  }
-  return result;
-}
+std::vector<FolderStore::Usage> FolderStore::usage() const { return impl_->names.usage(); }
 
 }  // namespace salbench

@@ -11,12 +11,17 @@
 #include <string>
 #include <vector>
 
+#include "cache/name_index.h"
 #include "cache/store.h"
 #include "io/file.h"
 
 namespace salbench {
 
-enum class Access { read_only, read_write };
+enum class Access {
+  read_only,
+  on_demand,  // read_only, for a few keys: a folder of two digits is listed when one of its keys is asked for
+  read_write,
+};
 
 class FolderStore final : public Store {
  public:
@@ -46,12 +51,8 @@ class FolderStore final : public Store {
 
   std::optional<std::uint64_t> bytes_of(std::string_view stage, const Digest& key) const;  // of that file
 
-  struct Usage {
-    std::string stage;
-    std::size_t artefacts = 0;
-    std::uint64_t bytes = 0;
-  };
-  std::vector<Usage> usage() const;  // by stage name
+  using Usage = NameIndex::Usage;
+  std::vector<Usage> usage() const;  // by stage name; on_demand: of what was listed
 
  private:
   struct Impl;

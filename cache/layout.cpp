@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/layout.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <fmt/format.h>
@@ -23,24 +24,28 @@ std::string tag_text(const fs::path& folder) {
   return tag ? std::string(reinterpret_cast<const char*>(tag->data()), tag->size()) : std::string();
 }
 
-bool is_own(const std::string& name) {
+bool is_own(std::string_view name) {
   return name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile;
 }
 
 // Artefacts lie one level below the folder of their stage; any other file is foreign.
-void list_below(const fs::path& folder, const std::string& stage, int depth, CacheListing& listing) {
+void list_below(const fs::path& folder, ShardFolder shard, int depth, CacheListing& listing) {
   constexpr int kShardDepth = 1;
-  for (FolderEntry& entry : list_folder(folder)) {
-    if (entry.is_folder) {
-      list_below(entry.path, stage, depth + 1, listing);
-      continue;
+  std::vector<std::string> folders;
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    if (is_folder) {
+      folders.emplace_back(name);
+    } else if (depth == kShardDepth && parse_artefact_name(name)) {
+      ++shard.artefacts;
+    } else {
+      ++listing.others;
     }
-    const auto name = parse_artefact_name(entry.path.filename().native());
-    if (name && depth == kShardDepth)
-      listing.artefacts.push_back({std::move(entry.path), stage, *name});
-    else
-      listing.others.push_back(std::move(entry.path));
-  }
+  });
+  listing.artefacts += shard.artefacts;
+  if (shard.artefacts > 0) listing.shards.push_back(shard);
+  std::sort(folders.begin(), folders.end());
+  for (const std::string& below : folders)
+    list_below(folder / below, {shard.stage, below}, depth + 1, listing);
 }
 
 }  // namespace
@@ -79,30 +84,35 @@ void prepare_cache(const fs::path& folder) {
 
 std::vector<std::string> list_stages(const fs::path& folder) {
   std::vector<std::string> stages;
-  for (const FolderEntry& entry : list_folder(folder))
-    if (entry.is_folder && !is_own(entry.path.filename())) stages.push_back(entry.path.filename());
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    if (is_folder && !is_own(name)) stages.emplace_back(name);
+  });
+  std::sort(stages.begin(), stages.end());
   return stages;
-}
-
-CacheListing list_stage(const fs::path& folder, const std::string& stage) {
-  CacheListing listing;
-  list_below(folder / stage, stage, 0, listing);
-  return listing;
 }
 
 CacheListing list_cache(const fs::path& folder) {
   CacheListing listing;
-  for (const FolderEntry& entry : list_folder(folder))
-    if (!entry.is_folder && !is_own(entry.path.filename())) listing.others.push_back(entry.path);
-  for (const std::string& stage : list_stages(folder)) list_below(folder / stage, stage, 0, listing);
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    if (!is_folder && !is_own(name)) ++listing.others;
+  });
+  for (const std::string& stage : list_stages(folder)) list_below(folder / stage, {stage, {}}, 0, listing);
   return listing;
+}
+
+std::vector<ArtefactFile> list_shard(const fs::path& folder, const ShardFolder& shard) {
+  std::vector<ArtefactFile> files;
+  for (FolderEntry& entry : list_folder(folder / shard.stage / shard.name))
+    if (auto name = parse_artefact_name(entry.path.filename().native()); name && !entry.is_folder)
+      files.push_back({std::move(entry.path), shard.stage, std::move(*name)});
+  return files;
 }
 
 std::vector<ArtefactName> find_artefacts(const fs::path& folder, std::string_view stage, const Digest& key) {
   std::vector<ArtefactName> found;
-  for (const FolderEntry& entry : list_folder(folder / shard_of(stage, key)))
-    if (const auto name = parse_artefact_name(entry.path.filename().native()); name && name->key == key)
-      found.push_back(*name);
+  visit_names(folder / shard_of(stage, key), [&](std::string_view file, bool) {
+    if (const auto name = parse_artefact_name(file); name && name->key == key) found.push_back(*name);
+  });
   return found;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "cache/verify.h"
 #include "io/file.h"
@@ -77,15 +78,31 @@ RecipeBook::RecipeBook(fs::path folder) : folder_(std::move(folder)) {
       quarantined_.emplace(name->key, std::move(entry.path));
 }
 
-const std::vector<ArtefactFile>& RecipeBook::artefacts(const std::string& stage, std::string_view item) {
-  static const std::vector<ArtefactFile> none;
-  const auto [listed, fresh] = stages_.try_emplace(stage);
-  ByItem& by_item = listed->second;
-  if (fresh)
-    for (ArtefactFile& file : list_stage(folder_, stage).artefacts)
-      by_item[file.name.item].push_back(std::move(file));
-  const auto found = by_item.find(item_label(item));
-  return found == by_item.end() ? none : found->second;
+ArtefactFile RecipeBook::located(const std::string& stage, ArtefactName name) const {
+  return {folder_ / shard_of(stage, name.key) / name.text(), stage, std::move(name)};
+}
+
+std::vector<ArtefactFile> RecipeBook::artefacts(const std::string& stage, std::string_view item) {
+  if (std::exchange(stage_, stage) != stage) {
+    files_.clear();
+    for (std::size_t shard = 0; shard < kShards; ++shard)
+      visit_names(folder_ / shard_of(stage, first_key(shard)),
+                  [&](std::string_view file, bool) { files_.emplace_back(file); });
+    std::ranges::sort(files_);
+  }
+  std::vector<ArtefactFile> found;
+  const std::string begin = item_label(item) + '.';
+  for (auto file = std::ranges::lower_bound(files_, begin); file != files_.end() && file->starts_with(begin);
+       ++file)
+    if (auto name = parse_artefact_name(*file)) found.push_back(located(stage, std::move(*name)));
+  return found;
+}
+
+std::vector<ArtefactFile> RecipeBook::artefacts(const std::string& stage, const Digest& key) const {
+  std::vector<ArtefactFile> found;
+  for (ArtefactName& name : find_artefacts(folder_, stage, key))
+    found.push_back(located(stage, std::move(name)));
+  return found;
 }
 
 const fs::path* RecipeBook::quarantined(const Digest& key) const {

@@ -32,22 +32,26 @@ struct RecipeReading {
 };
 RecipeReading read_recipe(const ArtefactFile& file);
 
-// The artefacts of a folder by stage and item. A stage is listed when it is first asked for.
+// The artefacts of a folder by stage and item.
 class RecipeBook {
  public:
   explicit RecipeBook(std::filesystem::path folder);
 
-  // By path; truncated and damaged ones included, which no run will use.
-  const std::vector<ArtefactFile>& artefacts(const std::string& stage, std::string_view item);
+  // Truncated and damaged ones included, which no run will use. Names are kept of the stage last asked for.
+  std::vector<ArtefactFile> artefacts(const std::string& stage, std::string_view item);
+
+  // Those of a key; looks at no other folder than its own.
+  std::vector<ArtefactFile> artefacts(const std::string& stage, const Digest& key) const;
 
   // A quarantined artefact of this key; nullptr if there is none.
   const std::filesystem::path* quarantined(const Digest& key) const;
 
  private:
-  using ByItem = std::map<std::string, std::vector<ArtefactFile>, std::less<>>;
+  ArtefactFile located(const std::string& stage, ArtefactName name) const;
 
   std::filesystem::path folder_;
-  std::map<std::string, ByItem> stages_;
+  std::string stage_;               // last asked for
+  std::vector<std::string> files_;  // its names, sorted
   std::map<Digest, std::filesystem::path> quarantined_;
 };
 

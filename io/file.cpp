@@ -109,6 +109,28 @@ std::string zeros(std::size_t size, const fs::path& path) try {
 
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
 
+// Calls visit(descriptor of the folder, entry). The folder stays open, and its files are looked at by their
+// names in it: for the tens of thousands of a cache, making a path of each and looking it up takes nearly as
+// long as the rest of their listing.
+template <class Visit>
+void visit_entries(const fs::path& folder, const Visit& visit) {
+  const std::unique_ptr<DIR, int (*)(DIR*)> listed(::opendir(folder.c_str()), ::closedir);
+  if (!listed && is_missing(errno)) return;
+  if (!listed) fail(folder, "listed", errno);
+  for (errno = 0; const dirent* entry = ::readdir(listed.get()); errno = 0)
+    if (const std::string_view name = entry->d_name; name != "." && name != "..")
+      visit(::dirfd(listed.get()), *entry);
+  if (errno != 0) fail(folder, "listed", errno);
+}
+
+// Nothing for a file that is gone, or a link that leads nowhere.
+std::optional<struct stat> status_of(const fs::path& folder, int in, const char* name) {
+  struct stat status {};
+  if (::fstatat(in, name, &status, 0) == 0) return status;
+  if (!is_missing(errno) && errno != ELOOP) fail(folder / name, "looked at", errno);
+  return {};
+}
+
 }  // namespace
 
 std::string system_reason(int error) {
@@ -231,36 +253,33 @@ void visit_abandoned(const fs::path& folder, const std::function<void(const fs::
 
 std::vector<FolderEntry> list_folder(const fs::path& folder) {
   std::vector<FolderEntry> entries;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const bool is_folder = it->is_directory(error);
-    const bool leads_nowhere = is_missing(error.value()) || error.value() == ELOOP;
-    if (error && !leads_nowhere) break;
-    entries.push_back({it->path(), is_folder});
-  }
-  if (error && !is_missing(error.value())) fail(folder, "listed", error.value());
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    entries.push_back({folder / name, is_folder});
+  });
   std::sort(entries.begin(), entries.end(),
             [](const FolderEntry& a, const FolderEntry& b) { return a.path.native() < b.path.native(); });
   return entries;
 }
 
-// The folder stays open, and its files are looked at by their names in it: for the tens of thousands of a
-// cache, making a path of each and looking it up takes nearly as long as the rest of their listing.
+void visit_names(const fs::path& folder,
+                 const std::function<void(std::string_view name, bool is_folder)>& visit) {
+  visit_entries(folder, [&](int in, const dirent& entry) {
+    bool is_folder = entry.d_type == DT_DIR;
+    if (entry.d_type == DT_LNK || entry.d_type == DT_UNKNOWN) {
+      const auto status = status_of(folder, in, entry.d_name);
+      is_folder = status && S_ISDIR(status->st_mode);
+    }
+    visit(entry.d_name, is_folder);
+  });
+}
+
 void visit_files(const fs::path& folder,
                  const std::function<void(std::string_view name, std::uintmax_t bytes)>& visit) {
-  const std::unique_ptr<DIR, int (*)(DIR*)> listed(::opendir(folder.c_str()), ::closedir);
-  if (!listed && is_missing(errno)) return;
-  if (!listed) fail(folder, "listed", errno);
-  for (errno = 0; const dirent* entry = ::readdir(listed.get()); errno = 0) {
-    if (entry->d_type == DT_DIR) continue;
-    struct stat status {};
-    if (::fstatat(::dirfd(listed.get()), entry->d_name, &status, 0) == 0) {
-      if (S_ISREG(status.st_mode)) visit(entry->d_name, static_cast<std::uintmax_t>(status.st_size));
-    } else if (!is_missing(errno) && errno != ELOOP) {
-      fail(folder / entry->d_name, "looked at", errno);
-    }
-  }
-  if (errno != 0) fail(folder, "listed", errno);
+  visit_entries(folder, [&](int in, const dirent& entry) {
+    if (entry.d_type == DT_DIR) return;
+    const auto status = status_of(folder, in, entry.d_name);
+    if (status && S_ISREG(status->st_mode)) visit(entry.d_name, static_cast<std::uintmax_t>(status->st_size));
+  });
 }
 
 void make_folder(const fs::path& folder, std::string_view advice) {

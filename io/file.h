@@ -83,6 +83,10 @@ struct FolderEntry {
 // to its end.
 std::vector<FolderEntry> list_folder(const std::filesystem::path& folder);
 
+// The same in no order, without the time and memory of paths.
+void visit_names(const std::filesystem::path& folder,
+                 const std::function<void(std::string_view name, bool is_folder)>& visit);
+
 // Calls `visit` with name and size in bytes of every regular file in the folder, in no order; for none if
 // there is no such folder. A file that disappears meanwhile is left out. Throws StorageError if the folder
 // cannot be listed to its end, or if the system refuses a size.

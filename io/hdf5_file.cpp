@@ -273,7 +273,7 @@ void Hdf5File::Open::read_all(const std::filesystem::path& path) try {
 // changes), so a child process reads everything first.
 void Hdf5File::Open::survive_reading(const std::filesystem::path& path) {
   const ChildResult result = run_in_child(
-      kLimits, [&](const Send&) { read_all(path); }, fork_beside_library);
+      kLimits, [&](const Send&) { read_all(path); }, fork_beside_hdf5);
   if (!result.failure.empty())
     throw InputError(fmt::format("{}: damaged: the HDF5 library that reads it {}; write the file again",
                                  path.string(), result.failure));
@@ -325,7 +325,7 @@ ScalarField read_hdf5_values(const std::filesystem::path& path, std::string_view
       throw InputError(fmt::format("data set {}: {}", in_quotes(chosen), error.what()));
     }
   };
-  return numbers_from_child(kLimitsOfOneMap, name, read, fork_beside_library);
+  return numbers_from_child(kLimitsOfOneMap, name, read, fork_beside_hdf5);
 }
 
 }  // namespace salbench

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include <unistd.h>
+
 #include "io/arrays.h"
 #include "io/file.h"
 
@@ -31,6 +33,9 @@ Bytes hdf5_image(const Hdf5Content& content);
 // The inverse, in the order of the names; links are not followed. Throws InputError naming `name` if the
 // image is not such a file.
 Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name);
+
+// fork() at a moment when no thread is inside the library, so that the child may call all of the above.
+pid_t fork_beside_hdf5();
 
 // A file of another program.
 class Hdf5File {

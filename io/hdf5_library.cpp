@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "io/hdf5_file.h"
+
 namespace salbench::hdf5 {
 namespace {
 
@@ -85,13 +87,6 @@ LibraryLock::LibraryLock() {
 
 LibraryLock::~LibraryLock() {
   if (--gate().inside == 0) gate().inside.notify_all();
-}
-
-pid_t fork_beside_library() {
-  auto& [entrance, inside] = gate();
-  const std::lock_guard alone(entrance);
-  for (int threads = inside; threads > 0; threads = inside) inside.wait(threads);
-  return ::fork();
 }
 
 void must(herr_t status, const char* what) {
@@ -184,3 +179,14 @@ std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes) {
 }
 
 }  // namespace salbench::hdf5
+
+namespace salbench {
+
+pid_t fork_beside_hdf5() {
+  auto& [entrance, inside] = hdf5::gate();
+  const std::lock_guard alone(entrance);
+  for (int threads = inside; threads > 0; threads = inside) inside.wait(threads);
+  return ::fork();
+}
+
+}  // namespace salbench

@@ -34,9 +34,6 @@ class LibraryLock {
 };
 inline LibraryLock library() { return {}; }
 
-// fork() at a moment when no thread is inside the library, so that the child may call it.
-pid_t fork_beside_library();
-
 // An HDF5 identifier with the function that closes it. Throws if it is negative: the library failed.
 class Handle {
  public:

@@ -90,7 +90,7 @@ Json::Object json_of(const ExplainReport& report) {
 }
 
 ExplainReport explained(const Setup& setup, const ExplainOptions& options) {
-  const FolderStore store(setup.cache, Access::read_only);
+  const FolderStore store(setup.cache, Access::on_demand);
   return {options, explain(setup.project, store, setup.cache, options)};
 }
 

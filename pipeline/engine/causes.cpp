@@ -30,10 +30,8 @@ Cause Causes::of(const Job& job, bool verify) {
   const std::filesystem::path* aside = book_.quarantined(key);
   if (aside != nullptr && (!hit || decision.reason == Reason::damaged))
     return {Reason::damaged, {}, *aside, "a run moved it aside"};
-  const auto& files = book_.artefacts(now.stage, project_.name(job));
   if (hit || decision.verdict == Verdict::compute) {
-    for (const ArtefactFile& file : files) {
-      if (file.name.key != key) continue;
+    for (const ArtefactFile& file : book_.artefacts(now.stage, key)) {
       if (hit && !verify) return {decision.reason, {}, file.path};
       if (std::string fault = read_recipe(file).fault; !fault.empty())
         return {Reason::damaged, {}, file.path, std::move(fault)};
@@ -41,7 +39,7 @@ Cause Causes::of(const Job& job, bool verify) {
     }
     if (hit) return {decision.reason};
   }
-  return nearest(files, now, key);
+  return nearest(book_.artefacts(now.stage, project_.name(job)), now, key);
 }
 
 Cause Causes::nearest(const std::vector<ArtefactFile>& files, const Recipe& now, const Digest& key) {

@@ -72,6 +72,48 @@ TEST_F(FolderStoreTest, SeesWhatAnotherProcessStored) {
   EXPECT_EQ(mine.refresh_and_find("fpfh", key_of(recipe())), content);
 }
 
+TEST_F(FolderStoreTest, OnDemandItListsTheFolderOfAKeyAndNoOther) {
+  std::vector<Recipe> recipes;
+  {
+    FolderStore store = open();
+    for (int k = 0; k < 40; ++k) {
+      recipes.push_back(recipe("k: " + std::to_string(k) + "\n"));
+      save(store, recipes.back(), k);
+    }
+  }
+  const FolderStore all(folder_, Access::read_only);
+  FolderStore some(folder_, Access::on_demand);
+  EXPECT_THAT(some.usage(), testing::IsEmpty());
+  EXPECT_TRUE(some.find("fpfh", key_of(recipes[3])));
+  std::size_t same_folder = 0;
+  for (const Recipe& other : recipes)
+    same_folder += key_of(other).hex().substr(0, 2) == key_of(recipes[3]).hex().substr(0, 2) ? 1U : 0U;
+  ASSERT_LT(same_folder, recipes.size());
+  ASSERT_THAT(some.usage(), testing::SizeIs(1));
+  EXPECT_EQ(some.usage()[0].artefacts, same_folder);
+  for (const Recipe& each : recipes) {
+    EXPECT_EQ(some.find("fpfh", key_of(each)), all.find("fpfh", key_of(each)));
+    EXPECT_EQ(some.path("fpfh", key_of(each)), all.path("fpfh", key_of(each)));
+  }
+  EXPECT_TRUE(some.load("fpfh", key_of(recipes[7])));
+  EXPECT_FALSE(some.find("fpfh", {}));
+  EXPECT_FALSE(some.find("map.PS", key_of(recipes[7])));
+  EXPECT_TRUE(FolderStore(folder_, Access::on_demand).has_item("fpfh", "52"));
+  EXPECT_FALSE(FolderStore(folder_, Access::on_demand).has_item("fpfh", "53"));
+  EXPECT_FALSE(FolderStore(folder_, Access::on_demand).has_item("map.PS", "52"));
+}
+
+TEST_F(FolderStoreTest, OnDemandChangesNothing) {
+  {
+    FolderStore store = open();
+    save(store);
+  }
+  const fs::path file = only_artefact();
+  fs::resize_file(file, fs::file_size(file) - 1);
+  EXPECT_FALSE(FolderStore(folder_, Access::on_demand).find("fpfh", key_of(recipe())));
+  EXPECT_TRUE(fs::exists(file));
+}
+
 // On a network file system each stat takes its time, and a first run misses 70 000 times.
 TEST_F(FolderStoreTest, AMissLooksAtNoFileOfAnotherKey) {
   FolderStore store = open();

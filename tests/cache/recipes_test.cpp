@@ -95,6 +95,33 @@ TEST_F(RecipeBookTest, TellsStagesAndItemsApart) {
   EXPECT_THAT(RecipeBook(folder_ / "not-there").artefacts("fpfh", "52"), IsEmpty());
 }
 
+TEST_F(RecipeBookTest, FindsItemsInAnyOrderOfStages) {
+  Recipe map = recipe();
+  map.stage = "map.PS";
+  for (const char* item : {"5", "52", "52_3"}) {
+    save(item);
+    save(item, map);
+  }
+  Recipe other = recipe();
+  other.seed = "2/52";
+  save("52", other);
+  RecipeBook book(folder_.path());
+  for (const char* item : {"52", "52", "5", "52_3", "52"})
+    for (const char* stage : {"fpfh", "map.PS"}) {
+      const auto found = book.artefacts(stage, item);
+      const bool both = item == std::string("52") && stage == std::string("fpfh");
+      EXPECT_THAT(found, SizeIs(both ? 2 : 1)) << stage << " " << item;
+      for (const ArtefactFile& file : found) {
+        EXPECT_EQ(file.name.item, item);
+        EXPECT_EQ(file.stage, stage);
+        EXPECT_TRUE(fs::exists(file.path));
+      }
+    }
+  EXPECT_THAT(book.artefacts("fpfh", key_of(recipe())), SizeIs(3));
+  EXPECT_THAT(book.artefacts("fpfh", key_of(other)), SizeIs(1));
+  EXPECT_THAT(book.artefacts("normals", key_of(other)), IsEmpty());
+}
+
 TEST_F(RecipeBookTest, ShortFilesAreListedAndNotBelieved) {
   save("52");
   RecipeBook before(folder_.path());

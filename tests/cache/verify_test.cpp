@@ -8,6 +8,7 @@
 #include "cache/layout.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace salbench {
@@ -158,6 +159,38 @@ TEST_F(VerifyTest, AFolderThatIsNoCacheIsRefused) {
   EXPECT_THROW(verify_cache(other / "missing", kGoOn, progress), StorageError);
   other.write("CACHEDIR.TAG", "Signature: 8a477f597d28d172789f06886806bc55\n# of another program\n");
   EXPECT_THROW(verify_cache(other.path(), kGoOn, progress), StorageError);
+}
+
+// More than one process checks, as many as there are cores: each takes a part.
+TEST_F(VerifyTest, ManyArtefactsAreReportedInTheOrderOfTheirFiles) {
+  constexpr int kArtefacts = 1500;
+  {
+    FolderStore store(folder_.path(), Access::read_write);
+    for (int k = 3; k < kArtefacts; ++k) save(store, recipe(k), k);
+  }
+  const std::vector<ArtefactFile> files = artefacts_of(folder_.path());
+  ASSERT_THAT(files, SizeIs(kArtefacts));
+  std::vector<fs::path> cut;
+  for (std::size_t i = 0; i < files.size(); i += 7) {
+    fs::resize_file(files[i].path, files[i].name.size - 1);
+    cut.push_back(files[i].path);
+  }
+  struct Count final : Progress {
+    void begin(const std::string&, std::size_t items, std::function<std::string()>) override {
+      expected = items;
+    }
+    void item_done() override { ++done; }
+    void end() override {}
+    std::size_t expected = 0;
+    std::atomic<std::size_t> done = 0;
+  } count;
+  const Verification result = verify_cache(folder_.path(), kGoOn, count);
+  std::vector<fs::path> named;
+  for (const Fault& fault : result.faults) named.push_back(fault.file);
+  EXPECT_EQ(named, cut);
+  EXPECT_EQ(result.artefacts, kArtefacts);
+  EXPECT_EQ(count.expected, kArtefacts);
+  EXPECT_EQ(count.done, kArtefacts);
 }
 
 TEST_F(VerifyTest, StopsWhenAsked) {

@@ -16,6 +16,7 @@
 #include "cache/layout.h"
 #include "stages/core/rng.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/job_counts.h"
 
 namespace salbench {
@@ -93,7 +94,7 @@ Tally flip_bytes(const ArtefactFile& original, std::size_t stride) {
 TEST(Faults, NoDamagedArtefactOfAnyKindIsReadAsValid) {
   const Workspace toy("scan: {step_degrees: 1}\nmodels: {PS: , HS: }\n");
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const std::vector<ArtefactFile> artefacts = list_cache(toy.cache()).artefacts;
+  const std::vector<ArtefactFile> artefacts = artefacts_of(toy.cache());
   const std::size_t stride = all_faults() ? 1 : 499;
   const auto level = spdlog::get_level();
   spdlog::set_level(spdlog::level::off);  // each is named in a warning

@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cache/layout.h"
 #include "pipeline/engine/causes.h"
 #include "pipeline/engine/maintain.h"
 #include "stages/core/errors.h"
 #include "tests/engine/toy.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/memory_store.h"
 
 namespace salbench {
@@ -136,7 +136,7 @@ TEST(EngineCache, ExplainsVerifiesAndCollects) {
   KeepSet needed;
   EXPECT_EQ(add_needed(other, make_plan(other, store), needed), 0U);
   collect_garbage(cache.path(), needed, false, progress);
-  EXPECT_THAT(list_cache(cache.path()).artefacts, SizeIs(21));
+  EXPECT_THAT(artefacts_of(cache.path()), SizeIs(21));
 }
 
 }  // namespace

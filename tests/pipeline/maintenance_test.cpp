@@ -10,6 +10,7 @@
 #include "io/file.h"
 #include "pipeline/engine/maintain.h"
 #include "stages/core/errors.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"
@@ -55,12 +56,12 @@ class MaintenanceTest : public testing::Test {
   }
   std::vector<std::string> artefacts() const {
     std::vector<std::string> names;
-    for (const ArtefactFile& file : list_cache(cache_.path()).artefacts)
+    for (const ArtefactFile& file : artefacts_of(cache_.path()))
       names.push_back(file.stage + "/" + file.path.filename().string());
     return names;
   }
   std::size_t files(const std::string& stage) const {
-    const auto listed = list_cache(cache_.path()).artefacts;
+    const auto listed = artefacts_of(cache_.path());
     return static_cast<std::size_t>(std::count_if(
         listed.begin(), listed.end(), [&](const ArtefactFile& file) { return file.stage == stage; }));
   }
@@ -148,7 +149,7 @@ TEST_F(MaintenanceTest, WhatReadsADamagedArtefactIsNamed) {
   run(kPs);
   FolderStore cache = store(Access::read_only);
   const ToyRun toy(data_.path(), cache, kPs);
-  for (const ArtefactFile& file : list_cache(cache_.path()).artefacts) {
+  for (const ArtefactFile& file : artefacts_of(cache_.path())) {
     if (file.stage != "fpfh" || file.name.item != "1") continue;
     std::fstream(file.path, std::ios::in | std::ios::out).put('x');
   }
