@@ -129,7 +129,7 @@ ItemsByName items_of(const Found& found, Twins twins, std::vector<std::string>& 
   return items;
 }
 
-using Files = std::vector<fs::path> DatasetItem::*;
+using Files = std::vector<std::string> DatasetItem::*;
 
 // Adds the files of one pattern to their items, and notes those that belong to none.
 class TruthFinder {
@@ -148,10 +148,10 @@ class TruthFinder {
         without_mesh_.emplace(file.item, file.path);
         continue;
       }
-      std::vector<fs::path>& of_item = item->second.*files;
+      std::vector<std::string>& of_item = item->second.*files;
       if (one_file_per_item(pattern) && !of_item.empty())
         throw InputError(fmt::format("{}: {} has a file already, {}, and {} means one: keep one of them",
-                                     file.path.string(), file.item, of_item[0].string(), pattern.where));
+                                     file.path.string(), file.item, of_item[0], pattern.where));
       of_item.push_back(file.path);
       ++added;
     }

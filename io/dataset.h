@@ -54,12 +54,13 @@ struct Layout {
   TruthFormat format = {};
 };
 
+// Places of files are text: std::filesystem::path takes some 350 bytes for each.
 struct DatasetItem {
   std::string name;                                // the mesh file's name without its extension
   std::string category;                            // its class; empty if it has none
-  std::filesystem::path mesh;                      // .off .obj .ply; of a point cloud .ply .pcd .xyz
-  std::vector<std::filesystem::path> saliency;     // one, or one per view or viewer; empty if there is none
-  std::vector<std::filesystem::path> picks;        // by participant's number; may be empty
+  std::string mesh;                                // .off .obj .ply; of a point cloud .ply .pcd .xyz
+  std::vector<std::string> saliency;               // one, or one per view or viewer; empty if there is none
+  std::vector<std::string> picks;                  // by participant's number; may be empty
   bool by_viewer = false;                          // the saliency files are of one viewer each
   std::shared_ptr<const TruthFormat> format = {};  // how these are read; null: as TruthFormat's defaults are
 };

@@ -16,6 +16,7 @@
 namespace salbench {
 namespace {
 
+namespace fs = std::filesystem;
 using Part = RecipeDifference::Part;
 
 constexpr std::size_t kMaxNamed = 4;  // differences in one line; the others are counted
@@ -45,9 +46,9 @@ std::optional<Job> input_named(const Project& project, const Job& job, const std
 // "mesh file .off" -> "mesh file 52.off": keys hold no names of files.
 std::string source_text(const DatasetItem& item, const std::string& name) {
   for (const char* kind : {"mesh file ", "point cloud file "})
-    if (name.starts_with(kind)) return kind + item.mesh.filename().string();
+    if (name.starts_with(kind)) return kind + fs::path(item.mesh).filename().string();
   if (name.starts_with("saliency file") && item.saliency.size() == 1)
-    return "saliency file " + item.saliency[0].filename().string();
+    return "saliency file " + fs::path(item.saliency[0]).filename().string();
   return name;
 }
 

@@ -96,7 +96,7 @@ void add_saliency(GroundTruth& truth, const DatasetItem& item, std::vector<Scala
     throw InputError(
         fmt::format("{}: no point of the shape has a value; expected are values of what was seen, and points "
                     "within max_distance of it",
-                    item.saliency[0].string()));
+                    item.saliency[0]));
   if (item.by_viewer && maps.size() >= kMinParticipants) truth.viewers = std::move(maps);
 }
 
@@ -108,19 +108,18 @@ GroundTruth read_truth(Target target, const Files& files) {
   if (are_in_file_order(item)) target.as_written = parse_mesh((file++)->text(), item.mesh);
   std::vector<ScalarField> maps;
   for (const auto& path : item.saliency)
-    maps.push_back(on_points(target, format.values, (file++)->text(), path.string()));
+    maps.push_back(on_points(target, format.values, (file++)->text(), path));
 
   GroundTruth truth;
   add_saliency(truth, item, std::move(maps));
   for (const auto& path : item.picks)
-    truth.picks.push_back(
-        parse_truth_picks((file++)->text(), path.string(), format.indices, target.in_file()));
+    truth.picks.push_back(parse_truth_picks((file++)->text(), path, format.indices, target.in_file()));
   if (std::all_of(truth.picks.begin(), truth.picks.end(), [](const auto& picks) { return picks.empty(); }))
     truth.picks.clear();
   if (truth.saliency.empty() && truth.picks.empty())
     throw InputError(
         fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty {} files",
-                    item.picks.front().string(), item.picks.front().extension().string()));
+                    item.picks.front(), std::filesystem::path(item.picks.front()).extension().string()));
   return truth;
 }
 
@@ -151,7 +150,7 @@ GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Fi
   const DatasetItem& item = item_of(files.source);
   if (are_in_file_order(item))
     throw InputError(fmt::format("{}: has values per face, but {} is a point cloud, which has none",
-                                 item.saliency[0].string(), item.mesh.string()));
+                                 item.saliency[0], item.mesh));
   GroundTruth truth = read_truth({.points = cloud.points, .cloud = &cloud}, files);
   truth.picks = picks_left(cloud, std::move(truth.picks));
   if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh_of(cloud, surface), truth.picks);

@@ -126,22 +126,22 @@ std::vector<std::string> split_list(const std::string& list) {
   return parts;
 }
 
-Inputs read_inputs(const Dataset& dataset, const std::string& selection, const std::optional<Shard>& shard) {
+Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard) {
   std::set<std::string> present;
   for (const DatasetItem& item : dataset.items) present.insert(item.name);
   const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
   if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
 
-  std::vector<DatasetItem> items = dataset.items;
+  std::vector<DatasetItem> items = std::move(dataset.items);
   std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
   if (shard) items = share_of(items, *shard);
   std::vector<Family> families(items.size());
   FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;
   parallel_ranges(items.size(), 1, [&](std::size_t i, std::size_t) {
     auto [level, file] = shape_file_of(items[i]);
-    families[i] = {level, items[i].name, items[i]};
     shapes.files[i] = {std::move(file)};
     truths.files[i] = truth_files_of(items[i]);
+    families[i] = {level, items[i].name, std::move(items[i])};
   });
   return {dataset.layout,
           dataset.notes,

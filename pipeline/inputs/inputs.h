@@ -45,7 +45,7 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
 
 // The files of the items that `selection` names ("1-20,52,125"; empty: all), or of one
 // share of them. Throws ConfigError where it names an item that is not there.
-Inputs read_inputs(const Dataset& dataset, const std::string& selection = {},
+Inputs read_inputs(Dataset dataset, const std::string& selection = {},
                    const std::optional<Shard>& shard = {});
 
 // Identity of a run's data, wherever they lie.

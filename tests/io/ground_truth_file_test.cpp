@@ -92,9 +92,9 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
     if (item.saliency.empty()) continue;
     SCOPED_TRACE(item.name);
     const std::size_t n = read_mesh(item.mesh).vertices.size();
-    GroundTruth truth{parse_saliency(read_file(item.saliency[0]), item.saliency[0].native(), {n}), {}};
+    GroundTruth truth{parse_saliency(read_file(item.saliency[0]), item.saliency[0], {n}), {}};
     for (const auto& path : item.picks)
-      truth.picks.push_back(parse_picks(read_file(path), path.native(), {n}));
+      truth.picks.push_back(parse_picks(read_file(path), path, {n}));
     ++with_truth;
     EXPECT_GE(truth.picks.size(), 22U);
     // A vertex that somebody picked has at least that person's share of saliency.
