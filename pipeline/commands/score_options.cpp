@@ -1,29 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/commands/score_options.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "pipeline/catalog/config.h"
-#include "pipeline/config/section.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
-namespace {
-
-Unit unit_named(const std::string& name) {
-  if (name.empty()) return StatisticsOptions{}.unit;
-  const auto& names = EnumNames<Unit>::names;
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end())
-    throw ConfigError(fmt::format("--unit {}: must be one of {}", name, fmt::join(names, ", ")));
-  return static_cast<Unit>(found - names.begin());
-}
-
-}  // namespace
-
 Parameters score_parameters(ScoreOptions& options, Parameter scores, const Parameters& further) {
   Parameters parameters = {
       std::move(scores),
@@ -36,7 +20,9 @@ Parameters score_parameters(ScoreOptions& options, Parameter scores, const Param
 }
 
 std::unique_ptr<ConcludedScores> conclude_from_file(const ScoreOptions& options) {
-  const Unit unit = unit_named(options.unit);
+  Unit unit = StatisticsOptions{}.unit;
+  if (!options.unit.empty() && !parse_option(options.unit, unit))
+    throw ConfigError(fmt::format("--unit {}: must be {}", options.unit, expected_of<Unit>()));
   auto concluded = std::make_unique<ConcludedScores>();
   concluded->file =
       read_scores(options.scores, {split_list(options.higher), split_list(options.lower)}, options.classes);

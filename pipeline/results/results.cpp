@@ -9,22 +9,12 @@
 #include "io/file.h"
 #include "pipeline/results/conclusions.h"
 #include "pipeline/results/human_curves.h"
-#include "pipeline/results/statistics.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/core/check.h"
 
 namespace salbench {
 
 namespace fs = std::filesystem;
-
-std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows) {
-  std::vector<DatasetAndModel> pairs;
-  for (const std::string_view dataset : EnumNames<Shapes>::names)
-    for (const ResultRow& row : rows)
-      if (const DatasetAndModel pair{row.dataset, row.model};
-          row.dataset == dataset && std::find(pairs.begin(), pairs.end(), pair) == pairs.end())
-        pairs.push_back(pair);
-  return pairs;
-}
 
 namespace {
 
@@ -63,6 +53,24 @@ std::vector<ResultRow> collect(const RunState& run, bool of_constant) {
   return rows;
 }
 
+// bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
+// unmatched, min-max-normalised maps. [tasse2016]
+Table mean_histogram_table(const RunState& run, Shapes shapes) {
+  Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
+  for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
+    table.rows[bin].emplace_back(static_cast<double>(bin) / kHistogramBins);
+  for (std::size_t r = 0; r < run.plan.jobs.size(); ++r) {
+    const Row& row = run.context.catalog.rows[r];
+    const JobRef job{r, Item::set()};
+    if (row.kind != "histogram" || row.shapes != shapes || !run.plan[job].known()) continue;
+    const std::size_t dot = row.name.find('.');  // "mean_histogram.LS", or "reference"
+    table.columns.push_back(dot == std::string::npos ? "GS" : row.name.substr(dot + 1));
+    const auto histogram = std::get<Histogram>(*run.runner.result(job));
+    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) table.rows[bin].emplace_back(histogram[bin]);
+  }
+  return table;
+}
+
 }  // namespace
 
 std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, false); }
@@ -75,10 +83,9 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) 
   table.columns.insert(table.columns.end(), {"n_points", "n_picks"});
   for (const ResultRow& row : rows) {
     CHECK_EQ(row.scores.values.size(), metrics.size());
-    auto& cells =
-        table.rows.emplace_back(std::vector<Cell>{row.dataset, row.item, row.category, row.view, row.model});
-    cells.insert(cells.end(), row.scores.values.begin(), row.scores.values.end());
-    cells.insert(cells.end(), {row.scores.n_points, row.scores.n_picks});
+    table.rows.push_back(cells(row.dataset, row.item, row.category, row.view, row.model,
+                               std::vector<Cell>(row.scores.values.begin(), row.scores.values.end()),
+                               row.scores.n_points, row.scores.n_picks));
   }
   return table;
 }

@@ -111,9 +111,9 @@ ScoreFile read_scores(const fs::path& path, const ScoreColumns& columns, const f
   for (std::size_t i = 0; i < items.size(); ++i) {
     ResultRow row{datasets[i], items[i], categories[i], views[i], models[i], {}};
     if (row.dataset.empty()) row.dataset = row.view.empty() ? "meshes" : "scans";
-    if (std::ranges::find(EnumNames<Shapes>::names, row.dataset) == EnumNames<Shapes>::names.end())
-      throw InputError(fmt::format("{}:{}: data set '{}', expected one of {}", table.name, table.lines[i],
-                                   row.dataset, fmt::join(EnumNames<Shapes>::names, ", ")));
+    if (Shapes shapes{}; !parse_option(row.dataset, shapes))
+      throw InputError(fmt::format("{}:{}: data set '{}', expected {}", table.name, table.lines[i],
+                                   row.dataset, expected_of<Shapes>()));
     if (!seen.emplace(row.dataset, row.item, row.view, row.model).second)
       throw InputError(fmt::format("{}:{}: a second row of item '{}'{}{}, model '{}'", table.name,
                                    table.lines[i], row.item, row.view.empty() ? "" : ", view ", row.view,

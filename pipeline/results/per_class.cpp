@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/results/statistics.h"
-
 #include <algorithm>
 
-#include "pipeline/results/unit_scores.h"
-#include "stages/metrics/metrics.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
@@ -38,9 +35,8 @@ void add_class_rows(Table& table, const std::string& category, const DatasetScor
   const auto add = [&](const std::string& model, std::size_t metric, const UnitScores& of) {
     if (of.units.empty()) return;
     const Summary summary = summarise(mean_of_columns(of.scores));
-    const Interval interval = student_interval(summary);
-    table.rows.push_back({scores.dataset(), category, model, metrics[metric].name, summary.n, of.n_shapes,
-                          summary.mean, interval.low, interval.high});
+    table.rows.push_back(cells(scores.dataset(), category, model, metrics[metric].name, summary.n,
+                               of.n_shapes, summary.mean, student_interval(summary)));
   };
   for (std::size_t model = 0; model < scores.models().size(); ++model)
     for (std::size_t m = 0; m < metrics.size(); ++m)
@@ -59,22 +55,6 @@ Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics
       .rows = {}};
   for (const auto& [dataset, category] : datasets_and_classes(rows))
     add_class_rows(table, category, DatasetScores(rows, dataset, unit, category), metrics);
-  return table;
-}
-
-Table mean_histogram_table(const RunState& run, Shapes shapes) {
-  Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
-  for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
-    table.rows[bin].emplace_back(static_cast<double>(bin) / kHistogramBins);
-  for (std::size_t r = 0; r < run.plan.jobs.size(); ++r) {
-    const Row& row = run.context.catalog.rows[r];
-    const JobRef job{r, Item::set()};
-    if (row.kind != "histogram" || row.shapes != shapes || !run.plan[job].known()) continue;
-    const std::size_t dot = row.name.find('.');  // "mean_histogram.LS", or "reference"
-    table.columns.push_back(dot == std::string::npos ? "GS" : row.name.substr(dot + 1));
-    const auto histogram = std::get<Histogram>(*run.runner.result(job));
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) table.rows[bin].emplace_back(histogram[bin]);
-  }
   return table;
 }
 
