@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/commands/program.h"
-
+// The table of subcommands, and the way from the command line to one of them.
 #include <array>
 #include <filesystem>
 #include <iostream>
