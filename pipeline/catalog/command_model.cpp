@@ -28,26 +28,9 @@ bool contains(const Words& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string yaml_list(const Words& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + yaml_quoted(word);
-  return "[" + list + "]";
-}
-
-// As options_text has it, but for quotes: a command line holds whatever YAML has other uses for.
+// A command line holds whatever YAML has other uses for.
 std::string command_text(const CommandOptions& options, bool annotated) {
-  std::string lines;
-  CommandOptions::fields(options,
-                         [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
-                           if (annotated) lines += fmt::format("# {}\n", option_note<Value>(help));
-                           if constexpr (std::is_same_v<Value, std::string>)
-                             lines += fmt::format("{}: {}\n", key, yaml_quoted(value));
-                           else if constexpr (std::is_same_v<Value, Words>)
-                             lines += fmt::format("{}: {}\n", key, yaml_list(value));
-                           else
-                             lines += fmt::format("{}: {}\n", key, option_text(value));
-                         });
-  return lines;
+  return options_text(options, annotated, true);
 }
 
 void check_reads(const CommandOptions& options, const Section& written) {
@@ -131,7 +114,7 @@ RowOf<ScalarField> add_command(Catalog& catalog, const ShapeRows& rows, RowHead 
   row.kind = kind_of(Value(ScalarField()));
   row.options.push_back({"models." + name, command_text(options, false),
                          fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),
-                                     yaml_list(options.reads), depends->key_lines())});
+                                     option_text(options.reads, true), depends->key_lines())});
   row.inputs.push_back(rows.points.row);
   if (normals) row.inputs.push_back(rows.normals.row);
   if (faces) row.inputs.push_back(rows.surface.row);

@@ -24,6 +24,13 @@ struct RunRecord {
   std::vector<ChanceRemark> chance = {};
 };
 
+// start, end (s since the run began), node ("fpfh of scans"), busy (core-seconds that the node computed
+// within the interval): the run in kTimelineIntervals equal intervals, rows where a node was at work.
+// `records` are those of the catalog's rows: [row].
+inline constexpr std::size_t kTimelineIntervals = 240;
+Table timeline_table(const Catalog& catalog, const std::vector<NodeRecord>& records, Clock::time_point began,
+                     double seconds);
+
 // run.yaml and timeline.csv. Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
