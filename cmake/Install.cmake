@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What `cmake --install` and `cpack -G DEB` put where, and the two documents made from the program's help texts.
+# What `cmake --install` and `cpack -G DEB` put where, and the manual page, made from the program's help texts.
 
 include(GNUInstallDirs)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # cpack would otherwise build every test first
@@ -14,17 +14,26 @@ if(NOT SALBENCH_DATE)
   message(FATAL_ERROR "CHANGELOG.md has no heading '## [${PROJECT_VERSION}] - DATE'")
 endif()
 
-file(MAKE_DIRECTORY ${documents})
-add_custom_command(
-  OUTPUT ${documents}/salbench.1 ${documents}/salbench.bash
-  COMMAND salbench_manual page ${PROJECT_VERSION} ${SALBENCH_DATE} > ${documents}/salbench.1
-  COMMAND salbench_manual completion > ${documents}/salbench.bash
-  DEPENDS salbench_manual VERBATIM)
-if(NOT SALBENCH_SANITIZE)  # a build that nobody installs
-  set(all ALL)
+find_program(HELP2MAN help2man)
+if(HELP2MAN)
+  file(MAKE_DIRECTORY ${documents})
+  execute_process(COMMAND date -u -d ${SALBENCH_DATE} +%s OUTPUT_VARIABLE epoch
+    OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  add_custom_command(
+    OUTPUT ${documents}/salbench.1
+    COMMAND ${CMAKE_COMMAND} -E env LC_ALL=C SOURCE_DATE_EPOCH=${epoch} ${HELP2MAN} --no-info
+      --include=${PROJECT_SOURCE_DIR}/cmake/manual.include --output=${documents}/salbench.1
+      "${PROJECT_SOURCE_DIR}/cmake/manual.sh $<TARGET_FILE:salbench>"
+    DEPENDS salbench cmake/manual.sh cmake/manual.include VERBATIM)
+  if(NOT SALBENCH_SANITIZE)  # a build that nobody installs
+    set(all ALL)
+  endif()
+  add_custom_target(salbench_manual ${all} DEPENDS ${documents}/salbench.1)
+  file(WRITE ${documents}/salbench-report.1 ".so man1/salbench.1\n")
+  install(FILES ${documents}/salbench.1 ${documents}/salbench-report.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+else()
+  message(WARNING "help2man is missing: no manual page will be installed. scripts/setup installs it.")
 endif()
-add_custom_target(salbench_documents ${all} DEPENDS ${documents}/salbench.1 ${documents}/salbench.bash)
-file(WRITE ${documents}/salbench-report.1 ".so man1/salbench.1\n")
 
 install(TARGETS salbench)
 install(PROGRAMS scripts/report DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME salbench-report)
@@ -32,8 +41,7 @@ install(DIRECTORY configs report DESTINATION ${share} PATTERN __pycache__ EXCLUD
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff docs/data_dictionary.md docs/data_sets.md docs/json.md
   docs/statistics.md docs/bibliography.bib DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES scripts/read_export.py DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
-install(FILES ${documents}/salbench.1 ${documents}/salbench-report.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-install(FILES ${documents}/salbench.bash
+install(FILES cmake/completion.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME salbench)
 
 set(CPACK_GENERATOR DEB)

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# Run by scripts/fidelity.
 """Compares the tables and maps that scripts/fidelity has made with what was published; see there."""
 
 import sys

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# Imported by scripts/mutate.
 """Where the C++ of a translation unit can be mutated, by Clang's AST, and the text that chooses at run time.
 
 Only bodies of functions, and there only built-in types: arithmetic, comparison, logic, integers, conditions, statements and

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# Imported by scripts/fidelity.py and scripts/scan_readings.
 """What was published about scans, and how near a results folder of ours comes to it."""
 
 from pathlib import Path

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
+# Run by users of an export, and copied by those who write their own: it is installed as an example.
 """Reads what `salbench export` wrote: do the models give more saliency to the points that people picked?
 
 read_export.py FILE.h5

@@ -20,8 +20,9 @@ done
 date=$(sed -n "s/^## \[$version\] - //p" "$source/CHANGELOG.md")
 grep -qx "version: $version" "$source/CITATION.cff" || complain "CITATION.cff: version is not $version"
 grep -qx "date-released: \"$date\"" "$source/CITATION.cff" || complain "CITATION.cff: date is not that of CHANGELOG.md"
-grep -q "^.TH SALBENCH 1 \"$date\" \"salbench $version\"" "$prefix/share/man/man1/salbench.1" ||
-  complain "salbench.1: not of $version, $date"
+month=$(LC_ALL=C date -u -d "$date" '+%B %Y')
+grep -q "^.TH SALBENCH \"1\" \"$month\" \"salbench $version\"" "$prefix/share/man/man1/salbench.1" ||
+  complain "salbench.1: not of $version, $month"
 
 # Configurations by name, and a file of that name first.
 [[ $("$salbench" config shrec07_text) == *$'\nprotocol: text'* ]] || complain "shrec07_text: not found by its name"
@@ -41,7 +42,7 @@ completed() { # WORD...: what the shell would offer for the last one
 subcommands=$("$salbench" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p')
 [[ $(wc -w <<< "$subcommands") -ge 12 ]] || complain "--help: subcommands not recognised"
 for subcommand in $subcommands; do
-  [[ $page == *$'\n.SS '"$subcommand"$'\n'* ]] || complain "salbench.1: no $subcommand"
+  [[ $page == *$'\n.SS "salbench '"$subcommand "* ]] || complain "salbench.1: no $subcommand"
   [[ $(completed '') == *" $subcommand "* ]] || complain "completion: no $subcommand"
   for option in $("$salbench" "$subcommand" --help | sed -n 's/^  \(--[a-z-]\+\).*/\1/p'); do
     [[ $page == *"\\fB$option\\fR"* ]] || complain "salbench.1: no $option"

@@ -4,8 +4,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "pipeline/commands/program.h"
 #include "pipeline/commands/standard_streams.h"
+#include "pipeline/commands/subcommands.h"
 
 int main(int argc, char** argv) {
   salbench::open_standard_streams();

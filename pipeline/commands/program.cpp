@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/commands/program.h"
-
+// The table of subcommands, and the way from the command line to one of them.
 #include <array>
 #include <filesystem>
 #include <iostream>
@@ -11,7 +10,6 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
-#include "pipeline/commands/help.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/standard_streams.h"
@@ -20,6 +18,23 @@
 
 namespace salbench {
 namespace {
+
+constexpr const char* kFooter =
+    R"(Examples:
+  salbench run configs/shrec07.yaml --data SchellingData            the whole benchmark; run it again to resume
+  salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
+  salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
+  salbench pictures configs/shrec07.yaml --data SchellingData --items 52
+  salbench export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5
+  salbench plan configs/shrec07.yaml --data SchellingData           what a run would compute, and why
+  salbench graph configs/shrec07.yaml --format dot | dot -Tsvg      the flow graph of a run, as a picture
+  salbench explain configs/shrec07.yaml 52_3 --data SchellingData   what differs from what the cache has
+  salbench status configs/shrec07.yaml --data SchellingData         what is there already
+  salbench config                                                   every option, its default, unit and range
+
+Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
+3 cache, output folder or standard output unusable; 70 a defect of the program, or memory ran out;
+130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
     run_subcommand,         maps_subcommand,   evaluate_subcommand, pictures_subcommand, export_subcommand,
@@ -52,9 +67,9 @@ struct Declare {
 };
 
 int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> rows) {
-  CLI::App app{kDescription};
+  CLI::App app{"Benchmark of 3D saliency models on meshes, simulated range scans and point clouds."};
   app.set_version_flag("--version", "salbench " SALBENCH_VERSION);
-  app.footer(help_footer());
+  app.footer(kFooter);
   app.require_subcommand(1);
   Arguments arguments;
   arguments.command_line = joined(words);

@@ -3,18 +3,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 
-#include "pipeline/config/descriptions.h"
-
 namespace salbench {
-namespace {
 
 enum class Truth { required, optional };
-
-}  // namespace
-
 template <>
 struct EnumNames<Truth> {
   static constexpr std::array<std::string_view, 2> names = {"required", "optional"};
@@ -61,33 +56,20 @@ Place read_place(const Section& section) {
   return place;
 }
 
-const Description* description_named(std::string_view name) {
-  const auto all = descriptions();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const Description& description) { return description.name == name; });
-  return found == all.end() ? nullptr : &*found;
-}
-
 Section section_of(const Description& description) {
   return Section::from_text(std::string(description.yaml),
                             fmt::format("configs/datasets/{}{}", description.name, kExtension));
 }
 
-// Among those that are tried where no layout is named; 0 is none.
-std::int32_t automatic_place(const Section& root) {
-  std::int32_t place = 0;
-  root.read_value("automatic", place);
-  return place;
-}
-
+// Those whose key `automatic` gives them a place among the layouts to try.
 std::vector<Layout> automatic_layouts() {
-  std::vector<std::pair<std::int32_t, Layout>> tried;
+  std::multimap<std::int32_t, Layout> tried;
   for (const Description& description : descriptions()) {
     const Section root = section_of(description);
-    if (const std::int32_t place = automatic_place(root); place > 0)
-      tried.emplace_back(place, read_layout(root, std::string(description.name)));
+    std::int32_t place = 0;
+    root.read_value("automatic", place);
+    if (place > 0) tried.emplace(place, read_layout(root, std::string(description.name)));
   }
-  std::sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Layout> layouts;
   for (auto& [place, layout] : tried) layouts.push_back(std::move(layout));
   return layouts;
@@ -102,15 +84,14 @@ std::vector<std::string_view> layout_names() {
 }
 
 bool is_layout(std::string_view text) {
-  const auto names = layout_names();
-  return std::find(names.begin(), names.end(), text) != names.end() ||
+  return std::ranges::count(layout_names(), text) > 0 ||
          (text.size() > kExtension.size() && text.ends_with(kExtension));
 }
 
 std::vector<Layout> layouts_of(const std::string& layout) {
   if (layout == kAutomaticLayout) return automatic_layouts();
-  if (const Description* description = description_named(layout))
-    return {read_layout(section_of(*description), layout)};
+  for (const Description& description : descriptions())
+    if (description.name == layout) return {read_layout(section_of(description), layout)};
   return {read_layout(Section::from_file(layout), std::filesystem::path(layout).stem())};
 }
 

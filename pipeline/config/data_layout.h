@@ -3,6 +3,7 @@
 // configs/datasets are part of the program; a user's own is a file.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,12 @@
 #include "pipeline/config/section.h"
 
 namespace salbench {
+
+struct Description {
+  std::string_view name;  // of the file, without .yaml
+  std::string_view yaml;
+};
+std::span<const Description> descriptions();  // the files of configs/datasets, by name
 
 inline constexpr std::string_view kAutomaticLayout = "automatic";
 

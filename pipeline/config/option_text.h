@@ -81,7 +81,7 @@ inline std::string yaml_scalar(const std::string& text) {
 }
 
 template <class Value>
-std::string option_text(const Value& value) {
+std::string option_text(const Value& value, bool quoted = false) {
   if constexpr (std::is_enum_v<Value>) {
     return std::string(name_of(value));
   } else if constexpr (kIsByName<Value>) {
@@ -90,9 +90,12 @@ std::string option_text(const Value& value) {
       list += fmt::format("{}{}: {}", list.empty() ? "" : ", ", name, name_of(choice));
     return "{" + list + "}";
   } else if constexpr (std::is_same_v<Value, Words>) {
-    return fmt::format("[{}]", fmt::join(value, ", "));
+    std::string list;
+    for (const std::string& word : value)
+      list += (list.empty() ? "" : ", ") + (quoted ? yaml_quoted(word) : word);
+    return "[" + list + "]";
   } else if constexpr (std::is_same_v<Value, std::string>) {
-    return yaml_scalar(value);
+    return quoted ? yaml_quoted(value) : yaml_scalar(value);
   } else {
     return fmt::format("{}", value);  // doubles: the shortest text that reads back as the same bits
   }
@@ -110,14 +113,15 @@ std::string option_note(const OptionHelp& help) {
   return fmt::format("{} ({}{}{})", help.text, help.unit, separator, accepted);
 }
 
-// One `key: value` per line, in the order of the struct; annotated: each below a comment, its note.
+// One `key: value` per line, in the order of the struct; annotated: each below a comment, its note; quoted:
+// texts, which may hold whatever YAML has other uses for.
 template <class Options>
-std::string options_text(const Options& options, bool annotated = false) {
+std::string options_text(const Options& options, bool annotated = false, bool quoted = false) {
   std::string lines;
   Options::fields(options,
                   [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
                     if (annotated) lines += fmt::format("# {}\n", option_note<Value>(help));
-                    lines += fmt::format("{}: {}\n", key, option_text(value));
+                    lines += fmt::format("{}: {}\n", key, option_text(value, quoted));
                   });
   return lines;
 }

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "pipeline/results/conclusions.h"
-#include "stages/core/parallel.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
@@ -99,13 +98,12 @@ class AgreementOfMetrics {
   }
 
   // One row; none where the two have fewer than two models or units in common.
-  std::vector<std::vector<Cell>> rows(std::size_t a, std::size_t b) const {
+  Rows rows(std::size_t a, std::size_t b) const {
     const Common common(dataset_.metrics[a].scores, dataset_.metrics[b].scores);
     if (common.models.size() < 2 || common.units.size() < 2) return {};
     const Agreement found = agreement_of(*orders(a, common), *orders(b, common));
-    return {{dataset_.scores.dataset(), conclusions_.metrics[a].name, conclusions_.metrics[b].name,
-             cell_of(common.units.size()), cell_of(common.models.size()), found.tau, found.interval.low,
-             found.interval.high}};
+    return {cells(dataset_.scores.dataset(), conclusions_.metrics[a].name, conclusions_.metrics[b].name,
+                  common.units.size(), common.models.size(), found.tau, found.interval)};
   }
 
  private:
@@ -132,11 +130,10 @@ Table agreement_table(const Conclusions& conclusions) {
   for (const DatasetConclusions& dataset : conclusions.datasets) {
     const AgreementOfMetrics agreement(conclusions, dataset);
     const std::size_t n = dataset.metrics.size();
-    std::vector<std::vector<std::vector<Cell>>> rows(n * n);
-    parallel_ranges(rows.size(), 1, [&](std::size_t pair, std::size_t) {
-      if (pair / n < pair % n) rows[pair] = agreement.rows(pair / n, pair % n);
+    const Rows rows = rows_of_each(n * n, [&](std::size_t pair) {
+      return pair / n < pair % n ? agreement.rows(pair / n, pair % n) : Rows{};
     });
-    for (auto& of_pair : rows) std::ranges::move(of_pair, std::back_inserter(table.rows));
+    table.rows.insert(table.rows.end(), rows.begin(), rows.end());
   }
   return table;
 }

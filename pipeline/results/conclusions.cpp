@@ -5,23 +5,17 @@
 #include <numeric>
 
 #include "io/file.h"
-#include "pipeline/results/human_share.h"
-#include "pipeline/results/metric_rows.h"
-#include "pipeline/results/statistics.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
 namespace {
 
-std::size_t place_of(const std::vector<std::size_t>& numbers, std::size_t number) {
-  return static_cast<std::size_t>(std::ranges::find(numbers, number) - numbers.begin());
-}
-
 // Resampled means of a model's scores: those of the ranking where it is ranked, else by the same draws.
 Interval bca_of(const UnitScores& own, std::size_t model, const RankedMetric& ranked,
                 const Bootstrap& bootstrap) {
   if (own.units.size() < 2) return {};
-  const std::size_t place = place_of(ranked.scores.models, model);
+  const std::size_t place = ranked.scores.column_of(model);
   return bca_interval(own.scores.values, place < ranked.scores.models.size()
                                              ? ranked.resampled.column(place)
                                              : bootstrap.means(own.scores).values);
@@ -32,37 +26,25 @@ std::vector<Cell> summary_row(const DatasetScores& scores, std::size_t model, co
   const UnitScores compared = scores.compared(ranked.metric, {&model, 1});
   const UnitScores own = scores.own(ranked.metric, model);
   const Summary summary = summarise(compared.scores.values);
-  const Interval student = student_interval(summary), bca = bca_of(compared, model, ranked, bootstrap);
-  return {scores.dataset(),
-          scores.models()[model],
-          metric,
-          summary.n,
-          summary.mean,
-          summary.sd,
-          student.low,
-          student.high,
-          bca.low,
-          bca.high,
-          compared.n_shapes,
-          own.n_shapes,
-          summarise(own.scores.values).mean};
+  return cells(scores.dataset(), scores.models()[model], metric, summary.n, summary.mean, summary.sd,
+               student_interval(summary), bca_of(compared, model, ranked, bootstrap), compared.n_shapes,
+               own.n_shapes, summarise(own.scores.values).mean);
 }
 
 // A rank that is not known is an empty cell.
 Cell rank_cell(std::int64_t rank) { return rank > 0 ? Cell(rank) : Cell(std::string()); }
 
-std::vector<std::vector<Cell>> ranking_rows(const DatasetScores& scores, const RankedMetric& ranked,
-                                            const std::string& metric) {
+Rows ranking_rows(const DatasetScores& scores, const RankedMetric& ranked, const Metric& metric) {
   std::vector<std::size_t> order(ranked.ranking.models.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t m) { return ranked.ranking.models[m].rank; });
-  std::vector<std::vector<Cell>> rows;
+  Rows rows;
   for (const std::size_t m : order) {
     const ModelRank& model = ranked.ranking.models[m];
-    rows.push_back({scores.dataset(), metric, scores.models()[ranked.scores.models[m]],
-                    cell_of(ranked.scores.units.size()), ranked.scores.n_shapes, model.mean,
-                    rank_cell(model.rank), rank_cell(model.rank_low), rank_cell(model.rank_high), model.first,
-                    model.letters});
+    rows.push_back(cells(scores.dataset(), metric.name, scores.models()[ranked.scores.models[m]],
+                         ranked.scores.units.size(), ranked.scores.n_shapes, model.mean,
+                         rank_cell(model.rank), rank_cell(model.rank_low), rank_cell(model.rank_high),
+                         model.first, model.letters));
   }
   return rows;
 }
@@ -91,19 +73,23 @@ Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
   return conclusions;
 }
 
+const DatasetConclusions* Conclusions::of(std::string_view dataset) const {
+  const auto found =
+      std::ranges::find(datasets, dataset, [](const auto& one) { return one.scores.dataset(); });
+  return found == datasets.end() ? nullptr : &*found;
+}
+
 Table summary_table(const Conclusions& conclusions) {
   Table table{.columns = {"dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high",
                           "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean"},
               .rows = {}};
   for (const auto& [scores, metrics] : conclusions.datasets) {
-    const std::size_t n_models = scores.models().size();
-    std::vector<std::vector<Cell>> rows(n_models * metrics.size());
-    parallel_ranges(rows.size(), 1, [&](std::size_t row, std::size_t) {
-      const std::size_t m = row % metrics.size();
-      rows[row] = summary_row(scores, row / metrics.size(), metrics[m], conclusions.metrics[m].name,
-                              *conclusions.bootstrap);
+    const Rows rows = rows_of_each(scores.models().size() * metrics.size(), [&](std::size_t row) {
+      const RankedMetric& ranked = metrics[row % metrics.size()];
+      return Rows{summary_row(scores, row / metrics.size(), ranked, conclusions.metrics[ranked.metric].name,
+                              *conclusions.bootstrap)};
     });
-    std::ranges::move(rows, std::back_inserter(table.rows));
+    table.rows.insert(table.rows.end(), rows.begin(), rows.end());
   }
   return table;
 }
@@ -116,25 +102,20 @@ Table overview_table(const Conclusions& conclusions) {
     for (std::size_t model = 0; model < scores.models().size(); ++model)
       for (const RankedMetric& ranked : metrics) {
         const Summary summary = summarise(scores.compared(ranked.metric, {&model, 1}).scores.values);
-        const Interval student = student_interval(summary);
-        const std::size_t place = place_of(ranked.scores.models, model);
+        const std::size_t place = ranked.scores.column_of(model);
         const ModelRank rank =
             place < ranked.scores.models.size() ? ranked.ranking.models[place] : ModelRank{};
-        table.rows.push_back({scores.dataset(), scores.models()[model],
-                              conclusions.metrics[ranked.metric].name, summary.n, summary.mean, student.low,
-                              student.high, rank_cell(rank.rank), rank.letters});
+        table.rows.push_back(cells(scores.dataset(), scores.models()[model],
+                                   conclusions.metrics[ranked.metric].name, summary.n, summary.mean,
+                                   student_interval(summary), rank_cell(rank.rank), rank.letters));
       }
   return table;
 }
 
 Table ranking_table(const Conclusions& conclusions) {
-  return rows_by_metric(
-      conclusions,
-      {"dataset", "metric", "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first",
-       "group"},
-      [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
-        return ranking_rows(dataset.scores, ranked, metric);
-      });
+  return {.columns = {"dataset", "metric", "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high",
+                      "first", "group"},
+          .rows = rows_by_metric(conclusions, ranking_rows)};
 }
 
 void write_conclusions(const std::filesystem::path& folder, const std::vector<ResultRow>& rows,

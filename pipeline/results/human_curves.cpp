@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/core/check.h"
-#include "stages/core/parallel.h"
 #include "stages/stats/human_scale.h"
 #include "stages/stats/paired.h"
 #include "stages/stats/summary.h"
@@ -37,9 +37,8 @@ class CurveScores {
     for (const MeshCurve& mesh : curves) longest_ = std::max(longest_, mesh.curve.size());
     // Units may leave meshes out, and curves with them.
     for (std::size_t n = 1; n <= longest_; ++n)
-      if (const auto found = std::ranges::find(scores_.models(), name_of_point(n));
-          found != scores_.models().end())
-        columns_.push_back(static_cast<std::size_t>(found - scores_.models().begin()));
+      if (const std::size_t found = scores_.find(name_of_point(n)); found < scores_.models().size())
+        columns_.push_back(found);
   }
 
   CurveScores(const CurveScores&) = delete;
@@ -69,17 +68,7 @@ class CurveScores {
   std::vector<std::size_t> columns_;
 };
 
-// Rows that `each` makes of every metric; metrics in parallel, rows in their order.
-template <class Each>
-std::vector<std::vector<Cell>> rows_by_metric(const Metrics& metrics, const Each& each) {
-  std::vector<std::vector<std::vector<Cell>>> rows(metrics.size());
-  parallel_ranges(rows.size(), 1, [&](std::size_t m, std::size_t) { rows[m] = each(m); });
-  std::vector<std::vector<Cell>> all;
-  for (auto& of_metric : rows) std::ranges::move(of_metric, std::back_inserter(all));
-  return all;
-}
-
-// Spearman and Brown: of the whole, from the correlation of its halves.
+// Of the whole, from the correlation of its halves. [spearman1910] [brown1910]
 double reliability(double r) { return std::isnan(r) ? r : r > 0 ? 2 * r / (1 + r) : 0; }
 
 // The metric that is Pearson's correlation of two maps, as reliability takes it.
@@ -89,20 +78,14 @@ std::optional<std::size_t> correlation_among(const Metrics& metrics) {
   return static_cast<std::size_t>(found - metrics.begin());
 }
 
-std::vector<Cell> difference_row(const DatasetScores& scores, std::size_t metric, std::size_t fewer,
-                                 std::size_t more) {
+std::vector<Cell> difference_cells(const DatasetScores& scores, std::size_t metric, std::size_t fewer,
+                                   std::size_t more) {
   const std::array columns{more, fewer};
   const UnitScores both = scores.averaged(metric, columns, {});
   const PairedComparison found =
       both.units.empty() ? PairedComparison{} : compare_paired(both.scores.column(0), both.scores.column(1));
-  return {found.n,
-          both.n_shapes,
-          found.mean_difference,
-          found.interval.low,
-          found.interval.high,
-          found.t_p,
-          found.equivalence_interval.low,
-          found.equivalence_interval.high};
+  return cells(found.n, both.n_shapes, found.mean_difference, found.interval, found.t_p,
+               found.equivalence_interval);
 }
 
 // Up to which number of participants the curve is used, being that of at least half of the meshes.
@@ -154,16 +137,15 @@ class EquivalentsOfMetric {
       if (models.is_reference(model)) add({model});
   }
 
-  std::vector<std::vector<Cell>> rows() const {
-    std::vector<std::vector<Cell>> rows;
+  Rows rows() const {
+    Rows rows;
     for (std::size_t model = 0; model < found_.size(); ++model) {
       const Found& found = found_[model];
       const auto& [k, interval, crossings] = found.equivalent;
-      rows.push_back({models_.dataset(), conclusions_.metrics[metric_].name, models_.models()[model],
-                      cell_of(found.units), found.n_shapes, cell_of(length_), found.mean, within(k),
-                      within(interval.low), within(interval.high), bound(k, length_),
-                      bound(interval.low, length_), bound(interval.high, length_), std::int64_t{crossings},
-                      remark_on(model)});
+      rows.push_back(cells(models_.dataset(), conclusions_.metrics[metric_].name, models_.models()[model],
+                           found.units, found.n_shapes, length_, found.mean, within(k), within(interval.low),
+                           within(interval.high), bound(k, length_), bound(interval.low, length_),
+                           bound(interval.high, length_), crossings, remark_on(model)));
     }
     return rows;
   }
@@ -209,11 +191,10 @@ class EquivalentsOfMetric {
   // One participant is worth one, unless the target of a model's score, all participants, makes another score
   // of the same map than that of the curve, as many others.
   std::string remark_on_scale(std::size_t model) const {
-    const auto one = std::ranges::find(models_.models(), "HS");
-    if (one == models_.models().end()) return "";
-    const auto at = static_cast<std::size_t>(one - models_.models().begin());
-    const Equivalent& of_one = found_[at].equivalent;
-    if (at == model || std::isnan(of_one.interval.low) || contains(of_one.interval, 1)) return "";
+    const std::size_t one = models_.find("HS");
+    if (one == found_.size() || one == model) return "";
+    const Equivalent& of_one = found_[one].equivalent;
+    if (std::isnan(of_one.interval.low) || contains(of_one.interval, 1)) return "";
     const double k = of_one.participants;
     return fmt::format("not a number of people: one participant (HS) has k {} here",
                        std::isinf(k) ? bound(k, length_) : fmt::format("{:.2f}", k));
@@ -250,9 +231,8 @@ Table human_curve_table(const std::vector<MeshCurve>& curves, const Metrics& met
       for (const MeshCurve& mesh : curves)
         if (i < mesh.curve.size()) values.push_back(mesh.curve[i].values.at(m));
       const Summary summary = summarise(values);
-      const Interval interval = student_interval(summary);
-      table.rows.push_back({static_cast<std::int64_t>(i + 1), metrics[m].name, summary.n, summary.mean,
-                            summary.sd, interval.low, interval.high});
+      table.rows.push_back(
+          cells(i + 1, metrics[m].name, summary.n, summary.mean, summary.sd, student_interval(summary)));
     }
   }
   return table;
@@ -265,8 +245,8 @@ Table human_curve_by_mesh_table(const std::vector<MeshCurve>& curves, const Metr
     for (std::size_t i = 0; i < mesh.curve.size(); ++i)
       for (std::size_t m = 0; m < metrics.size(); ++m) {
         const double value = mesh.curve[i].values.at(m);
-        table.rows.push_back({mesh.item, mesh.category, cell_of(i + 1), metrics[m].name, value,
-                              m == cc ? reliability(value) : kNone});
+        table.rows.push_back(cells(mesh.item, mesh.category, i + 1, metrics[m].name, value,
+                                   m == cc ? reliability(value) : kNone));
       }
   return table;
 }
@@ -277,15 +257,12 @@ Table human_curve_differences_table(const std::vector<MeshCurve>& curves, const 
   const std::span<const std::size_t> curve = scores.curve();
   return {.columns = {"metric", "from_participants", "to_participants", "n", "n_shapes", "mean_difference",
                       "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high"},
-          .rows = rows_by_metric(metrics, [&](std::size_t m) {
-            std::vector<std::vector<Cell>> rows;
+          .rows = rows_of_each(metrics.size(), [&](std::size_t m) {
+            Rows rows;
             for (std::size_t a = 0; a < curve.size(); ++a)
-              for (std::size_t b = a + 1; b < curve.size(); ++b) {
-                std::vector<Cell>& row =
-                    rows.emplace_back(std::vector<Cell>{metrics[m].name, cell_of(a + 1), cell_of(b + 1)});
-                std::ranges::copy(difference_row(scores.scores(), m, curve[a], curve[b]),
-                                  std::back_inserter(row));
-              }
+              for (std::size_t b = a + 1; b < curve.size(); ++b)
+                rows.push_back(cells(metrics[m].name, a + 1, b + 1,
+                                     difference_cells(scores.scores(), m, curve[a], curve[b])));
             return rows;
           })};
 }
@@ -296,14 +273,12 @@ Table human_equivalents_table(const std::vector<MeshCurve>& curves, const std::v
       .columns = {"dataset", "metric", "model", "n", "n_shapes", "largest_group", "mean", "k", "ci95_low",
                   "ci95_high", "k_bound", "low_bound", "high_bound", "crossings", "remark"},
       .rows = {}};
-  const auto meshes = std::ranges::find_if(conclusions.datasets, [](const DatasetConclusions& dataset) {
-    return dataset.scores.dataset() == shapes_name(kMeshes);
-  });
-  if (meshes == conclusions.datasets.end()) return table;
+  const DatasetConclusions* meshes = conclusions.of(shapes_name(kMeshes));
+  if (meshes == nullptr) return table;
   const CurveScores scores(curves, rows, conclusions.unit);
   for (std::size_t model = 0; model < meshes->scores.models().size(); ++model)
     CHECK_EQ(meshes->scores.models()[model], scores.scores().models()[model]);
-  table.rows = rows_by_metric(conclusions.metrics, [&](std::size_t m) {
+  table.rows = rows_of_each(conclusions.metrics.size(), [&](std::size_t m) {
     return EquivalentsOfMetric(scores, meshes->scores, m, conclusions).rows();
   });
   return table;
@@ -330,11 +305,10 @@ Table human_reliability_table(const std::vector<MeshCurve>& curves, const Metric
   if (scores.models().empty()) return table;
   const UnitScores found = scores.own(1, 0);
   const Summary summary = summarise(found.scores.values);
-  const Interval interval = student_interval(summary);
   const auto [fewest, most] = std::ranges::minmax(participants);
-  table.rows.push_back({metrics[*cc].name, summary.n, found.n_shapes, cell_of(fewest), cell_of(most),
-                        summarise(scores.own(0, 0).scores.values).mean, summary.mean, summary.sd,
-                        interval.low, interval.high});
+  table.rows.push_back(cells(metrics[*cc].name, summary.n, found.n_shapes, fewest, most,
+                             summarise(scores.own(0, 0).scores.values).mean, summary.mean, summary.sd,
+                             student_interval(summary)));
   return table;
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/results/human_share.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "pipeline/results/metric_rows.h"
+#include "pipeline/results/table_rows.h"
 #include "pipeline/rules/models.h"
 #include "stages/stats/human_scale.h"
 #include "stages/stats/paired.h"
@@ -68,46 +67,29 @@ std::vector<Cell> row_of(const DatasetScores& scores, const std::string& metric,
   const Share share = scored && !scale.shares.empty() ? scale.shares[place] : Share{};
   std::string remark = scale.remark;
   if (remark.empty()) remark = scored ? remark_on(share.interval, scale.scores.units.size()) : "no scores";
-  const bool has_interval = remark.empty();
-  return {scores.dataset(),
-          metric,
-          scores.models()[model],
-          cell_of(scored ? scale.scores.units.size() : 0),
-          scored ? scale.scores.n_shapes : 0,
-          scored ? scale.means[place] : kNone,
-          scored ? scale.means.end()[-2] : kNone,
-          scored ? scale.means.back() : kNone,
-          share.value,
-          has_interval ? share.interval.low : kNone,
-          has_interval ? share.interval.high : kNone,
-          remark};
-}
-
-std::vector<std::vector<Cell>> rows_of(const DatasetScores& scores, const RankedMetric& ranked,
-                                       const Metric& metric, const Bootstrap& bootstrap) {
-  const Scale scale = scale_of(scores, ranked, metric.higher_is_better, bootstrap);
-  std::vector<std::vector<Cell>> rows;
-  for (std::size_t model = 0; model < scores.models().size(); ++model) {
-    if (scores.is_reference(model)) continue;
-    const auto place = std::ranges::find(ranked.scores.models, model);
-    rows.push_back(row_of(scores, metric.name, scale, model,
-                          place == ranked.scores.models.end()
-                              ? scale.means.size()
-                              : static_cast<std::size_t>(place - ranked.scores.models.begin())));
-  }
-  return rows;
+  return cells(scores.dataset(), metric, scores.models()[model], scored ? scale.scores.units.size() : 0,
+               scored ? scale.scores.n_shapes : 0, scored ? scale.means[place] : kNone,
+               scored ? scale.means.end()[-2] : kNone, scored ? scale.means.back() : kNone, share.value,
+               remark.empty() ? share.interval : Interval{}, remark);
 }
 
 }  // namespace
 
 Table human_share_table(const Conclusions& conclusions) {
-  return rows_by_metric(
-      conclusions,
-      {"dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs", "mean_hs", "share", "ci95_low",
-       "ci95_high", "remark"},
-      [&](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string&) {
-        return rows_of(dataset.scores, ranked, conclusions.metrics[ranked.metric], *conclusions.bootstrap);
-      });
+  const auto rows_of = [&](const DatasetScores& scores, const RankedMetric& ranked, const Metric& metric) {
+    const Scale scale = scale_of(scores, ranked, metric.higher_is_better, *conclusions.bootstrap);
+    Rows rows;
+    for (std::size_t model = 0; model < scores.models().size(); ++model)
+      if (!scores.is_reference(model)) {
+        const std::size_t place = ranked.scores.column_of(model);
+        rows.push_back(row_of(scores, metric.name, scale, model,
+                              place < ranked.scores.models.size() ? place : scale.means.size()));
+      }
+    return rows;
+  };
+  return {.columns = {"dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs", "mean_hs", "share",
+                      "ci95_low", "ci95_high", "remark"},
+          .rows = rows_by_metric(conclusions, rows_of)};
 }
 
 }  // namespace salbench

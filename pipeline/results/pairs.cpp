@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "pipeline/results/metric_rows.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/stats/multiple.h"
 
 namespace salbench {
@@ -14,57 +14,26 @@ namespace {
 
 // A row per pair: its names, then its cells.
 template <class Cells>
-std::vector<std::vector<Cell>> pair_rows(const DatasetScores& scores, std::size_t metric,
-                                         const std::string& name, const Cells& cells) {
-  std::vector<std::vector<Cell>> rows;
-  for (const ModelPair& pair : model_pairs(scores, metric)) {
-    rows.push_back({scores.dataset(), name, scores.models()[pair.a], scores.models()[pair.b]});
-    std::ranges::move(cells(pair), std::back_inserter(rows.back()));
-  }
+Rows pair_rows(const DatasetScores& scores, std::size_t metric, const std::string& name,
+               const Cells& cells_of) {
+  Rows rows;
+  for (const ModelPair& pair : model_pairs(scores, metric))
+    rows.push_back(cells(scores.dataset(), name, scores.models()[pair.a], scores.models()[pair.b],
+                         pair.by_unit.n, pair.n_shapes, cells_of(pair, pair.by_unit)));
   return rows;
 }
 
-std::vector<Cell> significance_cells(const ModelPair& pair) {
-  const PairedComparison& found = pair.by_unit;
-  return {found.n,
-          pair.n_shapes,
-          found.mean_difference,
-          found.interval.low,
-          found.interval.high,
-          found.t_p,
-          found.equivalence_interval.low,
-          found.equivalence_interval.high,
-          found.d_z,
-          found.rank_biserial,
-          found.superiority,
-          found.superiority_interval.low,
-          found.superiority_interval.high,
-          pair.by_shape.z,
-          pair.by_shape.p_value,
-          pair.signed_rank.statistic,
-          pair.signed_rank.p_value,
-          pair.holm};
+std::vector<Cell> significance_cells(const ModelPair& pair, const PairedComparison& found) {
+  return cells(found.mean_difference, found.interval, found.t_p, found.equivalence_interval, found.d_z,
+               found.rank_biserial, found.superiority, found.superiority_interval, pair.by_shape.z,
+               pair.by_shape.p_value, pair.signed_rank.statistic, pair.signed_rank.p_value, pair.holm);
 }
 
-std::vector<std::vector<Cell>> significance_rows(const DatasetScores& scores, std::size_t metric,
-                                                 const std::string& name) {
-  std::vector<std::vector<Cell>> rows = pair_rows(scores, metric, name, significance_cells);
-  const auto n_tests = std::ranges::count_if(
-      rows, [](const std::vector<Cell>& row) { return !std::isnan(std::get<double>(row.back())); });
-  for (std::vector<Cell>& row : rows) row.emplace_back(static_cast<std::int64_t>(n_tests));
-  return rows;
-}
-
-std::vector<Cell> power_cells(const ModelPair& pair) {
-  const PairedComparison& found = pair.by_unit;
+std::vector<Cell> power_cells(const ModelPair&, const PairedComparison& found) {
   const std::int64_t needed =
       found.deviation > 0 ? units_to_detect(found.mean_difference, found.deviation) : -1;
-  return {found.n,
-          pair.n_shapes,
-          found.deviation,
-          detectable_difference(found.deviation, found.n),
-          found.mean_difference,
-          needed > 0 ? Cell(needed) : Cell(std::string())};
+  return cells(found.deviation, detectable_difference(found.deviation, found.n), found.mean_difference,
+               needed > 0 ? Cell(needed) : Cell(std::string()));
 }
 
 }  // namespace
@@ -95,44 +64,28 @@ std::vector<ModelPair> model_pairs(const DatasetScores& scores, std::size_t metr
 }
 
 Table significance_table(const Conclusions& conclusions) {
-  return rows_by_metric(
-      conclusions,
-      {"dataset",
-       "metric",
-       "model_a",
-       "model_b",
-       "n",
-       "n_shapes",
-       "mean_difference",
-       "ci95_low",
-       "ci95_high",
-       "t_p",
-       "ci90_low",
-       "ci90_high",
-       "d_z",
-       "rank_biserial",
-       "superiority",
-       "superiority_low",
-       "superiority_high",
-       "rank_sum_z",
-       "rank_sum_p",
-       "signed_rank",
-       "signed_rank_p",
-       "signed_rank_p_holm",
-       "n_tests"},
-      [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
-        return significance_rows(dataset.scores, ranked.metric, metric);
-      });
+  const auto rows_of = [](const DatasetScores& scores, const RankedMetric& ranked, const Metric& metric) {
+    Rows rows = pair_rows(scores, ranked.metric, metric.name, significance_cells);
+    const auto n_tests = std::ranges::count_if(
+        rows, [](const std::vector<Cell>& row) { return !std::isnan(std::get<double>(row.back())); });
+    for (std::vector<Cell>& row : rows) row.emplace_back(std::int64_t{n_tests});
+    return rows;
+  };
+  return {
+      .columns = split_list("dataset,metric,model_a,model_b,n,n_shapes,mean_difference,ci95_low,ci95_high,"
+                            "t_p,ci90_low,ci90_high,d_z,rank_biserial,superiority,superiority_low,"
+                            "superiority_high,rank_sum_z,rank_sum_p,signed_rank,signed_rank_p,"
+                            "signed_rank_p_holm,n_tests"),
+      .rows = rows_by_metric(conclusions, rows_of)};
 }
 
 Table power_table(const Conclusions& conclusions) {
-  return rows_by_metric(
-      conclusions,
-      {"dataset", "metric", "model_a", "model_b", "n", "n_shapes", "sd", "detectable", "mean_difference",
-       "n_to_detect"},
-      [](const DatasetConclusions& dataset, const RankedMetric& ranked, const std::string& metric) {
-        return pair_rows(dataset.scores, ranked.metric, metric, power_cells);
-      });
+  const auto rows_of = [](const DatasetScores& scores, const RankedMetric& ranked, const Metric& metric) {
+    return pair_rows(scores, ranked.metric, metric.name, power_cells);
+  };
+  return {.columns = {"dataset", "metric", "model_a", "model_b", "n", "n_shapes", "sd", "detectable",
+                      "mean_difference", "n_to_detect"},
+          .rows = rows_by_metric(conclusions, rows_of)};
 }
 
 }  // namespace salbench

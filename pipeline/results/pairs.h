@@ -28,10 +28,8 @@ ModelPair compare_models(const DatasetScores& scores, std::size_t metric, std::s
 // Every pair of models that have scores of a metric, a before b.
 std::vector<ModelPair> model_pairs(const DatasetScores& scores, std::size_t metric);
 
-// dataset, metric, model_a, model_b, n (units), n_shapes, sd (of the differences between units), detectable:
-// the smallest mean difference that n units show with probability 0.8 by a paired t-test at 0.05,
-// mean_difference: the one seen, n_to_detect: units that would show a true difference of that size with
-// probability 0.8; empty where none would do, or more than 10^9. [cohen1988]
+// The table of `salbench power` (docs/data_dictionary.md): which differences the scores could have shown.
+// [cohen1988]
 Table power_table(const Conclusions& conclusions);
 
 }  // namespace salbench

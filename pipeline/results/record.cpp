@@ -2,6 +2,7 @@
 #include "pipeline/results/record.h"
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 #include <unordered_set>
 
@@ -11,8 +12,8 @@
 
 #include "io/file.h"
 #include "pipeline/config/section.h"
-#include "pipeline/results/timeline.h"
 #include "stages/core/errors.h"
+#include "stages/stats/summary.h"
 
 namespace salbench {
 namespace {
@@ -53,22 +54,15 @@ std::string state_line(const RunRecord& record) {
   return fmt::format("partial, {} of {} shapes have all scores", finished, scored);
 }
 
-float quantile(std::vector<float> values, double q) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<long>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 std::string node_line(const Rule& rule, const RuleRecord& node, std::size_t units, double core_seconds) {
-  double seconds = 0;
-  for (const float s : node.seconds) seconds += static_cast<double>(s);
+  std::vector<double> seconds(node.seconds.begin(), node.seconds.end());
+  const double sum = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  if (seconds.empty()) seconds = {0};
   return fmt::format(
       "  - {{stage: {}, of: {}, scope: {}, items: {}, settled: {}, computed: {}, seconds: {:.3f}, "
       "median: {:.4f}, p95: {:.4f}, busy: {:.4f}}}\n",
-      rule.stage, shapes_name(rule.over), levels()[rule.level()].unit, units, node.finished,
-      node.seconds.size(), seconds, quantile(node.seconds, 0.5), quantile(node.seconds, 0.95),
-      core_seconds > 0 ? seconds / core_seconds : 0);
+      rule.stage, shapes_name(rule.over), levels()[rule.level()].unit, units, node.finished, node.seconds.size(), sum,
+      median(seconds), quantile(seconds, 0.95), core_seconds > 0 ? sum / core_seconds : 0);
 }
 
 std::string metric_lines(const Metrics& metrics) {

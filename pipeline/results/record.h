@@ -25,6 +25,13 @@ struct RunRecord {
   std::vector<ChanceRemark> chance = {};
 };
 
+// start, end (s since the run began), node ("fpfh of scans"), busy (core-seconds that the node computed
+// within the interval): the run in kTimelineIntervals equal intervals, rows where a node was at work.
+// `records` are those of the rules: [rule].
+inline constexpr std::size_t kTimelineIntervals = 240;
+Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records, Clock::time_point began,
+                     double seconds);
+
 // run.yaml and timeline.csv. Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 

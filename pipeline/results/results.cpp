@@ -9,22 +9,12 @@
 #include "io/file.h"
 #include "pipeline/results/conclusions.h"
 #include "pipeline/results/human_curves.h"
-#include "pipeline/results/statistics.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/core/check.h"
 
 namespace salbench {
 
 namespace fs = std::filesystem;
-
-std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows) {
-  std::vector<DatasetAndModel> pairs;
-  for (const std::string_view dataset : kShapeNames)
-    for (const ResultRow& row : rows)
-      if (const DatasetAndModel pair{row.dataset, row.model};
-          row.dataset == dataset && std::find(pairs.begin(), pairs.end(), pair) == pairs.end())
-        pairs.push_back(pair);
-  return pairs;
-}
 
 namespace {
 
@@ -53,6 +43,26 @@ std::vector<ResultRow> collect(const RunState& run, bool of_constant) {
   return rows;
 }
 
+// bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
+// unmatched, min-max-normalised maps. [tasse2016]
+Table mean_histogram_table(const RunState& run, Level level) {
+  Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
+  for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
+    table.rows[bin].emplace_back(static_cast<double>(bin) / kHistogramBins);
+  for (const Job& job : run.project().jobs_of(Unit{})) {
+    const Rule& rule = run.project().rule(job);
+    const bool is_reference = has_role(rule, Role::reference);
+    if ((!is_reference && !has_role(rule, Role::mean_histogram)) || rule.over != level ||
+        !run.decision(job).known())
+      continue;
+    table.columns.push_back(is_reference ? "GS" : rule.subject);
+    const ValuePtr histogram = run.resolver.value(job);
+    for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
+      table.rows[bin].emplace_back(value_as<Histogram>(*histogram)[bin]);
+  }
+  return table;
+}
+
 }  // namespace
 
 std::vector<Unit> RunState::shapes() const {
@@ -74,10 +84,9 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) 
   table.columns.insert(table.columns.end(), {"n_points", "n_picks"});
   for (const ResultRow& row : rows) {
     CHECK_EQ(row.scores.values.size(), metrics.size());
-    auto& cells =
-        table.rows.emplace_back(std::vector<Cell>{row.dataset, row.item, row.category, row.view, row.model});
-    cells.insert(cells.end(), row.scores.values.begin(), row.scores.values.end());
-    cells.insert(cells.end(), {row.scores.n_points, row.scores.n_picks});
+    table.rows.push_back(cells(row.dataset, row.item, row.category, row.view, row.model,
+                               std::vector<Cell>(row.scores.values.begin(), row.scores.values.end()),
+                               row.scores.n_points, row.scores.n_picks));
   }
   return table;
 }

@@ -32,14 +32,6 @@ struct ResultRow {
   double value(std::size_t metric) const { return scores.values.at(metric); }
 };
 
-struct DatasetAndModel {
-  std::string dataset, model;
-  bool operator==(const DatasetAndModel&) const = default;
-};
-
-// Those that the rows speak of: meshes before scans before clouds, models in the order of their first row.
-std::vector<DatasetAndModel> datasets_and_models(const std::vector<ResultRow>& rows);
-
 // A run, as its results are read from it.
 struct RunState {
   const Config& config;

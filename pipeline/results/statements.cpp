@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/results/pairs.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/core/errors.h"
 #include "stages/stats/summary.h"
 
@@ -62,11 +63,9 @@ const char* verdict_by_units(const Statement& said, const PairedComparison& foun
 // The pair of the statement with what corrects it for all pairs; empty where one of the models has no scores.
 ModelPair pair_of(const DatasetScores& scores, std::size_t metric, const std::string& a,
                   const std::string& b) {
-  const auto place = [&](const std::string& model) {
-    return static_cast<std::size_t>(std::ranges::find(scores.models(), model) - scores.models().begin());
-  };
-  if (std::max(place(a), place(b)) == scores.models().size()) return {};
-  ModelPair found = compare_models(scores, metric, place(a), place(b));
+  const std::size_t first = scores.find(a), second = scores.find(b);
+  if (std::max(first, second) == scores.models().size()) return {};
+  ModelPair found = compare_models(scores, metric, first, second);
   for (const ModelPair& pair : model_pairs(scores, metric))
     if (std::minmax(pair.a, pair.b) == std::minmax(found.a, found.b)) found.holm = pair.holm;
   return found;
@@ -75,27 +74,11 @@ ModelPair pair_of(const DatasetScores& scores, std::size_t metric, const std::st
 std::vector<Cell> statement_row(const Statement& said, const std::string& a, const std::string& b,
                                 const ModelPair& pair, bool higher_is_better) {
   const PairedComparison& found = pair.by_unit;
-  return {said.section,
-          said.text,
-          said.word,
-          said.dataset,
-          said.metric,
-          std::string(EnumNames<Relation>::names[static_cast<std::size_t>(said.relation)]),
-          a,
-          b,
-          pair.n_shapes,
-          pair.by_shape.z,
-          pair.by_shape.p_value,
-          verdict_by_shapes(said.relation, pair.by_shape, higher_is_better),
-          found.n,
-          found.mean_difference,
-          found.interval.low,
-          found.interval.high,
-          found.equivalence_interval.low,
-          found.equivalence_interval.high,
-          said.margin,
-          verdict_by_units(said, found, higher_is_better),
-          pair.holm};
+  return cells(said.section, said.text, said.word, said.dataset, said.metric,
+               std::string(name_of(said.relation)), a, b, pair.n_shapes, pair.by_shape.z,
+               pair.by_shape.p_value, verdict_by_shapes(said.relation, pair.by_shape, higher_is_better),
+               found.n, found.mean_difference, found.interval, found.equivalence_interval, said.margin,
+               verdict_by_units(said, found, higher_is_better), pair.holm);
 }
 
 }  // namespace
@@ -109,36 +92,30 @@ std::vector<Statement> read_statements(const std::filesystem::path& path) {
   const std::vector<double> margins = number_column(table, "margin");
   std::vector<Statement> found;
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    const auto relation = std::ranges::find(EnumNames<Relation>::names, checks[i]);
-    if (relation == EnumNames<Relation>::names.end() || words[i].empty()) continue;
+    Relation relation{};
+    if (!parse_option(checks[i], relation) || words[i].empty()) continue;
     if (std::ranges::find(kShapeNames, datasets[i]) == kShapeNames.end())
       throw InputError(fmt::format("{}:{}: data set '{}', expected one of {}", table.name, table.lines[i],
                                    datasets[i], fmt::join(kShapeNames, ", ")));
     if (margins[i] <= 0)
       throw InputError(
           fmt::format("{}:{}: margin {}, expected above 0", table.name, table.lines[i], margins[i]));
-    found.push_back({sections[i], claims[i], words[i], datasets[i], metrics[i],
-                     static_cast<Relation>(relation - EnumNames<Relation>::names.begin()), words_of(a[i]),
+    found.push_back({sections[i], claims[i], words[i], datasets[i], metrics[i], relation, words_of(a[i]),
                      words_of(b[i]), margins[i]});
   }
   return found;
 }
 
 Table statements_table(const Conclusions& conclusions, const std::vector<Statement>& statements) {
-  Table table{.columns = {"section",    "claim",           "word",
-                          "dataset",    "metric",          "check",
-                          "model_a",    "model_b",         "n_shapes",
-                          "rank_sum_z", "rank_sum_p",      "by_shapes",
-                          "n",          "mean_difference", "ci95_low",
-                          "ci95_high",  "ci90_low",        "ci90_high",
-                          "margin",     "by_units",        "signed_rank_p_holm"},
-              .rows = {}};
+  Table table{
+      .columns = split_list("section,claim,word,dataset,metric,check,model_a,model_b,n_shapes,rank_sum_z,"
+                            "rank_sum_p,by_shapes,n,mean_difference,ci95_low,ci95_high,ci90_low,"
+                            "ci90_high,margin,by_units,signed_rank_p_holm"),
+      .rows = {}};
   for (const Statement& said : statements) {
     const auto metric = std::ranges::find(conclusions.metrics, said.metric, &Metric::name);
-    const auto dataset = std::ranges::find_if(conclusions.datasets, [&](const DatasetConclusions& one) {
-      return one.scores.dataset() == said.dataset;
-    });
-    if (metric == conclusions.metrics.end() || dataset == conclusions.datasets.end()) continue;
+    const DatasetConclusions* dataset = conclusions.of(said.dataset);
+    if (metric == conclusions.metrics.end() || dataset == nullptr) continue;
     const auto number = static_cast<std::size_t>(metric - conclusions.metrics.begin());
     for (const std::string& a : said.a)
       for (const std::string& b : said.b)

@@ -33,14 +33,9 @@ struct Statement {
 // Throws InputError with the line of a data set that there is none of, or of a margin that is not above 0.
 std::vector<Statement> read_statements(const std::filesystem::path& path);
 
-// section, claim, word, dataset, metric, check, model_a, model_b: a row per pair; then twice what it is
-// worth: n_shapes, rank_sum_z, rank_sum_p, by_shapes: "holds" where the paper's rank-sum test over shapes, at
-// 0.05, says what the text does, "same" being what it does not reject; n (units), mean_difference, ci95_low,
-// ci95_high, ci90_low, ci90_high, margin, by_units: above and differ hold where the 95 % interval of the
-// paired difference leaves out 0 on the side claimed, same where the 90 % interval lies within the margins;
-// "does not hold" where the interval says the contrary; else "undecided"; signed_rank_p_holm: of the
-// signed-rank test over units, corrected for all pairs of the metric. Empty where a model has no scores.
-// Statements about data sets and metrics without conclusions have no row. [schuirmann1987] [lakens2017]
+// statements.csv (docs/data_dictionary.md): a row per pair, twice judged: by the paper's test over shapes and
+// by intervals over units. Empty where a model has no scores; no row without conclusions on data set and
+// metric. [schuirmann1987] [lakens2017]
 Table statements_table(const Conclusions& conclusions, const std::vector<Statement>& statements);
 
 }  // namespace salbench

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/results/timeline.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "pipeline/rules/rules.h"
+#include "pipeline/results/record.h"
 
 namespace salbench {
 namespace {

@@ -3,6 +3,7 @@
 // models are compared on: every table, interval and test reads its scores here.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -21,6 +22,11 @@ struct UnitScores {
   std::vector<std::size_t> units;   // rows, likewise
   Columns scores;                   // units x models: means over the shapes of a unit
   std::int64_t n_shapes = 0;        // shapes in them
+
+  // That after the last for a model that is not among them.
+  std::size_t column_of(std::size_t model) const {
+    return static_cast<std::size_t>(std::ranges::find(models, model) - models.begin());
+  }
 };
 
 // The scores of one data set, or of one class of it. Keeps references to the rows.
@@ -32,6 +38,10 @@ class DatasetScores {
   const std::string& dataset() const { return dataset_; }
   const std::vector<std::string>& models() const { return models_; }  // in the order of their first row
   bool is_reference(std::size_t model) const { return is_reference_[model]; }
+  // Number of a model by its name; that after the last if there is none.
+  std::size_t find(std::string_view model) const {
+    return static_cast<std::size_t>(std::ranges::find(models_, model) - models_.begin());
+  }
 
   // Models with at least one score of the metric: all of them, and the competitors among them.
   std::vector<std::size_t> scored(std::size_t metric) const;

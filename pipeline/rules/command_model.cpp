@@ -27,26 +27,9 @@ bool contains(const Words& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string yaml_list(const Words& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + yaml_quoted(word);
-  return "[" + list + "]";
-}
-
-// As options_text has it, but for quotes: a command line holds whatever YAML has other uses for.
+// A command line holds whatever YAML has other uses for.
 std::string command_text(const CommandOptions& options, bool annotated) {
-  std::string lines;
-  CommandOptions::fields(options,
-                         [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
-                           if (annotated) lines += fmt::format("# {}\n", option_note<Value>(help));
-                           if constexpr (std::is_same_v<Value, std::string>)
-                             lines += fmt::format("{}: {}\n", key, yaml_quoted(value));
-                           else if constexpr (std::is_same_v<Value, Words>)
-                             lines += fmt::format("{}: {}\n", key, yaml_list(value));
-                           else
-                             lines += fmt::format("{}: {}\n", key, option_text(value));
-                         });
-  return lines;
+  return options_text(options, annotated, true);
 }
 
 void check_reads(const CommandOptions& options, const Section& written) {
@@ -127,7 +110,7 @@ Output<Map> add_command(RuleTable& table, const ShapeOutputs& shape, const std::
   head.limit = static_cast<std::size_t>(options.at_once > 0 ? options.at_once : options.gpu);
   const OptionLines lines = {"models." + name, command_text(options, false),
                              fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),
-                                         yaml_list(options.reads), depends->key_lines())};
+                                         option_text(options.reads, true), depends->key_lines())};
   return table.add<Map>(
       shape.level, head,
       [command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,

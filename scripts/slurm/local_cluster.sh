@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced by scripts/slurm/test.
 # shellcheck shell=bash
 # A Slurm cluster of one node on this machine's loopback, for tests; to be sourced by bash. It lives in a folder of its
 # own, with its own ports, munge key and socket: a Slurm or munge that the machine runs already is neither used nor

@@ -6,7 +6,6 @@
 
 #include "pipeline/results/conclusions.h"
 #include "pipeline/results/pairs.h"
-#include "pipeline/results/statistics.h"
 #include "stages/core/rng.h"
 
 namespace salbench {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/commands/program.h"
+#include "pipeline/commands/subcommands.h"
 #include "pipeline/results/conclusions.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/metrics/metrics.h"

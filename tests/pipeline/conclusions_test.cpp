@@ -7,7 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results/statistics.h"
 #include "stages/core/rng.h"
 #include "stages/stats/summary.h"
 #include "tests/support/threads.h"

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results/human_share.h"
 #include "stages/core/rng.h"
 #include "stages/stats/paired.h"
 #include "tests/support/threads.h"

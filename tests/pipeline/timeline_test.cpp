@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/results/timeline.h"
+#include "pipeline/results/record.h"
 
 #include <map>
 

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "pipeline/results/human_curves.h"
-#include "pipeline/results/human_share.h"
 #include "stages/core/rng.h"
 #include "stages/stats/human_scale.h"
 #include "stages/stats/summary.h"

@@ -83,6 +83,11 @@ class ScriptsTest(unittest.TestCase):
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
                 self.assertIn(f"scripts/{name_of(path)}", done.stdout)
 
+    def test_each_says_in_its_first_lines_who_runs_it_and_when(self):
+        for path in FILES:
+            head = "\n".join(path.read_text(encoding="utf-8").splitlines()[:4])
+            self.assertRegex(head, r"(?m)^(#|//) (Run|Read|Sourced|Imported|Included) (by|before) ", name_of(path))
+
     def test_each_program_is_mentioned_where_people_look(self):
         documents = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md"))
         others = {"slurm/task", "slurm/toy_meshes.py"}  # run by scripts/slurm/submit and by tests

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of the chi-square search for each variant by its name: what a machine lacks is seen to be skipped,
-// and scripts/emulate runs it.
+// Tests of the chi-square search for each variant by its name: what a machine lacks is seen to be skipped.
 #pragma once
 
 #include <array>

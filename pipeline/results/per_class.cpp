@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/results/statistics.h"
-
 #include <algorithm>
 
-#include "pipeline/results/unit_scores.h"
-#include "stages/metrics/metrics.h"
+#include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 
 namespace salbench {
@@ -38,9 +35,8 @@ void add_class_rows(Table& table, const std::string& category, const DatasetScor
   const auto add = [&](const std::string& model, std::size_t metric, const UnitScores& of) {
     if (of.units.empty()) return;
     const Summary summary = summarise(mean_of_columns(of.scores));
-    const Interval interval = student_interval(summary);
-    table.rows.push_back({scores.dataset(), category, model, metrics[metric].name, summary.n, of.n_shapes,
-                          summary.mean, interval.low, interval.high});
+    table.rows.push_back(cells(scores.dataset(), category, model, metrics[metric].name, summary.n,
+                               of.n_shapes, summary.mean, student_interval(summary)));
   };
   for (std::size_t model = 0; model < scores.models().size(); ++model)
     for (std::size_t m = 0; m < metrics.size(); ++m)
@@ -59,24 +55,6 @@ Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics
       .rows = {}};
   for (const auto& [dataset, category] : datasets_and_classes(rows))
     add_class_rows(table, category, DatasetScores(rows, dataset, unit, category), metrics);
-  return table;
-}
-
-Table mean_histogram_table(const RunState& run, Level level) {
-  Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
-  for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
-    table.rows[bin].emplace_back(static_cast<double>(bin) / kHistogramBins);
-  for (const Job& job : run.project().jobs_of(Unit{})) {
-    const Rule& rule = run.project().rule(job);
-    const bool is_reference = has_role(rule, Role::reference);
-    if ((!is_reference && !has_role(rule, Role::mean_histogram)) || rule.over != level ||
-        !run.decision(job).known())
-      continue;
-    table.columns.push_back(is_reference ? "GS" : rule.subject);
-    const ValuePtr histogram = run.resolver.value(job);
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
-      table.rows[bin].emplace_back(value_as<Histogram>(*histogram)[bin]);
-  }
   return table;
 }
 
