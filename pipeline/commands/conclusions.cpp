@@ -9,11 +9,11 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
-#include "pipeline/rules/config.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/results/pairs.h"
 #include "pipeline/results/score_file.h"
 #include "pipeline/results/statements.h"
+#include "pipeline/rules/config.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

@@ -79,9 +79,9 @@ struct ExplainReport {
   std::vector<Explanation> stages;
 };
 
-Json::Object json_of(const ExplainReport& report) {
+Json json_of(const ExplainReport& report) {
   return {{"item", report.asked.item},
-          {"stages", Json::list(report.stages, [](const Explanation& stage) {
+          {"stages", list_of(report.stages, [](const Explanation& stage) {
              return Json{{"stage", stage.stage},
                          {"state", stage.state},
                          {"why", stage.why},

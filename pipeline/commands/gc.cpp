@@ -29,16 +29,16 @@ struct GcReport {
 
 Json json_of(const Amount& amount) { return {{"files", amount.files}, {"bytes", amount.bytes}}; }
 
-Json::Object json_of(const GcReport& report) {
+Json json_of(const GcReport& report) {
   const Collected& collected = report.collected;
   return {{"cache", report.cache},
           {"dry_run", report.dry_run},
-          {"stages", Json::list(collected.stages,
-                                [](const Collected::OfStage& stage) {
-                                  return Json{{"stage", stage.stage},
-                                              {"kept", json_of(stage.kept)},
-                                              {"removed", json_of(stage.removed)}};
-                                })},
+          {"stages", list_of(collected.stages,
+                             [](const Collected::OfStage& stage) {
+                               return Json{{"stage", stage.stage},
+                                           {"kept", json_of(stage.kept)},
+                                           {"removed", json_of(stage.removed)}};
+                             })},
           {"damaged", json_of(collected.damaged)},
           {"unfinished", json_of(collected.unfinished)},
           {"waiting", report.waiting}};

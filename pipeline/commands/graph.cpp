@@ -29,11 +29,9 @@ std::string jobs_text(const GraphNode& node) {
   return node.to_do ? fmt::format(", {} to do", *node.to_do) : "";
 }
 
-Json::Object json_of(const Graph& graph) {
-  const auto words = [](const std::vector<std::string>& list) {
-    return Json::List(list.begin(), list.end());
-  };
-  return {{"nodes", Json::list(graph.nodes, [&](const GraphNode& node) {
+Json json_of(const Graph& graph) {
+  const auto words = [](const std::vector<std::string>& list) { return Json(list); };
+  return {{"nodes", list_of(graph.nodes, [&](const GraphNode& node) {
              return Json{{"node", node.name},
                          {"stage", node.stage},
                          {"shapes", node.shapes},

@@ -20,16 +20,15 @@ Json reason_json(const std::pair<std::string, std::size_t>& reason) {
   return {{"why", reason.first}, {"jobs", reason.second}};
 }
 
-Json::Object json_of(const PlanReport& report) {
+Json json_of(const PlanReport& report) {
   return {{"stages",
-           Json::list(report.stages,
-                      [](const StageCount& count) {
-                        return Json{
-                            {"stage", count.stage},   {"version", count.version},
-                            {"cached", count.cached}, {"to_compute", count.compute},
-                            {"waiting", count.wait},  {"not_applicable", count.not_applicable},
-                            {"failed", count.failed}, {"reasons", Json::list(count.reasons, reason_json)}};
-                      })},
+           list_of(report.stages,
+                   [](const StageCount& count) {
+                     return Json{{"stage", count.stage},   {"version", count.version},
+                                 {"cached", count.cached}, {"to_compute", count.compute},
+                                 {"waiting", count.wait},  {"not_applicable", count.not_applicable},
+                                 {"failed", count.failed}, {"reasons", list_of(count.reasons, reason_json)}};
+                   })},
           {"open", report.open}};
 }
 

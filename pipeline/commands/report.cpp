@@ -22,12 +22,13 @@ ReportFormat format_of(const FormatWord& word, bool graph) {
       fmt::format("--format {}: must be {}", *word, graph ? "text, json or dot" : "text or json"));
 }
 
-void print_report(ReportFormat format, const std::string& subcommand, Json::Object members,
+void print_report(ReportFormat format, const std::string& subcommand, const Json& members,
                   const std::string& text) {
   if (format != ReportFormat::json) return fmt::print("{}", text);
-  const std::initializer_list<Json::Member> head = {{"schema", kReportSchema}, {"command", subcommand}};
-  members.insert(members.begin(), head);
-  fmt::print("{}\n", Json(std::move(members)).text());
+  Json document = {{"schema", kReportSchema}, {"command", subcommand}};
+  document.update(members);
+  // U+FFFD in place of bytes that are not UTF-8.
+  fmt::print("{}\n", document.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace salbench

@@ -5,13 +5,34 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "pipeline/commands/subcommand.h"
-#include "pipeline/config/json.h"
 #include "stages/core/options.h"
 
+// An empty optional is null.
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+  template <class Json>
+  static void to_json(Json& json, const std::optional<T>& value) {
+    json = value ? Json(*value) : Json();
+  }
+};
+
 namespace salbench {
+
+using Json = nlohmann::ordered_json;
+
+// A list of what `convert` makes of each element.
+template <class Range, class Convert>
+Json list_of(const Range& range, const Convert& convert) {
+  Json list = Json::array();
+  for (const auto& element : range) list.push_back(convert(element));
+  return list;
+}
 
 inline constexpr int kReportSchema = 1;  // raised when a key goes, or changes its type or its meaning
 
@@ -30,7 +51,7 @@ Parameter format_parameter(const FormatWord& word, const std::string& further_he
 ReportFormat format_of(const FormatWord& word, bool graph = false);
 
 // Prints the document of these members, which begins with the schema and the subcommand, or else the text.
-void print_report(ReportFormat format, const std::string& subcommand, Json::Object members,
+void print_report(ReportFormat format, const std::string& subcommand, const Json& members,
                   const std::string& text);
 
 }  // namespace salbench

@@ -43,8 +43,7 @@ std::optional<Histogram> reference_of(const Arguments& arguments) {
   return arguments.reference.empty() ? std::nullopt : std::optional(read_reference(arguments.reference));
 }
 
-}  // namespace
-
+// The configuration as the command line changes it: folders, models. Throws ConfigError.
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
   const std::string path = configuration_path(arguments.config);
   Config config = read_config(Section::from_file(path), fs::path(path).stem().string());
@@ -67,6 +66,8 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
   return config;
 }
+
+}  // namespace
 
 int thread_count(const Arguments& arguments) {
   if (arguments.threads > 0) return arguments.threads;

@@ -31,10 +31,6 @@ struct Setup {
   std::filesystem::path cache, output;
 };
 
-// The configuration as the command line changes it: folders, models. Throws ConfigError.
-Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {},
-                          Pictures pictures = Pictures::none);
-
 // A setup with its cache opened, planned, and ready to run.
 struct Session {
   // Throws as Setup does, and StorageError.

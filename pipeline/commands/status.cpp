@@ -29,15 +29,15 @@ struct StatusReport {
   std::filesystem::path results;
 };
 
-Json::Object json_of(const StatusReport& report) {
-  return {{"stages", Json::list(report.stages,
-                                [](const StatusReport::Stage& stage) {
-                                  return Json{{"stage", stage.stage},
-                                              {"done", stage.done},
-                                              {"of", stage.of},
-                                              {"artefacts", stage.artefacts},
-                                              {"bytes", stage.bytes}};
-                                })},
+Json json_of(const StatusReport& report) {
+  return {{"stages", list_of(report.stages,
+                             [](const StatusReport::Stage& stage) {
+                               return Json{{"stage", stage.stage},
+                                           {"done", stage.done},
+                                           {"of", stage.of},
+                                           {"artefacts", stage.artefacts},
+                                           {"bytes", stage.bytes}};
+                             })},
           {"meshes", report.meshes},
           {"clouds", report.clouds},
           {"models", report.models},

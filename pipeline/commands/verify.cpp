@@ -40,27 +40,25 @@ struct VerifyReport {
 };
 
 Json faults_json(const std::vector<Fault>& faults) {
-  return Json::list(faults, [](const Fault& fault) {
-    return Json{{"file", fault.file}, {"what", fault.what}};
-  });
+  return list_of(faults, [](const Fault& fault) { return Json{{"file", fault.file}, {"what", fault.what}}; });
 }
 
-Json::Object json_of(const VerifyReport& report) {
-  return {{"caches", Json::list(report.caches,
-                                [](const CheckedCache& checked) {
-                                  const Verification& found = checked.found;
-                                  return Json{{"cache", checked.cache},
-                                              {"artefacts", found.artefacts},
-                                              {"bytes", found.bytes},
-                                              {"other_files", found.others},
-                                              {"faults", faults_json(found.faults)}};
-                                })},
-          {"samples", Json::list(report.samples,
-                                 [](const CheckedSample& checked) {
-                                   return Json{{"configuration", checked.configuration},
-                                               {"jobs", checked.found.jobs},
-                                               {"faults", faults_json(checked.found.faults)}};
-                                 })},
+Json json_of(const VerifyReport& report) {
+  return {{"caches", list_of(report.caches,
+                             [](const CheckedCache& checked) {
+                               const Verification& found = checked.found;
+                               return Json{{"cache", checked.cache},
+                                           {"artefacts", found.artefacts},
+                                           {"bytes", found.bytes},
+                                           {"other_files", found.others},
+                                           {"faults", faults_json(found.faults)}};
+                             })},
+          {"samples", list_of(report.samples,
+                              [](const CheckedSample& checked) {
+                                return Json{{"configuration", checked.configuration},
+                                            {"jobs", checked.found.jobs},
+                                            {"faults", faults_json(checked.found.faults)}};
+                              })},
           {"interrupted", report.interrupted}};
 }
 

@@ -126,11 +126,6 @@ std::string options_text(const Options& options, bool annotated = false, bool qu
   return lines;
 }
 
-template <class Options>
-std::string annotated_options_text(const Options& options) {
-  return options_text(options, true);
-}
-
 // Text of the options for a key. Leaves out options at the values that older keys imply.
 template <class Options>
 std::string key_text(const Options& options) {

@@ -32,7 +32,7 @@ ModelRow human_row(std::string_view name, std::int32_t version) {
             return Model{.name = std::string(name),
                          .version = version,
                          .options = options_text(options),
-                         .annotated_options = annotated_options_text(options),
+                         .annotated_options = options_text(options, true),
                          .human = options};
           }};
 }

@@ -100,7 +100,7 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
             return Model{.name = std::string(name),
                          .version = version,
                          .options = options_text(options),
-                         .annotated_options = annotated_options_text(options),
+                         .annotated_options = options_text(options, true),
                          .add_map = add_map};
           }};
 }

@@ -293,12 +293,6 @@ bool reference_is_given(const Rules& rules) {
   return std::ranges::any_of(rules, [](const Rule& rule) { return rule.given != nullptr; });
 }
 
-std::size_t find_rule(const Rules& rules, Level over, std::string_view stage) {
-  for (std::size_t rule = 0; rule < rules.size(); ++rule)
-    if (rules[rule].over == over && rules[rule].stage == stage) return rule;
-  throw std::out_of_range(fmt::format("there is no rule for stage '{}' of {}", stage, shapes_name(over)));
-}
-
 std::string node_name(const Rule& rule) {
   return fmt::format("{} of {}", rule.stage, shapes_name(rule.over));
 }

@@ -29,9 +29,6 @@ Project make_project(const Config& config, const Inputs& inputs,
 
 bool reference_is_given(const Rules& rules);  // in place of the data set's own mean
 
-// The rule with a role over a level; of a model where it has a subject. Throws std::out_of_range.
-std::size_t find_rule(const Rules& rules, Level over, std::string_view stage);
-
 std::string node_name(const Rule& rule);  // "fpfh of scans": levels may have stages of one name
 
 // Configuration path of a rule's option, such as "fpfh.radius"; the bare key if no section has it.

@@ -123,7 +123,7 @@ TEST(OptionsText, AKeyLeavesOutWhatOlderKeysImply) {
 }
 
 TEST(OptionsText, AnnotatedSaysMeaningUnitAndWhatIsAccepted) {
-  EXPECT_EQ(annotated_options_text(Sample{}),
+  EXPECT_EQ(options_text(Sample{}, true),
             "# a switch\nflag: false\n"
             "# how many (points)\ncount: 9\n"
             "# how far (R; > 0)\nradius: 0.01\n"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
@@ -60,6 +61,12 @@ inline Config toy_config(const std::string& yaml = kToyConfig) {
 inline Unit mesh_unit(std::size_t family) { return {kMeshes, static_cast<std::uint32_t>(family)}; }
 inline Unit scan_unit(std::size_t family, int view) {
   return {kScans, static_cast<std::uint32_t>(family * kViews + static_cast<std::size_t>(view))};
+}
+
+inline std::size_t find_rule(const Rules& rules, Level over, std::string_view stage) {
+  for (std::size_t rule = 0; rule < rules.size(); ++rule)
+    if (rules[rule].over == over && rules[rule].stage == stage) return rule;
+  throw std::out_of_range(fmt::format("there is no rule for stage '{}' of {}", stage, shapes_name(over)));
 }
 
 inline bool has_rule(const Rules& rules, Level over, std::string_view stage) {
