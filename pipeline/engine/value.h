@@ -44,7 +44,8 @@ inline constexpr bool kProvides<const T*, T> = true;  // of an optional input
 // In memory a result is the variant that holds it.
 template <class Codec>
 struct Held final : Stored {
-  explicit Held(typename Codec::Type the_value) : value(std::move(the_value)) {}
+  template <class T>
+  explicit Held(T the_value) : value(std::move(the_value)) {}
   Arrays arrays() const override { return Codec::arrays(value); }
   typename Codec::Type value;
 };
