@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The names of a folder's artefacts in 56 bytes each: there are a million of them for 40 000 shapes.
+// The names of a folder's artefacts in 56 bytes each: a shape has some twenty of them.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ namespace salbench {
 // Safe to call from several threads.
 class NameIndex {
  public:
-  // Of two contents under one key it keeps the smaller digest: some stage is not deterministic, and every
-  // machine should take the same. Quick if the names are sorted by key.
+  // Keeps the smaller of two contents under one key: some stage is not deterministic, and every machine
+  // should take the same. Quick if the names are sorted by key.
   void insert(std::string_view stage, std::span<const ArtefactName> names);
   void erase(std::string_view stage, const Digest& key);
 

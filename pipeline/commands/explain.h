@@ -22,7 +22,7 @@ struct Explanation {
   std::filesystem::path file;  // the artefact, or the nearest; empty if there is none
 };
 
-// In the order of the catalog. Throws ConfigError for an item or a stage that does not exist.
+// In the order of the rules. Throws ConfigError for an item or a stage that does not exist.
 std::vector<Explanation> explain(const Project& project, const Index& index,
                                  const std::filesystem::path& cache, const ExplainOptions& options);
 

@@ -75,7 +75,7 @@ std::string group_text(const Project& project, const Job& job, const RecipeDiffe
   }
 }
 
-// What is gathered is counted by its fate: "3 map.LS changed, 1 map.LS added".
+// Counts gathered inputs by their fate: "3 map.LS changed, 1 map.LS added".
 std::vector<std::string> group_texts(const Project& project, const Job& job,
                                      const std::vector<RecipeDifference>& differences) {
   const Rule& rule = project.rule(job);

@@ -7,9 +7,8 @@
 //
 // The arguments stand for the function's parameters, one for one: an Output<T> for a T, or for Members<T>,
 // which gathers all units; only_if(needed, Output<V>) for a view V; prepared<P>(Output<T>) for a P that is
-// made of a T once per family; a SectionOf options for these; kRandom
-// for a RandomSource, kPlace for a UnitPlace, kRemark for a Remark, a FileColumnPtr for Files. Anything else
-// does not compile.
+// made of a T once per family; a SectionOf<Options> for its options; kRandom for a RandomSource, kPlace for a
+// UnitPlace, kRemark for a Remark, a FilesOf for Files. Anything else does not compile.
 #pragma once
 
 #include <span>
@@ -53,8 +52,7 @@ struct Members {
   }
 };
 
-// --- arguments: what each fits, what it makes the rule read, and what it takes from a job
-// -------------------
+// --- arguments: parameters that each fits, marks that it makes in the rule, and its value ----------
 
 template <class T>
 struct Output {
@@ -138,7 +136,7 @@ struct SectionOf {
   }
 };
 
-// What the job itself has: how it is taken, and what it makes of the rule.
+// An argument that comes from the job itself: the mark that it makes in the rule, and its value.
 template <class Parameter_>
 struct OfJob {
   void (*describe)(Rule& reader);

@@ -39,7 +39,7 @@ using FilesOfUnit = std::vector<File>;
 // The files of one kind of all units of a level. Their digests follow files that change during a run.
 struct FileColumn {
   std::vector<FilesOfUnit> files;  // [unit's index]
-  bool expected = true;            // without any the unit has nothing; otherwise nothing was given for it
+  bool expected = true;            // of every unit; false: some units are left out
 };
 using FileColumnPtr = std::shared_ptr<FileColumn>;
 

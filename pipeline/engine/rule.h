@@ -45,7 +45,7 @@ class Preparation {
   Made kept_;
 };
 
-// What the function of a rule gets for one job.
+// Arguments of a rule's function for one job.
 struct JobInputs {
   std::vector<ValuePtr> values = {};  // of the rules that are read, in their order
   std::size_t members = 0;            // of a rule that gathers: units whose value is known

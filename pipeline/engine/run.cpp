@@ -66,7 +66,7 @@ class Run {
   }
 
  private:
-  // What a stratum is for: what it gathers that later ones read.
+  // Names a stratum by a value that it gathers for later ones.
   std::string ends_of(const std::vector<std::size_t>& stratum, std::size_t number) const {
     if (number == std::ranges::max(stratum)) return options_.what;
     for (std::size_t rule = 0; rule < stratum.size(); ++rule)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The room of what a run reads: data sets and their ground truth, given maps, a given reference. Folders and
-// files come in; units with the digests of their files go out, and functions that read them. It includes the
+// files come in; units with their files go out, and functions that read them. It includes the
 // engine, config/, io/ and stages/, and knows no rule.
 #pragma once
 
@@ -32,7 +32,7 @@ struct Inputs {
   FileColumnPtr truth_files = {};       // [family]: none where nothing is known about the shape
   std::optional<Shard> shard = {};      // the units are this share of the data set
 
-  // What the run may have rules for; of a data set that is not known yet, meshes.
+  // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;
   std::size_t count(Level level) const { return units.of(level).size(); }
   std::string text() const;  // "3 meshes, 2 point clouds"
@@ -43,8 +43,8 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
   return item_of(units.source_of(unit).source);
 }
 
-// The files of the items that `selection` names ("1-20,52,125"; empty: all), or of one
-// share of them. Throws ConfigError where it names an item that is not there.
+// The items that `selection` names ("1-20,52,125"; empty: all), or one share of them. Reads no file but those
+// whose name does not say which kind of shape they hold. Throws ConfigError for an item that is not there.
 Inputs read_inputs(Dataset dataset, const std::string& selection = {},
                    const std::optional<Shard>& shard = {});
 

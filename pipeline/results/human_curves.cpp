@@ -68,7 +68,7 @@ class CurveScores {
   std::vector<std::size_t> columns_;
 };
 
-// Of the whole, from the correlation of its halves. [spearman1910] [brown1910]
+// Reliability of the whole, from the correlation of its halves. [spearman1910] [brown1910]
 double reliability(double r) { return std::isnan(r) ? r : r > 0 ? 2 * r / (1 + r) : 0; }
 
 // The metric that is Pearson's correlation of two maps, as reliability takes it.

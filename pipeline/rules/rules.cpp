@@ -24,8 +24,7 @@
 namespace salbench {
 namespace {
 
-// --- functions of rules that are more than one stage's
-// ------------------------------------------------------
+// --- functions of rules that are more than one stage's ----------------------------------------------------
 
 GroundTruth simulate_ground_truth(const Mesh& mesh, const SimulationOptions& options,
                                   const RandomSource& random) {
@@ -153,7 +152,7 @@ Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& confi
   return table.add(kClouds, head, given_cloud_truth, cloud, surface, FilesOf{inputs.truth_files});
 }
 
-// What is given is known before the run: nothing is read for it.
+// A given reference is known before the run, and reads nothing.
 Output<Reference> add_reference(RuleTable& table, Level level, const Output<GroundTruth>& truth,
                                 const std::optional<Histogram>& given) {
   const auto reference =

@@ -138,8 +138,7 @@ TEST(AddAModel, ItReadsWhatItsSignatureNames) {
   EXPECT_EQ(rule.options[0].text, "power: 2\n");
 }
 
-// --- a stage: its function, and a row of the table of rules
-// --------------------------------------------------
+// --- a stage: its function, and a row of the table of rules -----------------------------------------------
 
 ScalarField heights(const Mesh& mesh, const FarOptions& options) {
   ScalarField z;
