@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "cache/layout.h"
-#include "io/child_process.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
@@ -54,71 +52,21 @@ std::string fault_of(const ArtefactFile& file, const fs::path& folder, Verificat
   return error.what();
 }
 
-// Shards that one process checks: enough of them to be worth a process, and few enough to stop soon.
-using Slice = std::span<const ShardFolder>;
-constexpr std::size_t kSliceArtefacts = 256;
-constexpr ChildLimits kSliceLimits = {.processor_time = std::chrono::seconds(3600)};
-
-std::vector<Slice> slices_of(const std::vector<ShardFolder>& shards) {
-  std::vector<Slice> slices;
-  for (std::size_t first = 0, next = 0; first < shards.size(); first = next) {
-    for (std::size_t artefacts = 0; next < shards.size() && artefacts < kSliceArtefacts; ++next)
-      artefacts += shards[next].artefacts;
-    slices.push_back(Slice(shards).subspan(first, next - first));
-  }
-  return slices;
-}
-
 // Sound artefacts of one key lie in one shard.
-Verification verify_slice(const fs::path& folder, Slice slice) {
+Verification verify_shard(const fs::path& folder, const ShardFolder& shard) {
   Verification result;
-  for (const ShardFolder& shard : slice) {
-    std::map<Digest, const ArtefactFile*> sound;
-    const std::vector<ArtefactFile> files = list_shard(folder, shard);
-    for (const ArtefactFile& file : files) {
-      std::string fault = fault_of(file, folder, result);
-      if (fault.empty()) {
-        const ArtefactFile* first = sound.try_emplace(file.name.key, &file).first->second;
-        if (first->name.content != file.name.content)
-          fault = "another content under the key of " + first->path.filename().string();
-      }
-      if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
+  std::map<Digest, const ArtefactFile*> sound;
+  const std::vector<ArtefactFile> files = list_shard(folder, shard);
+  for (const ArtefactFile& file : files) {
+    std::string fault = fault_of(file, folder, result);
+    if (fault.empty()) {
+      const ArtefactFile* first = sound.try_emplace(file.name.key, &file).first->second;
+      if (first->name.content != file.name.content)
+        fault = "another content under the key of " + first->path.filename().string();
     }
+    if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
   }
   return result;
-}
-
-// Sent by a process: each field ends with a zero byte, which no path or message holds.
-std::string text_of(const Verification& result) {
-  std::string text = fmt::format("{}{:c}{}{:c}", result.artefacts, 0, result.bytes, 0);
-  for (const Fault& fault : result.faults)
-    text += fmt::format("{}{:c}{}{:c}", fault.file.string(), 0, fault.what, 0);
-  return text;
-}
-
-Verification verification_from(const std::string& text) {
-  std::istringstream stream(text);
-  const auto field = [&] {
-    std::string value;
-    std::getline(stream, value, '\0');
-    return value;
-  };
-  Verification result;
-  result.artefacts = std::stoull(field());
-  result.bytes = std::stoull(field());
-  for (std::string file = field(); !file.empty(); file = field()) result.faults.push_back({file, field()});
-  return result;
-}
-
-// The HDF5 library lets one thread in at a time, so the cores are kept busy by processes. A slice whose
-// process failed is checked here, where an exception gets out.
-Verification verify_in_child(const fs::path& folder, Slice slice) {
-  const auto send_result = [&](const Send& send) {
-    const std::string text = text_of(verify_slice(folder, slice));
-    send(std::as_bytes(std::span(text)));
-  };
-  const ChildResult child = run_in_child(kSliceLimits, send_result, fork_beside_hdf5);
-  return child.failure.empty() ? verification_from(child.sent) : verify_slice(folder, slice);
 }
 
 }  // namespace
@@ -153,12 +101,11 @@ Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view s
 Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop, Progress& progress) {
   require_cache(folder);
   const CacheListing listing = list_cache(folder);
-  const std::vector<Slice> slices = slices_of(listing.shards);
-  std::vector<Verification> found(slices.size());
+  std::vector<Verification> found(listing.shards.size());
   progress.begin("verifying", listing.artefacts);
-  parallel_ranges(slices.size(), 1, [&](std::size_t i, std::size_t) {
+  parallel_ranges(found.size(), 1, [&](std::size_t i, std::size_t) {
     if (stop) return;
-    found[i] = verify_in_child(folder, slices[i]);
+    found[i] = verify_shard(folder, listing.shards[i]);
     for (std::size_t n = found[i].artefacts; n > 0; --n) progress.item_done();
   });
   progress.end();

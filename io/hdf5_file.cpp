@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "io/child_process.h"
+#include "io/hdf5_image.h"
 #include "io/hdf5_library.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
@@ -201,7 +202,7 @@ Handle unlocked_access() {
 
 }  // namespace
 
-Bytes hdf5_image(const Hdf5Content& content) {
+Bytes hdf5::image_by_library(const Hdf5Content& content) {
   std::vector<std::optional<PackedChunks>> chunks;
   for (const Array& array : content.arrays) chunks.push_back(packed(array));
   const auto lock = library();
@@ -219,7 +220,7 @@ Bytes hdf5_image(const Hdf5Content& content) {
   return image;
 }
 
-Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name) try {
+Hdf5Content hdf5::content_by_library(std::span<const std::byte> image) {
   const auto lock = library();
   const Handle file = opened_image(image);
   Hdf5Content content{{}, read_attributes(file)};
@@ -231,6 +232,16 @@ Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name
     content.arrays.push_back(std::move(array));
   }
   return content;
+}
+
+Bytes hdf5_image(const Hdf5Content& content) {
+  auto image = written_image(content);
+  return image ? std::move(*image) : image_by_library(content);
+}
+
+Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name) try {
+  auto content = parsed_image(image);
+  return content ? std::move(*content) : content_by_library(image);
 } catch (const std::runtime_error& error) {
   fail(name, error);
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "io/arrays.h"
@@ -19,5 +20,12 @@ struct PackedChunks {
 // Nothing if the array is better stored as it is: deflate saves an eighth of coordinates, half of descriptors
 // (single precision, mostly zeros), and most of pictures. Equal arrays give equal bytes.
 std::optional<PackedChunks> packed(const Array& array);
+
+inline constexpr unsigned kPackLevel = 1;  // of deflate: the fastest
+
+// Inflates a chunk of `chunk_bytes` bytes, whose values take `value` bytes each, and puts those of its values
+// that fit into `values`. Returns whether the chunk is sound.
+bool unpack(std::span<const std::byte> packed, std::size_t value, std::size_t chunk_bytes,
+            std::span<std::byte> values);
 
 }  // namespace salbench

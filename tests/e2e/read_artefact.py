@@ -5,6 +5,7 @@ read_artefact.py CACHE RESULTS_CSV: prints "ok: ..." or says what is wrong.
 """
 
 import pathlib
+import subprocess
 import sys
 
 try:
@@ -101,6 +102,13 @@ def check_score_table(path, file, results):
     return len(names)
 
 
+def dump(path):
+    """What is written past the HDF5 library is read by its own tools, to the last value."""
+    run = subprocess.run(["h5dump", path], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if run.returncode != 0 or run.stderr:
+        fail(path, f"h5dump (package hdf5-tools) cannot read it: {run.stderr}")
+
+
 def main():
     cache, results_csv = pathlib.Path(sys.argv[1]), sys.argv[2]
     results = pandas.read_csv(results_csv, dtype={"item": str, "view": "Int64"}, float_precision="round_trip")
@@ -109,6 +117,7 @@ def main():
     points = dict(zip(names, results["n_points"]))
     checked = scored = in_tables = 0
     for path in sorted(cache.glob("*/??/*.h5")):
+        dump(path)
         with h5py.File(path, "r") as file:
             check_attributes(path, file)
             n = points_of(path, file)
