@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "io/cloud_file.h"
+#include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
@@ -40,11 +41,6 @@ struct Found {
   const Place& place;
   std::vector<fs::path> meshes;
 };
-
-bool is_folder(const fs::path& path) {
-  std::error_code error;
-  return fs::is_directory(path, error);
-}
 
 bool is_open(const Place& place, const fs::path& root) {
   return (place.needs.empty() || is_folder(root / place.needs)) &&

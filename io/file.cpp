@@ -251,6 +251,11 @@ void visit_abandoned(const fs::path& folder, const std::function<void(const fs::
   }
 }
 
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
 std::vector<FolderEntry> list_folder(const fs::path& folder) {
   std::vector<FolderEntry> entries;
   visit_names(folder, [&](std::string_view name, bool is_folder) {

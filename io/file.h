@@ -79,6 +79,8 @@ struct FolderEntry {
   bool is_folder = false;  // also true for a link to one, but not for a dangling link
 };
 
+bool is_folder(const std::filesystem::path& path);  // false as well where the system does not say
+
 // Entries of the folder, by name; none if there is no such folder. Throws StorageError if it cannot be listed
 // to its end.
 std::vector<FolderEntry> list_folder(const std::filesystem::path& folder);

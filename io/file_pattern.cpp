@@ -67,11 +67,6 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool is_literal(const Pieces& pieces) { return pieces.size() == 1 && pieces[0].kind == Kind::text; }
 
-bool is_folder(const fs::path& path) {
-  std::error_code error;
-  return fs::is_directory(path, error);
-}
-
 struct Captured {
   std::optional<std::string> item;
   std::string part;

@@ -16,11 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_folder(const fs::path& path) {
-  std::error_code error;
-  return fs::is_directory(path, error);
-}
-
 GivenMaps maps_in_folder(const fs::path& folder) {
   GivenMaps maps{.source = folder};
   for (const FolderEntry& entry : list_folder(folder))

@@ -18,7 +18,7 @@
 namespace salbench {
 namespace {
 
-constexpr double kLevel = 1e-12;  // relative difference: the same scores summed in another order
+constexpr double kRounding = 1e-12;  // relative difference: the same scores summed in another order
 
 bool is_chance(const std::string& model) { return model == kChance || model == kConstantMap; }
 
@@ -38,7 +38,7 @@ std::string passed_by(const std::string& reference, const DatasetScores& scores,
     if (compared.units.empty()) continue;
     const std::vector<double> means = compared.scores.means();
     const double ahead = higher_is_better ? means[0] - means[1] : means[1] - means[0];
-    const double level = kLevel * std::max(std::abs(means[0]), std::abs(means[1]));
+    const double level = kRounding * std::max(std::abs(means[0]), std::abs(means[1]));
     if (ahead < -level) continue;
     passed += fmt::format("{}{} ({})", passed.empty() ? "" : ", ", names[model],
                           ahead > level ? fmt::format("by {:.3g}", ahead) : "level");

@@ -13,7 +13,6 @@ namespace salbench {
 namespace {
 
 constexpr std::string_view kPeople = "HS";  // with kChance, the ends of the scale
-constexpr double kLevel = 1 - kConfidence;
 
 // The models, chance and people under one metric, on the same units.
 struct Scale {
@@ -62,15 +61,15 @@ std::string remark_on(const Interval& interval, std::size_t units) {
 
 std::vector<Cell> row_of(const DatasetScores& scores, const std::string& metric, const Scale& scale,
                          std::size_t model, std::size_t place) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNotScored = std::numeric_limits<double>::quiet_NaN();
   const bool scored = place < scale.means.size();
   const Share share = scored && !scale.shares.empty() ? scale.shares[place] : Share{};
   std::string remark = scale.remark;
   if (remark.empty()) remark = scored ? remark_on(share.interval, scale.scores.units.size()) : "no scores";
   return cells(scores.dataset(), metric, scores.models()[model], scored ? scale.scores.units.size() : 0,
-               scored ? scale.scores.n_shapes : 0, scored ? scale.means[place] : kNone,
-               scored ? scale.means.end()[-2] : kNone, scored ? scale.means.back() : kNone, share.value,
-               remark.empty() ? share.interval : Interval{}, remark);
+               scored ? scale.scores.n_shapes : 0, scored ? scale.means[place] : kNotScored,
+               scored ? scale.means.end()[-2] : kNotScored, scored ? scale.means.back() : kNotScored,
+               share.value, remark.empty() ? share.interval : Interval{}, remark);
 }
 
 }  // namespace

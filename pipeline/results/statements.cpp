@@ -16,7 +16,6 @@
 namespace salbench {
 namespace {
 
-constexpr double kLevel = 1 - kConfidence;
 constexpr const char* kHolds = "holds";
 constexpr const char* kDoesNot = "does not hold";
 constexpr const char* kUndecided = "undecided";

@@ -31,8 +31,6 @@ constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distan
 // A point without others has no votes to divide.
 double divisor(std::size_t others) { return static_cast<double>(std::max<std::size_t>(others, 1)); }
 
-const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
-
 // The neighbours of each point. What fits into memory is kept, and looked up where it is asked for again.
 class Neighbourhoods {
  public:

@@ -16,8 +16,6 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
-
 }  // namespace
 
 Vec3 centroid(std::span<const Vec3> points) {

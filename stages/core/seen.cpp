@@ -42,8 +42,8 @@ double mean_of_huge(std::span<const ScalarField> maps, std::span<const std::size
   double mean = 0;
   for (const std::size_t k : members)
     if (!std::isnan(maps[k][i])) mean += maps[k][i] / count;
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  return std::clamp(mean, -kLargest, kLargest);
+  constexpr double kLargestDouble = std::numeric_limits<double>::max();
+  return std::clamp(mean, -kLargestDouble, kLargestDouble);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ namespace salbench {
 using Vec3 = Eigen::Vector3d;                  // 24 bytes, never over-aligned
 using Triangle = std::array<std::int32_t, 3>;  // 0-based point indices, counter-clockwise seen from outside
 using ScalarField = std::vector<double>;       // n, one value per point of a shape
+
+inline constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 struct Mesh {
   std::vector<Vec3> vertices;   // n x 3
@@ -37,6 +40,10 @@ using Faces = std::vector<Triangle>;  // f x 3, the partial mesh: a surface over
 using FieldView = std::span<const double>;  // n
 using Points = std::span<const Vec3>;       // n x 3: the vertices of a mesh, or the points of a scan
 using Surface = std::span<const Triangle>;  // f x 3: the faces of a mesh, or the partial mesh of a scan
+
+// Indices of points are signed where they are stored.
+inline std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+inline const Vec3& at(Points points, std::int32_t i) { return points[index(i)]; }
 
 inline constexpr int kFpfhBins = 33;  // three features of 11 bins: theta, alpha, phi
 

@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::int32_t kHidden = -1;  // no scan point has this vertex as its nearest
 
-std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 void require_fits(const Mesh& mesh, const GroundTruth& truth) {
   const std::size_t n = mesh.vertices.size();
   if (!truth.saliency.empty() && truth.saliency.size() != n)

@@ -23,8 +23,6 @@ constexpr double kFlat = 1e-9;   // bulges below this, in units of their scale, 
 constexpr double kHollow = 0.5;  // attraction of a hollow, beside a bulge of the same size
 constexpr int kMaxTries = 64;    // draws in a row, all too near to earlier picks, until a participant stops
 
-std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 // Draws indices with probability proportional to their weights, of which there is at least one.
 class WeightedDraw {
  public:

@@ -7,15 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "stages/core/check.h"
 #include "stages/core/field.h"
 
 namespace salbench {
 namespace {
-
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 // The weighed sum of a field, which its density is divided by.
 struct WeighedSum {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "stages/core/types.h"
 
 namespace salbench {
+
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  // of a metric
 
 enum class Weighting : std::uint8_t { vertex, area };
 

@@ -3,7 +3,6 @@
 // follow from them. The paper's come first: stored scores and tables have them in this order.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "stages/core/field.h"
@@ -13,8 +12,6 @@
 
 namespace salbench {
 namespace {
-
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 Splits splits_of(const MetricInput& in) { return {in.options.splits, in.options.thresholds}; }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,8 +16,6 @@
 
 namespace salbench {
 namespace {
-
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 // A constant map counts as this one: halfway between the least and the most salient, where its histogram has
 // it too.

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/roc.h"
 
-#include <limits>
 #include <vector>
 
 namespace salbench {
 namespace {
-
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 double distinct_in(const std::vector<PickGroup>& groups) {
   double distinct = 0;

@@ -122,7 +122,7 @@ Largest largest_distances(const Voxels& voxels, const Labels& labels, const Grou
 }
 
 // If every voxel coincides with its cluster, `largest` is 0 and the distance to any other cluster infinite.
-double relative(double distance, double largest) { return distance == 0 ? 0 : distance / largest; }
+double fraction_of(double distance, double largest) { return distance == 0 ? 0 : distance / largest; }
 
 class KMeans {
  public:
@@ -158,8 +158,8 @@ class KMeans {
         const auto j = static_cast<std::size_t>(voxel.index);
         const double chi2 = chi2_[i];
         if (labels_[j] == static_cast<std::int32_t>(k)) next.include(voxel.distance_squared, chi2);
-        const double cost = relative(voxel.distance_squared, largest_.distance_squared) +
-                            descriptor_weight_ * relative(chi2, largest_.chi2);
+        const double cost = fraction_of(voxel.distance_squared, largest_.distance_squared) +
+                            descriptor_weight_ * fraction_of(chi2, largest_.chi2);
         if (cost < least_cost_[j]) {
           least_cost_[j] = cost;
           labels_[j] = static_cast<std::int32_t>(k);

@@ -20,8 +20,6 @@ namespace {
 constexpr double kOwnNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastHeight = 1e-12;  // of a face over its longest edge, relative to it
 
-std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 // A face with its corners in turn, and what both methods read of it.
 struct Face {
   std::array<std::size_t, 3> corner;

@@ -23,8 +23,6 @@ namespace {
 constexpr double kSameCurvature =
     1e-9;  // of the largest one, at least 1 / R: smaller differences are rounding
 
-std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 // Area by bin, of which few are in use at a time.
 class AreaHistogram {
  public:

@@ -22,8 +22,6 @@ constexpr double kNoContrast = 1e-9;  // of the largest curvature, at least 1 / 
 constexpr double kSameHeight = 1e-9;  // of normalised maps: neighbours that mirror each other differ by less
 constexpr std::size_t kGaussianGrain = 64;  // points of a range: their neighbours are many
 
-std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 double diagonal_of_bounding_box(std::span<const Vec3> points) {
   Vec3 low = points.front(), high = low;
   for (const Vec3& p : points) {

@@ -28,8 +28,6 @@ constexpr int kScales = 5;
 constexpr double kSmoothingReach = 2.5;    // standard deviations
 constexpr double kMinAreaFraction = 1e-6;  // least area of a vertex, relative to the mean
 
-std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
-
 // --- the part of the shape that the model sees
 
 // Points relative to the centroid, in units of R, because the solvers' thresholds are absolute.

@@ -18,8 +18,6 @@
 namespace salbench {
 namespace {
 
-const Vec3& at(std::span<const Vec3> points, std::int32_t i) { return points[static_cast<std::size_t>(i)]; }
-
 void require_finite(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite())

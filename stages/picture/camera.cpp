@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -14,8 +13,6 @@
 
 namespace salbench {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 // Front of a shape that stands upright, as most of the benchmark's do: those along y look to +z, those along
 // z to +y.

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <Eigen/Geometry>
 
 namespace salbench {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 // The faces around each point in compressed rows, in their order.
 struct FacesAround {

@@ -26,7 +26,6 @@
 namespace salbench {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr float kMargin = 0.01F;  // local; thousands of times what float is off by
 constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
 

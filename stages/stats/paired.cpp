@@ -15,8 +15,6 @@
 namespace salbench {
 namespace {
 
-constexpr double kLevel = 1 - kConfidence;
-
 // Mean over its standard error; infinite where all values agree on another mean than `hypothesis`.
 double t_statistic(const Summary& summary, double hypothesis) {
   const double away = summary.mean - hypothesis;

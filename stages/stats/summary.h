@@ -8,7 +8,8 @@
 
 namespace salbench {
 
-inline constexpr double kConfidence = 0.95;  // of every interval in the reports
+inline constexpr double kConfidence = 0.95;        // of every interval in the reports
+inline constexpr double kLevel = 1 - kConfidence;  // of every test
 
 struct Interval {
   double low = std::numeric_limits<double>::quiet_NaN();  // NaN where there is none

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -31,8 +30,6 @@ namespace {
 
 // Links atan2f.cpp, whose definition PCL takes.
 [[gnu::used]] float (*const kOwnAtan2f)(float, float) = ::atan2f;
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
 

@@ -10,8 +10,6 @@
 namespace salbench {
 namespace {
 
-constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which sees Debian's h5py
-
 TEST(Artefact, PythonReadsWhatARunLeaves) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);

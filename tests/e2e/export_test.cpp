@@ -21,8 +21,6 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which sees Debian's h5py and VTK
-
 Outcome compared(const Workspace& toy, const fs::path& file) {
   return run_process({kPython, SALBENCH_COMPARE_EXPORT, file.string(), toy.cache().string()});
 }

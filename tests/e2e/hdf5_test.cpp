@@ -18,8 +18,6 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which sees Debian's h5py
-
 // A file with the maps of both meshes; then, as `further` lines of Python have it, `file` and `map` "1" may
 // change.
 fs::path maps_by_h5py(const Workspace& toy, const std::string& further) {

@@ -12,6 +12,8 @@
 
 namespace salbench {
 
+inline constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which sees Debian's h5py and VTK
+
 struct Outcome {
   int status = 0;  // exit status; 128 + the signal where one ended the program, as shells have it
   std::string out, err;

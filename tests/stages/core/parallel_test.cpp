@@ -16,10 +16,10 @@
 namespace salbench {
 namespace {
 
-using Range = std::pair<std::size_t, std::size_t>;
+using FirstAndLast = std::pair<std::size_t, std::size_t>;
 
-std::set<Range> ranges_of(std::size_t n, std::size_t grain) {
-  std::set<Range> ranges;
+std::set<FirstAndLast> ranges_of(std::size_t n, std::size_t grain) {
+  std::set<FirstAndLast> ranges;
   std::mutex mutex;
   parallel_ranges(n, grain, [&](std::size_t first, std::size_t last) {
     const std::lock_guard lock(mutex);
@@ -31,9 +31,9 @@ std::set<Range> ranges_of(std::size_t n, std::size_t grain) {
 TEST(ParallelRanges, AreTheSameForAnyNumberOfThreads) {
   for (const std::size_t threads : {1U, 2U, 4U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    EXPECT_EQ(ranges_of(10, 4), (std::set<Range>{{0, 4}, {4, 8}, {8, 10}}));
-    EXPECT_EQ(ranges_of(8, 4), (std::set<Range>{{0, 4}, {4, 8}}));
-    EXPECT_EQ(ranges_of(3, 4), (std::set<Range>{{0, 3}}));
+    EXPECT_EQ(ranges_of(10, 4), (std::set<FirstAndLast>{{0, 4}, {4, 8}, {8, 10}}));
+    EXPECT_EQ(ranges_of(8, 4), (std::set<FirstAndLast>{{0, 4}, {4, 8}}));
+    EXPECT_EQ(ranges_of(3, 4), (std::set<FirstAndLast>{{0, 3}}));
     EXPECT_TRUE(ranges_of(0, 4).empty());
   }
 }
