@@ -155,7 +155,8 @@ class Shape:
 
 
 def usable(values):
-    return bool((numpy.abs(values) <= LARGEST).all())
+    """Compared in double: NumPy 2 would round the limit to the type of the values, to infinity for single precision."""
+    return bool((numpy.abs(numpy.asarray(values, dtype=float)) <= LARGEST).all())
 
 
 def unit_range(values):

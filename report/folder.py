@@ -64,6 +64,6 @@ def remove_report(path):
         within = not name.is_absolute() and ".." not in name.parts
         if within and (path / name).is_file() and name.name != "index.html":
             (path / name).unlink()
-    for folder in sorted((entry for name in FOLDERS for entry in (path / name).glob("**")), reverse=True):
+    for folder in sorted((entry for name in FOLDERS for entry in (path / name).glob("**/")), reverse=True):
         if not any(folder.iterdir()):
             folder.rmdir()

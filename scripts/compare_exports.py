@@ -5,10 +5,10 @@
 
 compare_exports.py FIRST.h5 SECOND.h5 [TOLERANCE]
 
-Prints two tables in Markdown. Stages: how many artefacts there are and how many have the same bytes; of the others, the
-largest difference between two values over the largest value of their array, and the array where that is. Metrics: the
-largest difference between two scores. Exit status 1 if that is above the tolerance (default 1e-6), or if an artefact or an
-array of other length is in one export only. Needs python3-h5py.
+Prints two tables in Markdown. Stages, those of all models in one row: how many artefacts there are and how many have the same
+bytes; of the others, the largest difference between two values over the largest value of their array, and the stage and array
+where that is. Metrics, those without a difference in one row: the largest difference between two scores. Exit status 1 if that
+is above the tolerance (default 1e-6), or if an artefact or an array of other length is in one export only. Needs python3-h5py.
 """
 
 import sys
@@ -47,25 +47,31 @@ def difference(first, second):
     return worst
 
 
+def family(stage):
+    """What the table calls a stage: those of models and metrics, such as map.LS, have a row together."""
+    return stage.split(".")[0] + ".*" if "." in stage else stage
+
+
 def compare_stages(first, second):
     """Prints a row per stage, in the order of the computation. True if all artefacts have their counterparts."""
     ours, theirs = artefacts(first), artefacts(second)
-    order = [line.split(":")[0] for line in text(first.attrs["stage_versions"]).splitlines()]
-    stages = sorted({stage for stage, _ in ours | theirs}, key=lambda stage: (order.index(stage) if stage in order else -1, stage))
+    order = [family(line.split(":")[0]) for line in text(first.attrs["stage_versions"]).splitlines()]
+    rows = sorted({family(stage) for stage, _ in ours | theirs}, key=lambda row: (order.index(row) if row in order else -1, row))
     complete = True
     print("| stage | artefacts | same bytes | largest difference | in |\n|---|---|---|---|---|")
-    for stage in stages:
-        keys = [key for key in ours.keys() | theirs.keys() if key[0] == stage]
+    for row in rows:
+        keys = [key for key in ours.keys() | theirs.keys() if family(key[0]) == row]
         same, worst = 0, (0.0, "")
         for key in keys:
             if key not in ours or key not in theirs:
-                worst = max(worst, (numpy.inf, f"{key[1]}, in one export only"))
+                worst = max(worst, (numpy.inf, f"{key[0]} of {key[1]}, in one export only"))
             elif text(ours[key].attrs["content"]) == text(theirs[key].attrs["content"]):
                 same += 1
             else:
-                worst = max(worst, difference(ours[key], theirs[key]))
+                size, array = difference(ours[key], theirs[key])
+                worst = max(worst, (size, f"{key[0]}: {array}"))
         complete = complete and worst[0] < numpy.inf
-        print(f"| {stage} | {len(keys)} | {same} | {worst[0]:.1g} | {worst[1] or '-'} |")
+        print(f"| `{row}` | {len(keys)} | {same} | {worst[0]:.1g} | {worst[1] or '-'} |")
     return complete
 
 
@@ -79,13 +85,17 @@ def compare_scores(first, second):
         print("the scores are of other shapes or models")
         return numpy.inf
     print("\n| metric | scores | equal | largest difference |\n|---|---|---|---|")
-    largest = 0.0
+    largest, same, scores = 0.0, 0, 0
     for metric in (name for name in columns.names if columns[name] == float):
         a, b = (numpy.array([table[key][metric] for key in ours]) for table in (ours, theirs))
         known = ~(numpy.isnan(a) & numpy.isnan(b))
         off = numpy.nan_to_num(numpy.abs(a - b)[known], nan=numpy.inf)
         largest = max(largest, off.max(initial=0))
-        print(f"| {metric} | {len(off)} | {(off == 0).sum()} | {off.max(initial=0):.1g} |")
+        if (off == 0).all():
+            same, scores = same + 1, scores + len(off)
+        else:
+            print(f"| {metric} | {len(off)} | {(off == 0).sum()} | {off.max():.1g} |")
+    print(f"| the {same} without a difference | {scores} | {scores} | 0 |")
     return largest
 
 

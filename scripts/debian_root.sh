@@ -27,10 +27,11 @@ fresh_root() {
     echo force-unsafe-io > "$folder/$base.part/etc/dpkg/dpkg.cfg.d/unsafe-io"  # if the power fails, the root is made again
     mv "$folder/$base.part" "$folder/$base"
   fi
-  rm -rf --one-file-system "${folder:?}/$1"
-  cp -a --reflink=auto "$folder/$base" "$folder/$1"
-  cp /etc/resolv.conf "$folder/$1/etc/resolv.conf"
-  echo "$folder/$1"
+  rm -rf --one-file-system "${folder:?}/$1" "$folder/$1.part" &&
+    cp -a --reflink=auto "$folder/$base" "$folder/$1.part" &&
+    cp /etc/resolv.conf "$folder/$1.part/etc/resolv.conf" &&
+    mv "$folder/$1.part" "$folder/$1" &&
+    echo "$folder/$1"
 }
 
 # inside ROOT USER COMMAND...: runs a command in a root, with mounts and processes that end with it. USER: a number.

@@ -19,6 +19,7 @@ using Rows = std::vector<std::vector<Cell>>;
 template <class... Values>
 std::vector<Cell> cells(const Values&... values) {
   std::vector<Cell> row;
+  row.reserve(2 * sizeof...(values));  // g++ 14 sees writes past the end in a vector that grows
   const auto add = [&]<class Value>(const Value& value) {
     if constexpr (std::is_same_v<Value, Interval>)
       row.insert(row.end(), {value.low, value.high});

@@ -18,11 +18,12 @@ def map_lines():
 
 
 def folders(path):
-    """Folders with files that git knows; in an archive without git, all but hidden ones."""
+    """Folders with files that git knows; in an archive without git, all but those that it would ignore."""
     try:
         listed = subprocess.run(["git", "ls-files", "--", "."], cwd=path, check=True, capture_output=True, text=True).stdout
     except (subprocess.CalledProcessError, FileNotFoundError):
-        return {folder.name for folder in path.iterdir() if folder.is_dir()}
+        ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").split()
+        return {folder.name for folder in path.iterdir() if folder.is_dir() and f"/{folder.name}/" not in ignored}
     return {line.split("/")[0] for line in listed.splitlines() if "/" in line}
 
 
