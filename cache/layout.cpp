@@ -65,10 +65,14 @@ void check_format(const fs::path& folder) {
                     folder.string(), format, kFormat));
 }
 
+bool is_cache(const fs::path& folder) {
+  const std::string text = tag_text(folder);
+  return text.starts_with(kTagSignature) && text.find(kFormatLine) != std::string::npos;
+}
+
 void require_cache(const fs::path& folder) {
   check_format(folder);
-  const std::string text = tag_text(folder);
-  if (!text.starts_with(kTagSignature) || text.find(kFormatLine) == std::string::npos)
+  if (!is_cache(folder))
     throw StorageError(fmt::format("{}: not a salbench cache ({} is missing); choose one with --cache",
                                    folder.string(), kTagName));
 }

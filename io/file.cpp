@@ -215,6 +215,10 @@ void UnfinishedFile::append(std::span<const std::byte> bytes) {
   }
 }
 
+void UnfinishedFile::sync() {
+  if (::fsync(fd_) != 0) fail(path_, "written", errno);
+}
+
 void UnfinishedFile::finish(const fs::path& target) {
   if (::fsync(fd_) != 0) fail(target, "written", errno);
   rename_to(target);

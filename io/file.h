@@ -53,6 +53,7 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return path_; }
   void append(std::span<const std::byte> bytes);
+  void sync();                                       // returns when all of it is on the disk
   void finish(const std::filesystem::path& target);  // syncs and renames it, within one file system
   // The same without waiting for the disk. A crash of the whole machine can leave the file short or with
   // other bytes until sync_file_system has returned: for files whose readers check them.

@@ -16,6 +16,7 @@
 
 #include "io/arrays.h"
 #include "io/file.h"
+#include "stages/core/library_version.h"
 
 namespace salbench {
 
@@ -33,6 +34,8 @@ Bytes hdf5_image(const Hdf5Content& content);
 // The inverse, in the order of the names; links are not followed. Throws InputError naming `name` if the
 // image is not such a file.
 Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name);
+
+LibraryVersion hdf5_version();
 
 // fork() at a moment when no thread is inside the library, so that the child may call all of the above.
 pid_t fork_beside_hdf5();

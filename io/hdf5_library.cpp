@@ -182,6 +182,14 @@ std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes) {
 
 namespace salbench {
 
+LibraryVersion hdf5_version() {
+  const auto guard = hdf5::library();
+  unsigned major = 0, minor = 0, release = 0;
+  hdf5::must(H5get_libversion(&major, &minor, &release), "H5get_libversion");
+  return {fmt::format("{}.{}.{}", H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE),
+          fmt::format("{}.{}.{}", major, minor, release)};
+}
+
 pid_t fork_beside_hdf5() {
   auto& [entrance, inside] = hdf5::gate();
   const std::lock_guard alone(entrance);

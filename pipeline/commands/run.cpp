@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "io/file.h"
 #include "io/table.h"
@@ -14,6 +15,7 @@
 #include "pipeline/engine/run.h"
 #include "pipeline/results/conclusions.h"
 #include "pipeline/results/record.h"
+#include "pipeline/results/space.h"
 
 namespace salbench {
 namespace {
@@ -67,12 +69,23 @@ void write_results(Session& session, RunRecord record, const Arguments& argument
         stderr);
 }
 
+// Before hours are spent on a run that would fill the disk; it goes on, since this is an estimate.
+void warn_of_space(const Session& session) {
+  const Setup& setup = session.setup;
+  const SpaceNeed need =
+      space_needed(setup.config, setup.inputs, setup.project, session.resolver.plan(), session.store);
+  const std::string text = shortage(need, free_space(existing_folder(setup.cache)));
+  if (!text.empty()) spdlog::warn("{}: {}", setup.cache.string(), text);
+}
+
 }  // namespace
 
 ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
   const Setup& setup = session.setup;
-  if (has_work(session.resolver))
+  if (has_work(session.resolver)) {
     session.store.prepare();  // before the results of an earlier run are touched
+    warn_of_space(session);
+  }
   setup.inputs.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
   session.run(thread_count(arguments));
   const bool interrupted = stop;

@@ -35,6 +35,8 @@ Subcommand graph_subcommand(Arguments& arguments);
 Subcommand explain_subcommand(Arguments& arguments);
 // During a run, from another terminal, or when coming back to an old cache.
 Subcommand status_subcommand(Arguments& arguments);
+// Before a long run on a machine or disk that is new, and when a run takes longer than it should.
+Subcommand doctor_subcommand(Arguments& arguments);
 // Whoever writes a configuration, for what there is to choose.
 Subcommand config_subcommand(Arguments& arguments);
 // Owners of a cache, after trouble with a disk, and before results are published.

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "stages/core/library_version.h"
 #include "stages/core/types.h"
 
 struct RTCSceneTy;
@@ -40,5 +41,7 @@ struct Hit {
 // Embree visits its tree.
 float append_hits(const Scene& scene, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                   float margin, std::vector<Hit>& hits);
+
+LibraryVersion library_version();  // throws std::runtime_error if the library fails
 
 }  // namespace salbench::embree

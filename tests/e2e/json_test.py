@@ -54,6 +54,7 @@ class JsonTest(unittest.TestCase):
         cls.config.write_text(CONFIG)
         subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", cls.folder / "data", "2", "16", "8"], check=True)
         (cls.folder / "data/2.off").rename(cls.folder / f"data/{ODD}.off")
+        cls.version = subprocess.run([PROGRAM, "--version"], check=True, capture_output=True, text=True).stdout.split()[1]
         cls.seen = {}  # subcommand: types of each key
 
     def salbench(self, subcommand, *further, status=0, preload=None):
@@ -142,12 +143,38 @@ class JsonTest(unittest.TestCase):
         self.assertIn(f" {document['damaged']['files']} damaged ones, {document['unfinished']['files']} unfinished files\n", text)
         return removed, document
 
+    def check_doctor(self):
+        document, text = self.document("doctor")
+
+        def steady(line):
+            return re.sub(r"[0-9.]+ (ms|MB|GB|files)", "N", line)
+        lines = ["{topic:<10} {what}".format(**line) + ("; ADVICE: " + line["advice"] if line["advice"] else "") for line in document["lines"]]
+        self.assertEqual(len(lines), 10)
+        self.assertEqual([steady(line) for line in text.splitlines()], [steady(line) for line in lines])
+        self.assertEqual((document["cache"]["folder"], document["cache"]["writable"]), (str(self.cache), True))
+        self.assertEqual(document["program"]["version"], self.version)
+        self.assertLessEqual(document["cores"]["allowed"], document["cores"]["online"])
+        self.assertEqual(document["cores"]["threads"], 1)
+        self.assertIn(document["simd"], ("baseline", "avx2", "avx512"))
+        return document["cache"], document["need"]
+
+    def doctor_without_a_configuration(self, cache, status):
+        """Of a folder of the system, which nobody can write to: what was not measured is null."""
+        done = subprocess.run([PROGRAM, "doctor", "--cache", cache, "--format", "json"], capture_output=True)
+        self.assertEqual((done.returncode, done.stderr), (status, b""))
+        document = json.loads(done.stdout)
+        for key, kind in keys_of(document):
+            self.seen["doctor"].setdefault(key, set()).add(kind)
+        return document
+
     def test_documents_agree_with_their_documentation_and_with_the_text(self):
         with self.subTest("no cache"):
             left, state = self.check_counts()
             self.assertTrue(left > 0 and state is None)
             self.assertLessEqual({"to compute", "waiting"}, set(self.check_explanation(ODD).values()))
             self.assertEqual(sum(self.check_graph()), left)
+            cache, need = self.check_doctor()
+            self.assertEqual((cache["exists"], cache["rename_us"], need["artefacts"], need["by_cache"]), (False, None, left, 0))
             self.assertFalse(self.cache.exists())
         with self.subTest("interrupted"):
             self.run_to(130, {"LD_PRELOAD": os.environ["SALBENCH_KILL_AT_RENAME"], "SALBENCH_KILL_AT": "12 after",
@@ -164,6 +191,15 @@ class JsonTest(unittest.TestCase):
             (cache, samples) = self.check_verify("--deep", "--sample", "3")
             self.assertEqual((cache["cache"], cache["faults"], samples[0]["jobs"]), (str(self.cache), [], 3))
             self.assertEqual(self.check_gc()[0], 0)
+            before = sorted(self.cache.rglob("*"))
+            cache, need = self.check_doctor()
+            self.assertEqual((cache["exists"], cache["locks"], set(need.values())), (True, "hold", {0}))
+            self.assertGreater(cache["rename_us"], 0)
+            self.assertEqual(sorted(self.cache.rglob("*")), before)
+            document = self.doctor_without_a_configuration("/proc/nowhere/cache", 3)
+            self.assertEqual((document["cache"]["locks"], set(document["need"].values())), ("untried", {None}))
+            self.assertIn("cannot be written to", "".join(line["advice"] for line in document["lines"]))
+            self.doctor_without_a_configuration(self.cache, 0)
         with self.subTest("damaged"):
             bad = next((self.cache / "fpfh").glob("*/*.h5"))
             sound = bad.read_bytes()
@@ -203,7 +239,7 @@ class JsonTest(unittest.TestCase):
         self.assertEqual(json.loads(done.stdout.decode("utf-8"))["cache"], f"{self.folder}/caf\ufffd")
 
     def test_another_format_is_refused_before_anything_is_done(self):
-        for subcommand, known in (("status", "text or json"), ("plan", "text or json"), ("explain", "text or json"),
+        for subcommand, known in (("status", "text or json"), ("doctor", "text or json"), ("plan", "text or json"), ("explain", "text or json"),
                                   ("verify", "text or json"), ("gc", "text or json"), ("graph", "text, json or dot")):
             with self.subTest(subcommand):
                 further = ["1"] if subcommand == "explain" else []

@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::Each;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -41,7 +42,7 @@ TEST(Storage, ACacheOfANewerProgramIsLeftAlone) {
   const std::string tag = read_file(toy.cache() / "CACHEDIR.TAG");
   const std::size_t number = tag.rfind("format ") + 7;
   toy.write("cache/CACHEDIR.TAG", tag.substr(0, number) + "99\n");
-  for (const char* verb : {"run", "plan", "status"}) {
+  for (const char* verb : {"run", "plan", "status", "doctor"}) {
     const Outcome outcome = toy.salbench(verb);
     EXPECT_EQ(outcome.status, 3) << verb;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("newer"), HasSubstr(toy.cache().string())));
@@ -60,6 +61,10 @@ TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
   EXPECT_THAT(lines_with(full.err, "error: "),
               AllOf(SizeIs(1), Each(AllOf(HasSubstr(toy.cache().string()), HasSubstr("No space left")))))
       << full.err;
+  EXPECT_THAT(lines_with(full.err, "warning: "),
+              ElementsAre(AllOf(HasSubstr(toy.cache().string() + ": the run needs about "),
+                                HasSubstr(" files, and 0.3 MB are free: "), HasSubstr("--cache"))))
+      << full.err;
   const std::size_t kept = toy.artefacts().size();
   EXPECT_GT(kept, 5U);
   EXPECT_THAT(toy.left_over(), IsEmpty());
@@ -67,6 +72,7 @@ TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
   ASSERT_TRUE(disk.resize("size=30m"));
   const Outcome more = toy.salbench("run");
   ASSERT_EQ(more.status, 0) << more.err;
+  EXPECT_THAT(lines_with(more.err, "the run needs"), IsEmpty());
   EXPECT_EQ(toy.computed() + kept, toy.artefacts().size());
   EXPECT_EQ(toy.results(), results);
 }
@@ -161,7 +167,8 @@ TEST_P(ReadOnlyCache, ThatSomethingIsToBeAddedToIsNamedBeforeTheWorkBegins) {
         << outcome.err;
   }
   EXPECT_EQ(toy_.results(), results);
-  EXPECT_THAT(toy_.salbench("status").out, HasSubstr("last run: finished")) << "the results of the run before";
+  EXPECT_THAT(toy_.salbench("status").out, HasSubstr("last run: finished"))
+      << "the results of the run before";
 }
 
 TEST_P(ReadOnlyCache, ThatIsDamagedIsReadAsFarAsItGoes) {
