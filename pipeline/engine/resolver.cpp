@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "stages/core/errors.h"
+#include "stages/core/parallel.h"
 
 namespace salbench {
 namespace {
@@ -186,9 +187,11 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
   inputs.member = [&](std::size_t i) { return value(members[i]); };
 
   const AtWork at_work(running_[job.rule]);
+  const ProcessorTime processor;
   result.started = Clock::now();
   result.value = rule.compute(inputs);
   result.seconds = std::chrono::duration<double>(Clock::now() - result.started).count();
+  result.processor_seconds = processor.seconds();
   return result;
 }
 
@@ -205,6 +208,7 @@ Digest Resolver::save(const Job& job, const Result& result) {
   const std::lock_guard lock(mutex_);
   records_[job.rule].seconds.push_back(static_cast<float>(result.seconds));
   records_[job.rule].started.push_back(result.started);
+  records_[job.rule].processor_seconds += result.processor_seconds;
   return content;
 }
 

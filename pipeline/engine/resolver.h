@@ -30,6 +30,7 @@ struct RuleRecord {
   std::size_t finished = 0;                     // jobs that a run decided, computed or not
   std::vector<float> seconds = {};              // of each job that was computed
   std::vector<Clock::time_point> started = {};  // of the same jobs
+  double processor_seconds = 0;                 // of all of them
 };
 
 class Resolver {
@@ -75,7 +76,7 @@ class Resolver {
     ValuePtr value;
     std::string remark;
     Clock::time_point started;
-    double seconds = 0;
+    double seconds = 0, processor_seconds = 0;
   };
   ValuePtr held(const Job& job);
   void hold(const Job& job, ValuePtr value);

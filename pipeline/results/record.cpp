@@ -60,9 +60,10 @@ std::string node_line(const Rule& rule, const RuleRecord& node, std::size_t unit
   if (seconds.empty()) seconds = {0};
   return fmt::format(
       "  - {{stage: {}, of: {}, scope: {}, items: {}, settled: {}, computed: {}, seconds: {:.3f}, "
-      "median: {:.4f}, p95: {:.4f}, busy: {:.4f}}}\n",
-      rule.stage, shapes_name(rule.over), levels()[rule.level()].unit, units, node.finished, node.seconds.size(), sum,
-      median(seconds), quantile(seconds, 0.95), core_seconds > 0 ? sum / core_seconds : 0);
+      "median: {:.4f}, p95: {:.4f}, busy: {:.4f}, processor: {:.3f}}}\n",
+      rule.stage, shapes_name(rule.over), levels()[rule.level()].unit, units, node.finished,
+      node.seconds.size(), sum, median(seconds), quantile(seconds, 0.95),
+      core_seconds > 0 ? sum / core_seconds : 0, node.processor_seconds);
 }
 
 std::string metric_lines(const Metrics& metrics) {
@@ -84,8 +85,8 @@ std::string stage_lines(const RunRecord& record) {
     yaml += fmt::format("  {}: {{version: {}, why: {{{}}}}}\n", count.stage, count.version, why);
   }
   yaml +=
-      "nodes:  # jobs settled and computed; seconds: sum, median, 95th percentile; share of the cores' "
-      "time\n";
+      "nodes:  # jobs settled and computed; seconds: sum, median, 95th percentile; share of the cores' time; "
+      "processor time, s\n";
   const Project& project = record.run.project();
   const std::vector<RuleRecord>& nodes = record.run.resolver.records();
   for (std::size_t rule = 0; rule < nodes.size(); ++rule)

@@ -2,10 +2,13 @@
 #include "stages/core/parallel.h"
 
 #include <atomic>
+#include <chrono>
+#include <ctime>
 #include <mutex>
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -52,6 +55,36 @@ TEST(ParallelRanges, AreDoneThoughTheRunAroundThemIsCancelled) {
 TEST(ParallelRanges, PassAnExceptionOn) {
   EXPECT_THROW(parallel_ranges(100, 1, [](std::size_t, std::size_t) { throw std::runtime_error("one"); }),
                std::runtime_error);
+}
+
+double time_of_thread() {
+  timespec time = {};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
+}
+
+void work_for(double seconds) {
+  for (const double end = time_of_thread() + seconds; time_of_thread() < end;) continue;
+}
+
+TEST(ProcessorTime, IsThatOfAllWhoHelpedAndOfNoWaiting) {
+  for (const std::size_t threads : {1U, 4U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ProcessorTime whole;
+    const double nothing = whole.seconds();
+    {
+      const ProcessorTime part;
+      parallel_ranges(4, 1, [](std::size_t, std::size_t) {
+        parallel_ranges(4, 1, [](std::size_t, std::size_t) { work_for(0.002); });
+      });
+      EXPECT_GE(part.seconds(), 16 * 0.002);
+    }
+    EXPECT_GE(whole.seconds(), 16 * 0.002);
+    const double before = whole.seconds();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_LT(whole.seconds() - before, 0.1);
+    EXPECT_LT(nothing, 0.1);
+  }
 }
 
 }  // namespace
