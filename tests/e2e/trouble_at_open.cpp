@@ -7,6 +7,7 @@
 //   SALBENCH_NO_EMBREE=1                  Embree cannot be started, which no data and no user is to blame for
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstdlib>
 #include <sstream>
@@ -39,8 +40,13 @@ bool trouble(std::string_view path) {
   static std::atomic<int> count = 0;
   if (action == "hold") {
     if (count++ == 0) {
+      // Whoever sees the file sends a signal: it must not come before the wait for it.
+      sigset_t all, before;
+      ::sigfillset(&all);
+      ::pthread_sigmask(SIG_SETMASK, &all, &before);
       ::close(real<OpenFunction>("open")(detail.c_str(), O_WRONLY | O_CREAT, 0600));
-      ::pause();
+      ::sigsuspend(&before);
+      ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     }
     return false;
   }
