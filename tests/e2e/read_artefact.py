@@ -111,8 +111,8 @@ def dump(path):
 
 def main():
     cache, results_csv = pathlib.Path(sys.argv[1]), sys.argv[2]
-    results = pandas.read_csv(results_csv, dtype={"item": str, "view": "Int64"}, float_precision="round_trip")
-    names = results["item"] + results["view"].map(lambda view: "" if pandas.isna(view) else f"_{view}")
+    results = pandas.read_csv(results_csv, dtype={"item": str, "view": str}, float_precision="round_trip")
+    names = results["item"] + ("_" + results["view"]).fillna("")
     results["name"] = names
     points = dict(zip(names, results["n_points"]))
     checked = scored = in_tables = 0

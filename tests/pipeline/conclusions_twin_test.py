@@ -53,9 +53,10 @@ def around(mean, error, n, confidence=0.95):
 
 
 def by_mesh(scores, models):
-    """Means over the views of a mesh that all of them have scores for, one column per model. Added up one by one: pandas rounds
-    otherwise, and ties of means hang on it."""
-    return scores[list(models)].dropna().groupby(level="item", sort=False).agg(lambda values: sum(values) / len(values))
+    """Means over the views of a mesh that all of them have scores for, one column per model. Added up one by one: pandas, and
+    Python's sum() since 3.12, round otherwise, and ties of means hang on it."""
+    shapes = scores[list(models)].dropna()
+    return shapes.groupby(level="item", sort=False).agg(lambda values: np.cumsum(values.to_numpy())[-1] / len(values))
 
 
 def pair(wide, competitors, a, b):
