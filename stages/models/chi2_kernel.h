@@ -12,11 +12,6 @@ namespace salbench::chi2_kernel {
 inline constexpr std::size_t kLanes = 16;  // histograms, or boxes, in a group
 constexpr std::size_t groups_of(std::size_t n) { return (n + kLanes - 1) / kLanes; }
 
-// Every variant does the same operations in the same order on each pair: the same bytes on every machine.
-enum class Instructions { baseline, avx2, avx512 };
-bool supported(Instructions instructions);  // by this machine
-Instructions widest_supported();
-
 // Weight of a pair by its distance d in space, 0 <= d <= 2.
 enum class Weight {
   near,  // 1 / (1 + d)
@@ -56,6 +51,8 @@ struct Kernel {
   double (*weighted_sum)(Weight weight, float grid, float limit, const float* chi2, const float* places,
                          const float* from, const std::int32_t* groups, std::size_t count);
 };
-const Kernel& kernel(Instructions instructions);
+// Every instruction set does the same operations in the same order on each pair: the same bytes on every
+// machine.
+const Kernel& kernel();  // the widest that this machine has, or that hwy::SetSupportedTargetsForTest() leaves
 
 }  // namespace salbench::chi2_kernel
