@@ -15,6 +15,9 @@ target_compile_options(salbench_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wconversion -ffp-contract=off
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 sees overlaps in std::string that are not there (PR 105651)
   $<$<BOOL:${SALBENCH_WERROR}>:-Werror>)
+# Kernels keep several vectors in arrays, which those of a length that is known at run time cannot be in.
+target_compile_definitions(salbench_settings INTERFACE
+  "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
 if(SALBENCH_SANITIZE)
   add_compile_options(-fsanitize=${SALBENCH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SALBENCH_SANITIZE})

@@ -9,7 +9,7 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "stages/models/simd_level.h"
+#include "stages/models/chi2_kernel.h"
 
 namespace salbench {
 namespace {
@@ -106,7 +106,7 @@ ExitStatus examine(const Arguments& arguments, ReportFormat format) {
   health.commit = commit();
   health.machine = this_machine();
   health.threads = thread_count(arguments);
-  health.simd = simd_level();
+  health.simd = chi2_kernel::kernel().instructions;
   health.libraries = libraries();
   std::error_code error;
   health.temporary = fs::temp_directory_path(error);

@@ -7,6 +7,13 @@
 #include <numbers>
 #include <utility>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "stages/core/pair_features.cpp"
+#include <hwy/foreach_target.h>  // above highway.h
+#include <hwy/highway.h>
+
+#ifndef SALBENCH_PAIR_LANES  // this file includes itself, once for each instruction set
+#define SALBENCH_PAIR_LANES
 namespace salbench {
 namespace {
 
@@ -26,17 +33,6 @@ const std::array<Direction, kFilledBins - 1> kAngles = [] {
   return angles;
 }();
 
-std::uint8_t bin_of_magnitude(double value, double limit) {
-  const double position = (std::abs(value) / limit + 1) / 2 * static_cast<double>(kBlockBins);
-  return static_cast<std::uint8_t>(std::min(static_cast<std::size_t>(position), kBlockBins - 1) -
-                                   kFirstFilled);
-}
-
-PairBins bins_of(const DarbouxTriple& pair, bool both_ways) {
-  return {bin_of_magnitude(pair.theta, std::numbers::pi), bin_of_magnitude(pair.alpha, 1),
-          bin_of_magnitude(pair.phi, 1), both_ways};
-}
-
 // Points and their normals, axis by axis.
 struct Oriented {
   alignas(64) std::array<double, kPairs> x, y, z, nx, ny, nz;
@@ -52,14 +48,21 @@ struct Reached {
   alignas(64) std::array<std::int64_t, kPairs> theta, alpha, phi, both_ways, doubtful;
 };
 
-[[gnu::always_inline]] inline double dot(double ax, double ay, double az, double bx, double by, double bz) {
+}  // namespace
+}  // namespace salbench
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace salbench::HWY_NAMESPACE {
+namespace {
+
+HWY_INLINE double dot(double ax, double ay, double az, double bx, double by, double bz) {
   return ax * bx + ay * by +
          az * bz;  // in Eigen's order: which point is the source has to be decided as there
 }
 
 // A plain loop over the lanes, which the compiler turns into vectors.
-[[gnu::always_inline]] inline void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap,
-                                        Reached& reached) {
+void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached& reached) {
   const double px = p.x(), py = p.y(), pz = p.z(), npx = n_p.x(), npy = n_p.y(), npz = n_p.z();
   for (std::size_t lane = 0; lane < kPairs; ++lane) {
     const double nqx = q.nx[lane], nqy = q.ny[lane], nqz = q.nz[lane];
@@ -100,17 +103,26 @@ struct Reached {
   }
 }
 
-using Look = void (*)(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached& reached);
+}  // namespace
+}  // namespace salbench::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
 
-void look_baseline(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached& reached) {
-  look(p, n_p, q, swap, reached);
-}
-[[gnu::target("avx2")]] void look_avx2(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap,
-                                       Reached& reached) {
-  look(p, n_p, q, swap, reached);
+#if HWY_ONCE
+namespace salbench {
+namespace {
+
+std::uint8_t bin_of_magnitude(double value, double limit) {
+  const double position = (std::abs(value) / limit + 1) / 2 * static_cast<double>(kBlockBins);
+  return static_cast<std::uint8_t>(std::min(static_cast<std::size_t>(position), kBlockBins - 1) -
+                                   kFirstFilled);
 }
 
-const Look kLook = __builtin_cpu_supports("avx2") != 0 ? look_avx2 : look_baseline;
+PairBins bins_of(const DarbouxTriple& pair, bool both_ways) {
+  return {bin_of_magnitude(pair.theta, std::numbers::pi), bin_of_magnitude(pair.alpha, 1),
+          bin_of_magnitude(pair.phi, 1), both_ways};
+}
+
+HWY_EXPORT(look);
 
 }  // namespace
 
@@ -148,7 +160,7 @@ void pair_bins(const Vec3& p, const Vec3& n_p, std::span<const Vec3> points, std
     q.set(lane, points[other], normals[other]);
   }
   Reached reached;
-  kLook(p, n_p, q, swap, reached);
+  HWY_DYNAMIC_DISPATCH(look)(p, n_p, q, swap, reached);
   for (std::size_t lane = 0; lane < others.size(); ++lane) {
     const bool both_ways = reached.both_ways[lane] != 0;
     const auto other = static_cast<std::size_t>(others[lane]);
@@ -161,3 +173,4 @@ void pair_bins(const Vec3& p, const Vec3& n_p, std::span<const Vec3> points, std
 }
 
 }  // namespace salbench
+#endif

@@ -12,11 +12,6 @@ namespace salbench::chi2_kernel {
 inline constexpr std::size_t kLanes = 16;  // histograms, or boxes, in a group
 constexpr std::size_t groups_of(std::size_t n) { return (n + kLanes - 1) / kLanes; }
 
-// Every variant does the same operations in the same order on each pair: the same bytes on every machine.
-enum class Instructions { baseline, avx2, avx512 };
-bool supported(Instructions instructions);  // by this machine
-Instructions widest_supported();
-
 // Weight of a pair by its distance d in space, 0 <= d <= 2.
 enum class Weight {
   near,  // 1 / (1 + d)
@@ -28,6 +23,8 @@ float term_of(Weight weight, float grid, float chi2, float distance);
 
 // All values below are finite and >= 0, but for the filling of a last group.
 struct Kernel {
+  const char* instructions;  // by their name in Highway: "SSE2", "AVX2", "AVX3" (AVX-512), "NEON" ...
+
   // distances[16 g + lane] = sum over the bins of (a - b)^2 / (a + b), a = bin of the query, b = bin of the
   // lane-th histogram of the group groups[g]; bins where both are 0 add nothing.
   //   table      groups x bins x 16: the histograms of a group, bin by bin
@@ -56,6 +53,8 @@ struct Kernel {
   double (*weighted_sum)(Weight weight, float grid, float limit, const float* chi2, const float* places,
                          const float* from, const std::int32_t* groups, std::size_t count);
 };
-const Kernel& kernel(Instructions instructions);
+// Every instruction set does the same operations in the same order on each pair: the same bytes on every
+// machine.
+const Kernel& kernel();  // the widest that this machine has, or that hwy::SetSupportedTargetsForTest() leaves
 
 }  // namespace salbench::chi2_kernel

@@ -53,13 +53,12 @@ std::vector<std::int32_t> in_order_of(const std::vector<std::int32_t>& all,
 
 }  // namespace
 
-Chi2Search::Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references,
-                       chi2_kernel::Instructions instructions)
+Chi2Search::Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references)
     : bins_(bins_of(descriptors)),
       beyond_all_(beyond_all_of(descriptors)),
       queries_(grouped_by_likeness(descriptors, bins_)),
       table_(descriptors, bins_, in_order_of(queries_, references)),
-      kernel_(chi2_kernel::kernel(instructions)) {
+      kernel_(chi2_kernel::kernel()) {
   rows_.reserve(queries_.size() * bins_.size());
   for (const std::int32_t i : queries_)
     for (const std::size_t bin : bins_) rows_.push_back(descriptors.row(static_cast<std::size_t>(i))[bin]);

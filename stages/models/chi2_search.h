@@ -20,8 +20,7 @@ class Chi2Search {
   // Leaves out bins that are 0 in every histogram. Throws InputError if a value is negative, not finite, or
   // so large that its square overflows. Each histogram is compared with those of `references`, ascending
   // indices, or if there are none with all.
-  explicit Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references = {},
-                      chi2_kernel::Instructions instructions = chi2_kernel::widest_supported());
+  explicit Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references = {});
 
   std::size_t size() const { return table_.size(); }           // histograms that each is compared with
   std::span<const std::size_t> bins() const { return bins_; }  // used ones, ascending

@@ -4,67 +4,58 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "stages/models/chi_square.cpp"
+#include <hwy/foreach_target.h>  // above highway.h
+#include <hwy/highway.h>
 
 #include "stages/core/check.h"
 
-namespace salbench {
+HWY_BEFORE_NAMESPACE();
+namespace salbench::HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t kLanes = 8;  // rows of a block
 
-// Vectors as wide as the processor has them.
-template <std::size_t kBytes>
-struct Vectors {
-  static constexpr std::size_t kFloats = kBytes / sizeof(float);
-  typedef float Floats __attribute__((vector_size(kBytes)));
-  typedef float HalfFloats __attribute__((vector_size(kBytes / 2)));
-  typedef double Doubles __attribute__((vector_size(kBytes)));
-};
-
 // The distances of a descriptor, given by bin, from the rows of a block.
-template <std::size_t kBytes>
-[[gnu::always_inline]] inline void distances(const float* own, const float* block, std::size_t bins,
-                                             double* result) {
-  using V = Vectors<kBytes>;
-  constexpr std::size_t kFloats = V::kFloats, kHalf = kFloats / 2;
-  for (std::size_t lane = 0; lane < kLanes; lane += kFloats) {
-    typename V::Doubles totals[2] = {};
+void distances(const float* own, const float* block, std::size_t bins, double* result) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  constexpr hn::CappedTag<float, kLanes> kFloats;
+  constexpr hn::CappedTag<double, kLanes> kDoubles;
+  constexpr hn::Rebind<float, decltype(kDoubles)> kPromoted;
+  constexpr std::size_t kWidth = hn::MaxLanes(kFloats), kPart = hn::MaxLanes(kDoubles);
+  for (std::size_t lane = 0; lane < kLanes; lane += kWidth) {
+    hn::Vec<decltype(kDoubles)> totals[kWidth / kPart];
+    for (auto& total : totals) total = hn::Zero(kDoubles);
     for (std::size_t bin = 0; bin < bins; ++bin) {
-      typename V::Floats other;
-      std::memcpy(&other, block + bin * kLanes + lane, sizeof other);
-      const typename V::Floats sum = own[bin] + other, difference = own[bin] - other;
-      const typename V::Floats quotient = difference * difference / sum;
-      const typename V::Floats term = sum > 0 ? quotient : typename V::Floats{};
-      typename V::HalfFloats halves[2];
-      std::memcpy(halves, &term, sizeof term);
-      for (std::size_t half = 0; half < 2; ++half)
-        totals[half] += __builtin_convertvector(halves[half], typename V::Doubles);
+      const auto a = hn::Set(kFloats, own[bin]), b = hn::LoadU(kFloats, block + bin * kLanes + lane);
+      const auto sum = a + b, difference = a - b;
+      alignas(64) float terms[kWidth];
+      hn::Store(hn::IfThenElseZero(sum > hn::Zero(kFloats), difference * difference / sum), kFloats, terms);
+      for (std::size_t part = 0; part < kWidth / kPart; ++part)
+        totals[part] = totals[part] + hn::PromoteTo(kDoubles, hn::Load(kPromoted, terms + part * kPart));
     }
-    for (std::size_t half = 0; half < 2; ++half)
-      std::memcpy(result + lane + half * kHalf, &totals[half], sizeof totals[half]);
+    for (std::size_t part = 0; part < kWidth / kPart; ++part)
+      hn::StoreU(totals[part], kDoubles, result + lane + part * kPart);
   }
 }
 
-using Distances = void (*)(const float* own, const float* block, std::size_t bins, double* result);
-
-void distances_baseline(const float* own, const float* block, std::size_t bins, double* result) {
-  distances<16>(own, block, bins, result);
-}
-[[gnu::target("avx2")]] void distances_avx2(const float* own, const float* block, std::size_t bins,
-                                            double* result) {
-  distances<32>(own, block, bins, result);
-}
-
-const Distances kDistances = __builtin_cpu_supports("avx2") != 0 ? distances_avx2 : distances_baseline;
-
 }  // namespace
+}  // namespace salbench::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace salbench {
+
+using HWY_NAMESPACE::kLanes;
+HWY_EXPORT(distances);
 
 double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
   std::array<float, kFpfhBins * kLanes> block{};
   for (std::size_t bin = 0; bin < kFpfhBins; ++bin) block[bin * kLanes] = b[bin];
   std::array<double, kLanes> result;
-  kDistances(a.data(), block.data(), kFpfhBins, result.data());
+  HWY_DYNAMIC_DISPATCH(distances)(a.data(), block.data(), kFpfhBins, result.data());
   return result[0];
 }
 
@@ -95,9 +86,10 @@ void ChiSquares::measure(std::span<const float, kFpfhBins> from, std::span<doubl
   const float* block = blocks_.data();
   for (std::size_t first = 0; first < count_; first += kLanes, block += kLanes * bins_.size()) {
     std::array<double, kLanes> some;
-    kDistances(own.data(), block, bins_.size(), some.data());
+    HWY_DYNAMIC_DISPATCH(distances)(own.data(), block, bins_.size(), some.data());
     std::copy_n(some.begin(), std::min(count_ - first, kLanes), &result[first]);
   }
 }
 
 }  // namespace salbench
+#endif

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // LS on a bumpy sphere with rough normals, one thread.
+#include <string>
+
 #include <benchmark/benchmark.h>
+#include <hwy/highway.h>
 
 #include "stages/fpfh/fpfh.h"
 #include "stages/models/chi2_search.h"
@@ -42,24 +45,30 @@ BENCHMARK_CAPTURE(ls, published, LsOptions{})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ls, text, LsOptions::text())->Arg(5000)->Arg(10000)->Unit(benchmark::kMillisecond);
 
-void chi2_search(benchmark::State& state, chi2_kernel::Instructions instructions) {
-  if (!chi2_kernel::supported(instructions)) return state.SkipWithError("not on this machine");
+void chi2_search(benchmark::State& state, std::int64_t instructions) {
+  if ((hwy::SupportedTargets() & instructions) == 0) return state.SkipWithError("not on this machine");
   const Shape shape(static_cast<std::size_t>(state.range(0)));
-  const Chi2Search search(shape.descriptors, {}, instructions);
+  hwy::SetSupportedTargetsForTest(instructions);
+  const Chi2Search search(shape.descriptors);
+  hwy::SetSupportedTargetsForTest(0);
   for (auto _ : state)
     search.for_each(search.size() / 20, [](std::size_t, std::span<const Chi2Neighbour> nearest) {
       benchmark::DoNotOptimize(nearest.data());
     });
 }
-BENCHMARK_CAPTURE(chi2_search, baseline, chi2_kernel::Instructions::baseline)
-    ->Arg(10000)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(chi2_search, avx2, chi2_kernel::Instructions::avx2)
-    ->Arg(10000)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(chi2_search, avx512, chi2_kernel::Instructions::avx512)
-    ->Arg(10000)
-    ->Unit(benchmark::kMillisecond);
+void add_searches() {
+  for (const std::int64_t instructions : hwy::SupportedAndGeneratedTargets())
+    benchmark::RegisterBenchmark((std::string("chi2_search/") + hwy::TargetName(instructions)).c_str(),
+                                 chi2_search, instructions)
+        ->Arg(10000)
+        ->Unit(benchmark::kMillisecond);
+}
 
 }  // namespace
 }  // namespace salbench
+
+int main(int argc, char** argv) {
+  salbench::add_searches();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

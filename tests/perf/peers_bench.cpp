@@ -62,7 +62,7 @@ Work our_chi_squares(const Shape& shape) {
     }
   return [n = descriptors.size(), n_bins = bins.size(), groups, rows, table,
           distances = std::vector<float>(groups.size() * kernel::kLanes)]() mutable {
-    const kernel::Kernel& widest = kernel::kernel(kernel::widest_supported());
+    const kernel::Kernel& widest = kernel::kernel();
     for (std::size_t query = 0; query < peers::kQueries; ++query) {
       widest.distances(table.data(), n_bins, rows.data() + query * n / peers::kQueries * n_bins,
                        groups.data(), groups.size(), distances.data());

@@ -12,6 +12,7 @@
 #include "stages/core/fpfh.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/pair_features.h"
+#include "tests/support/instructions.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -270,7 +271,10 @@ void expect_bins_of_features(const Vec3& p, const Vec3& n_p, const Vec3& q, cons
   }
 }
 
-TEST(PairBins, AreThoseOfTheFeatures) {
+class PairBinsVariant : public InstructionsTest {};
+INSTANTIATE_TEST_SUITE_P(PairBins, PairBinsVariant, every_instruction_set(), name_of_instructions);
+
+TEST_P(PairBinsVariant, AreThoseOfTheFeatures) {
   const auto points = shapes::random_cloud(2000, 36);
   const auto normals = shapes::random_normals(2000, 37);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -283,7 +287,7 @@ TEST(PairBins, AreThoseOfTheFeatures) {
 }
 
 // Only phi is near an edge here: a product of kBlockBins rounds to another side of it than a comparison does.
-TEST(PairBins, WithinRoundingOfAnEdgeOfPhiAreThoseOfTheFeatures) {
+TEST_P(PairBinsVariant, WithinRoundingOfAnEdgeOfPhiAreThoseOfTheFeatures) {
   for (int bin = 0; bin <= 11; ++bin)
     for (int steps = -8; steps <= 8; ++steps) {
       const double height = std::clamp(bin / 11.0 + steps * 0x1p-54, 0.0, 1.0);
@@ -292,7 +296,7 @@ TEST(PairBins, WithinRoundingOfAnEdgeOfPhiAreThoseOfTheFeatures) {
     }
 }
 
-TEST(PairBins, OnTheEdgesOfBinsAreThoseOfTheFeatures) {
+TEST_P(PairBinsVariant, OnTheEdgesOfBinsAreThoseOfTheFeatures) {
   for (int bin = 0; bin <= 11; ++bin) {
     const double part = bin / 11.0;
     for (const double off : {0.0, 1e-16, -1e-16, 1e-12, -1e-12, 1e-8, -1e-8}) {

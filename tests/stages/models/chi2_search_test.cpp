@@ -11,14 +11,13 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
-#include "tests/stages/models/chi2_variant.h"
 #include "tests/stages/models/random_histograms.h"
+#include "tests/support/instructions.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
 namespace {
 
-using chi2_kernel::Instructions;
 using testing::ElementsAre;
 
 // Histograms with a single bin filled, distances |a - b|^2 / (a + b).
@@ -83,16 +82,16 @@ void expect_first_of(const Ranking& ranking, std::size_t k, const Chi2Search& se
   EXPECT_EQ(rows, ranking.size());
 }
 
-class Chi2SearchVariant : public Chi2VariantTest {
+class Chi2SearchVariant : public InstructionsTest {
  protected:
   static void expect_equals_brute_force(const Descriptors& descriptors,
                                         std::initializer_list<std::size_t> counts) {
     const Ranking ranking = ranking_of(descriptors);
-    const Chi2Search search(descriptors, {}, GetParam());
+    const Chi2Search search(descriptors);
     for (const std::size_t k : counts) expect_first_of(ranking, k, search);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Chi2, Chi2SearchVariant, every_chi2_variant(), name_of_chi2_variant);
+INSTANTIATE_TEST_SUITE_P(Chi2, Chi2SearchVariant, every_instruction_set(), name_of_instructions);
 
 TEST_P(Chi2SearchVariant, EqualsBruteForceWhereNoDistancesAreEqual) {
   for (const std::size_t n : {1U, 15U, 16U, 17U, 130U})
@@ -197,26 +196,39 @@ TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
         testing::ThrowsMessage<InputError>(testing::HasSubstr("descriptor of point 2")));
 }
 
-TEST_P(Chi2SearchVariant, KernelGivesTheBytesOfTheBaseline) {
+TEST_P(Chi2SearchVariant, KernelGivesTheBytesOfTheFormula) {
   constexpr std::size_t bins = 17;
   const std::vector<std::int32_t> groups = {4, 0, 3};
   Rng rng(3, "kernel", "");
   std::vector<float> table(5 * bins * 2 * chi2_kernel::kLanes), query(bins);
   for (float& value : table) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
   for (float& value : query) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
-  const auto run = [&](Instructions instructions) {
-    const chi2_kernel::Kernel& kernel = chi2_kernel::kernel(instructions);
-    const std::size_t count = groups.size() * chi2_kernel::kLanes;
-    std::vector<float> result(2 * count + 1);
-    kernel.distances(table.data(), bins, query.data(), groups.data(), groups.size(), result.data());
-    kernel.bounds(table.data(), bins, query.data(), groups.data(), groups.size(), result.data() + count);
-    result.back() = static_cast<float>(kernel.count_up_to(result[5], result.data(), count));
-    return result;
-  };
-  const std::vector<float> baseline = run(Instructions::baseline);
-  EXPECT_GT(*std::min_element(baseline.begin(), baseline.end() - 1), 0);
-  EXPECT_GT(baseline.back(), 0);
-  EXPECT_EQ(run(GetParam()), baseline);
+  const std::size_t count = groups.size() * chi2_kernel::kLanes;
+  std::vector<float> distances(count), bounds(count), expected_distances, expected_bounds;
+  for (const std::int32_t group : groups)
+    for (std::size_t lane = 0; lane < chi2_kernel::kLanes; ++lane) {
+      float distance = 0, bound = 0;
+      for (std::size_t bin = 0; bin < bins; ++bin) {
+        const auto row = [&](std::size_t rows, std::size_t i) {
+          return table[((static_cast<std::size_t>(group) * bins + bin) * rows + i) * chi2_kernel::kLanes +
+                       lane];
+        };
+        const auto add = [a = query[bin]](float b, float& sum) {
+          sum += (b - a) * (b - a) / (b + a + 1e-18F);
+        };
+        add(row(1, 0), distance);
+        add(std::min(std::max(query[bin], row(2, 0)), row(2, 1)), bound);
+      }
+      expected_distances.push_back(distance), expected_bounds.push_back(bound);
+    }
+  const chi2_kernel::Kernel& kernel = chi2_kernel::kernel();
+  kernel.distances(table.data(), bins, query.data(), groups.data(), groups.size(), distances.data());
+  kernel.bounds(table.data(), bins, query.data(), groups.data(), groups.size(), bounds.data());
+  EXPECT_GT(*std::min_element(bounds.begin(), bounds.end()), 0);
+  EXPECT_EQ(distances, expected_distances);
+  EXPECT_EQ(bounds, expected_bounds);
+  EXPECT_EQ(kernel.count_up_to(distances[5], distances.data(), count),
+            std::count_if(distances.begin(), distances.end(), [&](float d) { return d <= distances[5]; }));
 }
 
 TEST(Chi2Kernel, IsExactToSinglePrecision) {
@@ -239,7 +251,7 @@ TEST_P(Chi2SearchVariant, PlacesAndCountTakeTheLimitAndPassOverInfinityAndNaN) {
   values[20] = 2.5F;
   values[21] = std::numeric_limits<float>::quiet_NaN();
   std::vector<std::int32_t> places(48, -1);
-  const chi2_kernel::Kernel& kernel = chi2_kernel::kernel(GetParam());
+  const chi2_kernel::Kernel& kernel = chi2_kernel::kernel();
   EXPECT_EQ(kernel.count_up_to(2, values.data(), values.size()), 4U);
   ASSERT_EQ(kernel.places_between(1, 2, values.data(), values.size(), places.data()), 4U);
   EXPECT_THAT(std::vector(places.begin(), places.begin() + 4), ElementsAre(0, 15, 16, 47));

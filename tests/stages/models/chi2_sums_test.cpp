@@ -8,14 +8,13 @@
 #include <tbb/global_control.h>
 
 #include "stages/core/rng.h"
-#include "tests/stages/models/chi2_variant.h"
 #include "tests/stages/models/random_histograms.h"
+#include "tests/support/instructions.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
 namespace {
 
-using chi2_kernel::Instructions;
 using chi2_kernel::Weight;
 
 std::vector<double> sums_of(const Chi2Search& search, std::size_t k, Points points, Weight weight) {
@@ -38,14 +37,17 @@ std::vector<double> twin(const Chi2Search& search, std::size_t k, Points points,
   return sums;
 }
 
-class Chi2SumsVariant : public Chi2VariantTest {};
-INSTANTIATE_TEST_SUITE_P(Chi2, Chi2SumsVariant, every_chi2_variant(), name_of_chi2_variant);
+class Chi2SumsVariant : public InstructionsTest {};
+INSTANTIATE_TEST_SUITE_P(Chi2, Chi2SumsVariant, every_instruction_set(), name_of_instructions);
 
 TEST_P(Chi2SumsVariant, AreThoseOverTheNearest) {
   const std::vector<Vec3> points = shapes::random_cloud(600, 8);  // in the unit cube
   for (const std::uint64_t levels : {2U, 5U, 1U << 20U}) {
     const Descriptors histograms = random_histograms(600, levels, levels + 1);
-    const Chi2Search search(histograms, {}, GetParam()), baseline(histograms, {}, Instructions::baseline);
+    const Chi2Search search(histograms);
+    hwy::SetSupportedTargetsForTest(HWY_STATIC_TARGET);
+    const Chi2Search baseline(histograms);
+    hwy::SetSupportedTargetsForTest(GetParam());
     for (const Weight weight : {Weight::near, Weight::far}) {
       const std::vector<double> sums = sums_of(search, 30, points, weight);
       EXPECT_EQ(sums, sums_of(baseline, 30, points, weight));  // to the last bit

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
+#include "tests/support/instructions.h"
 
 namespace salbench {
 namespace {
@@ -49,7 +50,10 @@ TEST(ChiSquares, LookAtTheBinsInUse) {
   EXPECT_EQ(bins[1], 2U);
 }
 
-TEST(ChiSquares, AreToTheBitThoseOfTheFormulaHoweverManyThereAre) {
+class ChiSquaresVariant : public InstructionsTest {};
+INSTANTIATE_TEST_SUITE_P(ChiSquare, ChiSquaresVariant, every_instruction_set(), name_of_instructions);
+
+TEST_P(ChiSquaresVariant, AreToTheBitThoseOfTheFormulaHoweverManyThereAre) {
   const Descriptors descriptors = scattered_descriptors(40);
   for (std::size_t count = 0; count <= 20; ++count) {
     std::vector<std::int32_t> rows;

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tests of the kernels for each instruction set by its name: what a machine lacks is seen to be skipped.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+namespace salbench {
+
+// Kernels have the instructions of the parameter alone while such a test runs, and every instruction
+// afterwards.
+class InstructionsTest : public testing::TestWithParam<std::int64_t> {
+ protected:
+  void SetUp() override {
+    if ((hwy::SupportedTargets() & GetParam()) == 0 && GetParam() != HWY_STATIC_TARGET)
+      GTEST_SKIP() << "this machine lacks these instructions";
+    hwy::SetSupportedTargetsForTest(GetParam());
+  }
+  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+inline auto every_instruction_set() {
+  std::vector<std::int64_t> all;
+  for (std::int64_t targets = HWY_TARGETS; targets != 0; targets &= targets - 1)
+    all.push_back(targets & -targets);
+  return testing::ValuesIn(all);
+}
+
+inline std::string name_of_instructions(const testing::TestParamInfo<std::int64_t>& test) {
+  return hwy::TargetName(test.param);
+}
+
+}  // namespace salbench
