@@ -1,17 +1,22 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Run by scripts/releases, and by hand on exports that two machines have made.
-"""Compares two exports of one configuration over the same data, made on two machines, stage by stage.
+"""Compares two exports, or two results folders, of one configuration over the same data, made on two machines.
 
 compare_exports.py FIRST.h5 SECOND.h5 [TOLERANCE]
+compare_exports.py FIRST SECOND [TOLERANCE]
 
-Prints two tables in Markdown. Stages, those of all models in one row: how many artefacts there are and how many have the same
-bytes; of the others, the largest difference between two values over the largest value of their array, and the stage and array
-where that is. Metrics, those without a difference in one row: the largest difference between two scores. Exit status 1 if that
-is above the tolerance (default 1e-6), or if an artefact or an array of other length is in one export only. Needs python3-h5py.
+Prints two tables of exports in Markdown. Stages, those of all models in one row: how many artefacts there are and how many have
+the same bytes; of the others, the largest difference between two values over the largest value of their array, and the stage
+and array where that is. Metrics, those without a difference in one row: the largest difference between two scores. Exit status 1
+if that is above the tolerance (default 1e-6), or if an artefact or an array of other length is in one export only. Prints one
+table of folders: how many cells of their .csv files, but for timeline.csv, are equal, and the largest difference between two
+numbers over the larger one, to which the tolerance applies. Needs python3-h5py.
 """
 
+import csv
 import sys
+from pathlib import Path
 
 import h5py
 import numpy
@@ -99,7 +104,55 @@ def compare_scores(first, second):
     return largest
 
 
+def number(cell):
+    try:
+        return float(cell)
+    except ValueError:
+        return numpy.nan
+
+
+def relative(a, b):
+    """The difference of two cells over the larger of their numbers; infinite where that is not known."""
+    a, b = number(a), number(b)
+    if a == b:
+        return 0.0
+    off = abs(a - b) / max(abs(a), abs(b))
+    return off if off == off else numpy.inf
+
+
+def compare_cells(first, second):
+    """How many cells two tables have, how many are equal, the largest relative difference, and the column where that is."""
+    ours, theirs = ([row for row in csv.reader(path.read_text(encoding="utf-8").splitlines()) if not "".join(row).startswith("#")]
+                    for path in (first, second))
+    cells = sum(map(len, ours))
+    if [len(row) for row in ours] != [len(row) for row in theirs]:
+        return cells, 0, numpy.inf, "other rows"
+    off = [(relative(a, b), column) for row, other in zip(ours, theirs) for a, b, column in zip(row, other, ours[0]) if a != b]
+    return cells, cells - len(off), *max(off, default=(0.0, "-"))
+
+
+def compare_tables(first, second):
+    """Prints a row per table that differs, and one for the others. Returns the largest difference of all."""
+    names = sorted({path.name for folder in (first, second) for path in folder.glob("*.csv")} - {"timeline.csv"})
+    print("| table | cells | equal | largest difference | in |\n|---|---|---|---|---|")
+    largest, same, in_same = 0.0, 0, 0
+    for name in names:
+        if not ((first / name).is_file() and (second / name).is_file()):
+            cells, equal, off, column = 0, 0, numpy.inf, "in one folder only"
+        else:
+            cells, equal, off, column = compare_cells(first / name, second / name)
+            if (first / name).read_bytes() == (second / name).read_bytes():
+                same, in_same = same + 1, in_same + cells
+                continue
+        largest = max(largest, off)
+        print(f"| `{name}` | {cells} | {equal} | {off:.1g} | {column} |")
+    print(f"| the {same} with the same bytes | {in_same} | {in_same} | 0 | - |")
+    return largest
+
+
 def main(first, second, tolerance="1e-6"):
+    if Path(first).is_dir():
+        return 0 if compare_tables(Path(first), Path(second)) <= float(tolerance) else 1
     with h5py.File(first) as ours, h5py.File(second) as theirs:
         complete = compare_stages(ours, theirs)
         return 0 if compare_scores(ours, theirs) <= float(tolerance) and complete else 1
