@@ -7,7 +7,8 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
-# No contraction and no -march: the same bytes on every x86-64, and PCL's and Eigen's alignment must agree with
+# No contraction and no -march: the same operations on every x86-64. Bytes are the same but for the C library's exp() and
+# others, of which it has one for processors with FMA: docs/releases.md. And PCL's and Eigen's alignment must agree with
 # Debian's binaries (PCL issue 5806). Kernels choose their instructions at run time.
 add_library(salbench_settings INTERFACE)
 target_include_directories(salbench_settings INTERFACE ${PROJECT_SOURCE_DIR})
