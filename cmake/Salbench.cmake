@@ -51,6 +51,10 @@ function(salbench_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;ALONE;PUBLIC;PRIVATE" ${ARGN})
   add_library(salbench_${name} STATIC ${arg_SOURCES} ${arg_ALONE})
   salbench_compile_together(salbench_${name} 8 "${arg_ALONE}")
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH parent)
+  if(NOT parent STREQUAL ${PROJECT_SOURCE_DIR}/stages)  # nothing else computes for long
+    target_compile_options(salbench_${name} PRIVATE $<$<CONFIG:Release>:-O2>)
+  endif()
   target_link_libraries(salbench_${name} PUBLIC salbench_settings ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 endfunction()
 

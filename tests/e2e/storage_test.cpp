@@ -61,7 +61,7 @@ TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
   EXPECT_THAT(lines_with(full.err, "error: "),
               AllOf(SizeIs(1), Each(AllOf(HasSubstr(toy.cache().string()), HasSubstr("No space left")))))
       << full.err;
-  EXPECT_THAT(lines_with(full.err, "warning: "),
+  EXPECT_THAT(lines_with(full.err, "the run needs"),
               ElementsAre(AllOf(HasSubstr(toy.cache().string() + ": the run needs about "),
                                 HasSubstr(" files, and 0.3 MB are free: "), HasSubstr("--cache"))))
       << full.err;

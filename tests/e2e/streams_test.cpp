@@ -81,7 +81,7 @@ TEST_P(StandardOutput, ThatNobodyReadsEndsTheProgramSilently) {
 }
 INSTANTIATE_TEST_SUITE_P(Calls, StandardOutput,
                          testing::Values("run", "maps", "evaluate", "pictures", "export", "plan", "graph",
-                                         "explain", "status", "config", "verify", "gc", "--help",
+                                         "explain", "status", "doctor", "config", "verify", "gc", "--help",
                                          "run --help", "--version"),
                          [](const auto& test) {
                            std::string name;
