@@ -15,6 +15,7 @@
 #include "io/packed_chunks.h"
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "tests/support/hdf5_content.h"
 #include "tests/support/temporary_folder.h"
 
 namespace salbench {
@@ -31,18 +32,6 @@ Hdf5Content sample() {
        {"fpfh", {5000, 33}, descriptors, "1", "compressed"},
        {"one", {}, std::vector<std::int64_t>{1LL << 40}, "1", "a scalar"}},
       {{"empty", std::string()}, {"item", std::string("ü 52")}, {"n", std::int64_t{-3}}, {"seconds", 0.25}}};
-}
-
-void expect_equal(const Hdf5Content& a, const Hdf5Content& b) {
-  ASSERT_EQ(a.arrays.size(), b.arrays.size());
-  for (std::size_t i = 0; i < a.arrays.size(); ++i) {
-    EXPECT_EQ(a.arrays[i].name, b.arrays[i].name);
-    EXPECT_EQ(a.arrays[i].shape, b.arrays[i].shape);
-    EXPECT_EQ(a.arrays[i].values, b.arrays[i].values);
-    EXPECT_EQ(a.arrays[i].unit, b.arrays[i].unit);
-    EXPECT_EQ(a.arrays[i].description, b.arrays[i].description);
-  }
-  EXPECT_EQ(a.attributes, b.attributes);
 }
 
 TEST(Hdf5File, ReadsBackWhatWasWritten) {
