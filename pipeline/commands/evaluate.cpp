@@ -25,7 +25,7 @@ Subcommand evaluate_subcommand(Arguments& arguments) {
           [&arguments, options](const std::atomic<bool>& stop) {
             Session session(arguments, stop,
                             given_model(options->name, find_given_maps(options->maps, options->matched)));
-            return run_session(session, arguments, stop);
+            return run_session(session, arguments);
           }};
 }
 

@@ -24,13 +24,11 @@ constexpr const char* kPartialNote =
     "PARTIAL: the run was interrupted; these are the scores of what it finished and they are final.";
 
 // No tables: what they compare is in the other shares.
-void finish_shard(const Session& session, const RunRecord& record, const Arguments& arguments) {
-  write_shard_record(session.setup.output, record);
-  if (!arguments.quiet)
-    fmt::print(
-        "shard {}: {}, {} artefacts computed; when all shards are done, the same line without "
-        "--shard writes the tables\n",
-        session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
+void print_shard(const Session& session) {
+  fmt::print(
+      "shard {}: {}, {} artefacts computed; when all shards are done, the same line without "
+      "--shard writes the tables\n",
+      session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
 }
 
 void print_summary(const Session& session, const Conclusions& conclusions) {
@@ -49,7 +47,7 @@ std::vector<ChanceRemark> remarks_on_chance(const RunState& run, std::vector<Res
   return chance_remarks(rows, chosen_metrics(config.metrics), config.statistics.unit);
 }
 
-void write_results(Session& session, RunRecord record, const Arguments& arguments) {
+void write_results(const Session& session, RunRecord record, const Show& show) {
   const std::vector<ResultRow> rows = collect_results(record.run);
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
@@ -61,12 +59,7 @@ void write_results(Session& session, RunRecord record, const Arguments& argument
     write_tables(session.setup.output, record.run, rows, conclusions, remarks);
   record.chance = remarks_on_chance(record.run, rows);
   write_record(session.setup.output, record);
-  if (!arguments.quiet && !record.interrupted) print_summary(session, conclusions);
-  if (record.interrupted)
-    std::fputs(
-        fmt::format("\n{}: {}\n", session.setup.output.string(), state_of_results(session.setup.output))
-            .c_str(),
-        stderr);
+  if (show && !record.interrupted) show(conclusions);
 }
 
 // Before hours are spent on a run that would fill the disk; it goes on, since this is an estimate.
@@ -80,24 +73,33 @@ void warn_of_space(const Session& session) {
 
 }  // namespace
 
-ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop) {
+void carry_out(Session& session, int threads, const Show& show) {
   const Setup& setup = session.setup;
   if (has_work(session.resolver)) {
     session.store.prepare();  // before the results of an earlier run are touched
     warn_of_space(session);
   }
-  setup.inputs.shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
-  session.run(thread_count(arguments));
-  const bool interrupted = stop;
-  if (interrupted && setup.inputs.shard) return interrupted_status(arguments);
+  const auto& shard = setup.inputs.shard;
+  shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
+  session.run(threads);
+  const bool interrupted = session.stop;
+  if (interrupted && shard) return;
   Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
-  const RunRecord record{session.state(),   session.store, thread_count(arguments), session.started,
+  const RunRecord record{session.state(),   session.store, threads,           session.started,
                          session.seconds(), interrupted,   why_computed(causes)};
-  if (setup.inputs.shard)
-    finish_shard(session, record, arguments);
-  else
-    write_results(session, record, arguments);
-  return interrupted ? interrupted_status(arguments) : finished_status(session);
+  shard ? write_shard_record(setup.output, record) : write_results(session, record, show);
+}
+
+ExitStatus run_session(Session& session, const Arguments& arguments) {
+  carry_out(session, thread_count(arguments), [&](const Conclusions& conclusions) {
+    if (!arguments.quiet) print_summary(session, conclusions);
+  });
+  const Setup& setup = session.setup;
+  if (setup.inputs.shard && !session.stop && !arguments.quiet) print_shard(session);
+  if (!session.stop) return finished_status(session);
+  if (!setup.inputs.shard)
+    std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(), stderr);
+  return interrupted_status(arguments);
 }
 
 Subcommand run_subcommand(Arguments& arguments) {
@@ -105,7 +107,7 @@ Subcommand run_subcommand(Arguments& arguments) {
           run_parameters(arguments, {shard_parameter(arguments)}),
           [&arguments](const std::atomic<bool>& stop) {
             Session session(arguments, stop);
-            return run_session(session, arguments, stop);
+            return run_session(session, arguments);
           }};
 }
 

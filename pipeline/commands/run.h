@@ -2,13 +2,19 @@
 // Subcommand `run`: computes what is missing and writes the tables.
 #pragma once
 
-#include <atomic>
+#include <functional>
 
 #include "pipeline/commands/session.h"
 
 namespace salbench {
 
-// Carries a session out and writes the tables; when interrupted, those of what was finished.
-ExitStatus run_session(Session& session, const Arguments& arguments, const std::atomic<bool>& stop);
+// What is done with the conclusions of a run that was finished; nothing for a shard.
+using Show = std::function<void(const Conclusions&)>;
+
+// Computes what is missing and writes the tables; when interrupted, those of what was finished.
+void carry_out(Session& session, int threads, const Show& show = {});
+
+// The same as a command, with what it prints.
+ExitStatus run_session(Session& session, const Arguments& arguments);
 
 }  // namespace salbench

@@ -74,23 +74,30 @@ int thread_count(const Arguments& arguments) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
-    : config(read_configuration(arguments, given, pictures)),
+Setup::Setup(Config the_config, const Selection& selection)
+    : config(std::move(the_config)),
       inputs(read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
-                         arguments.items, shard_of(arguments))),
-      project(make_project(config, inputs, reference_of(arguments))),
+                         selection.items, selection.shard)),
+      project(make_project(config, inputs, selection.reference)),
       cache(config.cache),
       output(config.output) {
   for (const std::string& note : inputs.notes) spdlog::warn("{}", note);
 }
 
-Session::Session(const Arguments& arguments, const std::atomic<bool>& the_stop,
-                 const std::optional<Model>& given, Pictures pictures)
-    : setup(arguments, given, pictures),
+Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
+    : Setup(read_configuration(arguments, given, pictures),
+            {arguments.items, shard_of(arguments), reference_of(arguments)}) {}
+
+Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& the_stop)
+    : setup(std::move(the_setup)),
       store(setup.cache, Access::read_write),
       resolver(setup.project, make_plan(setup.project, store), store),
-      progress(progress_of(arguments.quiet)),
+      progress(std::move(the_progress)),
       stop(the_stop) {}
+
+Session::Session(const Arguments& arguments, const std::atomic<bool>& the_stop,
+                 const std::optional<Model>& given, Pictures pictures)
+    : Session(Setup(arguments, given, pictures), progress_of(arguments.quiet), the_stop) {}
 
 void Session::run(int threads, const std::string& what, const std::vector<bool>& rules) {
   const OrderlyEnd orderly;

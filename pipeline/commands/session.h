@@ -18,9 +18,17 @@ namespace salbench {
 
 int thread_count(const Arguments& arguments);
 
+// What of a data set is taken, and what maps are matched to.
+struct Selection {
+  std::string items = {};  // "1-20,52,125"; empty: all
+  std::optional<Shard> shard = {};
+  std::optional<Histogram> reference = {};  // nothing: the data set's own mean
+};
+
 // Everything that stands before the first job. Throws ConfigError or InputError for what makes the command
 // impossible.
 struct Setup {
+  Setup(Config the_config, const Selection& selection);
   // A model more; pictures, where the configuration has less of them.
   explicit Setup(const Arguments& arguments, const std::optional<Model>& given = {},
                  Pictures pictures = Pictures::none);
@@ -33,7 +41,9 @@ struct Setup {
 
 // A setup with its cache opened, planned, and ready to run.
 struct Session {
-  // Throws as Setup does, and StorageError.
+  // Throws StorageError.
+  Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& stop);
+  // Throws as Setup does, too.
   Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {},
           Pictures pictures = Pictures::none);
 

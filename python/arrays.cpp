@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/arrays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace salbench::python {
+namespace {
+
+constexpr int kInOrder = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+
+template <class T>
+using Ordered = py::array_t<T, kInOrder>;
+
+std::string shape_of(const py::array& array) {
+  if (array.ndim() == 1) return fmt::format("({},)", array.shape(0));
+  return fmt::format("({})", fmt::join(array.shape(), array.shape() + array.ndim(), ", "));
+}
+
+// Throws what NumPy throws where that is not about the argument: memory that ran out, an interrupt.
+py::array as_array(const Argument& argument) {
+  try {
+    if (py::array::check_(argument.value)) {
+      const auto array = py::reinterpret_borrow<py::array>(argument.value);
+      if (py::hasattr(array, "mask")) argument.fail("must not be a masked array: give its data, and a mask");
+      return array;
+    }
+    return py::module_::import("numpy").attr("asarray")(argument.value);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
+    argument.fail("must be an array of numbers: " + std::string(py::str(error.value())));
+  }
+}
+
+// The array in C order with elements of T; `kinds` are those of NumPy's types that stand for such values. One without
+// elements, as of an empty list, may have any type.
+template <class T>
+Ordered<T> ordered(const Argument& argument, const py::array& array, std::string_view kinds,
+                   std::string_view what) {
+  if (array.size() > 0 && kinds.find(array.dtype().kind()) == std::string_view::npos)
+    argument.fail(fmt::format("must have {}, not {}", what, std::string(py::str(array.dtype()))));
+  PyObject* made = py::detail::npy_api::get().PyArray_FromAny_(
+      array.ptr(), py::dtype::of<T>().release().ptr(), 0, 0, kInOrder, nullptr);
+  if (made == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<Ordered<T>>(made);
+}
+
+Ordered<double> numbers(const Argument& argument, const py::array& array) {
+  return ordered<double>(argument, array, "biuf", "real numbers");
+}
+
+void expect(const Argument& argument, const py::array& array, bool fits, const std::string& shape) {
+  if (!fits) argument.fail(fmt::format("must have shape {}, not {}", shape, shape_of(array)));
+}
+
+std::string length_text(const std::optional<std::size_t>& n) { return n ? fmt::to_string(*n) : "n"; }
+
+bool has_length(const py::array& array, int axis, const std::optional<std::size_t>& n) {
+  return !n || static_cast<std::size_t>(array.shape(axis)) == *n;
+}
+
+// Whole numbers of any width, which a double could not all hold.
+std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::array& array, std::size_t n) {
+  const char kind = array.dtype().kind();
+  const auto check = [&](auto number) {
+    if (number < 0 || static_cast<std::uint64_t>(number) >= n)
+      argument.fail(fmt::format("must have numbers of points, 0 to {}, not {}",
+                                static_cast<std::int64_t>(n) - 1, number));
+    return static_cast<std::int32_t>(number);
+  };
+  std::vector<std::int32_t> numbers;
+  numbers.reserve(static_cast<std::size_t>(array.size()));
+  const auto read = [&](const auto& whole) {
+    const auto* first = whole.data();
+    std::transform(first, first + whole.size(), std::back_inserter(numbers), check);
+  };
+  if (kind == 'u')
+    read(ordered<std::uint64_t>(argument, array, "u", "whole numbers"));
+  else
+    read(ordered<std::int64_t>(argument, array, "i", "whole numbers"));
+  return numbers;
+}
+
+template <class Scalar>
+py::array shown_as(Owner owner, std::vector<py::ssize_t> shape, const void* data) {
+  const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
+  return py::array(py::dtype::of<Scalar>(), std::move(shape), data, keeper);
+}
+
+py::ssize_t signed_size(std::size_t n) { return static_cast<py::ssize_t>(n); }
+
+}  // namespace
+
+void Argument::fail(const std::string& what) const { throw py::value_error(fmt::format("{} {}", name, what)); }
+
+View<double> field(const Argument& argument, std::optional<std::size_t> n) {
+  const py::array array = as_array(argument);
+  expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", length_text(n)));
+  auto values = numbers(argument, array);
+  const std::span view(values.data(), static_cast<std::size_t>(values.size()));
+  return {std::move(values), view};
+}
+
+View<double> rows(const Argument& argument, std::optional<std::size_t> n) {
+  const py::array array = as_array(argument);
+  const int columns = static_cast<int>(array.ndim()) - 1;
+  expect(argument, array, (columns == 0 || columns == 1) && has_length(array, columns, n),
+         fmt::format("({0},) or (k, {0})", length_text(n)));
+  auto values = numbers(argument, array);
+  const std::span view(values.data(), static_cast<std::size_t>(values.size()));
+  return {std::move(values), view};
+}
+
+View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
+  if (!argument.given()) return {};
+  const py::array array = as_array(argument);
+  expect(argument, array, array.ndim() == 2 && array.shape(1) == 3 && has_length(array, 0, n),
+         fmt::format("({}, 3)", length_text(n)));
+  if (array.shape(0) > std::numeric_limits<std::int32_t>::max()) argument.fail("has more than 2^31 points");
+  auto values = numbers(argument, array);
+  const std::span coordinates(values.data(), static_cast<std::size_t>(values.size()));
+  // The squares of distances are sums of three.
+  const double largest = std::sqrt(std::numeric_limits<double>::max()) / 4;
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (!(std::abs(coordinates[i]) <= largest))
+      argument.fail(fmt::format("must have finite coordinates whose squares are finite too, not {} in row {}",
+                                coordinates[i], i / 3));
+  const std::span view(reinterpret_cast<const Vec3*>(values.data()), coordinates.size() / 3);
+  return {std::move(values), view};
+}
+
+Faces faces(const Argument& argument, std::size_t n) {
+  if (!argument.given()) return {};
+  const py::array array = as_array(argument);
+  expect(argument, array, array.ndim() == 2 && array.shape(1) == 3, "(m, 3)");
+  const std::vector<std::int32_t> corners = numbers_of_points(argument, array, n);
+  Faces result(corners.size() / 3);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+  return result;
+}
+
+std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {
+  if (!argument.given()) return {};
+  const py::array array = as_array(argument);
+  expect(argument, array, array.ndim() == 1, "(k,)");
+  return numbers_of_points(argument, array, n);
+}
+
+std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n) {
+  if (!argument.given()) return {};
+  const bool list = py::isinstance<py::list>(argument.value) || py::isinstance<py::tuple>(argument.value);
+  const auto is_one = [](py::handle value) { return PyIndex_Check(value.ptr()) != 0 && !py::isinstance<py::array>(value); };
+  if (list) {
+    const auto sequence = py::reinterpret_borrow<py::sequence>(argument.value);
+    if (sequence.size() > 0 && !is_one(py::object(sequence[0]))) {
+      std::vector<std::vector<std::int32_t>> all;
+      for (const py::handle one : sequence) all.push_back(indices({one, argument.name}, n));
+      return all;
+    }
+  }
+  return {indices(argument, n)};
+}
+
+std::vector<bool> mask(const Argument& argument, std::size_t n) {
+  const py::array array = as_array(argument);
+  expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", n));
+  const auto values = ordered<bool>(argument, array, "b", "truth values");
+  const std::span view(values.data(), static_cast<std::size_t>(values.size()));
+  return std::vector<bool>(view.begin(), view.end());
+}
+
+py::array shown(Owner owner, std::span<const double> values) {
+  return shown_as<double>(std::move(owner), {signed_size(values.size())}, values.data());
+}
+py::array shown(Owner owner, std::span<const Vec3> values) {
+  return shown_as<double>(std::move(owner), {signed_size(values.size()), 3}, values.data());
+}
+py::array shown(Owner owner, std::span<const Triangle> values) {
+  return shown_as<std::int32_t>(std::move(owner), {signed_size(values.size()), 3}, values.data());
+}
+py::array shown(Owner owner, std::span<const std::int32_t> values) {
+  return shown_as<std::int32_t>(std::move(owner), {signed_size(values.size())}, values.data());
+}
+py::array shown(Owner owner, std::span<const float> values, int columns) {
+  return shown_as<float>(std::move(owner), {signed_size(values.size()) / columns, columns}, values.data());
+}
+
+py::array read_only(py::array array) {
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+}  // namespace salbench::python

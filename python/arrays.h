@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The room of Python. Arguments come in as arrays, of NumPy or of anything that NumPy makes one of, and go on
+// to the stages as views; what these return goes out as arrays, without a copy. It works out nothing itself:
+// one .cpp per folder of stages, a line or two per function.
+//
+// Here: arguments and results. A float64 array in C order is not copied; other types, memory orders and lists
+// are. Numbers that point at something are, always: another thread may change the array while it is read.
+// What fits nothing is a ValueError that names the argument, the shape expected and the shape found.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include "stages/core/types.h"
+
+namespace salbench::python {
+
+namespace py = pybind11;
+
+// An argument, and what it is called.
+struct Argument {
+  py::handle value;
+  const char* name;
+
+  bool given() const { return !value.is_none(); }
+  [[noreturn]] void fail(const std::string& what) const;  // ValueError: "points must have ..."
+};
+
+// A view, and the array that it is of.
+template <class T>
+struct View {
+  py::array array;
+  std::span<const T> values;
+
+  operator std::span<const T>() const { return values; }  // NOLINT: stands for the parameter
+  std::size_t size() const { return values.size(); }
+};
+
+// (n,) numbers; of a length, where it is known already.
+View<double> field(const Argument& argument, std::optional<std::size_t> n = {});
+// (k, n), or (n,) as one row. `values` has the k * n numbers.
+View<double> rows(const Argument& argument, std::optional<std::size_t> n = {});
+// (n, 3), finite, and so are their squares. None: of no point.
+View<Vec3> points(const Argument& argument, std::optional<std::size_t> n = {});
+// (m, 3) numbers of points, 0 to n - 1. None: of no face.
+Faces faces(const Argument& argument, std::size_t n);
+// (k,) numbers of points, 0 to n - 1. None: of no point.
+std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
+// The same as a sequence with one array for each participant; a single array is one participant's.
+std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
+// (n,) truth values.
+std::vector<bool> mask(const Argument& argument, std::size_t n);
+
+// Memory that arrays show and keep alive.
+using Owner = std::shared_ptr<const void>;
+py::array shown(Owner owner, std::span<const double> values);               // (n,)
+py::array shown(Owner owner, std::span<const Vec3> values);                 // (n, 3)
+py::array shown(Owner owner, std::span<const Triangle> values);             // (n, 3)
+py::array shown(Owner owner, std::span<const std::int32_t> values);         // (n,)
+py::array shown(Owner owner, std::span<const float> values, int columns);   // (n, columns)
+py::array read_only(py::array array);
+
+// A result as an array that may be written to.
+template <class T, class... More>
+py::array moved(std::vector<T> values, More... more) {
+  const auto owner = std::make_shared<const std::vector<T>>(std::move(values));
+  return shown(owner, std::span<const T>(*owner), more...);
+}
+
+}  // namespace salbench::python

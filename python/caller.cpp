@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/caller.h"
+
+#include <chrono>
+#include <thread>
+
+#include <pybind11/pybind11.h>
+
+#include "io/process.h"
+#include "stages/core/errors.h"
+
+namespace salbench::python {
+namespace {
+
+namespace py = pybind11;
+
+constexpr std::chrono::milliseconds kNowAndThen{100};
+
+}  // namespace
+
+void Caller::carry_out(const std::function<void()>& work) {
+  Request request{&work};
+  std::unique_lock lock(mutex_);
+  if (stop_) throw Interrupted("the run was asked to stop");
+  requests_.push_back(&request);
+  asked_.notify_one();
+  ended_.wait(lock, [&] { return request.ended; });
+  if (request.thrown) std::rethrow_exception(request.thrown);
+}
+
+// Waits without the interpreter's lock. False once the run has ended; the request is null if there is none yet.
+bool Caller::next(Request*& request) {
+  const py::gil_scoped_release others_go_on;
+  std::unique_lock lock(mutex_);
+  asked_.wait_for(lock, kNowAndThen, [&] { return run_ended_ || !requests_.empty(); });
+  request = requests_.empty() ? nullptr : requests_.front();
+  if (request != nullptr) requests_.pop_front();
+  return request != nullptr || !run_ended_;
+}
+
+void Caller::end(Request& request) {
+  const std::lock_guard lock(mutex_);
+  request.ended = true;
+  ended_.notify_all();
+}
+
+void Caller::run(const std::function<void()>& the_run, const std::function<void()>& now_and_then) {
+  std::exception_ptr of_run, of_caller;
+  std::thread thread([&] {
+    try {
+      the_run();
+    } catch (...) {
+      of_run = std::current_exception();
+    }
+    const std::lock_guard lock(mutex_);
+    run_ended_ = true;
+    asked_.notify_one();
+  });
+  const auto stop_with = [&](std::exception_ptr thrown) {
+    if (!of_caller) of_caller = std::move(thrown);
+    stop_ = true;
+    end_commands();
+  };
+  auto last = std::chrono::steady_clock::now();
+  for (Request* request = nullptr; next(request);) {
+    if (request != nullptr) {
+      try {
+        if (stop_) throw Interrupted("the run was asked to stop");
+        (*request->work)();
+      } catch (const py::error_already_set&) {  // what a function raised was made another error by whoever asked for it
+        stop_with(std::current_exception());
+        request->thrown = std::make_exception_ptr(Interrupted("the run was asked to stop"));
+      } catch (...) {
+        request->thrown = std::current_exception();
+      }
+      end(*request);
+    }
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (const auto now = std::chrono::steady_clock::now(); !stop_ && now - last >= kNowAndThen) {
+        last = now;
+        now_and_then();
+      }
+    } catch (const py::error_already_set&) {
+      stop_with(std::current_exception());
+    }
+  }
+  {
+    const py::gil_scoped_release others_go_on;
+    thread.join();
+  }
+  if (of_caller) std::rethrow_exception(of_caller);
+  if (of_run) std::rethrow_exception(of_run);
+}
+
+}  // namespace salbench::python

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Metrics and histogram matching on arrays (stages/metrics, stages/matching).
+#include "stages/metrics/metrics.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "python/arrays.h"
+#include "python/computing.h"
+#include "python/module.h"
+#include "python/options.h"
+#include "stages/core/centre.h"
+#include "stages/core/field.h"
+#include "stages/core/seen.h"
+#include "stages/matching/matching.h"
+
+namespace salbench::python {
+namespace {
+
+// The options of the metrics that are numbers: names and matching have arguments of their own.
+struct ScoreOptions : MetricsOptions {
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    MetricsOptions::fields(self, [&]<class Value>(std::string_view key, Value& value, const OptionHelp& help) {
+      if constexpr (std::is_arithmetic_v<std::remove_const_t<Value>>) visit(key, value, help);
+    });
+  }
+};
+
+// Names of the metrics, or one of them; KeyError for one that there is not.
+std::vector<std::string> names_from(py::handle metrics) {
+  std::vector<std::string> names;
+  if (py::isinstance<py::str>(metrics)) {
+    names.push_back(metrics.cast<std::string>());
+  } else {
+    for (const py::handle name : metrics) names.push_back(py::str(name));
+  }
+  const auto table = metric_table();
+  if (names == std::vector<std::string>{std::string(kEveryName)}) {
+    names.clear();
+    for (const Metric& metric : table) names.push_back(metric.name);
+  }
+  for (const std::string& name : names)
+    if (std::ranges::find(table, name, &Metric::name) == table.end()) {
+      std::vector<std::string_view> known;
+      for (const Metric& metric : table) known.push_back(metric.name);
+      fail_unknown("metric", name, known);
+    }
+  return names;
+}
+
+std::optional<Histogram> reference_from(const Argument& argument) {
+  if (!argument.given()) return {};
+  const auto bins = field(argument, kHistogramBins);
+  Histogram reference;
+  std::ranges::copy(bins.values, reference.begin());
+  if (!std::ranges::all_of(reference, [](double bin) { return bin >= 0 && bin < std::numeric_limits<double>::infinity(); }))
+    argument.fail("must have finite densities >= 0");
+  return reference;
+}
+
+// What a prediction is compared with. Points that the mask leaves out count as not seen.
+struct Truth {
+  GroundTruth values;
+  std::optional<std::vector<std::int32_t>> seen;  // where the saliency itself cannot tell
+};
+
+Truth truth_from(const Argument& ground_truth, const Argument& picked, const Argument& masked, std::size_t n) {
+  Truth truth;
+  if (ground_truth.given()) {
+    const auto saliency = field(ground_truth, n);
+    truth.values.saliency.assign(saliency.values.begin(), saliency.values.end());
+  }
+  truth.values.picks = picks(picked, n);
+  if (!masked.given()) return truth;
+  const std::vector<bool> counts = mask(masked, n);
+  for (std::size_t i = 0; i < n; ++i)
+    if (ground_truth.given() && !counts[i]) truth.values.saliency[i] = std::numeric_limits<double>::quiet_NaN();
+  if (ground_truth.given()) return truth;
+  truth.seen.emplace();
+  for (std::size_t i = 0; i < n; ++i)
+    if (counts[i]) truth.seen->push_back(static_cast<std::int32_t>(i));
+  truth.values = truth_at(truth.values, *truth.seen);
+  return truth;
+}
+
+struct Stream {  // of random numbers, as a run draws them for a model and an item
+  std::uint64_t seed = 0;
+  std::string model = {}, item = {};
+};
+
+Stream stream_from(py::handle seed) {
+  if (!py::isinstance<py::tuple>(seed)) return {seed.cast<std::uint64_t>()};
+  const auto parts = seed.cast<py::tuple>();
+  if (parts.size() != 3) throw py::value_error("seed must be a number, or (number, model, item)");
+  return {parts[0].cast<std::uint64_t>(), py::str(parts[1]), py::str(parts[2])};
+}
+
+// Scores of one prediction after the other: [metric] each.
+std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const Truth& truth,
+                           const std::optional<Histogram>& reference, const MetricsOptions& options,
+                           const Stream& stream, std::span<const double> areas, Points points) {
+  const MetricsByMatching metrics(options);
+  Draws draws(RandomSource{stream.seed, stream.item}.rng("scores." + stream.model));
+  const ScalarField centre = any_of_positions(metrics.all()) && !points.empty() ? distances_from_centroid(points)
+                                                                               : ScalarField{};
+  const auto at_seen = [&](std::span<const double> values) {
+    return truth.seen && !values.empty() ? values_at(values, *truth.seen)
+                                         : ScalarField(values.begin(), values.end());
+  };
+  const Measures measures(truth.seen ? truth.seen->size() : n, at_seen(areas), at_seen(centre));
+  std::vector<Scores> all;
+  for (std::size_t first = 0; first < predictions.size(); first += n) {
+    const auto map = predictions.values.subspan(first, n);
+    require_finite(map, "prediction");
+    all.push_back(metrics.score([&](std::span<const Metric> part, Matching matching) {
+      const bool match = matching == Matching::histogram && reference;
+      const ScalarField read = match ? matched(map, *reference) : min_max_normalised(map);
+      return score(part, at_seen(read), truth.values, options, draws, measures);
+    }));
+  }
+  return all;
+}
+
+py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle picked, py::handle areas,
+                      py::handle points_of, py::handle masked, py::handle metrics, py::handle reference,
+                      py::handle seed, const py::dict& keywords) {
+  MetricsOptions options = options_from<ScoreOptions>(keywords, "score");
+  options.names = names_from(metrics);
+  const View<double> predictions = rows({prediction, "prediction"});
+  const bool several = predictions.array.ndim() == 2;
+  const auto n = static_cast<std::size_t>(predictions.array.shape(several ? 1 : 0));
+  if (n == 0) throw py::value_error("prediction must have at least one point");
+  const Truth truth = truth_from({ground_truth, "ground_truth"}, {picked, "picks"}, {masked, "mask"}, n);
+  const Argument weights{areas, "areas"}, places{points_of, "points"};
+  const auto weight = weights.given() ? field(weights, n) : View<double>{};
+  if (!std::ranges::all_of(weight.values, [](double area) { return area >= 0 && area < HUGE_VAL; }))
+    weights.fail("must be finite and >= 0");
+  const auto place = places.given() ? points(places, n) : View<Vec3>{};
+  const auto histogram = reference_from({reference, "reference"});
+  const Stream stream = stream_from(seed);
+  const std::vector<Scores> all = computed(
+      [&] { return scored(predictions, n, truth, histogram, options, stream, weight.values, place.values); });
+  py::dict result;
+  const auto chosen = chosen_metrics(options);
+  for (std::size_t m = 0; m < chosen.size(); ++m) {
+    std::vector<double> column;
+    for (const Scores& scores : all) column.push_back(scores.values[m]);
+    if (several)
+      result[py::str(chosen[m].name)] = moved(std::move(column));
+    else
+      result[py::str(chosen[m].name)] = py::float_(column[0]);
+  }
+  return result;
+}
+
+py::list metric_rows() {
+  py::list rows;
+  for (const Metric& metric : metric_table())
+    rows.append(py::make_tuple(metric.name, metric.unit, metric.help, metric.higher_is_better));
+  return rows;
+}
+
+}  // namespace
+
+void bind_metrics(py::module_& module) {
+  module.def("score", &score_arrays);
+  module.def("metric_rows", &metric_rows);
+  module.def("metric_options", [] { return described<ScoreOptions>(); });
+  module.def("match_histogram", [](py::handle values, py::handle reference) {
+    const auto map = field({values, "values"});
+    const auto histogram = reference_from({reference, "reference"});
+    if (!histogram) throw py::value_error("reference must be a histogram, not None");
+    return moved(computed([&] { return matched(map.values, *histogram); }));
+  });
+  module.def("histogram", [](py::handle values) {
+    const auto map = field({values, "values"});
+    if (map.size() == 0) throw py::value_error("values must have at least one");
+    const Histogram bins = computed([&] { return normalised_histogram(map.values); });
+    return moved(std::vector<double>(bins.begin(), bins.end()));
+  });
+}
+
+}  // namespace salbench::python

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/module.h"
+
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "pipeline/config/section.h"
+#include "stages/core/errors.h"
+
+namespace salbench::python {
+namespace {
+
+namespace py = pybind11;
+
+// std::bad_alloc is a MemoryError, and what an array says is a ValueError: pybind11 has these.
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const InputError& error) {
+    PyErr_SetString(PyExc_ValueError, error.what());
+  } catch (const ConfigError& error) {
+    PyErr_SetString(PyExc_ValueError, error.what());
+  } catch (const StorageError& error) {
+    PyErr_SetString(PyExc_OSError, error.what());
+  } catch (const std::logic_error& error) {
+    PyErr_SetString(PyExc_RuntimeError, current_defect().c_str());
+  }
+}
+
+}  // namespace
+
+void fail_unknown(std::string_view what, std::string_view name, const std::vector<std::string_view>& known) {
+  const std::string nearest = nearest_word(name, known);
+  throw py::key_error(fmt::format("there is no {} '{}'{}", what, name,
+                                  nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+}
+
+PYBIND11_MODULE(_core, module) {
+  py::register_exception_translator(translate);
+  module.attr("version") = SALBENCH_VERSION;
+  bind_metrics(module);
+  bind_run(module);
+}
+
+}  // namespace salbench::python

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of this folder add to the module, and the exceptions that Python sees.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include <pybind11/pybind11.h>
+
+namespace salbench::python {
+
+// KeyError: "there is no metric 'aucs'; did you mean 'auc'?"
+[[noreturn]] void fail_unknown(std::string_view what, std::string_view name,
+                               const std::vector<std::string_view>& known);
+
+void bind_metrics(pybind11::module_& module);
+void bind_run(pybind11::module_& module);
+
+}  // namespace salbench::python

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/options.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace salbench::python {
+namespace {
+
+namespace py = pybind11;
+
+// As JSON, which YAML is a superset of; numbers of NumPy are taken for what they are.
+std::string yaml_of(py::handle value, const std::string& where) {
+  if (py::isinstance<py::str>(value)) return yaml_quoted(value.cast<std::string>());
+  if (py::isinstance<py::bool_>(value) || py::hasattr(value, "dtype"))
+    if (const auto item = py::hasattr(value, "item") ? value.attr("item")() : py::reinterpret_borrow<py::object>(value);
+        py::isinstance<py::bool_>(item))
+      return item.cast<bool>() ? "true" : "false";
+  if (PyIndex_Check(value.ptr()) != 0) {
+    const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+    if (!whole) throw py::error_already_set();
+    return py::str(whole);
+  }
+  if (PyNumber_Check(value.ptr()) != 0 && PyFloat_Check(py::float_(py::reinterpret_borrow<py::object>(value)).ptr()) != 0)
+    return py::repr(py::float_(py::reinterpret_borrow<py::object>(value)));
+  throw py::value_error(fmt::format("{} must be a number, a truth value or a text, not {}", where,
+                                    std::string(py::str(py::type::of(value).attr("__name__")))));
+}
+
+}  // namespace
+
+Section section_of(const py::dict& keywords, const std::string& function,
+                   const std::vector<std::string_view>& known) {
+  std::string yaml = "{";
+  for (const auto& [keyword, value] : keywords) {
+    const auto key = keyword.cast<std::string>();
+    if (std::ranges::find(known, key) == known.end()) {
+      const std::string nearest = nearest_word(key, known);
+      throw py::type_error(fmt::format("{}() has no argument '{}'{}", function, key,
+                                       nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+    }
+    yaml += fmt::format("{}{}: {}", yaml.size() > 1 ? ", " : "", key, yaml_of(value, key));
+  }
+  return Section::from_text(yaml + "}", function);
+}
+
+void rethrow(const ConfigError& error, const std::string& function) {
+  std::string_view what = error.what();
+  const std::string place = function + ":1: ";
+  if (what.starts_with(place)) what.remove_prefix(place.size());
+  throw py::value_error(fmt::format("{}(): {}", function, what));
+}
+
+}  // namespace salbench::python

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run of the benchmark, with models that are functions of Python (pipeline/commands/run.h). The tables are
+// those that the command writes, and Python reads them from there.
+#include "pipeline/commands/run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "python/arrays.h"
+#include "python/caller.h"
+#include "python/computing.h"
+#include "python/module.h"
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+
+namespace salbench::python {
+namespace {
+
+// --- a model ---------------------------------------------------------------------------------------------
+
+// A model as salbench/_run.py describes it: name, function, reads (points, normals, faces, fpfh), version, and the text
+// that its key has.
+struct FunctionModel {
+  std::string name;
+  py::object function;
+  Words reads;
+  std::int32_t version = 1;
+  std::string key;
+};
+
+// A copy, since the run forgets its values when it likes; None where the function does not read it.
+template <class T>
+py::object copied(bool read, std::span<const T> values) {
+  if (!read) return py::none();
+  return read_only(moved(std::vector<T>(values.begin(), values.end())));
+}
+
+py::object shape_of(const std::string& id, Points points, const Normals* normals, Surface faces,
+                    const Descriptors* fpfh) {
+  const py::object descriptors =
+      fpfh == nullptr ? py::none() : py::object(read_only(moved(std::vector<float>(fpfh->values), kFpfhBins)));
+  return py::module_::import("salbench._run")
+      .attr("_shape")(id, copied<Vec3>(true, points), copied<Triangle>(true, faces),
+                      normals == nullptr ? py::none() : copied<Vec3>(true, *normals), descriptors);
+}
+
+// One line, with the user's innermost line: "ValueError: bad (model.py, line 12)".
+std::string what_was_raised(const py::error_already_set& error) {
+  const py::object trace = error.trace() ? py::object(error.trace()) : py::none();
+  return py::module_::import("salbench._run").attr("_raised")(error.value(), trace).cast<std::string>();
+}
+
+ScalarField call(const FunctionModel& model, const py::object& shape, std::size_t n) {
+  try {
+    const py::object values = model.function(shape);
+    const auto map = field({values, "the map"}, n);
+    return {map.values.begin(), map.values.end()};
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_Exception)) throw;  // Ctrl-C, and sys.exit()
+    throw InputError(fmt::format("{}() raised {}", model.name, what_was_raised(error)));
+  } catch (const py::builtin_exception& error) {
+    throw InputError(fmt::format("{}(): {}", model.name, error.what()));
+  }
+}
+
+// The name of a shape is part of what the function is given, and so of the key.
+Output<Map> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& model,
+                         Caller& caller) {
+  const auto reads = [&](std::string_view part) {
+    return std::ranges::find(model.reads, part) != model.reads.end();
+  };
+  RuleHead head = stage_of(model.name, Role::map, model.version);
+  head.limit = 1;
+  const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
+  return table.add<Map>(
+      shape.level, head,
+      [&model, &caller](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
+                        const RandomSource& random, const NoOptions&) {
+        ScalarField map;
+        caller.carry_out([&] {
+          map = call(model, shape_of(random.item, points, normals, faces, fpfh), points.size());
+        });
+        require_finite(map, "the map");
+        return map;
+      },
+      shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
+      only_if(reads("fpfh"), shape.fpfh), kRandom,
+      SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
+}
+
+// --- what is run -----------------------------------------------------------------------------------------
+
+// Counts for whoever asks from the calling thread.
+class Counts final : public Progress {
+ public:
+  void begin(const std::string& what, std::size_t items, std::function<std::string()>) override {
+    const std::lock_guard lock(mutex_);
+    what_ = what;
+    items_ = items;
+    done_ = 0;
+  }
+  void item_done() override { ++done_; }
+  void end() override {}
+
+  py::tuple now() const {
+    const std::lock_guard lock(mutex_);
+    return py::make_tuple(what_, done_.load(), items_);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string what_;
+  std::size_t items_ = 0;
+  std::atomic<std::size_t> done_ = 0;
+};
+
+std::string text_or_empty(const py::dict& settings, const char* key) {
+  const py::object value = settings[key];
+  return value.is_none() ? std::string() : std::string(py::str(value));
+}
+
+// What _run.py says of a configuration: `path` or `yaml`; `models`, as YAML, in place of those that it names;
+// `data`, `cache` and `out`.
+Config config_from(const py::dict& settings) {
+  const std::string path = text_or_empty(settings, "path"), models = text_or_empty(settings, "models");
+  Config config = path.empty() ? read_config(Section::from_text(text_or_empty(settings, "yaml"), "config"), "python")
+                               : read_config(Section::from_file(path), std::filesystem::path(path).stem().string());
+  if (!models.empty())
+    config.models = read_config(Section::from_text(fmt::format("{{protocol: {}, models: {}}}",
+                                                               name_of(config.protocol), models),
+                                                   "models"), "python").models;
+  if (settings["only_functions"].cast<bool>()) config.models.clear();
+  for (const auto& [key, folder] : {std::pair{"data", &config.data}, {"cache", &config.cache}, {"out", &config.output}})
+    if (const std::string given = text_or_empty(settings, key); !given.empty()) *folder = given;
+  if (config.data.empty()) throw ConfigError("data is not given: the folder of the data set");
+  if (config.cache.empty()) config.cache = "salbench-cache";
+  if (config.output.empty()) config.output = (std::filesystem::path("salbench-out") / config.name).string();
+  return config;
+}
+
+class Run {
+ public:
+  Run(const py::dict& settings, const py::list& functions) {
+    for (const py::handle row : functions) {
+      const auto part = row.cast<py::tuple>();
+      models_.push_back({part[0].cast<std::string>(), part[1], part[2].cast<Words>(), part[3].cast<std::int32_t>(),
+                         part[4].cast<std::string>()});
+    }
+    Config config = config_from(settings);
+    for (const FunctionModel& model : models_) add(config, model);
+    const Selection selection{.items = text_or_empty(settings, "items")};
+    auto counts = std::make_unique<Counts>();
+    counts_ = counts.get();
+    const py::gil_scoped_release others_go_on;
+    session_.emplace(Setup(std::move(config), selection), std::move(counts), caller_.stop());
+  }
+
+  void carry_out(int threads, const py::function& progress) {
+    caller_.run([&] { salbench::carry_out(*session_, threads); },
+                [&] { progress(*counts_->now()); });
+  }
+
+  std::string output() const { return session_->setup.output.string(); }
+  std::size_t computed() const { return session_->resolver.computed(); }
+
+  // (item, stage, cause) of each.
+  py::list failures() const {
+    py::list rows;
+    const Project& project = session_->setup.project;
+    for (const Failure& failure : session_->resolver.failures())
+      rows.append(py::make_tuple(project.name(failure.job), project.rule(failure.job).stage, failure.cause));
+    return rows;
+  }
+
+  // The map of a model, or nothing if there is none of this shape.
+  py::object map(const std::string& model, const std::string& item) {
+    const Project& project = session_->setup.project;
+    const ValuePtr value = python::computed([&]() -> ValuePtr {
+      for (std::size_t rule = 0; rule < project.rules.size(); ++rule)
+        if (has_role(project.rules[rule], Role::map) && project.rules[rule].subject == model)
+          for (const Unit unit : project.units.of(project.rules[rule].over))
+            if (project.units.name(unit) == item && session_->resolver.plan()[{rule, unit}].known())
+              return session_->resolver.value({rule, unit});
+      return nullptr;
+    });
+    if (value == nullptr) return py::none();
+    const auto& map = value_as<ScalarField>(*value);
+    return read_only(shown(value, std::span<const double>(map)));
+  }
+
+ private:
+  void add(Config& config, const FunctionModel& model) {
+    if (const std::string wrong = wrong_with_model_name(model.name); !wrong.empty())
+      throw ConfigError(fmt::format("models: '{}' {}", model.name, wrong));
+    config.models.push_back({.name = model.name,
+                             .version = model.version,
+                             .options = fmt::format("function: {}\n", model.key),
+                             .annotated_options = {},
+                             .add_map = [this, &model](RuleTable& table, const ShapeOutputs& shape) {
+                               return add_function(table, shape, model, caller_);
+                             }});
+  }
+
+  std::deque<FunctionModel> models_;
+  Caller caller_;
+  Counts* counts_ = nullptr;
+  std::optional<Session> session_;
+};
+
+}  // namespace
+
+void bind_run(py::module_& module) {
+  py::class_<Run>(module, "Run")
+      .def(py::init<const py::dict&, const py::list&>())
+      .def("carry_out", &Run::carry_out)
+      .def("failures", &Run::failures)
+      .def("map", &Run::map)
+      .def_property_readonly("output", &Run::output)
+      .def_property_readonly("computed", &Run::computed);
+}
+
+}  // namespace salbench::python

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How well a map predicts what people marked."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from salbench import _core
+from salbench._options import Value, with_options
+
+Seed = int | tuple[int, str, str]
+
+
+@with_options(_core.metric_options())
+def score(
+    prediction: ArrayLike,
+    ground_truth: ArrayLike | None = None,
+    picks: Any = None,
+    *,
+    areas: ArrayLike | None = None,
+    points: ArrayLike | None = None,
+    mask: ArrayLike | None = None,
+    metrics: str | Iterable[str] = ("auc", "nss", "cc"),
+    reference: ArrayLike | None = None,
+    seed: Seed = 0,
+    **options: Value,
+) -> dict[str, Any]:
+    """Scores of a saliency map by the metrics of the benchmark.
+
+    The map is min-max-normalised; with a `reference` it is histogram-matched first for the metrics that the
+    tables read so. A metric for which something is not given is NaN: those of picks without picks, those of
+    saliency without ground truth, those by area without areas.
+
+    Parameters
+    ----------
+    prediction : (n,) or (k, n) array
+        One finite value per point, or k maps of one shape.
+    ground_truth : (n,) array, optional
+        Saliency, in any unit; NaN where nobody looked: these points count for nothing.
+    picks : (p,) array of int, or a sequence of them, optional
+        Points that were marked, 0 to n - 1; one array, or one for each participant.
+    areas : (n,) array, optional
+        Weight of each point, for the metrics by area: `vertex_areas` of a mesh.
+    points : (n, 3) array, optional
+        Positions, for the metrics that measure against the centre bias.
+    mask : (n,) array of bool, optional
+        Points that count; the others are left out after the map was normalised.
+    metrics : str or sequence of str
+        Columns of the program's tables, or "all".
+    reference : (100,) array, optional
+        Histogram that maps are matched to (`histogram`, or the mean of several).
+    seed : int or (int, str, str)
+        Of the metrics that draw points; (seed, model, item) are the draws of a run's table.
+    **options
+
+    Returns
+    -------
+    dict
+        The score by each metric, in the order of the table: a float, or a (k,) array for k maps.
+
+    Raises
+    ------
+    KeyError
+        A metric that there is not.
+    ValueError
+        An argument that does not fit the others; the message names it.
+
+    References
+    ----------
+    [tasse2016], and for each metric the source that `metrics.table` names.
+
+    Examples
+    --------
+    >>> import salbench
+    >>> scores = salbench.score([0.1, 0.9, 0.4, 0.2], [0, 1, 0.5, 0], picks=[1], metrics=["auc_exact", "cc"])
+    >>> scores["auc_exact"], round(scores["cc"], 6)
+    (1.0, 0.967868)
+    """
+    return _core.score(prediction, ground_truth, picks, areas, points, mask, metrics, reference, seed, options)
+
+
+def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
+    """The map with its values moved so that their distribution is the reference's; the order of the points stays.
+
+    Parameters
+    ----------
+    values : (n,) array
+        A map; NaN counts as 0.
+    reference : (100,) array
+        Densities over [0, 1], as `histogram` gives them.
+
+    Returns
+    -------
+    (n,) array in [0, 1]
+
+    References
+    ----------
+    [tasse2016]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> salbench.match_histogram([3, 1, 2], salbench.histogram([0, 0.1, 1])).argsort().tolist()
+    [1, 2, 0]
+    """
+    return _core.match_histogram(values, reference)
+
+
+def histogram(values: ArrayLike) -> NDArray[np.float64]:
+    """Density of the min-max-normalised values over 100 bins of [0, 1]; it sums to 100.
+
+    Parameters
+    ----------
+    values : (n,) array
+        A map or a ground truth, n > 0.
+
+    Returns
+    -------
+    (100,) array
+
+    References
+    ----------
+    [tasse2016]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> salbench.histogram([0, 1]).sum()
+    100.0
+    """
+    return _core.histogram(values)

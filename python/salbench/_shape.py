@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh, a scan or a point cloud, with what is known about it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A shape of n points and m faces. Its arrays are read-only; what is not known, or was not asked for, is None.
+
+    Attributes
+    ----------
+    id : str
+        "52", or "52_3" for scan 3 of mesh 52.
+    points : (n, 3) array
+        Positions, in the unit of the file.
+    faces : (m, 3) array of int32
+        Corners, as numbers of points; of a scan or point cloud the partial mesh.
+    normals : (n, 3) array
+        Unit normals.
+    fpfh : (n, 33) array of float32
+        Descriptors. [rusu2009]
+    category : str
+        Class of the shape, or "".
+    ground_truth : (n,) array
+        Saliency; NaN where nobody looked.
+    participants : list of (p,) arrays of int32
+        What each of them marked, in the order of the file.
+    viewers : list of (n,) arrays
+        Saliency by viewer.
+    """
+
+    id: str
+    points: NDArray[np.float64]
+    faces: NDArray[np.int32] | None = None
+    normals: NDArray[np.float64] | None = None
+    fpfh: NDArray[np.float32] | None = None
+    category: str = ""
+    ground_truth: NDArray[np.float64] | None = None
+    participants: tuple[NDArray[np.int32], ...] = ()
+    viewers: tuple[NDArray[np.float64], ...] = ()
+
+    @property
+    def picks(self) -> NDArray[np.int32]:
+        """The points that anybody marked, ascending, each as often as it was."""
+        if not self.participants:
+            return np.empty(0, np.int32)
+        return np.sort(np.concatenate(self.participants))
+
+    @property
+    def mask(self) -> NDArray[np.bool_]:
+        """Points that somebody looked at: those that a score counts."""
+        if self.ground_truth is None:
+            return np.ones(len(self.points), bool)
+        return ~np.isnan(self.ground_truth)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __repr__(self) -> str:
+        faces = "no faces" if self.faces is None else f"{len(self.faces)} faces"
+        return f"Shape({self.id!r}, {len(self.points)} points, {faces})"

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One function for each metric of the program's tables, under the name of its column.
+
+Each takes what `salbench.score` takes but `metrics`, and returns the score alone.
+
+>>> from salbench import metrics
+>>> metrics.auc_exact([0.1, 0.9, 0.4, 0.2], picks=[1])
+1.0
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from numpy.typing import ArrayLike
+
+from salbench import _core
+from salbench._scoring import score
+
+
+class Metric(NamedTuple):
+    """A row of the table of metrics."""
+
+    name: str
+    unit: str
+    help: str
+    higher_is_better: bool
+
+
+def table() -> list[Metric]:
+    """All metrics, in the order of the tables.
+
+    >>> metrics.table()[0].name
+    'auc'
+    """
+    return [Metric(*row) for row in _core.metric_rows()]
+
+
+def _function(row: Metric) -> Callable[..., Any]:
+    def metric(prediction: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None, **keywords: Any) -> Any:
+        return score(prediction, ground_truth, picks, metrics=row.name, **keywords)[row.name]
+
+    metric.__name__ = metric.__qualname__ = row.name
+    metric.__doc__ = f"{row.help}\n\nUnit: {row.unit or 'none'}. Arguments as of `salbench.score`."
+    return metric
+
+
+_functions = {row.name: _function(row) for row in table()}
+globals().update(_functions)
+__all__ = ["Metric", "table", *_functions]

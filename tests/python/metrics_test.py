@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Metrics as functions: the bytes of the program's tables, and other implementations on random cases."""
+
+import math
+import pathlib
+import sys
+import tempfile
+import unittest
+import warnings
+
+import h5py
+import numpy as np
+
+import salbench
+import toy
+
+sys.path.insert(0, str(toy.ROOT / "tests/stages/metrics"))
+import metrics_reference  # noqa: E402
+
+NAMES = [row.name for row in salbench.metrics.table()]
+SEED = 2016
+
+
+def same(a, b):
+    """Bit for bit, NaN and NaN alike."""
+    return np.array_equal(np.float64(a).view(np.uint64), np.float64(b).view(np.uint64)) or (math.isnan(a) and math.isnan(b))
+
+
+class Tables(unittest.TestCase):
+    """Scores of a run, beside those of the same arrays."""
+
+    def compare(self, data, items, dataset):
+        with tempfile.TemporaryDirectory() as folder:
+            config = pathlib.Path(folder) / "all.yaml"
+            config.write_text(f"{dataset}metrics: {{names: all}}\nmodels: {{LS: {{}}, RS: {{}}}}\n")
+            options = ["--data", data, "--cache", f"{folder}/cache", "--out", f"{folder}/out", *items]
+            toy.run(config, *options)
+            toy.export(config, *options, "--to", f"{folder}/all.h5")
+            with h5py.File(f"{folder}/all.h5") as file:
+                return self.compare_rows(file)
+
+    def compare_rows(self, file):
+        rows = file["scores"][:]
+        compared = 0
+        for row in rows:
+            item, view, model = (row[name].decode() for name in ("item", "view", "model"))
+            shape = f"{item}_{view}" if view else item
+            level = "scans" if view else "meshes"
+            if model not in ("LS", "RS") or f"map.{model}" not in file[shape]:
+                continue
+            truth = file[shape]["scan_ground_truth" if view else "ground_truth"]
+            saliency = truth["saliency"][:] if "saliency" in truth else None
+            points = file[shape]["scan"]["points"][:] if view else file[item]["mesh"]["vertices"][:]
+            faces = file[shape]["surface"]["faces"][:] if view else file[item]["mesh"]["faces"][:]
+            found = salbench.score(
+                file[shape][f"map.{model}"]["values"][:], saliency, self.picks(truth), metrics="all",
+                areas=salbench.vertex_areas(points, faces), points=points,
+                reference=file["means/reference"][level]["density"][:], seed=(SEED, model, shape))
+            for name in NAMES:
+                self.assertTrue(same(found[name], row[name]), f"{shape} {model} {name}: {found[name]!r}, {row[name]!r}")
+                compared += 1
+        return compared
+
+    def picks(self, truth):
+        if "picks" not in truth:
+            return None
+        ends = np.cumsum(truth["picks_per_participant"][:]) if "picks_per_participant" in truth else [len(truth["picks"])]
+        return np.split(truth["picks"][:], ends[:-1])
+
+    def test_toy_meshes_and_their_scans(self):
+        with tempfile.TemporaryDirectory() as folder:
+            compared = self.compare(toy.meshes(folder), [], "dataset: {layout: folder, participants: simulated}\n"
+                                    "scan: {step_degrees: 1}\n")
+        self.assertEqual(compared, 3 * 13 * 2 * len(NAMES))
+
+    def test_real_meshes(self):
+        data = toy.schelling()
+        if data is None:
+            self.skipTest("SALBENCH_DATA names no real data")
+        self.assertEqual(self.compare(data, ["--items", "9,47,124"], "dataset: {scans: false}\n"), 3 * 2 * len(NAMES))
+
+
+class RandomCases(unittest.TestCase):
+    """SciPy, scikit-learn and NumPy, with ties, masks and degenerate maps (tests/stages/metrics/metrics_reference.py)."""
+
+    def case(self, rng, number):
+        n = int(rng.integers(5, 60))
+        levels = rng.choice([2, 4, 1000])
+        case = {
+            "item": str(number),
+            "map": rng.integers(0, levels, n) / levels,
+            "saliency": rng.integers(0, levels, n) / levels,
+            "areas": rng.random(n) * (rng.random(n) < 0.9),
+            "points": rng.normal(size=(n, 3)),
+            "picks": np.sort(rng.integers(0, n, rng.integers(1, n))),
+            "splits": 3, "thresholds": 5, "constant_nss": float(rng.integers(0, 2)),
+        }
+        if number % 10 == 0:
+            case["map"] = np.full(n, rng.random())
+        if number % 15 == 1:
+            case["saliency"] = np.full(n, rng.integers(0, 2) * 0.5)
+        if number % 7 == 2:
+            case["picks"] = case["picks"][:0]
+        mask = np.ones(n, bool) if number % 3 else rng.random(n) < 0.7
+        mask[:2] = True
+        return case, mask
+
+    def expected(self, case, mask):
+        """What the reference says of the points that count, of a map that was normalised before."""
+        numbers = np.cumsum(mask) - 1
+        low, high = case["map"].min(), case["map"].max()
+        seen = dict(case)
+        seen["map"] = ((case["map"] - low) / (high - low) if high > low else case["map"])[mask]
+        if seen["map"].min() == seen["map"].max():
+            seen["map"] = np.full(mask.sum(), 0.5)
+        distance = np.linalg.norm(case["points"] - case["points"].mean(axis=0), axis=1)
+        seen["centre_bias"] = (distance / distance.max())[mask]
+        seen["picks"] = numbers[case["picks"][mask[case["picks"]]]]
+        for name in ("saliency", "areas"):
+            seen[name] = case[name][mask]
+        values = metrics_reference.reference(seen, False)
+        if seen["areas"].sum() > 0:
+            values.update({f"{name}_area": value for name, value in metrics_reference.reference(seen, True).items()})
+        return values
+
+    def test_a_thousand(self):
+        stream = metrics_reference.Rng
+        metrics_reference.Rng = lambda seed, stage, item: stream(seed, "scores.", item)
+        self.addCleanup(setattr, metrics_reference, "Rng", stream)
+        rng = np.random.default_rng(7)
+        largest = 0.0
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for number in range(1000):
+                case, mask = self.case(rng, number)
+                found = salbench.score(
+                    case["map"], case["saliency"], case["picks"], areas=case["areas"], points=case["points"],
+                    mask=mask, metrics="all", seed=(1, "", case["item"]), splits=3, thresholds=5,
+                    constant_nss=case["constant_nss"])
+                for name, value in self.expected(case, mask).items():
+                    off = metrics_reference.difference(found[name], value)
+                    largest = max(largest, off)
+                    self.assertLessEqual(off, 1e-9, f"case {number}: {name} is {found[name]!r}, not {value!r}")
+        print(f"largest difference {largest:.1e}", file=sys.stderr)
+
+
+class Arguments(unittest.TestCase):
+    def setUp(self):
+        rng = np.random.default_rng(1)
+        self.map, self.truth, self.picks = rng.random(40), rng.random(40), [3, 4, 4, 30]
+
+    def test_types_orders_and_lists_have_the_same_scores(self):
+        expected = salbench.score(self.map, self.truth, self.picks)
+        double = np.repeat(self.map, 2)[::2]
+        for same_map in (self.map.tolist(), self.map[::-1][::-1], double, self.map.astype(">f8"), self.map.astype("longdouble")):
+            self.assertEqual(salbench.score(same_map, self.truth, np.array(self.picks, "u1")), expected)
+        self.assertNotEqual(salbench.score(self.map.astype("f2"), self.truth, self.picks), expected)
+
+    def test_maps_as_rows_have_a_score_each(self):
+        maps = np.stack([self.map, self.truth, np.zeros(40)])
+        found = salbench.score(maps, self.truth, self.picks, seed=3)
+        for k, row in enumerate(maps):
+            alone = salbench.score(row, self.truth, self.picks, seed=3)
+            self.assertEqual({name: values[k] for name, values in found.items()}, alone)
+
+    def test_a_metric_is_a_function_of_its_name(self):
+        for name in NAMES:
+            value = getattr(salbench.metrics, name)(self.map, self.truth, self.picks, seed=5)
+            self.assertTrue(same(value, salbench.score(self.map, self.truth, self.picks, metrics=name, seed=5)[name]))
+
+    def test_participants_are_arrays_of_their_own(self):
+        apart = salbench.score(self.map, None, [[3, 4], [4, 30]], metrics=["nss", "nss_multiplicity"])
+        self.assertEqual(apart, salbench.score(self.map, None, self.picks, metrics=["nss", "nss_multiplicity"]))
+
+    def test_without_ground_truth_a_mask_leaves_points_out(self):
+        mask = np.arange(40) >= 2
+        low, high = self.map.min(), self.map.max()
+        whole = (self.map - low) / (high - low)
+        self.assertEqual(salbench.metrics.auc_exact(self.map, None, self.picks, mask=mask),
+                         salbench.metrics.auc_exact(whole[2:], None, np.array(self.picks) - 2))
+
+    def test_what_cannot_be_used_is_named(self):
+        for what, error, call in [
+            (r"prediction must have shape \(n,\) or \(k, n\), not \(\)", ValueError, lambda: salbench.score(3.0)),
+            (r"ground_truth must have shape \(40,\), not \(39,\)", ValueError, lambda: salbench.score(self.map, self.truth[1:])),
+            (r"picks must have numbers of points, 0 to 39, not 40", ValueError, lambda: salbench.score(self.map, None, [40])),
+            (r"picks must have numbers of points, 0 to 39, not -1", ValueError, lambda: salbench.score(self.map, None, [-1])),
+            (r"picks must have whole numbers, not float64", ValueError, lambda: salbench.score(self.map, None, [1.0])),
+            (r"mask must have truth values", ValueError, lambda: salbench.score(self.map, mask=self.picks * 10)),
+            (r"prediction must have real numbers, not complex128", ValueError, lambda: salbench.score(self.map * 1j)),
+            (r"there is no metric 'aucs'; did you mean 'auc'\?", KeyError, lambda: salbench.score(self.map, metrics=["aucs"])),
+            (r"did you mean 'splits'\?", TypeError, lambda: salbench.score(self.map, split=3)),
+            (r"splits must be at least 1", ValueError, lambda: salbench.score(self.map, splits=0)),
+            (r"reference must have shape \(100,\)", ValueError, lambda: salbench.score(self.map, reference=[1, 2])),
+            (r"areas must be finite", ValueError, lambda: salbench.score(self.map, areas=-self.map)),
+            (r"finite", ValueError, lambda: salbench.score(np.r_[self.map, np.nan], np.r_[self.truth, 1])),
+        ]:
+            with self.subTest(what), self.assertRaisesRegex(error, what):
+                call()
+
+
+if __name__ == "__main__":
+    unittest.main()

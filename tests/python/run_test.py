@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The benchmark with models that are functions: tables, reruns, failures, Ctrl-C."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import salbench
+import toy
+
+HEIGHT = "def predict(shape):\n    return shape.points[:, {axis}] * 2.0\n"
+CONFIG = {"dataset": {"layout": "folder", "participants": "simulated"}, "scan": {"step_degrees": 2}}
+
+
+def function(text, folder, name="predict"):
+    """A function whose source text is in a file, as inspect wants it."""
+    import importlib.util
+
+    path = pathlib.Path(folder) / f"module_{abs(hash(text))}.py"
+    path.write_text(textwrap.dedent(text))
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return getattr(module, name)
+
+
+class Runs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.meshes = toy.meshes(self.folder / "meshes", 2)
+
+    def run_with(self, models, **keywords):
+        keywords = {"cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
+        return salbench.run(CONFIG, data=self.meshes, models=models, **keywords)
+
+    def test_a_function_and_the_same_command_have_the_same_tables(self):
+        script = self.folder / "height.py"
+        script.write_text(textwrap.dedent("""\
+            import sys, h5py, numpy
+            with h5py.File(sys.argv[1]) as file:
+                numpy.save(sys.argv[2], file["points"][:, 2] * 2.0)
+            """))
+        config = self.folder / "command.yaml"
+        config.write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 2}\n"
+                          f"models: {{LS: {{}}, MINE: {{command: '/usr/bin/python3 {script} {{shape}} {{out.npy}}'}}}}\n")
+        toy.run(config, "--data", self.meshes, "--cache", self.folder / "c", "--out", self.folder / "o")
+        results = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)})
+        self.assertEqual(results.failures, [])
+        for name in ("results", "summary", "ranking", "significance"):
+            self.assertEqual((self.folder / "out" / f"{name}.csv").read_bytes(),
+                             (self.folder / "o" / f"{name}.csv").read_bytes())
+        self.assertEqual(len(results.scores), 2 * 13 * 2)
+        self.assertEqual(set(results.ranking.model), {"LS", "MINE"})
+
+    def test_a_rerun_computes_nothing_and_an_edit_its_maps_alone(self):
+        first = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)})
+        self.assertGreater(first.computed, 0)
+        again = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)})
+        self.assertEqual(again.computed, 0)
+        edited = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=1), self.folder)})
+        # Of each of 26 shapes map, matched map and scores; per level mean histogram and table of scores.
+        self.assertEqual(edited.computed, 26 * 3 + 2 * 2)
+
+    def test_a_version_says_when_maps_are_stale(self):
+        def versioned(axis, **what):
+            return {"MINE": salbench.Model(function(HEIGHT.format(axis=axis), self.folder), **what)}
+
+        self.run_with(versioned(2, version=1))
+        self.assertEqual(self.run_with(versioned(1, version=1)).computed, 0)
+        self.assertGreater(self.run_with(versioned(1, version=2)).computed, 0)
+        weights = self.folder / "weights.bin"
+        weights.write_bytes(b"1")
+        self.run_with(versioned(1, version=2, depends=[weights]))
+        self.assertEqual(self.run_with(versioned(1, version=2, depends=[weights])).computed, 0)
+        weights.write_bytes(b"2")
+        self.assertGreater(self.run_with(versioned(1, version=2, depends=[weights])).computed, 0)
+
+    def test_an_exception_fails_its_shape_and_names_the_line(self):
+        text = """
+            def predict(shape):
+                if shape.id.endswith("_3"):
+                    raise ValueError("no eyes")
+                return shape.points[:, 0]
+            """
+        results = self.run_with({"MINE": function(text, self.folder)})
+        failed = [(item, cause) for item, stage, cause in results.failures if stage == "map.MINE"]
+        self.assertEqual(len(failed), 2)
+        for item, cause in failed:
+            self.assertTrue(item.endswith("_3"))
+            self.assertRegex(cause, r"MINE\(\) raised ValueError: no eyes \(.*module_\d+\.py, line 4\)")
+        self.assertEqual(len(results.scores), 24)
+
+    def test_what_is_no_map_fails_its_shape(self):
+        for returned, cause in [
+            ("None", r"the map must have"), ("shape.points", r"the map must have shape \(\d+,\), not \(\d+, 3\)"),
+            ("shape.points[1:, 0]", r"the map must have shape"), ("shape.points[:, 0] * float('nan')", "finite"),
+            ("['a'] * len(shape)", "real numbers"),
+        ]:
+            with self.subTest(returned):
+                results = self.run_with({"MINE": function(f"def predict(shape):\n    return {returned}\n", self.folder)})
+                causes = {cause for _, stage, cause in results.failures if stage == "map.MINE"}
+                self.assertEqual(len([1 for _, stage, _ in results.failures if stage == "map.MINE"]), 26)
+                for found in causes:
+                    self.assertRegex(found, cause)
+
+    def test_the_function_runs_in_the_thread_that_called_one_at_a_time(self):
+        threads, at_work, most = set(), [0], [0]
+
+        def predict(shape):
+            threads.add(threading.get_ident())
+            at_work[0] += 1
+            most[0] = max(most[0], at_work[0])
+            time.sleep(0.001)
+            at_work[0] -= 1
+            return shape.points[:, 0]
+
+        self.run_with({"MINE": predict})
+        self.assertEqual(threads, {threading.get_ident()})
+        self.assertEqual(most, [1])
+
+    def test_a_shape_has_what_is_asked_for(self):
+        seen = {}
+
+        def predict(shape):
+            seen[shape.id] = shape
+            return np.zeros(len(shape))
+
+        self.run_with({"MINE": salbench.Model(predict, reads=["fpfh"])})
+        shape = next(iter(seen.values()))
+        self.assertEqual(shape.fpfh.shape, (len(shape), 33))
+        self.assertIsNone(shape.normals)
+        self.assertIsNone(shape.faces)
+        self.assertIsNone(shape.ground_truth)
+        self.assertFalse(shape.points.flags.writeable)
+        self.run_with({"TWO": predict})
+        self.assertEqual(seen[shape.id].normals.shape, shape.points.shape)
+        with self.assertRaisesRegex(KeyError, "reads 'colour'"):
+            self.run_with({"MINE": salbench.Model(predict, reads=["colour"])})
+
+    def test_maps_are_those_that_were_returned(self):
+        results = self.run_with({"MINE": function(HEIGHT.format(axis=0), self.folder), "LS": {}})
+        name = results.scores.item[0]
+        kept = {}
+
+        def predict(shape):
+            kept[shape.id] = shape.points[:, 0] * 2.0
+            return kept[shape.id]
+
+        again = self.run_with({"AGAIN": predict})
+        for item in (name, f"{name}_3"):
+            np.testing.assert_array_equal(again.maps("AGAIN")[item], kept[item])
+        with self.assertRaisesRegex(KeyError, "nobody"):
+            again.maps("AGAIN")["nobody"]
+
+    def test_what_cannot_be_run_is_said_at_once(self):
+        for models, error, what in [
+            ({"ls": {}}, ValueError, "ls"), ({"LS": {"foci": 1}}, ValueError, "foci_share"), ({"a/b": len}, ValueError, "a/b"),
+        ]:
+            with self.subTest(what), self.assertRaisesRegex(error, what):
+                self.run_with(models)
+        with self.assertRaisesRegex(FileNotFoundError, "shrec7"):
+            salbench.run("shrec7", data=self.meshes)
+        with self.assertRaisesRegex(ValueError, "data is not given"):
+            salbench.run(CONFIG)
+        with self.assertRaisesRegex(ValueError, "threads must be at least 1"):
+            self.run_with({"LS": {}}, threads=0)
+
+    def test_ctrl_c_ends_the_run_in_order_and_the_next_call_goes_on(self):
+        program = self.folder / "slow.py"
+        program.write_text(textwrap.dedent(f"""\
+            import sys, time
+            import salbench
+
+            def predict(shape):
+                print(shape.id, flush=True)
+                time.sleep(float(sys.argv[1]))
+                return shape.points[:, 0]
+
+            try:
+                results = salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{"MINE": salbench.Model(predict, version=1)}},
+                                       cache={str(self.folder / "cache")!r}, out={str(self.folder / "out")!r}, progress=False)
+            except KeyboardInterrupt:
+                print("interrupted", flush=True)
+                sys.exit(9)
+            print("computed", results.computed)
+            """))
+        slow = subprocess.Popen([sys.executable, program, "0.2"], stdout=subprocess.PIPE, text=True)
+        for _ in range(3):
+            slow.stdout.readline()
+        slow.send_signal(signal.SIGINT)
+        rest = slow.communicate(timeout=120)[0]
+        self.assertEqual(slow.returncode, 9, rest)
+        self.assertIn("interrupted", rest)
+        self.assertLess(len(rest.splitlines()), 20)
+        self.assertTrue((self.folder / "out" / "run.yaml").is_file())
+        again = subprocess.run([sys.executable, program, "0"], capture_output=True, text=True, check=True, timeout=120)
+        shapes = [line for line in again.stdout.splitlines() if not line.startswith("computed")]
+        self.assertGreater(len(shapes), 0)
+        self.assertLess(len(shapes), 26)
+
+    def test_a_process_that_was_forked_after_a_run_computes(self):
+        self.run_with({"LS": {}})
+        child = os.fork()
+        if child == 0:
+            try:
+                value = salbench.score([0.0, 1.0], [0, 1], [1], metrics="cc")["cc"]
+                os._exit(0 if abs(value - 1) < 1e-12 else 1)
+            finally:
+                os._exit(2)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
