@@ -7,11 +7,14 @@
 #include <pybind11/pybind11.h>
 #include <tbb/task_arena.h>
 
+#include "python/log.h"
+
 namespace salbench::python {
 
 // A function that works on one thread whatever it is called with.
 template <class Function>
 auto computed(const Function& function) {
+  const LogDelivery afterwards;
   const pybind11::gil_scoped_release others_go_on;
   return function();
 }
@@ -20,6 +23,7 @@ auto computed(const Function& function) {
 // was forked may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
+  const LogDelivery afterwards;
   const pybind11::gil_scoped_release others_go_on;
   tbb::task_arena arena(threads);
   return arena.execute(function);

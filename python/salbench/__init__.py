@@ -11,10 +11,12 @@ All computing is the program's own, with the same bytes: docs/python.md.
 """
 
 from salbench import metrics
+from salbench._cache import Cache
 from salbench._core import version as __version__
+from salbench._data import Dataset
 from salbench._results import Results
 from salbench._run import Model, model, run
 from salbench._scoring import histogram, match_histogram, score
 from salbench._shape import Shape
 
-__all__ = ["Model", "Results", "Shape", "__version__", "histogram", "match_histogram", "metrics", "model", "run", "score"]
+__all__ = ["Cache", "Dataset", "Model", "Results", "Shape", "__version__", "histogram", "match_histogram", "metrics", "model", "run", "score"]
