@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cache folder, read-only (cache/layout.h): artefacts by item and stage, whatever their keys. Nothing is written,
-// moved or quarantined, and a run may go on in the folder meanwhile.
+// A cache folder, read-only (cache/layout.h): artefacts by item and stage, whatever their keys. Nothing is
+// written, moved or quarantined, and a run may go on in the folder meanwhile.
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -50,7 +50,8 @@ py::array shown_array(const std::shared_ptr<const Hdf5Content>& owner, const Arr
 }
 
 py::object text_or_bytes(const std::string& value) {
-  PyObject* text = PyUnicode_DecodeUTF8(value.data(), static_cast<py::ssize_t>(value.size()), "surrogateescape");
+  PyObject* text =
+      PyUnicode_DecodeUTF8(value.data(), static_cast<py::ssize_t>(value.size()), "surrogateescape");
   if (text == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::object>(text);
 }
@@ -58,11 +59,14 @@ py::object text_or_bytes(const std::string& value) {
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {
-    if (!is_cache(path_)) throw py::value_error(fmt::format("{}: not a salbench cache (CACHEDIR.TAG is missing)", path));
+    if (!is_cache(path_))
+      throw py::value_error(fmt::format("{}: not a salbench cache (CACHEDIR.TAG is missing)", path));
     check_format(path_);
   }
 
-  std::vector<std::string> stages() const { return computed([&] { return list_stages(path_); }); }
+  std::vector<std::string> stages() const {
+    return computed([&] { return list_stages(path_); });
+  }
 
   // Labels of the items of all stages, looked for now.
   std::set<std::string> items() {
@@ -74,8 +78,8 @@ class Folder {
     });
   }
 
-  // (stage, key, content, size) of the artefacts of an item in some stages; all if there are none given. Names that are known
-  // already are looked up; where none fits, folders are listed again.
+  // (stage, key, content, size) of the artefacts of an item in some stages; all if there are none given.
+  // Names that are known already are looked up; where none fits, folders are listed again.
   std::vector<std::tuple<std::string, std::string, std::string>> find(const std::string& item,
                                                                       std::vector<std::string> stages) {
     return computed([&] {
@@ -87,7 +91,8 @@ class Folder {
   }
 
   // Arrays and attributes of one of those that were found. Throws InputError for a damaged file.
-  py::tuple read(const std::string& item, const std::string& stage, const std::string& key, const std::string& content) {
+  py::tuple read(const std::string& item, const std::string& stage, const std::string& key,
+                 const std::string& content) {
     std::filesystem::path file;
     const auto owner = computed([&] {
       const ArtefactName name = known(item, stage, key, content);
@@ -166,16 +171,18 @@ class Folder {
 
 void bind_cache(py::module_& module) {
   module.def("item_label", &item_label);
-  module.def("fail_unknown", [](const std::string& what, const std::string& name, const std::vector<std::string>& known) {
-    fail_unknown(what, name, {known.begin(), known.end()});
-  });
+  module.def("fail_unknown",
+             [](const std::string& what, const std::string& name, const std::vector<std::string>& known) {
+               fail_unknown(what, name, {known.begin(), known.end()});
+             });
   py::class_<Folder>(module, "CacheFolder")
       .def(py::init<const std::string&>())
       .def("stages", &Folder::stages)
       .def("items", &Folder::items)
       .def("find", &Folder::find)
-      .def("read", py::overload_cast<const std::string&, const std::string&, const std::string&, const std::string&>(
-                       &Folder::read));
+      .def("read",
+           py::overload_cast<const std::string&, const std::string&, const std::string&, const std::string&>(
+               &Folder::read));
 }
 
 }  // namespace salbench::python

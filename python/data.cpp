@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data sets (io/dataset.h, pipeline/inputs): an item's files are read when it is asked for, without the interpreter's
-// lock, and its arrays show the memory that they were read into.
+// Data sets (io/dataset.h, pipeline/inputs): an item's files are read when it is asked for, without the
+// interpreter's lock, and its arrays show the memory that they were read into.
 #include <algorithm>
 #include <any>
 #include <memory>
@@ -74,7 +74,8 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
 // Errors of a shape as a whole name no file.
 bool names_a_file(std::string_view what, const DatasetItem& item) {
   const auto begins = [&](const std::string& file) { return what.starts_with(file); };
-  return begins(item.mesh) || std::ranges::any_of(item.saliency, begins) || std::ranges::any_of(item.picks, begins);
+  return begins(item.mesh) || std::ranges::any_of(item.saliency, begins) ||
+         std::ranges::any_of(item.picks, begins);
 }
 
 // Names and paths as the system has them, which may be no UTF-8.
@@ -99,10 +100,12 @@ py::tuple all_shown(const std::shared_ptr<const Loaded>& owner, const std::vecto
 class Data {
  public:
   // `items`: None, a text such as "1-20,52", or a list of names.
-  Data(const std::string& layout, const std::string& root, const std::string& twins, const py::object& items) {
+  Data(const std::string& layout, const std::string& root, const std::string& twins,
+       const py::object& items) {
     Twins kept = Twins::refuse;
     if (!parse_option(twins, kept))
-      throw py::value_error(fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), twins));
+      throw py::value_error(
+          fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), twins));
     salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
     layout_ = found.layout;
     notes_ = std::move(found.notes);
@@ -161,7 +164,8 @@ class Data {
       try {
         if (!split_list(selection).empty()) return selected_items(std::move(items), selection);
       } catch (const ConfigError& error) {
-        throw py::value_error(std::string(error.what()).substr(2));  // without the dashes of the command's option
+        throw py::value_error(
+            std::string(error.what()).substr(2));  // without the dashes of the command's option
       }
       throw py::value_error("items names no item");
     }
@@ -169,7 +173,8 @@ class Data {
     for (const std::string& name : names) require_known(items, name);
     std::vector<std::string> sorted = names;
     std::ranges::sort(sorted);
-    std::erase_if(items, [&](const DatasetItem& item) { return !std::ranges::binary_search(sorted, item.name); });
+    std::erase_if(items,
+                  [&](const DatasetItem& item) { return !std::ranges::binary_search(sorted, item.name); });
     return items;
   }
 

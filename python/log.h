@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Warnings of the stages as records of Python's logging, logger "salbench". Threads of a stage have no
-// interpreter's lock and may not wait for it, least of all while Python shuts down: what they say is kept, and
-// handed over by the thread of Python that called, when its call returns.
+// interpreter's lock and may not wait for it, least of all while Python shuts down: what they say is kept,
+// and handed over by the thread of Python that called, when its call returns.
 #pragma once
 
 namespace salbench::python {

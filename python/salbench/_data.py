@@ -65,9 +65,10 @@ class Dataset:
         _core.require_layout(self._layout)
         if self._layout not in _core.layouts() and not os.path.exists(self._layout):
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
+        chosen: bytes | list[bytes] | None = None
         if items is not None:
-            items = os.fsencode(items) if isinstance(items, str) else [os.fsencode(str(name)) for name in items]
-        self._data = _core.Data(os.fsencode(self._layout), os.fsencode(self._root), self._twins, items)
+            chosen = os.fsencode(items) if isinstance(items, str) else [os.fsencode(str(name)) for name in items]
+        self._data = _core.Data(os.fsencode(self._layout), os.fsencode(self._root), self._twins, chosen)
         self._rows: list[tuple[str, str]] = self._data.items()
         self._numbers = {name: number for number, (name, _) in enumerate(self._rows)}
 
