@@ -61,11 +61,11 @@ std::vector<bool> mask(const Argument& argument, std::size_t n);
 
 // Memory that arrays show and keep alive.
 using Owner = std::shared_ptr<const void>;
-py::array shown(Owner owner, std::span<const double> values);               // (n,)
-py::array shown(Owner owner, std::span<const Vec3> values);                 // (n, 3)
-py::array shown(Owner owner, std::span<const Triangle> values);             // (n, 3)
-py::array shown(Owner owner, std::span<const std::int32_t> values);         // (n,)
-py::array shown(Owner owner, std::span<const float> values, int columns);   // (n, columns)
+py::array shown(Owner owner, std::span<const double> values);              // (n,)
+py::array shown(Owner owner, std::span<const Vec3> values);                // (n, 3)
+py::array shown(Owner owner, std::span<const Triangle> values);            // (n, 3)
+py::array shown(Owner owner, std::span<const std::int32_t> values);        // (n,)
+py::array shown(Owner owner, std::span<const float> values, int columns);  // (n, columns)
 py::array read_only(py::array array);
 
 // A result as an array that may be written to.
