@@ -36,8 +36,8 @@ py::array as_array(const Argument& argument) {
   }
 }
 
-// The array in C order with elements of T; `kinds` are those of NumPy's types that stand for such values. One without
-// elements, as of an empty list, may have any type.
+// The array in C order with elements of T; `kinds` are those of NumPy's types that stand for such values. One
+// without elements, as of an empty list, may have any type.
 template <class T>
 Ordered<T> ordered(const Argument& argument, const py::array& array, std::string_view kinds,
                    std::string_view what) {
@@ -98,7 +98,9 @@ py::ssize_t signed_size(std::size_t n) { return static_cast<py::ssize_t>(n); }
 
 }  // namespace
 
-void Argument::fail(const std::string& what) const { throw py::value_error(fmt::format("{} {}", name, what)); }
+void Argument::fail(const std::string& what) const {
+  throw py::value_error(fmt::format("{} {}", name, what));
+}
 
 View<double> field(const Argument& argument, std::optional<std::size_t> n) {
   const py::array array = as_array(argument);
@@ -184,11 +186,9 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {
 
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n) {
   if (!argument.given()) return {};
-  const bool list = py::isinstance<py::list>(argument.value) || py::isinstance<py::tuple>(argument.value);
-  const auto is_one = [](py::handle value) { return PyIndex_Check(value.ptr()) != 0 && !py::isinstance<py::array>(value); };
-  if (list) {
+  if (py::isinstance<py::list>(argument.value) || py::isinstance<py::tuple>(argument.value)) {
     const auto sequence = py::reinterpret_borrow<py::sequence>(argument.value);
-    if (sequence.size() > 0 && !is_one(py::object(sequence[0]))) {
+    if (sequence.size() > 0 && PySequence_Check(py::object(sequence[0]).ptr()) != 0) {
       std::vector<std::vector<std::int32_t>> all;
       for (const py::handle one : sequence) all.push_back(indices({one, argument.name}, n));
       return all;
@@ -217,8 +217,8 @@ std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uin
   const bool fits = !PyErr_Occurred();
   PyErr_Clear();
   if (!fits || value < low || value > high)
-    argument.fail(fmt::format("must be a whole number from {} to {}, not {}", low, high,
-                              std::string(py::str(number))));
+    argument.fail(
+        fmt::format("must be a whole number from {} to {}, not {}", low, high, std::string(py::str(number))));
   return value;
 }
 

@@ -69,12 +69,12 @@ std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uin
 
 // Memory that arrays show and keep alive.
 using Owner = std::shared_ptr<const void>;
-py::array shown(Owner owner, std::span<const double> values);               // (n,)
-py::array shown(Owner owner, std::span<const Vec3> values);                 // (n, 3)
-py::array shown(Owner owner, std::span<const Triangle> values);             // (n, 3)
-py::array shown(Owner owner, std::span<const std::int32_t> values);         // (n,)
-py::array shown(Owner owner, std::span<const std::uint8_t> values);         // (n,)
-py::array shown(Owner owner, std::span<const float> values, int columns);   // (n, columns)
+py::array shown(Owner owner, std::span<const double> values);              // (n,)
+py::array shown(Owner owner, std::span<const Vec3> values);                // (n, 3)
+py::array shown(Owner owner, std::span<const Triangle> values);            // (n, 3)
+py::array shown(Owner owner, std::span<const std::int32_t> values);        // (n,)
+py::array shown(Owner owner, std::span<const std::uint8_t> values);        // (n,)
+py::array shown(Owner owner, std::span<const float> values, int columns);  // (n, columns)
 py::array read_only(py::array array);
 
 // A result as an array that may be written to.

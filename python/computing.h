@@ -18,8 +18,8 @@ auto computed(const Function& function) {
   return function();
 }
 
-// A function whose loops over the points may have help. An arena of one thread starts none, so that a process that
-// was forked may call it.
+// A function whose loops over the points may have help. An arena of one thread starts none, so that a process
+// that was forked may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
   const pybind11::gil_scoped_release others_go_on;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the stages as keyword arguments: what a configuration calls them, with its defaults and its checks.
+// Options of the stages as keyword arguments: what a configuration calls them, with its defaults and its
+// checks.
 #pragma once
 
 #include <string>
@@ -13,7 +14,8 @@
 
 namespace salbench::python {
 
-// `key: value` for each keyword, as a configuration has them. Throws TypeError for a keyword that is not among `known`.
+// `key: value` for each keyword, as a configuration has them. Throws TypeError for a keyword that is not
+// among `known`.
 Section section_of(const pybind11::dict& keywords, const std::string& function,
                    const std::vector<std::string_view>& known);
 // ValueError from what a section says of its file, which there is none of.

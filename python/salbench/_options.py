@@ -13,12 +13,14 @@ def default_from(text: str) -> Value:
     """The value that a configuration's text stands for."""
     if text in ("true", "false"):
         return text == "true"
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return text.strip('"')
+    try:
+        return int(text)
+    except ValueError:
+        pass
+    try:
+        return float(text)
+    except ValueError:
+        return text.strip('"')
 
 
 Row = tuple[str, str, str]  # name, default, note

@@ -327,8 +327,7 @@ def simplify(
     >>> points.shape, faces.shape
     ((4, 3), (2, 3))
     """
-    simple: tuple[NDArray[np.float64], NDArray[np.int32]] = _core.simplify(points, faces, target_faces)
-    return simple
+    return _core.simplify(points, faces, target_faces)
 
 
 def vertex_areas(points: ArrayLike, faces: ArrayLike) -> NDArray[np.float64]:

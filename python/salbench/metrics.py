@@ -29,6 +29,7 @@ class Metric(NamedTuple):
 def table() -> list[Metric]:
     """All metrics, in the order of the tables.
 
+    >>> from salbench import metrics
     >>> metrics.table()[0].name
     'auc'
     """

@@ -157,7 +157,8 @@ def _function(row: ModelRow) -> ModelFunction:
             fpfh = shape.fpfh if fpfh is None else fpfh
             item = item or shape.id
         elif isinstance(points, Scan):
-            points, camera, scan = points.points, points.camera, True
+            camera, scan = points.camera, True
+            points = points.points
         written = {taken.get(key, key): value for key, value in options.items()}
         return _core.map(row.name, name, points, faces, normals, fpfh, camera, bool(scan), seed, str(item), threads, written)
 

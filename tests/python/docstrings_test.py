@@ -34,7 +34,7 @@ class Docstrings(unittest.TestCase):
                     self.assertIn(parameter, what.__doc__, name)
 
     def test_types(self):
-        ended = subprocess.run(["mypy", "--strict", "--no-error-summary", "--cache-dir=/dev/null", toy.ROOT / "python/salbench"],
+        ended = subprocess.run(["mypy", "--strict", "--no-error-summary", "--cache-dir=/dev/null", "python/salbench"], cwd=toy.ROOT,
                                capture_output=True, text=True)
         self.assertEqual(ended.stdout, "")
         self.assertEqual(ended.returncode, 0, ended.stderr)
