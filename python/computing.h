@@ -9,6 +9,8 @@
 
 namespace salbench::python {
 
+inline constexpr int kMostThreads = 1024;
+
 // A function that works on one thread whatever it is called with.
 template <class Function>
 auto computed(const Function& function) {

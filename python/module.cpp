@@ -40,7 +40,10 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
   bind_metrics(module);
+  bind_models(module);
   bind_run(module);
+  bind_shapes(module);
+  bind_stats(module);
 }
 
 }  // namespace salbench::python

@@ -14,6 +14,9 @@ namespace salbench::python {
                                const std::vector<std::string_view>& known);
 
 void bind_metrics(pybind11::module_& module);
+void bind_models(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
+void bind_shapes(pybind11::module_& module);
+void bind_stats(pybind11::module_& module);
 
 }  // namespace salbench::python

@@ -47,6 +47,12 @@ Section section_of(const py::dict& keywords, const std::string& function,
   return Section::from_text(yaml + "}", function);
 }
 
+py::list described(const std::vector<OptionRow>& options) {
+  py::list rows;
+  for (const auto& [name, value, note] : options) rows.append(py::make_tuple(name, value, note));
+  return rows;
+}
+
 void rethrow(const ConfigError& error, const std::string& function) {
   std::string_view what = error.what();
   const std::string place = function + ":1: ";

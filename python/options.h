@@ -37,14 +37,10 @@ Options options_from(const pybind11::dict& keywords, const std::string& function
 }
 
 // (name, default, note) of each option, as texts.
+pybind11::list described(const std::vector<OptionRow>& options);
 template <class Options>
 pybind11::list described(const Options& options = {}) {
-  pybind11::list rows;
-  Options::fields(options,
-                  [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
-                    rows.append(pybind11::make_tuple(key, option_text(value), option_note<Value>(help)));
-                  });
-  return rows;
+  return described(option_rows(options));
 }
 
 }  // namespace salbench::python
