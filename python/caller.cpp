@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 
 #include "io/process.h"
+#include "python/log.h"
 #include "stages/core/errors.h"
 
 namespace salbench::python {
@@ -78,6 +79,7 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
       }
       end(*request);
     }
+    deliver_log();
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (const auto now = std::chrono::steady_clock::now(); !stop_ && now - last >= kNowAndThen) {
@@ -92,6 +94,7 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
     const py::gil_scoped_release others_go_on;
     thread.join();
   }
+  deliver_log();
   if (of_caller) std::rethrow_exception(of_caller);
   if (of_run) std::rethrow_exception(of_run);
 }

@@ -7,6 +7,8 @@
 #include <pybind11/pybind11.h>
 #include <tbb/task_arena.h>
 
+#include "python/log.h"
+
 namespace salbench::python {
 
 inline constexpr int kMostThreads = 1024;
@@ -14,6 +16,7 @@ inline constexpr int kMostThreads = 1024;
 // A function that works on one thread whatever it is called with.
 template <class Function>
 auto computed(const Function& function) {
+  const LogDelivery afterwards;
   const pybind11::gil_scoped_release others_go_on;
   return function();
 }
@@ -22,6 +25,7 @@ auto computed(const Function& function) {
 // that was forked may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
+  const LogDelivery afterwards;
   const pybind11::gil_scoped_release others_go_on;
   tbb::task_arena arena(threads);
   return arena.execute(function);
