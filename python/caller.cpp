@@ -22,6 +22,11 @@ constexpr std::chrono::milliseconds kNowAndThen{100};
 void Caller::carry_out(const std::function<void()>& work) {
   Request request{&work};
   std::unique_lock lock(mutex_);
+  if (run_ended_) {  // a map that was damaged since: the caller itself asks for it
+    lock.unlock();
+    const py::gil_scoped_acquire mine;
+    return work();
+  }
   if (stop_) throw Interrupted("the run was asked to stop");
   requests_.push_back(&request);
   asked_.notify_one();
