@@ -2,6 +2,7 @@
 # What `cmake --install` and `cpack -G DEB` put where, and the manual page, made from the program's help texts.
 
 include(GNUInstallDirs)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # cpack would otherwise build every test first
 set(share ${CMAKE_INSTALL_DATADIR}/salbench)
 set(documents ${PROJECT_BINARY_DIR}/documents)
@@ -48,26 +49,46 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME salbench)
 set(CPACK_PACKAGE_VENDOR "The salbench maintainers")
 set(CPACK_PACKAGE_CONTACT "The salbench maintainers <maintainers@salbench.invalid>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "benchmark of 3D saliency models")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-"How well does a program predict which points of a shape people find important?
+# Packages of several Debian releases differ in their libraries, and an upgrade of Debian is one of the package.
+cmake_host_system_information(RESULT distribution QUERY DISTRIB_INFO)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1~deb${distribution_VERSION_ID})
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL program)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME salbench)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+"benchmark of 3D saliency models
+How well does a program predict which points of a shape people find important?
 salbench takes meshes, simulated range scans of them and point clouds through
 normals, descriptors, saliency models, histogram matching and metrics, scores
 models against the published ones, and keeps every intermediate in a cache.
 .
 The recommended packages are those of the report: figures and tables as pages
 that open from disk.")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
+  "libjs-three, python3, python3-h5py, python3-jinja2, python3-matplotlib, python3-pandas, python3-pil, python3-yaml")
+if(SALBENCH_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-salbench)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"benchmark of 3D saliency models (Python 3)
+Metrics, saliency models, descriptors, simulated scans and data sets of
+salbench as functions on NumPy arrays, and its whole benchmark as a function
+call, with models that are functions of Python.
+.
+Needs the package salbench for configurations and reports.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  # Compiled for one version of Python.
+  math(EXPR next "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, salbench (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-pandas, python3-tqdm")
+endif()
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-# Packages of several Debian releases differ in their libraries, and an upgrade of Debian is one of the package.
-cmake_host_system_information(RESULT distribution QUERY DISTRIB_INFO)
-set(CPACK_DEBIAN_PACKAGE_RELEASE 1~deb${distribution_VERSION_ID})
-set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
-  "libjs-three, python3, python3-h5py, python3-jinja2, python3-matplotlib, python3-pandas, python3-pil, python3-yaml")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/DebianForm.cmake)
 set(CPACK_SALBENCH_DATE ${SALBENCH_DATE})
 include(CPack)

@@ -93,10 +93,18 @@ class Launcher {
 };
 
 // There is one, from the first time that it is needed to the end of the program.
+struct KeptLauncher {
+  std::mutex starting;
+  std::unique_ptr<Launcher> one;
+};
+KeptLauncher& kept() {
+  static KeptLauncher launcher;
+  return launcher;
+}
+
 Launcher& launcher() {
-  static std::mutex starting;
-  static std::unique_ptr<Launcher> one;
-  const std::lock_guard lock(starting);
+  const std::lock_guard lock(kept().starting);
+  std::unique_ptr<Launcher>& one = kept().one;
   if (one && !one->is_ours()) one.reset();
   if (!one) one = std::make_unique<Launcher>();
   return *one;
@@ -126,6 +134,15 @@ void end_commands() {
 }
 
 bool commands_are_ended() { return ended; }
+
+// What polls the old event, if anything is left, goes on seeing it.
+void allow_commands() {
+  const std::lock_guard lock(kept().starting);
+  if (!ended) return;
+  kept().one.reset();
+  if (const int told = ending.exchange(-1); told >= 0) ::close(told);
+  ended = false;
+}
 
 KeptCommand::KeptCommand(const std::string& command, const std::filesystem::path& folder,
                          const CommandFiles& files) {

@@ -24,6 +24,8 @@ void run_command(const std::string& command, const std::filesystem::path& folder
 // Sends SIGTERM to all commands at work, and from now on starts none. Safe in a signal handler.
 void end_commands();
 bool commands_are_ended();
+// Commands may be started again; none is at work. For a process that goes on after an interrupt.
+void allow_commands();
 
 // A word that the shell reads as this text.
 std::string shell_quoted(const std::string& text);

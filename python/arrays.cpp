@@ -36,8 +36,8 @@ py::array as_array(const Argument& argument) {
   }
 }
 
-// The array in C order with elements of T; `kinds` are those of NumPy's types that stand for such values. One without
-// elements, as of an empty list, may have any type.
+// The array in C order with elements of T; `kinds` are those of NumPy's types that stand for such values. One
+// without elements, as of an empty list, may have any type.
 template <class T>
 Ordered<T> ordered(const Argument& argument, const py::array& array, std::string_view kinds,
                    std::string_view what) {
@@ -62,6 +62,9 @@ std::string length_text(const std::optional<std::size_t>& n) { return n ? fmt::t
 bool has_length(const py::array& array, int axis, const std::optional<std::size_t>& n) {
   return !n || static_cast<std::size_t>(array.shape(axis)) == *n;
 }
+
+// The squares of distances, which are sums of three, are finite.
+bool is_coordinate(double x) { return std::abs(x) <= std::sqrt(std::numeric_limits<double>::max()) / 4; }
 
 // Whole numbers of any width, which a double could not all hold.
 std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::array& array, std::size_t n) {
@@ -94,7 +97,9 @@ py::ssize_t signed_size(std::size_t n) { return static_cast<py::ssize_t>(n); }
 
 }  // namespace
 
-void Argument::fail(const std::string& what) const { throw py::value_error(fmt::format("{} {}", name, what)); }
+void Argument::fail(const std::string& what) const {
+  throw py::value_error(fmt::format("{} {}", name, what));
+}
 
 View<double> field(const Argument& argument, std::optional<std::size_t> n) {
   const py::array array = as_array(argument);
@@ -122,14 +127,42 @@ View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
   if (array.shape(0) > std::numeric_limits<std::int32_t>::max()) argument.fail("has more than 2^31 points");
   auto values = numbers(argument, array);
   const std::span coordinates(values.data(), static_cast<std::size_t>(values.size()));
-  // The squares of distances are sums of three.
-  const double largest = std::sqrt(std::numeric_limits<double>::max()) / 4;
   for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (!(std::abs(coordinates[i]) <= largest))
+    if (!is_coordinate(coordinates[i]))
       argument.fail(fmt::format("must have finite coordinates whose squares are finite too, not {} in row {}",
                                 coordinates[i], i / 3));
   const std::span view(reinterpret_cast<const Vec3*>(values.data()), coordinates.size() / 3);
   return {std::move(values), view};
+}
+
+View<Vec3> normals(const Argument& argument, std::size_t n) {
+  constexpr double kRounding = 1e-5;  // of a length, in any type but half precision
+  View<Vec3> normals = points(argument, n);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (const double length = normals.values[i].norm(); !(std::abs(length - 1) <= kRounding))
+      argument.fail(fmt::format("must have unit length, not {} in row {}", length, i));
+  return normals;
+}
+
+Descriptors descriptors(const Argument& argument, std::size_t n) {
+  const py::array array = as_array(argument);
+  expect(argument, array, array.ndim() == 2 && array.shape(1) == kFpfhBins && has_length(array, 0, n),
+         fmt::format("({}, {})", n, kFpfhBins));
+  const auto values = ordered<float>(argument, array, "biuf", "real numbers");
+  Descriptors result;
+  result.values.assign(values.data(), values.data() + values.size());
+  for (const float value : result.values)
+    if (!(value >= 0 && std::isfinite(value)))
+      argument.fail(fmt::format("must have finite numbers >= 0, not {}", value));
+  return result;
+}
+
+Vec3 place(const Argument& argument) {
+  const auto values = field(argument, 3);
+  for (const double x : values.values)
+    if (!is_coordinate(x))
+      argument.fail(fmt::format("must have finite coordinates whose squares are finite too, not {}", x));
+  return {values.values[0], values.values[1], values.values[2]};
 }
 
 Faces faces(const Argument& argument, std::size_t n) {
@@ -152,11 +185,9 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {
 
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n) {
   if (!argument.given()) return {};
-  const bool list = py::isinstance<py::list>(argument.value) || py::isinstance<py::tuple>(argument.value);
-  const auto is_one = [](py::handle value) { return PyIndex_Check(value.ptr()) != 0 && !py::isinstance<py::array>(value); };
-  if (list) {
+  if (py::isinstance<py::list>(argument.value) || py::isinstance<py::tuple>(argument.value)) {
     const auto sequence = py::reinterpret_borrow<py::sequence>(argument.value);
-    if (sequence.size() > 0 && !is_one(py::object(sequence[0]))) {
+    if (sequence.size() > 0 && PySequence_Check(py::object(sequence[0]).ptr()) != 0) {
       std::vector<std::vector<std::int32_t>> all;
       for (const py::handle one : sequence) all.push_back(indices({one, argument.name}, n));
       return all;
@@ -171,6 +202,23 @@ std::vector<bool> mask(const Argument& argument, std::size_t n) {
   const auto values = ordered<bool>(argument, array, "b", "truth values");
   const std::span view(values.data(), static_cast<std::size_t>(values.size()));
   return std::vector<bool>(view.begin(), view.end());
+}
+
+std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high) {
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(argument.value.ptr()));
+  if (!number) {
+    if (!PyErr_ExceptionMatches(PyExc_TypeError)) throw py::error_already_set();
+    PyErr_Clear();
+    argument.fail(fmt::format("must be a whole number, not of type {}",
+                              std::string(py::str(py::type::of(argument.value).attr("__name__")))));
+  }
+  const std::uint64_t value = PyLong_AsUnsignedLongLong(number.ptr());
+  const bool fits = !PyErr_Occurred();
+  PyErr_Clear();
+  if (!fits || value < low || value > high)
+    argument.fail(
+        fmt::format("must be a whole number from {} to {}, not {}", low, high, std::string(py::str(number))));
+  return value;
 }
 
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data) {
@@ -188,6 +236,9 @@ py::array shown(Owner owner, std::span<const Triangle> values) {
 }
 py::array shown(Owner owner, std::span<const std::int32_t> values) {
   return shown_as<std::int32_t>(std::move(owner), {signed_size(values.size())}, values.data());
+}
+py::array shown(Owner owner, std::span<const std::uint8_t> values) {
+  return shown_as<std::uint8_t>(std::move(owner), {signed_size(values.size())}, values.data());
 }
 py::array shown(Owner owner, std::span<const float> values, int columns) {
   return shown_as<float>(std::move(owner), {signed_size(values.size()) / columns, columns}, values.data());

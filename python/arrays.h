@@ -50,6 +50,12 @@ View<double> field(const Argument& argument, std::optional<std::size_t> n = {});
 View<double> rows(const Argument& argument, std::optional<std::size_t> n = {});
 // (n, 3), finite, and so are their squares. None: of no point.
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n = {});
+// The same, of unit length.
+View<Vec3> normals(const Argument& argument, std::size_t n);
+// (n, 33), finite and >= 0.
+Descriptors descriptors(const Argument& argument, std::size_t n);
+// (3,), a point.
+Vec3 place(const Argument& argument);
 // (m, 3) numbers of points, 0 to n - 1. None: of no face.
 Faces faces(const Argument& argument, std::size_t n);
 // (k,) numbers of points, 0 to n - 1. None: of no point.
@@ -58,14 +64,17 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
 // (n,) truth values.
 std::vector<bool> mask(const Argument& argument, std::size_t n);
+// A number by itself, of any integer type.
+std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high);
 
 // Memory that arrays show and keep alive.
 using Owner = std::shared_ptr<const void>;
-py::array shown(Owner owner, std::span<const double> values);               // (n,)
-py::array shown(Owner owner, std::span<const Vec3> values);                 // (n, 3)
-py::array shown(Owner owner, std::span<const Triangle> values);             // (n, 3)
-py::array shown(Owner owner, std::span<const std::int32_t> values);         // (n,)
-py::array shown(Owner owner, std::span<const float> values, int columns);   // (n, columns)
+py::array shown(Owner owner, std::span<const double> values);              // (n,)
+py::array shown(Owner owner, std::span<const Vec3> values);                // (n, 3)
+py::array shown(Owner owner, std::span<const Triangle> values);            // (n, 3)
+py::array shown(Owner owner, std::span<const std::int32_t> values);        // (n,)
+py::array shown(Owner owner, std::span<const std::uint8_t> values);        // (n,)
+py::array shown(Owner owner, std::span<const float> values, int columns);  // (n, columns)
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data);
 py::array read_only(py::array array);
 

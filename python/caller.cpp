@@ -22,6 +22,11 @@ constexpr std::chrono::milliseconds kNowAndThen{100};
 void Caller::carry_out(const std::function<void()>& work) {
   Request request{&work};
   std::unique_lock lock(mutex_);
+  if (run_ended_) {  // a map that was damaged since: the caller itself asks for it
+    lock.unlock();
+    const py::gil_scoped_acquire mine;
+    return work();
+  }
   if (stop_) throw Interrupted("the run was asked to stop");
   requests_.push_back(&request);
   asked_.notify_one();
@@ -29,7 +34,8 @@ void Caller::carry_out(const std::function<void()>& work) {
   if (request.thrown) std::rethrow_exception(request.thrown);
 }
 
-// Waits without the interpreter's lock. False once the run has ended; the request is null if there is none yet.
+// Waits without the interpreter's lock. False once the run has ended; the request is null if there is none
+// yet.
 bool Caller::next(Request*& request) {
   const py::gil_scoped_release others_go_on;
   std::unique_lock lock(mutex_);
@@ -46,6 +52,7 @@ void Caller::end(Request& request) {
 }
 
 void Caller::run(const std::function<void()>& the_run, const std::function<void()>& now_and_then) {
+  allow_commands();
   std::exception_ptr of_run, of_caller;
   std::thread thread([&] {
     try {
@@ -68,7 +75,8 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
       try {
         if (stop_) throw Interrupted("the run was asked to stop");
         (*request->work)();
-      } catch (const py::error_already_set&) {  // what a function raised was made another error by whoever asked for it
+      } catch (const py::error_already_set&) {  // what a function raised was made another error by whoever
+                                                // asked for it
         stop_with(std::current_exception());
         request->thrown = std::make_exception_ptr(Interrupted("the run was asked to stop"));
       } catch (...) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The thread that called a run, which alone runs Python while the run goes on in threads of its own: functions
-// of the user see the thread that they were made in, and Ctrl-C arrives where Python looks for it.
+// The thread that called a run, which alone runs Python while the run goes on in threads of its own:
+// functions of the user see the thread that they were made in, and Ctrl-C arrives where Python looks for it.
 #pragma once
 
 #include <atomic>
@@ -14,14 +14,14 @@ namespace salbench::python {
 
 class Caller {
  public:
-  // From a thread of the run, without the interpreter's lock: returns when the caller has carried it out, and throws
-  // what it threw. Throws Interrupted once the run is to stop.
+  // From a thread of the run, without the interpreter's lock: returns when the caller has carried it out, and
+  // throws what it threw. Throws Interrupted once the run is to stop. After the run it is carried out at once.
   void carry_out(const std::function<void()>& work);
 
-  // By the caller, with the interpreter's lock, until the run, in a thread of its own, has ended: carries out what it is
-  // asked for, and calls `now_and_then` some ten times a second. Once Python has an error pending, as after
-  // Ctrl-C, or `now_and_then` throws one, the run is asked to stop; the error is thrown when it has. Throws what the run
-  // threw.
+  // By the caller, with the interpreter's lock, until the run, in a thread of its own, has ended: carries out
+  // what it is asked for, and calls `now_and_then` some ten times a second. Once Python has an error pending,
+  // as after Ctrl-C, or `now_and_then` throws one, the run is asked to stop; the error is thrown when it has.
+  // Throws what the run threw.
   void run(const std::function<void()>& the_run, const std::function<void()>& now_and_then);
 
   const std::atomic<bool>& stop() const { return stop_; }

@@ -12,6 +12,8 @@
 
 namespace salbench::python {
 
+inline constexpr int kMostThreads = 1024;
+
 // The interpreter goes on without this thread. Once it shuts down it ends threads that come back, by unwinding them
 // (until Python 3.14): through destructors, which would abort the process, and through frames that hold arrays. Such a
 // thread stays here instead, and ends with the process.
@@ -40,8 +42,8 @@ auto computed(const Function& function) {
   return function();
 }
 
-// A function whose loops over the points may have help. An arena of one thread starts none, so that a process that
-// was forked may call it.
+// A function whose loops over the points may have help. An arena of one thread starts none, so that a process
+// that was forked may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
   const LogDelivery afterwards;

@@ -23,9 +23,11 @@ namespace {
 struct ScoreOptions : MetricsOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    MetricsOptions::fields(self, [&]<class Value>(std::string_view key, Value& value, const OptionHelp& help) {
-      if constexpr (std::is_arithmetic_v<std::remove_const_t<Value>>) visit(key, value, help);
-    });
+    MetricsOptions::fields(self,
+                           [&]<class Value>(std::string_view key, Value& value, const OptionHelp& help) {
+                             if constexpr (std::is_arithmetic_v<std::remove_const_t<Value>>)
+                               visit(key, value, help);
+                           });
   }
 };
 
@@ -56,7 +58,8 @@ std::optional<Histogram> reference_from(const Argument& argument) {
   const auto bins = field(argument, kHistogramBins);
   Histogram reference;
   std::ranges::copy(bins.values, reference.begin());
-  if (!std::ranges::all_of(reference, [](double bin) { return bin >= 0 && bin < std::numeric_limits<double>::infinity(); }))
+  if (!std::ranges::all_of(
+          reference, [](double bin) { return bin >= 0 && bin < std::numeric_limits<double>::infinity(); }))
     argument.fail("must have finite densities >= 0");
   return reference;
 }
@@ -67,7 +70,8 @@ struct Truth {
   std::optional<std::vector<std::int32_t>> seen;  // where the saliency itself cannot tell
 };
 
-Truth truth_from(const Argument& ground_truth, const Argument& picked, const Argument& masked, std::size_t n) {
+Truth truth_from(const Argument& ground_truth, const Argument& picked, const Argument& masked,
+                 std::size_t n) {
   Truth truth;
   if (ground_truth.given()) {
     const auto saliency = field(ground_truth, n);
@@ -77,7 +81,8 @@ Truth truth_from(const Argument& ground_truth, const Argument& picked, const Arg
   if (!masked.given()) return truth;
   const std::vector<bool> counts = mask(masked, n);
   for (std::size_t i = 0; i < n; ++i)
-    if (ground_truth.given() && !counts[i]) truth.values.saliency[i] = std::numeric_limits<double>::quiet_NaN();
+    if (ground_truth.given() && !counts[i])
+      truth.values.saliency[i] = std::numeric_limits<double>::quiet_NaN();
   if (ground_truth.given()) return truth;
   truth.seen.emplace();
   for (std::size_t i = 0; i < n; ++i)
@@ -104,8 +109,8 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
                            const Stream& stream, std::span<const double> areas, Points points) {
   const MetricsByMatching metrics(options);
   Draws draws(RandomSource{stream.seed, stream.item}.rng("scores." + stream.model));
-  const ScalarField centre = any_of_positions(metrics.all()) && !points.empty() ? distances_from_centroid(points)
-                                                                               : ScalarField{};
+  const ScalarField centre =
+      any_of_positions(metrics.all()) && !points.empty() ? distances_from_centroid(points) : ScalarField{};
   const auto at_seen = [&](std::span<const double> values) {
     return truth.seen && !values.empty() ? values_at(values, *truth.seen)
                                          : ScalarField(values.begin(), values.end());

@@ -44,7 +44,10 @@ PYBIND11_MODULE(_core, module) {
   bind_cache(module);
   bind_data(module);
   bind_metrics(module);
+  bind_models(module);
   bind_run(module);
+  bind_shapes(module);
+  bind_stats(module);
 }
 
 }  // namespace salbench::python

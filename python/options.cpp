@@ -14,7 +14,8 @@ namespace py = pybind11;
 std::string yaml_of(py::handle value, const std::string& where) {
   if (py::isinstance<py::str>(value)) return yaml_quoted(value.cast<std::string>());
   if (py::isinstance<py::bool_>(value) || py::hasattr(value, "dtype"))
-    if (const auto item = py::hasattr(value, "item") ? value.attr("item")() : py::reinterpret_borrow<py::object>(value);
+    if (const auto item =
+            py::hasattr(value, "item") ? value.attr("item")() : py::reinterpret_borrow<py::object>(value);
         py::isinstance<py::bool_>(item))
       return item.cast<bool>() ? "true" : "false";
   if (PyIndex_Check(value.ptr()) != 0) {
@@ -22,7 +23,8 @@ std::string yaml_of(py::handle value, const std::string& where) {
     if (!whole) throw py::error_already_set();
     return py::str(whole);
   }
-  if (PyNumber_Check(value.ptr()) != 0 && PyFloat_Check(py::float_(py::reinterpret_borrow<py::object>(value)).ptr()) != 0)
+  if (PyNumber_Check(value.ptr()) != 0 &&
+      PyFloat_Check(py::float_(py::reinterpret_borrow<py::object>(value)).ptr()) != 0)
     return py::repr(py::float_(py::reinterpret_borrow<py::object>(value)));
   throw py::value_error(fmt::format("{} must be a number, a truth value or a text, not {}", where,
                                     std::string(py::str(py::type::of(value).attr("__name__")))));
@@ -43,6 +45,12 @@ Section section_of(const py::dict& keywords, const std::string& function,
     yaml += fmt::format("{}{}: {}", yaml.size() > 1 ? ", " : "", key, yaml_of(value, key));
   }
   return Section::from_text(yaml + "}", function);
+}
+
+py::list described(const std::vector<OptionRow>& options) {
+  py::list rows;
+  for (const auto& [name, value, note] : options) rows.append(py::make_tuple(name, value, note));
+  return rows;
 }
 
 void rethrow(const ConfigError& error, const std::string& function) {

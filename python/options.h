@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the stages as keyword arguments: what a configuration calls them, with its defaults and its checks.
+// Options of the stages as keyword arguments: what a configuration calls them, with its defaults and its
+// checks.
 #pragma once
 
 #include <string>
@@ -13,7 +14,8 @@
 
 namespace salbench::python {
 
-// `key: value` for each keyword, as a configuration has them. Throws TypeError for a keyword that is not among `known`.
+// `key: value` for each keyword, as a configuration has them. Throws TypeError for a keyword that is not
+// among `known`.
 Section section_of(const pybind11::dict& keywords, const std::string& function,
                    const std::vector<std::string_view>& known);
 // ValueError from what a section says of its file, which there is none of.
@@ -35,13 +37,10 @@ Options options_from(const pybind11::dict& keywords, const std::string& function
 }
 
 // (name, default, note) of each option, as texts.
+pybind11::list described(const std::vector<OptionRow>& options);
 template <class Options>
 pybind11::list described(const Options& options = {}) {
-  pybind11::list rows;
-  Options::fields(options, [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
-    rows.append(pybind11::make_tuple(key, option_text(value), option_note<Value>(help)));
-  });
-  return rows;
+  return described(option_rows(options));
 }
 
 }  // namespace salbench::python

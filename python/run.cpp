@@ -10,10 +10,12 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 
 #include "python/arrays.h"
 #include "python/caller.h"
 #include "python/computing.h"
+#include "python/log.h"
 #include "python/module.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
@@ -23,8 +25,8 @@ namespace {
 
 // --- a model ---------------------------------------------------------------------------------------------
 
-// A model as salbench/_run.py describes it: name, function, reads (points, normals, faces, fpfh), version, and the text
-// that its key has.
+// A model as salbench/_run.py describes it: name, function, reads (points, normals, faces, fpfh), version,
+// and the text that its key has.
 struct FunctionModel {
   std::string name;
   py::object function;
@@ -40,12 +42,13 @@ py::object copied(bool read, std::span<const T> values) {
   return read_only(moved(std::vector<T>(values.begin(), values.end())));
 }
 
-py::object shape_of(const std::string& id, Points points, const Normals* normals, Surface faces,
-                    const Descriptors* fpfh) {
+py::object shape_of(const std::string& id, Points points, const Normals* normals, bool reads_faces,
+                    Surface faces, const Descriptors* fpfh) {
   const py::object descriptors =
-      fpfh == nullptr ? py::none() : py::object(read_only(moved(std::vector<float>(fpfh->values), kFpfhBins)));
+      fpfh == nullptr ? py::none()
+                      : py::object(read_only(moved(std::vector<float>(fpfh->values), kFpfhBins)));
   return py::module_::import("salbench._run")
-      .attr("_shape")(id, copied<Vec3>(true, points), copied<Triangle>(true, faces),
+      .attr("_shape")(id, copied<Vec3>(true, points), copied<Triangle>(reads_faces, faces),
                       normals == nullptr ? py::none() : copied<Vec3>(true, *normals), descriptors);
 }
 
@@ -79,11 +82,12 @@ Output<Map> add_function(RuleTable& table, const ShapeOutputs& shape, const Func
   const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
   return table.add<Map>(
       shape.level, head,
-      [&model, &caller](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
-                        const RandomSource& random, const NoOptions&) {
+      [&model, &caller, reads_faces = reads("faces")](Points points, const Normals* normals, Surface faces,
+                                                      const Descriptors* fpfh, const RandomSource& random,
+                                                      const NoOptions&) {
         ScalarField map;
         caller.carry_out([&] {
-          map = call(model, shape_of(random.item, points, normals, faces, fpfh), points.size());
+          map = call(model, shape_of(random.item, points, normals, reads_faces, faces, fpfh), points.size());
         });
         require_finite(map, "the map");
         return map;
@@ -128,14 +132,19 @@ std::string text_or_empty(const py::dict& settings, const char* key) {
 // `data`, `cache` and `out`.
 Config config_from(const py::dict& settings) {
   const std::string path = text_or_empty(settings, "path"), models = text_or_empty(settings, "models");
-  Config config = path.empty() ? read_config(Section::from_text(text_or_empty(settings, "yaml"), "config"), "python")
-                               : read_config(Section::from_file(path), std::filesystem::path(path).stem().string());
+  Config config = path.empty()
+                      ? read_config(Section::from_text(text_or_empty(settings, "yaml"), "config"), "python")
+                      : read_config(Section::from_file(path), std::filesystem::path(path).stem().string());
   if (!models.empty())
-    config.models = read_config(Section::from_text(fmt::format("{{protocol: {}, models: {}}}",
-                                                               name_of(config.protocol), models),
-                                                   "models"), "python").models;
+    config.models =
+        read_config(
+            Section::from_text(fmt::format("{{protocol: {}, models: {}}}", name_of(config.protocol), models),
+                               "models"),
+            "python")
+            .models;
   if (settings["only_functions"].cast<bool>()) config.models.clear();
-  for (const auto& [key, folder] : {std::pair{"data", &config.data}, {"cache", &config.cache}, {"out", &config.output}})
+  for (const auto& [key, folder] :
+       {std::pair{"data", &config.data}, {"cache", &config.cache}, {"out", &config.output}})
     if (const std::string given = text_or_empty(settings, key); !given.empty()) *folder = given;
   if (config.data.empty()) throw ConfigError("data is not given: the folder of the data set");
   if (config.cache.empty()) config.cache = "salbench-cache";
@@ -148,21 +157,21 @@ class Run {
   Run(const py::dict& settings, const py::list& functions) {
     for (const py::handle row : functions) {
       const auto part = row.cast<py::tuple>();
-      models_.push_back({part[0].cast<std::string>(), part[1], part[2].cast<Words>(), part[3].cast<std::int32_t>(),
-                         part[4].cast<std::string>()});
+      models_.push_back({part[0].cast<std::string>(), part[1], part[2].cast<Words>(),
+                         part[3].cast<std::int32_t>(), part[4].cast<std::string>()});
     }
     Config config = config_from(settings);
     for (const FunctionModel& model : models_) add(config, model);
     const Selection selection{.items = text_or_empty(settings, "items")};
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
+    const LogDelivery delivery;
     const py::gil_scoped_release others_go_on;
     session_.emplace(Setup(std::move(config), selection), std::move(counts), caller_.stop());
   }
 
   void carry_out(int threads, const py::function& progress) {
-    caller_.run([&] { salbench::carry_out(*session_, threads); },
-                [&] { progress(*counts_->now()); });
+    caller_.run([&] { salbench::carry_out(*session_, threads); }, [&] { progress(*counts_->now()); });
   }
 
   std::string output() const { return session_->setup.output.string(); }

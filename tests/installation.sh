@@ -31,6 +31,14 @@ grep -q "^.TH SALBENCH \"1\" \"$month\" \"salbench $version\"" "$prefix/share/ma
 "$salbench" config shrec08 2> /dev/null && complain "shrec08: there is no such configuration"
 "$prefix/bin/salbench-report" --help | grep -qF "$salbench" || complain "salbench-report: does not know its program"
 
+# The Python package, where it was built: of this version, and with its types.
+package=$prefix/lib/python3/dist-packages
+if [[ -d $package ]]; then
+  [[ $(PYTHONPATH=$package /usr/bin/python3 -B -c 'import salbench; print(salbench.__version__)') == "$version" ]] ||
+    complain "import salbench: not of $version"
+  [[ -e $package/salbench/py.typed ]] || complain "salbench/py.typed: not installed"
+fi
+
 # The manual page and the completion have every subcommand and option of the help.
 page=$(sed 's/\\-/-/g' "$prefix/share/man/man1/salbench.1")
 source "$prefix/share/bash-completion/completions/salbench"

@@ -8,7 +8,7 @@ breaches=0
 # path:line:included of every include of the program's sources; tests may include what they like, but for those of the engine.
 includes() {
   local folder
-  for folder in stages io cache pipeline tests/engine; do
+  for folder in stages io cache pipeline python tests/engine; do
     [[ -d $folder ]] && grep -rnoE --include='*.h' --include='*.cpp' '^#include [<"][^>"]+[>"]' "$folder"
   done | sed -E 's/#include [<"]([^>"]+)[>"]/\1/'
 }
@@ -77,6 +77,7 @@ done < <(includes)
 while IFS=: read -r path line included; do  # one file reads it, one writes it
   [[ $included != yaml-cpp/* || $path == pipeline/config/*.cpp ]] ||
     complain "$path:$line" "$included" "yaml-cpp belongs in a .cpp of pipeline/config"
+  [[ $included != pybind11/* || $path == python/* ]] || complain "$path:$line" "$included" "what is bound knows nothing of Python"
 done < <(includes)
 
 [[ $breaches -eq 0 ]]

@@ -85,8 +85,8 @@ void carry_out(Session& session, int threads, const Show& show) {
   const bool interrupted = session.stop;
   if (interrupted && shard) return;
   Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
-  const RunRecord record{session.state(),   session.store, threads,           session.started,
-                         session.seconds(), interrupted,   why_computed(causes)};
+  const RunRecord record{session.state(), session.store,       threads, session.started, session.seconds(),
+                         interrupted,     why_computed(causes)};
   shard ? write_shard_record(setup.output, record) : write_results(session, record, show);
 }
 
@@ -98,7 +98,8 @@ ExitStatus run_session(Session& session, const Arguments& arguments) {
   if (setup.inputs.shard && !session.stop && !arguments.quiet) print_shard(session);
   if (!session.stop) return finished_status(session);
   if (!setup.inputs.shard)
-    std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(), stderr);
+    std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(),
+               stderr);
   return interrupted_status(arguments);
 }
 

@@ -126,6 +126,20 @@ std::string options_text(const Options& options, bool annotated = false, bool qu
   return lines;
 }
 
+// An option for whoever documents it.
+struct OptionRow {
+  std::string name, value, note;  // the value as it is where nobody sets it
+};
+template <class Options>
+std::vector<OptionRow> option_rows(const Options& options) {
+  std::vector<OptionRow> rows;
+  Options::fields(options,
+                  [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
+                    rows.push_back({std::string(key), option_text(value), option_note<Value>(help)});
+                  });
+  return rows;
+}
+
 // Text of the options for a key. Leaves out options at the values that older keys imply.
 template <class Options>
 std::string key_text(const Options& options) {

@@ -99,7 +99,17 @@ std::vector<std::string> notes_of(const Table& table, const std::vector<ScoreCol
 }  // namespace
 
 ScoreFile read_scores(const fs::path& path, const ScoreColumns& columns, const fs::path& classes) {
-  const Table table = read_csv(path);
+  return scores_from(read_csv(path), columns, classes);
+}
+
+std::vector<std::string> names_of_scores(const Table& table, const ScoreColumns& columns) {
+  std::vector<std::string> names;
+  for (const Metric& metric : metrics_to_read(columns))
+    if (has_column(table, metric.name)) names.push_back(metric.name);
+  return names;
+}
+
+ScoreFile scores_from(const Table& table, const ScoreColumns& columns, const fs::path& classes) {
   const std::vector<std::string> items = text_column(table, "item"), models = text_column(table, "model"),
                                  views = words_of(table, "view"), datasets = words_of(table, "dataset"),
                                  categories = words_of(table, "class");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/table.h"
 #include "pipeline/results/results.h"
 
 namespace salbench {
@@ -27,5 +28,12 @@ struct ScoreColumns {
 // model has two rows of.
 ScoreFile read_scores(const std::filesystem::path& path, const ScoreColumns& columns = {},
                       const std::filesystem::path& classes = {});
+
+// The same of a table in memory. Where it has `lines`, these are named, beside its name.
+ScoreFile scores_from(const Table& table, const ScoreColumns& columns = {},
+                      const std::filesystem::path& classes = {});
+
+// The columns that are scores: metrics of the program, and those named.
+std::vector<std::string> names_of_scores(const Table& table, const ScoreColumns& columns = {});
 
 }  // namespace salbench

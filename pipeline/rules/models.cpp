@@ -33,6 +33,7 @@ ModelRow human_row(std::string_view name, std::int32_t version) {
                          .version = version,
                          .options = options_text(options),
                          .annotated_options = options_text(options, true),
+                         .option_rows = option_rows(options),
                          .human = options};
           }};
 }

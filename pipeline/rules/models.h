@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_maps.h"
@@ -45,6 +46,7 @@ struct Model {
   std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
   std::string options = {};  // canonical text
   std::string annotated_options = {};  // with a comment above each option
+  std::vector<OptionRow> option_rows = {};
   std::function<Output<Map>(RuleTable&, const ShapeOutputs&)> add_map = {};
   std::optional<HsOptions> human = {};
   std::shared_ptr<const GivenMaps> given = {};  // where the map is read and not computed
@@ -101,6 +103,7 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
                          .version = version,
                          .options = options_text(options),
                          .annotated_options = options_text(options, true),
+                         .option_rows = option_rows(options),
                          .add_map = add_map};
           }};
 }

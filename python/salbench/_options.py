@@ -13,26 +13,45 @@ def default_from(text: str) -> Value:
     """The value that a configuration's text stands for."""
     if text in ("true", "false"):
         return text == "true"
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return text.strip('"')
+    try:
+        return int(text)
+    except ValueError:
+        pass
+    try:
+        return float(text)
+    except ValueError:
+        return text.strip('"')
 
 
-def with_options(rows: Iterable[tuple[str, str, str]]) -> Callable[[Function], Function]:
-    """Puts (name, default, note) of each option into a function's signature, and below "Options" in its docstring."""
+Row = tuple[str, str, str]  # name, default, note
+
+
+def option_lines(rows: Iterable[Row], indent: str = "    ") -> str:
+    """The options as parameters of a docstring."""
+    return "".join(f"{indent}{name} : {type(default_from(default)).__name__}, default {default}\n{indent}    {note}\n"
+                   for name, default, note in rows)
+
+
+def with_options(rows: Iterable[Row]) -> Callable[[Function], Function]:
+    """Puts (name, default, note) of each option into a function's signature, and below "Parameters" in its docstring."""
+    rows = list(rows)
 
     def documented(function: Function) -> Function:
-        lines, parameters = [], []
-        for name, default, note in rows:
-            lines += [f"    {name} : {type(default_from(default)).__name__}, default {default}", f"        {note}"]
-            parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default_from(default)))
+        parameters = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default_from(default))
+                      for name, default, _ in rows]
         signature = inspect.signature(function)
         own = [p for p in signature.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
         function.__signature__ = signature.replace(parameters=own + parameters)  # type: ignore[attr-defined]
-        function.__doc__ = (function.__doc__ or "").replace("    **options\n", "\n".join(lines) + "\n")
+        return with_options_of("**options", rows)(function)
+
+    return documented
+
+
+def with_options_of(place: str, rows: Iterable[Row], indent: str = "    ") -> Callable[[Function], Function]:
+    """Puts options in place of a line of a docstring; the signature stays, where they depend on other arguments."""
+
+    def documented(function: Function) -> Function:
+        function.__doc__ = (function.__doc__ or "").replace(f"{indent}{place}\n", option_lines(rows, indent))
         return function
 
     return documented

@@ -25,30 +25,35 @@ class Maps:
         self._run, self._model = run, model
 
     def __getitem__(self, item: str) -> NDArray[np.float64]:
-        values = self._run.map(self._model, str(item))
+        values: NDArray[np.float64] | None = self._run.map(self._model, str(item))
         if values is None:
             raise KeyError(f"there is no map of '{item}' by {self._model}")
         return values
 
 
 class Results:
-    """Tables, maps and failures of a run. The tables are those that the program writes into `folder`.
+    """Tables of a run, from the folder that it wrote them to; of one that `run` returns also its maps and failures.
+
+    Parameters
+    ----------
+    folder : path
+        What `run` was given as `out`, or the command `salbench run` as `--out`.
 
     Attributes
     ----------
-    folder : pathlib.Path
-        Where the tables lie.
     computed : int
         Artefacts that this run has computed; 0 where all were in the cache.
     failures : list of (item, stage, cause)
         What could not be computed.
     """
 
-    def __init__(self, folder: str, run: Any) -> None:
+    def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
         self.folder = pathlib.Path(folder)
+        if not (self.folder / "run.yaml").is_file():
+            raise FileNotFoundError(f"{self.folder}: holds no results: no run has written a run.yaml there")
         self._run = run
-        self.computed: int = run.computed
-        self.failures: list[tuple[str, str, str]] = run.failures()
+        self.computed: int = run.computed if run else 0
+        self.failures: list[tuple[str, str, str]] = run.failures() if run else []
 
     def _table(self, name: str) -> "pandas.DataFrame":
         import pandas
@@ -76,7 +81,12 @@ class Results:
         return self._table("significance")
 
     def maps(self, model: str) -> Maps:
-        """The maps of a model, as it made them."""
+        """The maps of a model by name of the shape, as it made them: maps("LS")["52_3"].
+
+        Of a run that was made by a command, `Cache` has them.
+        """
+        if self._run is None:
+            raise ValueError("maps() is of results that run() returned; salbench.Cache(folder) has those of others")
         return Maps(self._run, model)
 
     def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
@@ -92,4 +102,4 @@ class Results:
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
-        return f"Results in {self.folder}: {self.computed} artefacts computed{failed}"
+        return f"Results({str(self.folder)!r}): {self.computed} artefacts computed{failed}"

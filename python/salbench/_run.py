@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from salbench import _core
 from salbench._results import Results
@@ -47,7 +46,17 @@ class Model:
 
 def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces")
           ) -> Callable[[Predict], Model]:
-    """Decorator that makes a `Model` of a function."""
+    """Decorator that makes a `Model` of a function; `version`, `depends` and `reads` as there.
+
+    Examples
+    --------
+    >>> import salbench
+    >>> @salbench.model(version=2)
+    ... def height(shape):
+    ...     return shape.points[:, 2]
+    >>> height.version
+    2
+    """
     return lambda predict: Model(predict, version, depends, reads)
 
 
@@ -172,7 +181,11 @@ def _raised(error: BaseException, trace: Any) -> str:
     """An exception as one line, with the innermost line of code."""
     frames = traceback.extract_tb(trace)
     place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
-    return " ".join(f"{type(error).__name__}: {error}".split()) + place
+    try:
+        text = f"{type(error).__name__}: {error}"
+    except Exception:  # of its own __str__
+        text = type(error).__name__
+    return " ".join(text.split()) + place
 
 
 class _Bar:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A shape in the viewer of the report, as one page that needs no network and no other file."""
 
+import functools
 import html
-import importlib
+import importlib.util
 import pathlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -13,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 if TYPE_CHECKING:
     from salbench._shape import Shape
 
-HERE = pathlib.Path(__file__).parent / "viewer"
-THREE = (HERE, pathlib.Path("/usr/share/javascript/three"))
+REPORTS = (pathlib.Path(__file__).parent / "report", pathlib.Path("/usr/share/salbench/report"))
+THREE = pathlib.Path("/usr/share/javascript/three")
 SCRIPTS = ("three.min.js", "examples/js/controls/OrbitControls.js")
 NEIGHBOURS = 500  # points whose distances say how wide separate points are drawn
 
@@ -41,7 +42,7 @@ class View:
 
 def show(shape: "Shape", values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
     """The page of a shape with its ground truth, and maps beside it."""
-    parts: Any = importlib.import_module("salbench._viewer_parts")  # the report's, linked there by the build
+    parts = _parts()
     if len(shape.points) == 0:
         raise ValueError(f"{shape.id} has no points to show")
     maps = {name: parts.unit_range(known) for name, known in _maps(shape, values).items()}
@@ -79,10 +80,11 @@ def _spacing(points: NDArray[np.float64]) -> float:
 
 
 def _page(title: str, section: str, call: str) -> str:
+    static = _report() / "static"
     scripts = [_three(name) for name in SCRIPTS]
-    scripts += ["const salbench = {};", *((HERE / name).read_text(encoding="utf-8") for name in ("viewer.js", "palette.js"))]
+    scripts += ["const salbench = {};", *((static / name).read_text(encoding="utf-8") for name in ("viewer.js", "palette.js"))]
     scripts.append(call.replace("<", "\\u003c"))  # all of its text is JSON
-    style = (HERE / "report.css").read_text(encoding="utf-8")
+    style = (static / "report.css").read_text(encoding="utf-8")
     return "\n".join(["<!DOCTYPE html>", '<html lang="en-GB"><head><meta charset="utf-8">',
                       f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
                       f"<title>{html.escape(title)}</title>", f"<style>{style}</style>",
@@ -95,7 +97,26 @@ def _inline(script: str) -> str:
 
 
 def _three(name: str) -> str:
-    for folder in THREE:
-        if (folder / name).is_file():
-            return (folder / name).read_text(encoding="utf-8")
-    raise FileNotFoundError(f"{THREE[-1] / name}: the viewer needs three.js, Debian's package libjs-three")
+    try:
+        return (THREE / name).read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise FileNotFoundError(f"{THREE / name}: the viewer needs three.js, Debian's package libjs-three") from None
+
+
+def _report() -> pathlib.Path:
+    """The folder of the report, whose viewer this is."""
+    for folder in REPORTS:
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError(f"{REPORTS[-1]}: the viewer is the report's, of Debian's package salbench")
+
+
+@functools.cache
+def _parts() -> Any:
+    """Its module report/viewer_parts.py, without the rest, which needs more than NumPy."""
+    path = _report() / "viewer_parts.py"
+    spec = importlib.util.spec_from_file_location("salbench._viewer_parts", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

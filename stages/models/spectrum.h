@@ -33,4 +33,9 @@ struct Eigenpairs {
 // 1 < k < n - 1. There are no columns if the solver fails. The result has the same bytes on every call.
 Eigenpairs lowest_eigenpairs(const SparseMatrix& laplacian, Eigen::Index k);
 
+// The same of a surface: of its edges, weighted by 1 / distance^2, in units of R. Throws InputError for a
+// shape without extent, faces that do not connect all points, k outside of 1 < k < n - 1, and if the solver
+// fails. [song2014]
+Eigenpairs spectrum_of(Points points, Surface surface, std::size_t k);
+
 }  // namespace salbench

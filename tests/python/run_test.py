@@ -163,9 +163,19 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "nobody"):
             again.maps("AGAIN")["nobody"]
 
+    def test_a_map_that_was_damaged_since_is_computed_again(self):
+        results = self.run_with({"MINE": function(HEIGHT.format(axis=0), self.folder)})
+        name = results.scores.item[0]
+        before = results.maps("MINE")[name].copy()
+        for path in (self.folder / "cache" / "map.MINE").rglob("*.h5"):
+            path.write_bytes(path.read_bytes()[:-1])
+        with self.assertLogs("salbench", "WARNING"):
+            np.testing.assert_array_equal(results.maps("MINE")[name], before)
+
     def test_what_cannot_be_run_is_said_at_once(self):
         for models, error, what in [
-            ({"ls": {}}, ValueError, "ls"), ({"LS": {"foci": 1}}, ValueError, "foci_share"), ({"a/b": len}, ValueError, "a/b"),
+            ({"ls": {}}, ValueError, "ls"), ({"LS": {"foci": 1}}, ValueError, "foci_share"), ({"a/b": salbench.Model(len, version=1)}, ValueError, "a/b"),
+            ({"MINE": len}, ValueError, "give a version"),
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 self.run_with(models)
@@ -208,6 +218,17 @@ class Runs(unittest.TestCase):
         shapes = [line for line in again.stdout.splitlines() if not line.startswith("computed")]
         self.assertGreater(len(shapes), 0)
         self.assertLess(len(shapes), 26)
+
+    def test_after_an_interrupt_the_same_process_runs_commands_again(self):
+        def interrupted(shape):
+            raise KeyboardInterrupt
+
+        command = {"command": "cp {mesh} kept; /usr/bin/awk '/element vertex/ {n = $3} END {for (i = 0; i < n; ++i) print i}' kept > {out}"}
+        with self.assertRaises(KeyboardInterrupt):
+            self.run_with({"MINE": salbench.Model(interrupted, version=1), "COUNTED": command})
+        results = self.run_with({"MINE": salbench.Model(lambda shape: shape.points[:, 0], version=1), "COUNTED": command})
+        self.assertEqual(results.failures, [])
+        np.testing.assert_array_equal(results.maps("COUNTED")["1"], np.arange(len(results.maps("COUNTED")["1"])))
 
     def test_a_process_that_was_forked_after_a_run_computes(self):
         self.run_with({"LS": {}})

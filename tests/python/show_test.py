@@ -17,7 +17,7 @@ from salbench import _show
 
 POINTS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3], [1, 1, 1]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], np.int32)
-WITHOUT_THREE = not any((folder / _show.SCRIPTS[0]).is_file() for folder in _show.THREE)
+WITHOUT_THREE = not (_show.THREE / _show.SCRIPTS[0]).is_file()
 
 
 def shape(name="52", **known):
@@ -142,7 +142,7 @@ class Pages(unittest.TestCase):
 class WithoutThree(unittest.TestCase):
     def setUp(self):
         self.addCleanup(setattr, _show, "THREE", _show.THREE)
-        _show.THREE = (pathlib.Path("/nowhere"),)
+        _show.THREE = pathlib.Path("/nowhere")
 
     def test_says_what_is_missing(self):
         with self.assertRaisesRegex(FileNotFoundError, "libjs-three"):

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Published models as functions of a shape, under the names of the program's table in lower case: ls, cs, ps, ms, ...
+
+Each takes a mesh, a scan or a point cloud, and its options as a configuration calls them. What a model reads and nobody
+gives is computed as a run does it: normals, descriptors, the partial mesh. An option that has the name of an argument ends
+in an underscore: `faces_`, the number of faces that a larger mesh is simplified to.
+
+>>> import numpy as np
+>>> from salbench import models
+>>> points = np.random.default_rng(1).normal(size=(200, 3))
+>>> models.ls(points, foci_share=0.1).shape
+(200,)
+"""
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from salbench import _core
+from salbench._options import Row, Value, with_options
+from salbench._shape import Shape
+from salbench._shapes import Scan
+
+
+class ModelFunction(Protocol):
+    """What the functions of this module take."""
+
+    def __call__(
+        self,
+        points: ArrayLike | Shape | Scan,
+        faces: ArrayLike | None = None,
+        normals: ArrayLike | None = None,
+        fpfh: ArrayLike | None = None,
+        *,
+        scan: bool = False,
+        seed: int = 0,
+        item: str = "",
+        threads: int = 1,
+        **options: Value,
+    ) -> NDArray[np.float64]: ...
+
+
+class ModelRow(NamedTuple):
+    """A row of the table of models."""
+
+    name: str
+    reads: list[str]
+    random: bool
+    is_reference: bool
+    options: list[Row]
+
+
+def table() -> list[ModelRow]:
+    """The models that make maps, in the order of the program.
+
+    Returns
+    -------
+    list of (name, reads, random, is_reference, options)
+        `reads` names arguments; `options` are (name, default, note).
+
+    Examples
+    --------
+    >>> from salbench import models
+    >>> [row.reads for row in models.table() if row.name == "LS"]
+    [['points', 'normals', 'fpfh']]
+    """
+    return [ModelRow(*row) for row in _core.model_table()]
+
+
+# What the table of the program does not tell: meaning of the map, and its source.
+_ABOUT = {
+    "LS": ("Saliency of large point sets: what differs at two scales from all that resembles it, or is near to it; >= 0.",
+           "shtrom2013"),
+    "CS": ("Cluster-based point set saliency: clusters that are unlike their surroundings; 0 to 1.", "tasse2015"),
+    "PS": ("Saliency by principal components: the descriptor along the direction in which descriptors vary most.",
+           "tasse2016"),
+    "MS": ("Mesh saliency by spectral processing: irregularities of the log-Laplacian spectrum; logarithms.", "song2014"),
+    "RS": ("Random saliency, the baseline without any agreement: uniform in [0, 1).", "tasse2016"),
+    "MC": ("Magnitude of the mean curvature, in 1 / R.", "meyer2003"),
+    "LVJ": ("Mesh saliency by Lee, Varshney and Jacobs: mean curvature against that of a wider surrounding; >= 0.",
+            "lee2005"),
+    "LCE": ("Local curvature entropy, in bits.", "limper2016"),
+    "CB": ("Centre bias: the distance from the centroid, in R.", "tatler2007"),
+    "VIS": ("Visibility: the fraction of directions above a point from which nothing hides it.", ""),
+}
+
+_ARGUMENTS = ("points", "faces", "normals", "fpfh", "scan", "seed", "item", "threads")
+
+_DOCUMENTATION = """{summary}
+
+Parameters
+----------
+points : (n, 3) array, `Shape` or `Scan`
+    Positions, in any unit; or a shape, of which the parts count that are not given beside it.
+faces : (m, 3) array of int, optional
+    Corners: of a mesh, or the partial mesh of a scan or point cloud.
+normals : (n, 3) array, optional
+    Of unit length.
+fpfh : (n, 33) array, optional
+    Descriptors, as the function `fpfh` of the package gives them.
+scan : bool
+    Options and descriptors of scans, where they differ from those of meshes and point clouds.
+seed, item : int, str
+    Of random numbers, as a run draws them for a shape of this name.
+threads : int
+    That may work on it; the map does not depend on it.
+    **options
+
+Returns
+-------
+(n,) array
+    The map as the model made it; metrics normalise it.
+
+Raises
+------
+ValueError
+    An argument that does not fit, or a shape that the model cannot be computed of.
+
+Notes
+-----
+Reads {reads}. What is not given of it is computed with the default options of a run. Normals of a mesh come from its
+faces, those of a `Scan` are turned towards its camera, and those of other points outward.
+{references}
+Examples
+--------
+>>> import numpy as np
+>>> from salbench import models
+>>> models.{function}(np.random.default_rng(1).normal(size=(50, 3))).shape
+(50,)
+"""
+
+
+def _function(row: ModelRow) -> ModelFunction:
+    name = row.name.lower().replace("-", "_")
+    taken = {f"{option}_": option for option, _, _ in row.options if option in _ARGUMENTS}
+    rows = [(option + "_" * (option in _ARGUMENTS), default, note) for option, default, note in row.options]
+
+    def model(
+        points: ArrayLike | Shape | Scan,
+        faces: ArrayLike | None = None,
+        normals: ArrayLike | None = None,
+        fpfh: ArrayLike | None = None,
+        *,
+        scan: bool = False,
+        seed: int = 0,
+        item: str = "",
+        threads: int = 1,
+        **options: Value,
+    ) -> NDArray[np.float64]:
+        camera: Any = None
+        if isinstance(points, Shape):
+            shape = points
+            points = shape.points
+            faces = shape.faces if faces is None else faces
+            normals = shape.normals if normals is None else normals
+            fpfh = shape.fpfh if fpfh is None else fpfh
+            item = item or shape.id
+        elif isinstance(points, Scan):
+            camera, scan = points.camera, True
+            points = points.points
+        written = {taken.get(key, key): value for key, value in options.items()}
+        return _core.map(row.name, name, points, faces, normals, fpfh, camera, bool(scan), seed, str(item), threads, written)
+
+    model.__name__ = model.__qualname__ = name
+    summary, source = _ABOUT.get(row.name, (f"The model {row.name}.", ""))
+    references = f"\nReferences\n----------\n[{source}]\n" if source else ""
+    reads = ", ".join(f"`{part}`" for part in row.reads) + (", and random numbers" if row.random else "")
+    model.__doc__ = _DOCUMENTATION.format(summary=summary, function=name, reads=reads, references=references)
+    return with_options(rows)(model)
+
+
+_functions = {function.__name__: function for function in map(_function, table())}  # type: ignore[attr-defined]
+globals().update(_functions)
+__all__ = ["ModelFunction", "table", *_functions]
+
+if TYPE_CHECKING:
+
+    def __getattr__(name: str) -> ModelFunction: ...

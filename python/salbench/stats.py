@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What scores per shape show: how good each model is, which differ, which is best, and how sure that is."""
+
+import io
+import math
+from collections.abc import Iterable
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from salbench import _core
+
+if TYPE_CHECKING:
+    import pandas
+
+_TEXTS = ("item", "model", "dataset", "view", "class")
+
+
+class Conclusions:
+    """Tables of what scores show, as data frames with the columns of docs/data_dictionary.md.
+
+    Each is worked out when it is first asked for; all speak of the same units, shapes and resamples.
+    """
+
+    def __init__(self, tables: Any) -> None:
+        self._tables = tables
+
+    def _table(self, name: str) -> "pandas.DataFrame":
+        import pandas
+
+        names = {name: str for name in ("model", "model_a", "model_b", "class", "group")}
+        return pandas.read_csv(io.StringIO(self._tables.table(name)), dtype=names, keep_default_na=False, na_values=[""],
+                               float_precision="round_trip")
+
+    @cached_property
+    def summary(self) -> "pandas.DataFrame":
+        """Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by unit [efron1987]."""
+        return self._table("summary")
+
+    @cached_property
+    def ranking(self) -> "pandas.DataFrame":
+        """Ranks with their intervals, and letters of groups that cannot be told apart [mogstad2024]."""
+        return self._table("ranking")
+
+    @cached_property
+    def significance(self) -> "pandas.DataFrame":
+        """Every pair of models: paired differences, signed-rank tests [wilcoxon1945], corrected for all pairs [holm1979]."""
+        return self._table("significance")
+
+    @cached_property
+    def agreement(self) -> "pandas.DataFrame":
+        """How far the rankings by two metrics agree [kendall1945]."""
+        return self._table("agreement")
+
+    @cached_property
+    def per_class(self) -> "pandas.DataFrame":
+        """Means and intervals by class of the items; empty without classes."""
+        return self._table("per_class")
+
+    @cached_property
+    def human_share(self) -> "pandas.DataFrame":
+        """Scores as a share of what people reach; empty without the model HS."""
+        return self._table("human_share")
+
+    @cached_property
+    def power(self) -> "pandas.DataFrame":
+        """Which differences the scores could have shown [cohen1988]."""
+        return self._table("power")
+
+
+def _text(value: Any) -> str:
+    """As a CSV file has it: nothing is empty, and 3.0 of a column that pandas made floats of is 3."""
+    if value is None or (isinstance(value, float) and math.isnan(value)) or str(value) == "<NA>":
+        return ""
+    if isinstance(value, float) and value.is_integer():
+        return str(int(value))
+    return str(value)
+
+
+def _columns(table: Any, named: set[str]) -> dict[str, Any]:
+    """Texts as lists, numbers as arrays; other columns are left out unless they are named."""
+    from pandas.api.types import is_numeric_dtype
+
+    columns: dict[str, Any] = {}
+    for name in map(str, table.columns):
+        if name in columns:
+            raise ValueError(f"table has two columns '{name}'")
+        values = table[name]
+        if name in _TEXTS:
+            columns[name] = [_text(value) for value in values]
+        elif name in named or is_numeric_dtype(values.dtype):
+            columns[name] = values.to_numpy(dtype=np.float64, na_value=np.nan)
+    return columns
+
+
+def conclude(
+    table: "pandas.DataFrame",
+    unit: str = "mesh",
+    seed: int = 2016,
+    metrics: Iterable[str] | None = None,
+    *,
+    higher_is_better: Iterable[str] = (),
+    lower_is_better: Iterable[str] = (),
+    threads: int = 1,
+) -> Conclusions:
+    """Intervals, paired tests, ranks and groups from a table of scores per shape: `Results.scores`, or anybody's.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        A row per shape and model. Columns: item, model and at least one metric; dataset ("meshes", "scans", "clouds"),
+        view and class if there are any. Without `dataset`, rows with a view are of scans and others of meshes.
+    unit : str
+        What counts as one observation: "mesh", the scans of one being averaged; "class"; "shape".
+    seed : int
+        Of the resamples; the default is that of the command `salbench conclusions`.
+    metrics : sequence of str, optional
+        Columns that count. All that are known by default.
+    higher_is_better, lower_is_better : sequence of str
+        Columns that count beside the metrics of the program.
+    threads : int
+        That may work on it; the tables do not depend on it.
+
+    Returns
+    -------
+    Conclusions
+        With the frames summary, ranking, significance, agreement, per_class, human_share, power.
+
+    Raises
+    ------
+    KeyError
+        A name among `metrics`, `higher_is_better`, `lower_is_better` that is no column.
+    ValueError
+        A table that lacks columns, has an infinite score or two rows of a shape and model; the message names the row by its
+        position.
+
+    References
+    ----------
+    [efron1987], [wilcoxon1945], [holm1979], [mogstad2024], [piepho2004]
+
+    Examples
+    --------
+    >>> import pandas
+    >>> import salbench
+    >>> scores = pandas.DataFrame({"item": list("abcdef") * 2, "model": ["A"] * 6 + ["B"] * 6,
+    ...                            "auc": [.7, .8, .75, .9, .8, .7, .6, .7, .7, .8, .7, .65]})
+    >>> found = salbench.stats.conclude(scores)
+    >>> found.ranking[["model", "rank"]].values.tolist()
+    [['A', 1], ['B', 2]]
+    """
+    chosen = None if metrics is None else _names("metrics", metrics)
+    higher, lower = _names("higher_is_better", higher_is_better), _names("lower_is_better", lower_is_better)
+    if not hasattr(table, "columns"):
+        raise ValueError(f"table must be a pandas.DataFrame, not {type(table).__name__}")
+    columns = _columns(table, {*(chosen or ()), *higher, *lower})
+    for name in [*(chosen or ()), *higher, *lower]:
+        if name not in columns and not (name == "lcc" and "cc" in columns):
+            _core.fail_unknown("column", name, list(columns))
+    return Conclusions(_core.Conclusions(columns, chosen, higher, lower, str(unit), seed, threads))
+
+
+def _names(argument: str, names: Iterable[str]) -> list[str]:
+    if isinstance(names, str):
+        return [names]
+    result = list(names)
+    if not all(isinstance(name, str) for name in result):
+        raise ValueError(f"{argument} must be names of columns")
+    return result

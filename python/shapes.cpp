@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stages that make something of a shape, on arrays: normals, descriptors, scans, surfaces, pictures.
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "python/arrays.h"
+#include "python/computing.h"
+#include "python/module.h"
+#include "python/options.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/parallel.h"
+#include "stages/core/smoothing.h"
+#include "stages/fpfh/fpfh.h"
+#include "stages/ground_truth/carried.h"
+#include "stages/ground_truth/scan_truth.h"
+#include "stages/models/simplified.h"
+#include "stages/models/spectrum.h"
+#include "stages/normals/normals.h"
+#include "stages/picture/picture.h"
+#include "stages/scan/scan.h"
+#include "stages/surface/surface.h"
+
+namespace salbench::python {
+namespace {
+
+int threads_from(py::handle threads) {
+  return static_cast<int>(whole_number({threads, "threads"}, 1, kMostThreads));
+}
+
+std::vector<Vec3> copy_of(const View<Vec3>& view) { return {view.values.begin(), view.values.end()}; }
+
+Mesh mesh_from(py::handle points_of, py::handle faces_of) {
+  const auto vertices = points({points_of, "points"});
+  return {copy_of(vertices), faces({faces_of, "faces"}, vertices.size())};
+}
+
+PointCloud cloud_from(py::handle points_of, py::handle viewpoint) {
+  PointCloud cloud{.points = copy_of(points({points_of, "points"}))};
+  if (!viewpoint.is_none()) cloud.viewpoint = place({viewpoint, "viewpoint"});
+  return cloud;
+}
+
+// --- normals and descriptors -------------------------------------------------------------------------------
+
+py::array estimated_normals(py::handle points_of, py::handle faces_of, py::handle viewpoint,
+                            py::handle threads, const py::dict& keywords) {
+  const std::string function = "estimate_normals";
+  const int most = threads_from(threads);
+  if (faces_of.is_none()) {
+    const auto options = options_from<ScanNormalsOptions>(keywords, function);
+    const PointCloud cloud = cloud_from(points_of, viewpoint);
+    if (cloud.points.empty()) throw py::value_error("points must have at least one");
+    return moved(computed(most, [&] { return cloud_normals(cloud, options); }));
+  }
+  if (!viewpoint.is_none())
+    throw py::value_error("viewpoint must be None for a mesh: its faces say what is outside");
+  const auto options = options_from<MeshNormalsOptions>(keywords, function);
+  const Mesh mesh = mesh_from(points_of, faces_of);
+  return moved(computed(most, [&] { return mesh_normals(mesh, options); }));
+}
+
+py::array descriptors_of(py::handle points_of, py::handle normals_of, bool of_scan, py::handle threads,
+                         const py::dict& keywords) {
+  const FpfhOptions options =
+      options_from<FpfhOptions>(keywords, "fpfh", of_scan ? ScanFpfhOptions() : FpfhOptions());
+  const auto place_of = points({points_of, "points"});
+  const auto normal_of = normals({normals_of, "normals"}, place_of.size());
+  return moved(computed(threads_from(threads),
+                        [&] { return fpfh(place_of.values, normal_of.values, options).values; }),
+               kFpfhBins);
+}
+
+// --- scans
+// ---------------------------------------------------------------------------------------------------
+
+py::tuple scan_tuple(Scan scan) {
+  return py::make_tuple(moved(std::move(scan.points)),
+                        moved(std::vector<double>(scan.camera.begin(), scan.camera.end())));
+}
+
+py::tuple one_scan(py::handle points_of, py::handle faces_of, py::handle view, const py::dict& keywords) {
+  const auto options = options_from<ScanOptions>(keywords, "simulate_scan");
+  const auto number = static_cast<int>(whole_number({view, "view"}, 0, kViews - 1));
+  const Mesh mesh = mesh_from(points_of, faces_of);
+  return scan_tuple(computed(1, [&] { return simulate_scan(mesh, number, options); }));
+}
+
+py::list all_scans(py::handle points_of, py::handle faces_of, py::handle threads, const py::dict& keywords) {
+  const auto options = options_from<ScanOptions>(keywords, "simulate_scans");
+  const Mesh mesh = mesh_from(points_of, faces_of);
+  std::array<Scan, kViews> scans;
+  computed(threads_from(threads), [&] {
+    const ScanScene scene(mesh);
+    parallel_ranges(scans.size(), 1, [&](std::size_t view, std::size_t) {
+      scans[view] = scene.scan(static_cast<int>(view), options);
+    });
+  });
+  py::list result;
+  for (Scan& scan : scans) result.append(scan_tuple(std::move(scan)));
+  return result;
+}
+
+// --- surfaces
+// ------------------------------------------------------------------------------------------------
+
+py::array partial_mesh_of(py::handle points_of, py::handle normals_of, const py::dict& keywords) {
+  const auto options = options_from<SurfaceOptions>(keywords, "partial_mesh");
+  const auto place_of = points({points_of, "points"});
+  const Normals normal_of = copy_of(normals({normals_of, "normals"}, place_of.size()));
+  return moved(computed(1, [&] { return partial_mesh(place_of.values, normal_of, options); }));
+}
+
+py::tuple simplify(py::handle points_of, py::handle faces_of, py::handle target_faces) {
+  const Mesh mesh = mesh_from(points_of, faces_of);
+  const std::uint64_t target =
+      whole_number({target_faces, "target_faces"}, 0, std::numeric_limits<std::int32_t>::max());
+  Mesh result = computed(1, [&] { return simplified(mesh, target); });
+  return py::make_tuple(moved(std::move(result.vertices)), moved(std::move(result.faces)));
+}
+
+py::array vertex_areas(py::handle points_of, py::handle faces_of) {
+  const auto vertices = points({points_of, "points"});
+  const Faces surface = faces({faces_of, "faces"}, vertices.size());
+  return moved(computed([&] { return barycentric_areas(vertices.values, surface); }));
+}
+
+py::tuple spectrum(py::handle points_of, py::handle faces_of, py::handle count) {
+  const auto vertices = points({points_of, "points"});
+  const Faces surface = faces({faces_of, "faces"}, vertices.size());
+  const std::uint64_t k = whole_number({count, "k"}, 2, std::numeric_limits<std::int32_t>::max());
+  const Eigenpairs pairs = computed(1, [&] { return spectrum_of(vertices.values, surface, k); });
+  std::vector<double> vectors(static_cast<std::size_t>(pairs.vectors.size()));
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+      vectors.data(), pairs.vectors.rows(), pairs.vectors.cols()) = pairs.vectors;
+  return py::make_tuple(moved(std::vector<double>(pairs.values.begin(), pairs.values.end())),
+                        moved(std::move(vectors)).reshape({pairs.vectors.rows(), pairs.vectors.cols()}));
+}
+
+// --- ground truth
+// --------------------------------------------------------------------------------------------
+
+py::array smooth(py::handle points_of, py::handle faces_of, py::handle picked, const py::dict& keywords) {
+  const auto options = options_from<SmoothingOptions>(keywords, "smooth_picks");
+  const Mesh mesh = mesh_from(points_of, faces_of);
+  const auto participants = picks({picked, "picks"}, mesh.vertices.size());
+  return moved(computed([&] { return smoothed_picks(mesh, participants, options); }));
+}
+
+// A carrying looks at points alone.
+py::tuple carry(py::handle points_of, py::handle ground_truth, py::handle picked, py::handle scan_points) {
+  const Mesh mesh{copy_of(points({points_of, "points"})), {}};
+  const std::size_t n = mesh.vertices.size();
+  GroundTruth truth;
+  if (const Argument saliency{ground_truth, "ground_truth"}; saliency.given()) {
+    const auto values = field(saliency, n);
+    truth.saliency.assign(values.values.begin(), values.values.end());
+  }
+  truth.picks = picks({picked, "picks"}, n);
+  const Scan scan{copy_of(points({scan_points, "scan_points"}))};
+  if (n == 0 && !scan.points.empty()) throw py::value_error("points must have at least one");
+  GroundTruth carried = computed([&] { return scan_ground_truth(scan, mesh, truth); });
+  py::list participants;
+  for (std::vector<std::int32_t>& own : carried.picks) participants.append(moved(std::move(own)));
+  return py::make_tuple(ground_truth.is_none() ? py::object(py::none()) : moved(std::move(carried.saliency)),
+                        py::tuple(participants));
+}
+
+py::array of_faces(py::handle points_of, py::handle faces_of, py::handle values_of) {
+  const auto vertices = points({points_of, "points"});
+  const Faces surface = faces({faces_of, "faces"}, vertices.size());
+  const auto values = field({values_of, "values"}, surface.size());
+  return moved(computed([&] { return vertex_values_of_faces(vertices.values, surface, values.values); }));
+}
+
+py::array of_samples(py::handle points_of, py::handle samples_of, py::handle values_of, double max_distance) {
+  const auto vertices = points({points_of, "points"});
+  const auto samples = points({samples_of, "samples"});
+  if (samples.size() == 0) throw py::value_error("samples must have at least one point");
+  const auto values = field({values_of, "values"}, samples.size());
+  if (!(max_distance >= 0)) throw py::value_error("max_distance must be a distance >= 0");
+  return moved(computed([&] {
+    return vertex_values_of_samples(vertices.values, samples.values, values.values, max_distance);
+  }));
+}
+
+// --- pictures
+// ------------------------------------------------------------------------------------------------
+
+Picture rendered(py::handle points_of, py::handle faces_of, py::handle normals_of, py::handle viewpoint,
+                 const RandomSource& random, int threads, const PictureOptions& options) {
+  if (normals_of.is_none()) {
+    if (faces_of.is_none()) throw py::value_error("normals must be given of points without faces");
+    if (!viewpoint.is_none()) throw py::value_error("viewpoint must be None for a mesh");
+    const Mesh mesh = mesh_from(points_of, faces_of);
+    return computed(threads, [&] { return picture_of_mesh(mesh, options, random); });
+  }
+  const PointCloud cloud = cloud_from(points_of, viewpoint);
+  const Normals normal_of = copy_of(normals({normals_of, "normals"}, cloud.points.size()));
+  const Faces surface = faces({faces_of, "faces"}, cloud.points.size());
+  return computed(threads, [&] { return picture_of_cloud(cloud, normal_of, surface, options, random); });
+}
+
+// (primitive, weights, depth, shade, coverage, view_projection)
+py::tuple picture(py::handle points_of, py::handle faces_of, py::handle normals_of, py::handle viewpoint,
+                  py::handle seed, const std::string& item, py::handle threads, const py::dict& keywords) {
+  const auto options = options_from<PictureOptions>(keywords, "picture");
+  const RandomSource random{whole_number({seed, "seed"}, 0, UINT64_MAX), item};
+  Picture picture =
+      rendered(points_of, faces_of, normals_of, viewpoint, random, threads_from(threads), options);
+  const py::ssize_t n = picture.size;
+  const auto& matrix = picture.view_projection;
+  return py::make_tuple(moved(std::move(picture.primitive)).reshape({n, n}),
+                        moved(std::move(picture.weights), 3).reshape({n, n, py::ssize_t{3}}),
+                        moved(std::move(picture.depth), 1).reshape({n, n}),
+                        moved(std::move(picture.shade)).reshape({n, n}),
+                        moved(std::move(picture.coverage)).reshape({n, n}),
+                        moved(std::vector<double>(matrix.begin(), matrix.end())).reshape({4, 4}));
+}
+
+}  // namespace
+
+void bind_shapes(py::module_& module) {
+  module.def("estimate_normals", &estimated_normals);
+  module.def("mesh_normals_options", [] { return described<MeshNormalsOptions>(); });
+  module.def("scan_normals_options", [] { return described<ScanNormalsOptions>(); });
+  module.def("fpfh", &descriptors_of);
+  module.def("fpfh_options", [] { return described<FpfhOptions>(); });
+  module.def("simulate_scan", &one_scan);
+  module.def("simulate_scans", &all_scans);
+  module.def("scan_options", [] { return described<ScanOptions>(); });
+  module.def("partial_mesh", &partial_mesh_of);
+  module.def("surface_options", [] { return described<SurfaceOptions>(); });
+  module.def("simplify", &simplify);
+  module.def("vertex_areas", &vertex_areas);
+  module.def("spectrum", &spectrum);
+  module.def("smooth_picks", &smooth);
+  module.def("smoothing_options", [] { return described<SmoothingOptions>(); });
+  module.def("carry_ground_truth", &carry);
+  module.def("vertex_values_of_faces", &of_faces);
+  module.def("vertex_values_of_samples", &of_samples);
+  module.def("picture", &picture);
+  module.def("picture_options", [] { return described<PictureOptions>(); });
+}
+
+}  // namespace salbench::python

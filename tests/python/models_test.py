@@ -1,0 +1,373 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models, and the stages before them, as functions: the bytes of the program's artefacts. Conclusions: its tables."""
+
+import inspect
+import io
+import os
+import pathlib
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+import pandas
+
+import salbench
+import toy
+
+SEED = 2016
+STEP = 1  # degrees between the rays of scans
+PICTURE = 48  # pixels
+MODELS = [row.name for row in salbench.models.table()]
+CONFIG = """\
+dataset: {{layout: {layout}, participants: {participants}}}
+scan: {{step_degrees: {step}}}
+picture: {{size: {picture}}}
+models: {{{models}, HS: {{}}}}
+"""
+
+
+def function_of(model):
+    return getattr(salbench.models, model.lower())
+
+
+class Artefacts:
+    """A run of every model on meshes and their scans, and its export."""
+
+    @classmethod
+    def begin(cls, data, items, layout, participants):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        config = cls.folder / "all.yaml"
+        config.write_text(CONFIG.format(layout=layout, participants=participants, step=STEP, picture=PICTURE,
+                                        models=", ".join(f"{name}: {{}}" for name in MODELS)))
+        options = ["--data", data, "--cache", cls.folder / "cache", "--out", cls.folder / "out", *items]
+        toy.run(config, *options)
+        toy.export(config, *options, "--to", cls.folder / "all.h5")
+        cls.file = h5py.File(cls.folder / "all.h5")
+        cls.addClassCleanup(cls.file.close)
+        cls.meshes = [name for name in cls.file if f"{name}/mesh" in cls.file]
+        cls.scans = [name for name in cls.file if f"{name}/scan" in cls.file]
+
+    def same(self, found, shape, path):
+        """Equal to the bit, in the type of the artefact."""
+        stored = self.file[shape][path][...]
+        self.assertEqual(found.dtype, stored.dtype, f"{shape}/{path}")
+        self.assertEqual(found.shape, stored.shape, f"{shape}/{path}")
+        self.assertEqual(found.tobytes(), stored.tobytes(), f"{shape}/{path}")
+
+    def mesh(self, item):
+        return self.file[item]["mesh/vertices"][:], self.file[item]["mesh/faces"][:]
+
+    def scan(self, name):
+        return salbench.Scan(self.file[name]["scan/points"][:], self.file[name]["scan/camera"][:])
+
+    def test_meshes(self):
+        self.assertEqual(len(self.scans), 12 * len(self.meshes))
+        for item in self.meshes:
+            points, faces = self.mesh(item)
+            normals = salbench.estimate_normals(points, faces)
+            self.same(normals, item, "normals/normals")
+            self.same(salbench.fpfh(points, normals), item, "fpfh/fpfh")
+
+    def test_scans(self):
+        for item in self.meshes:
+            scans = salbench.simulate_scans(*self.mesh(item), step_degrees=STEP)
+            for view, scan in enumerate(scans):
+                name = f"{item}_{view}"
+                self.same(scan.points, name, "scan/points")
+                self.same(scan.camera, name, "scan/camera")
+                alone = salbench.simulate_scan(*self.mesh(item), view, step_degrees=STEP)
+                self.same(alone.points, name, "scan/points")
+                normals = salbench.estimate_normals(scan.points, viewpoint=scan.camera)
+                self.same(normals, name, "scan_normals/normals")
+                self.same(salbench.partial_mesh(scan.points, normals), name, "surface/faces")
+                self.same(salbench.fpfh(scan.points, normals, scan=True), name, "fpfh/fpfh")
+
+    def picks(self, shape, stage):
+        truth = self.file[shape][stage]
+        if "picks" not in truth:
+            return []
+        return np.split(truth["picks"][:], truth["pick_offsets"][1:-1])
+
+    def test_ground_truth_of_scans(self):
+        for name in self.scans:
+            item = name.rsplit("_", 1)[0]
+            carried = salbench.carry_ground_truth(self.mesh(item)[0], self.scan(name).points,
+                                                  self.file[item]["ground_truth/saliency"][:],
+                                                  self.picks(item, "ground_truth"))
+            self.same(carried.ground_truth, name, "scan_ground_truth/saliency")
+            expected = self.picks(name, "scan_ground_truth")
+            self.assertEqual([own.tolist() for own in carried.picks], [own.tolist() for own in expected])
+
+    def test_maps_of_meshes_from_points_and_faces_alone(self):
+        for item in self.meshes:
+            for model in MODELS:
+                self.same(function_of(model)(*self.mesh(item), seed=SEED, item=item), item, f"map.{model}/saliency")
+
+    def test_maps_of_scans_from_the_scan_alone(self):
+        for name in self.scans:
+            for model in MODELS:
+                self.same(function_of(model)(self.scan(name), seed=SEED, item=name), name, f"map.{model}/saliency")
+
+    def test_maps_of_what_is_given(self):
+        name = self.scans[3]
+        part = {"normals": "scan_normals/normals", "faces": "surface/faces", "fpfh": "fpfh/fpfh"}
+        given = {key: self.file[name][path][:] for key, path in part.items()}
+        shape = salbench.Shape(name, self.scan(name).points, **given)
+        for model in MODELS:
+            self.same(function_of(model)(shape, scan=True, seed=SEED), name, f"map.{model}/saliency")
+            self.same(function_of(model)(shape.points, **given, scan=True, seed=SEED, item=name, threads=2), name,
+                      f"map.{model}/saliency")
+
+    def test_pictures_of_meshes(self):
+        for item in self.meshes:
+            picture = salbench.picture(*self.mesh(item), seed=SEED, item=item, size=PICTURE)
+            for part in ("primitive", "weights", "depth", "shade", "coverage", "view_projection"):
+                self.same(getattr(picture, part), item, f"picture/{part}")
+
+    def test_conclusions(self):
+        out = self.folder / "out"
+        scores = pandas.read_csv(out / "results.csv", comment="#", float_precision="round_trip")
+        found = salbench.stats.conclude(scores, seed=SEED)
+        for name, file in (("summary", "summary"), ("ranking", "ranking"), ("significance", "significance"),
+                           ("agreement", "ranking_agreement"), ("per_class", "per_class"), ("human_share", "human_share")):
+            expected = (out / f"{file}.csv").read_text()
+            expected = expected[expected.index("dataset,"):]
+            self.assertEqual(found._tables.table(name), expected, name)
+            frame = getattr(found, name)
+            self.assertEqual(list(frame.columns), expected.split("\n", 1)[0].split(","))
+            self.assertEqual(len(frame), expected.count("\n") - 1)
+
+
+class Toys(Artefacts, unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.begin(toy.meshes(pathlib.Path(folder.name) / "meshes", 2), [], "folder", "simulated")
+
+
+class Real(Artefacts, unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        data = toy.schelling()
+        if data is None:
+            raise unittest.SkipTest("SALBENCH_DATA names no real data")
+        cls.begin(data, ["--items", "47"], "schelling", "measured")
+
+    def test_picks_of_the_study(self):
+        """The saliency that it published was made from them by an older program: as near as digits allow."""
+        for item in self.meshes:
+            points, faces = self.mesh(item)
+            found = salbench.smooth_picks(points, faces, self.picks(item, "ground_truth"))
+            self.assertGreater(np.corrcoef(found, self.file[item]["ground_truth/saliency"][:])[0, 1], 0.99)
+
+
+class Points(unittest.TestCase):
+    """Point clouds, through files and in memory."""
+
+    def test_maps_equal_those_of_a_run(self):
+        rng = np.random.default_rng(3)
+        points = rng.normal(size=(300, 3))
+        points /= np.linalg.norm(points, axis=1)[:, None] * (1 + 0.3 * rng.random((300, 1)))
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "data").mkdir()
+            (folder / "data/1.xyz").write_text("".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()))
+            (folder / "c.yaml").write_text("dataset: {layout: folder, participants: simulated}\n"
+                                           f"models: {{{', '.join(f'{name}: {{}}' for name in MODELS)}}}\n")
+            options = ["--data", folder / "data", "--cache", folder / "cache", "--out", folder / "out"]
+            toy.run(folder / "c.yaml", *options)
+            toy.export(folder / "c.yaml", *options, "--to", folder / "all.h5")
+            with h5py.File(folder / "all.h5") as file:
+                self.assertEqual(file["1/cloud/points"][:].tobytes(), points.tobytes())
+                self.assertEqual(salbench.estimate_normals(points).tobytes(), file["1/cloud_normals/normals"][:].tobytes())
+                for model in MODELS:
+                    found = function_of(model)(points, seed=SEED, item="1")
+                    self.assertEqual(found.tobytes(), file[f"1/map.{model}/saliency"][:].tobytes(), model)
+
+
+class Functions(unittest.TestCase):
+    """Known answers."""
+
+    def setUp(self):
+        self.points = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
+        self.faces = np.array([[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
+
+    def sphere(self, rings=12, sides=16):
+        polar = np.linspace(0.05, np.pi - 0.05, rings)[:, None]
+        around = np.linspace(0, 2 * np.pi, sides, endpoint=False)[None]
+        return np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar) + 0 * around],
+                        axis=-1).reshape(-1, 3)
+
+    def test_areas_sum_to_the_surface(self):
+        areas = salbench.vertex_areas(self.points, self.faces)
+        np.testing.assert_allclose(areas, np.full(6, 8 * np.sqrt(3) / 2 / 6), rtol=1e-14)
+
+    def test_the_spectrum_is_of_the_laplacian(self):
+        points = self.points * [1, 1.5, 2]
+        n = len(points)
+        radius = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
+        weights = np.zeros((n, n))
+        for a, b, c in self.faces:
+            for i, j in ((a, b), (b, c), (c, a)):
+                weights[i, j] = weights[j, i] = radius**2 / np.sum((points[i] - points[j])**2)
+        laplacian = np.diag(weights.sum(axis=1)) - weights
+        values, vectors = salbench.spectrum(points, self.faces, 4)
+        np.testing.assert_allclose(values, np.linalg.eigvalsh(laplacian)[:4], atol=1e-9)
+        np.testing.assert_allclose(laplacian @ vectors, vectors * values, atol=1e-7)
+        np.testing.assert_allclose(vectors.T @ vectors, np.eye(4), atol=1e-9)
+
+    def test_normals_of_a_sphere_point_outward_and_to_a_viewpoint(self):
+        points = self.sphere()
+        self.assertTrue((np.sum(salbench.estimate_normals(points) * points, axis=1) > 0.9).all())
+        inside = salbench.estimate_normals(points, viewpoint=[0, 0, 0])
+        self.assertTrue((np.sum(inside * points, axis=1) < -0.9).all())
+        self.assertTrue((np.sum(salbench.estimate_normals(self.points, self.faces) * self.points, axis=1) > 0.99).all())
+
+    def test_options_are_those_of_a_configuration(self):
+        points = self.sphere()
+        self.assertFalse(np.array_equal(salbench.models.ls(points), salbench.models.ls(points, foci_share=0.5)))
+        np.testing.assert_array_equal(salbench.models.ps(points, absolute=True) >= 0, True)
+        self.assertEqual(inspect.signature(salbench.models.ms).parameters["weight"].default, "area")
+        self.assertEqual(inspect.signature(salbench.fpfh).parameters["neighbours"].default, 9)
+
+    def test_a_model_of_random_numbers_draws_those_of_seed_and_item(self):
+        first = salbench.models.rs(self.points, seed=1, item="a")
+        np.testing.assert_array_equal(first, salbench.models.rs(self.points, seed=1, item="a"))
+        for seed, item in ((2, "a"), (1, "b")):
+            self.assertFalse(np.array_equal(first, salbench.models.rs(self.points, seed=seed, item=item)))
+
+    def test_types_orders_and_lists_have_the_same_results(self):
+        points = self.sphere().round(2)
+        expected = salbench.models.cs(points)
+        for same in (points.tolist(), np.asfortranarray(points), points[::-1][::-1], points.astype(">f8"),
+                     np.repeat(points, 2, axis=0)[::2], points.astype("longdouble")):
+            np.testing.assert_array_equal(salbench.models.cs(same), expected)
+        faces = self.faces
+        expected = salbench.models.mc(self.points, faces)
+        for same in (faces.tolist(), faces.astype("u1"), faces.astype(">i8"), np.asfortranarray(faces)):
+            np.testing.assert_array_equal(salbench.models.mc(self.points.astype("i1"), same), expected)
+
+    def test_results_are_the_callers(self):
+        areas = salbench.vertex_areas(self.points, self.faces)
+        areas += 1
+        self.assertTrue(areas.flags.writeable)
+        self.assertTrue(areas.flags.c_contiguous)
+
+    def test_simplified_meshes_are_closed(self):
+        points = np.stack(np.meshgrid(*[np.arange(8.0)] * 2, [0.0]), axis=-1).reshape(-1, 3)
+        faces = [[r * 8 + c, r * 8 + c + 1, r * 8 + c + 8] for r in range(7) for c in range(7)]
+        faces += [[r * 8 + c + 1, r * 8 + c + 9, r * 8 + c + 8] for r in range(7) for c in range(7)]
+        fewer, simple = salbench.simplify(points, faces, 20)
+        self.assertLessEqual(len(simple), 20)
+        self.assertAlmostEqual(salbench.vertex_areas(fewer, simple).sum(), 49)
+        self.assertEqual(salbench.simplify(points, faces, 10**6)[1].shape, (98, 3))
+
+    def test_what_cannot_be_used_is_named(self):
+        points, faces = self.points, self.faces
+        up = np.tile([0, 0, 1], (6, 1))
+        for what, error, call in [
+            (r"points must have shape \(n, 3\), not \(6, 2\)", ValueError, lambda: salbench.models.ls(points[:, :2])),
+            (r"points must have at least one", ValueError, lambda: salbench.models.rs(np.empty((0, 3)))),
+            (r"points must have finite coordinates", ValueError, lambda: salbench.models.cb(points + np.inf)),
+            (r"points must have finite coordinates whose squares", ValueError, lambda: salbench.models.cb(points * 1e200)),
+            (r"faces must have numbers of points, 0 to 5, not 6", ValueError, lambda: salbench.vertex_areas(points, faces + 1)),
+            (r"faces must have whole numbers, not float64", ValueError, lambda: salbench.vertex_areas(points, faces * 1.0)),
+            (r"normals must have unit length, not 2 in row 0", ValueError, lambda: salbench.fpfh(points, 2 * up)),
+            (r"normals must have shape \(6, 3\), not \(5, 3\)", ValueError, lambda: salbench.fpfh(points, up[:5])),
+            (r"fpfh must have shape \(6, 33\)", ValueError, lambda: salbench.models.ps(points, fpfh=np.zeros((6, 32)))),
+            (r"fpfh must have finite numbers >= 0", ValueError, lambda: salbench.models.ps(points, fpfh=-np.ones((6, 33)))),
+            (r"view must be a whole number from 0 to 11, not 12", ValueError, lambda: salbench.simulate_scan(points, faces, 12)),
+            (r"view must be a whole number, not of type float", ValueError, lambda: salbench.simulate_scan(points, faces, 1.0)),
+            (r"threads must be a whole number from 1", ValueError, lambda: salbench.models.ls(points, threads=0)),
+            (r"seed must be a whole number from 0", ValueError, lambda: salbench.models.rs(points, seed=-1)),
+            (r"surface area is 0", ValueError, lambda: salbench.simulate_scan(points * 0, faces, 1)),
+            (r"did you mean 'foci_share'\?", TypeError, lambda: salbench.models.ls(points, foci_shar=1)),
+            (r"foci_share must be between 0 and 1", ValueError, lambda: salbench.models.ls(points, foci_share=2)),
+            (r"weight is 'areas', not one of area, inverse_square", ValueError, lambda: salbench.models.ms(points, weight="areas")),
+            (r"k must be from 2 to n - 2, not 5", ValueError, lambda: salbench.spectrum(points, faces, 5)),
+            (r"connect the points to 3 parts", ValueError, lambda: salbench.spectrum(np.r_[points, points[:2] + 9], faces, 2)),
+            (r"viewpoint must have shape \(3,\)", ValueError, lambda: salbench.estimate_normals(points, viewpoint=[1, 2])),
+            (r"viewpoint must be None for a mesh", ValueError,
+             lambda: salbench.estimate_normals(points, faces, viewpoint=[1, 2, 3])),
+            (r"normals must be given", ValueError, lambda: salbench.picture(points)),
+            (r"max_distance must be", ValueError, lambda: salbench.vertex_values_of_samples(points, points, up[:, 0], -1)),
+        ]:
+            with self.subTest(what), self.assertRaisesRegex(error, what):
+                call()
+
+    def test_a_process_that_was_forked_after_computing_computes(self):
+        def work():
+            salbench.models.vis(self.sphere(100, 200)[::4], threads=2)
+            salbench.simulate_scans(self.points, self.faces, step_degrees=2)
+            return salbench.models.ls(self.sphere())
+
+        expected = work()
+        child = os.fork()
+        if child == 0:
+            status = 2
+            try:
+                status = 0 if np.array_equal(work(), expected) else 1
+            finally:
+                os._exit(status)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+
+
+class Statistics(unittest.TestCase):
+    def scores(self, **more):
+        rng = np.random.default_rng(5)
+        items = [str(i) for i in range(12)]
+        table = pandas.DataFrame([{"item": item, "model": model, "auc": rng.random() + gain, "mine": rng.random() - gain}
+                                  for model, gain in (("A", 0.5), ("B", 0.1), ("C", 0.1)) for item in items])
+        return table.assign(**more)
+
+    def test_metrics_are_chosen_and_others_are_named(self):
+        found = salbench.stats.conclude(self.scores(), metrics=["mine", "auc"], lower_is_better=["mine"])
+        self.assertEqual(list(dict.fromkeys(found.summary.metric)), ["mine", "auc"])
+        best = found.ranking.groupby("metric").first().model
+        self.assertEqual(best.to_dict(), {"mine": "A", "auc": "A"})
+        self.assertEqual(set(salbench.stats.conclude(self.scores()).summary.metric), {"auc"})
+
+    def test_means_intervals_and_units(self):
+        scores = self.scores()
+        by_view = pandas.concat([scores.assign(view=float(view)) for view in range(3)] +
+                                [scores.assign(view=np.nan)], ignore_index=True)
+        found = salbench.stats.conclude(by_view)
+        summary = found.summary.set_index(["dataset", "model"])
+        self.assertEqual(summary.loc[("scans", "A"), ["n", "n_shapes"]].tolist(), [12, 36])
+        own = scores[scores.model == "A"].auc
+        self.assertAlmostEqual(summary.loc[("meshes", "A"), "mean"], own.mean(), places=14)
+        self.assertAlmostEqual(summary.loc[("meshes", "A"), "sd"], own.std(), places=14)
+        self.assertEqual(salbench.stats.conclude(by_view, unit="shape").summary.n.max(), 36)
+        self.assertFalse(salbench.stats.conclude(scores, seed=1).summary.equals(salbench.stats.conclude(scores).summary))
+
+    def test_names_that_look_like_numbers_and_gaps_stay(self):
+        scores = self.scores()
+        scores["model"] = scores.model.map({"A": "NA", "B": "1.50", "C": "None"})
+        self.assertEqual(set(salbench.stats.conclude(scores).summary.model), {"NA", "1.50", "None"})
+
+    def test_what_cannot_be_used_is_named(self):
+        scores = self.scores()
+        for what, error, call in [
+            (r"table must be a pandas.DataFrame, not dict", ValueError, lambda: salbench.stats.conclude({})),
+            (r"table must have a column 'model'", ValueError, lambda: salbench.stats.conclude(scores.drop(columns="model"))),
+            (r"column that is a metric", ValueError, lambda: salbench.stats.conclude(scores.drop(columns="auc"))),
+            (r"there is no column 'acu'; did you mean 'auc'", KeyError, lambda: salbench.stats.conclude(scores, metrics=["acu"])),
+            (r"'mine' is no metric of the program", ValueError, lambda: salbench.stats.conclude(scores, metrics=["mine"])),
+            (r"unit must be one of mesh, class, shape, not 'item'", ValueError,
+             lambda: salbench.stats.conclude(scores, unit="item")),
+            (r"table:5: auc is infinite", ValueError,
+             lambda: salbench.stats.conclude(scores.assign(auc=scores.auc.where(scores.index != 5, np.inf)))),
+            (r"a second row of item '0'", ValueError, lambda: salbench.stats.conclude(pandas.concat([scores, scores[:1]]))),
+            (r"no scores", ValueError, lambda: salbench.stats.conclude(scores[:0])),
+            (r"seed must be a whole number", ValueError, lambda: salbench.stats.conclude(scores, seed=-1)),
+        ]:
+            with self.subTest(what), self.assertRaisesRegex(error, what):
+                call()
+
+
+if __name__ == "__main__":
+    unittest.main()
