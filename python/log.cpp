@@ -12,6 +12,7 @@
 #include <pybind11/pybind11.h>
 #include <spdlog/sinks/sink.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 namespace salbench::python {
 namespace {
@@ -85,9 +86,21 @@ class Sink final : public spdlog::sinks::sink {
   void set_formatter(std::unique_ptr<spdlog::formatter>) override {}
 };
 
-py::str text_of(const std::string& bytes) {
-  return py::reinterpret_steal<py::str>(
-      PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "backslashreplace"));
+// Calls salbench/_log.py; false with Python's error set. What it makes are plain pointers: see deliver_log().
+bool say(const std::deque<Record>& records) {
+  PyObject* list = PyList_New(0);
+  for (const Record& record : records) {
+    const auto size = static_cast<Py_ssize_t>(record.text.size());
+    PyObject* row = Py_BuildValue("(iN)", record.level, PyBytes_FromStringAndSize(record.text.data(), size));
+    if (list == nullptr || row == nullptr || PyList_Append(list, row) != 0) return false;
+    Py_DECREF(row);
+  }
+  PyObject* module = PyImport_ImportModule("salbench._log");
+  PyObject* said = module == nullptr ? nullptr : PyObject_CallMethod(module, "say", "O", list);
+  Py_XDECREF(module);
+  Py_XDECREF(list);
+  Py_XDECREF(said);
+  return said != nullptr;
 }
 
 }  // namespace
@@ -101,14 +114,17 @@ void deliver_log() {
   const std::deque<Record> records = kept().take();
   if (records.empty()) return;
   const py::error_scope pending;  // kept for whoever raised it
+  // Python ends threads that run when it shuts down by unwinding them. Such a thread stays here: nothing that
+  // it holds is let go of without the interpreter's lock.
   try {
-    const py::object log = py::module_::import("logging").attr("getLogger")("salbench").attr("log");
-    for (const Record& record : records) log(record.level, "%s", text_of(record.text));
-  } catch (py::error_already_set& error) {  // a filter of the user's
-    if (error.matches(PyExc_KeyboardInterrupt))
+    if (say(records)) return;
+    if (PyErr_ExceptionMatches(PyExc_KeyboardInterrupt) != 0)
       PyErr_SetInterrupt();
     else
-      error.discard_as_unraisable("salbench: a record of the log");
+      PyErr_WriteUnraisable(nullptr);  // a handler of the user's
+    PyErr_Clear();
+  } catch (...) {
+    for (;;) pause();
   }
 }
 
