@@ -181,7 +181,11 @@ def _raised(error: BaseException, trace: Any) -> str:
     """An exception as one line, with the innermost line of code."""
     frames = traceback.extract_tb(trace)
     place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
-    return " ".join(f"{type(error).__name__}: {error}".split()) + place
+    try:
+        text = f"{type(error).__name__}: {error}"
+    except Exception:  # of its own __str__
+        text = type(error).__name__
+    return " ".join(text.split()) + place
 
 
 class _Bar:

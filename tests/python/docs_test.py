@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The code of docs/python.md, block after block, and the notebook, beside a small data set of the Schelling study's form."""
+
+import contextlib
+import io
+import os
+import pathlib
+import re
+import tempfile
+import unittest
+
+import numpy as np
+
+import toy
+
+DOCS = toy.ROOT / "docs"
+
+
+def schelling(folder):
+    """Three toy meshes named as SHREC'07's are, with saliency and the picks of two participants."""
+    rng = np.random.default_rng(1)
+    meshes = toy.meshes(folder / "toy", 3)
+    for part in ("Meshes", "Distributions", "RawData"):
+        (folder / "SchellingData" / part).mkdir(parents=True)
+    for number, path in enumerate(sorted(meshes.glob("*.off")), 1):
+        data = folder / "SchellingData"
+        text = path.read_text()
+        (data / "Meshes" / f"{number}.off").write_text(text)
+        n = int(text.split()[1])
+        np.savetxt(data / "Distributions" / f"{number}.val", rng.random(n))
+        for participant in range(2):
+            np.savetxt(data / "RawData" / f"{number}_{participant}.pid", rng.choice(n, 5, replace=False), fmt="%d")
+
+
+class Docs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        schelling(pathlib.Path(folder.name))
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+
+    def executed(self, source, name):
+        """The names that it leaves. Functions need a file that inspect finds their source in."""
+        path = pathlib.Path(name)
+        path.write_text(source)
+        names = {"__name__": "docs"}
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            exec(compile(source, str(path.resolve()), "exec"), names)  # noqa: S102: our own text
+        return names, printed.getvalue()
+
+    def test_the_blocks_of_the_page(self):
+        blocks = re.findall(r"^```python\n(.*?)^```$", (DOCS / "python.md").read_text(), flags=re.M | re.S)
+        self.assertLessEqual(len(blocks[0].strip().splitlines()), 6)
+        names, printed = self.executed("\n".join(blocks), "page.py")
+        self.assertIn("'auc'", printed)
+        self.assertEqual(names["results"].failures, [])
+        np.testing.assert_array_equal(names["results"].maps("HEIGHT")[names["shape"].id], names["shape"].points[:, 2])
+
+    def test_the_table_of_equivalents_gives_equal_numbers(self):
+        import salbench  # noqa: F401: of the expressions
+        import scipy.stats
+        import sklearn.metrics
+
+        rng = np.random.default_rng(2)
+        names = {"np": np, "scipy": scipy, "sklearn": sklearn, "salbench": salbench, "map": rng.random(50),
+                 "saliency": rng.random(50), "picks": rng.choice(50, 8, replace=False)}
+        names["map"] = (names["map"] - names["map"].min()) / np.ptp(names["map"])
+        names["is_picked"] = np.isin(np.arange(50), names["picks"])
+        rows = re.findall(r"^\| `([^`]+)` \| `([^`]+)`", (DOCS / "python.md").read_text(), flags=re.M)
+        compared = 0
+        for theirs, ours in rows:
+            if "map" not in theirs or "Model" in theirs:
+                continue
+            self.assertAlmostEqual(eval(theirs, names), eval(ours, names), places=9, msg=theirs)  # noqa: S307
+            compared += 1
+        self.assertEqual(compared, 6)
+
+    def test_the_notebook(self):
+        names, _ = self.executed((DOCS / "paper_table.py").read_text(), "paper_table.py")
+        self.assertEqual(set(names["table"].index), {"CENTRE", "LS", "CS", "PS", "MS", "RS"})
+        self.assertEqual(names["results"].failures, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
