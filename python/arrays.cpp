@@ -204,6 +204,15 @@ std::vector<bool> mask(const Argument& argument, std::size_t n) {
   return std::vector<bool>(view.begin(), view.end());
 }
 
+double real_number(const Argument& argument) {
+  const double value = PyFloat_AsDouble(argument.value.ptr());
+  if (!PyErr_Occurred()) return value;
+  if (!PyErr_ExceptionMatches(PyExc_TypeError) && !PyErr_ExceptionMatches(PyExc_OverflowError))
+    throw py::error_already_set();
+  PyErr_Clear();
+  argument.fail("must be a real number that a double can hold");
+}
+
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high) {
   const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(argument.value.ptr()));
   if (!number) {

@@ -64,6 +64,7 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
 // (n,) truth values.
 std::vector<bool> mask(const Argument& argument, std::size_t n);
+double real_number(const Argument& argument);
 // A number by itself, of any integer type.
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high);
 

@@ -174,11 +174,12 @@ py::array of_faces(py::handle points_of, py::handle faces_of, py::handle values_
   return moved(computed([&] { return vertex_values_of_faces(vertices.values, surface, values.values); }));
 }
 
-py::array of_samples(py::handle points_of, py::handle samples_of, py::handle values_of, double max_distance) {
+py::array of_samples(py::handle points_of, py::handle samples_of, py::handle values_of, py::handle distance) {
   const auto vertices = points({points_of, "points"});
   const auto samples = points({samples_of, "samples"});
   if (samples.size() == 0) throw py::value_error("samples must have at least one point");
   const auto values = field({values_of, "values"}, samples.size());
+  const double max_distance = real_number({distance, "max_distance"});
   if (!(max_distance >= 0)) throw py::value_error("max_distance must be a distance >= 0");
   return moved(computed([&] {
     return vertex_values_of_samples(vertices.values, samples.values, values.values, max_distance);
