@@ -72,9 +72,9 @@ if(SALBENCH_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-salbench)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 "benchmark of 3D saliency models (Python 3)
-Metrics, saliency models, descriptors, simulated scans and data sets of salbench
-as functions on NumPy arrays, and its whole benchmark as a function call, with
-models that are functions of Python.
+Metrics, saliency models, descriptors, simulated scans and data sets of
+salbench as functions on NumPy arrays, and its whole benchmark as a function
+call, with models that are functions of Python.
 .
 Needs the package salbench for configurations and reports.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -68,3 +68,15 @@ function(salbench_test name)
   target_link_libraries(test_${name} PRIVATE salbench_settings ${arg_LIBS} GTest::gmock GTest::gtest_main)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 1200)
 endfunction()
+
+# salbench_python_tests(name TIMEOUT s MODULES ...): test NAME.MODULE for each module of this folder, by Debian's Python, which
+# sees Debian's packages.
+function(salbench_python_tests name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "MODULES" ${ARGN})
+  foreach(module IN LISTS arg_MODULES)
+    add_test(NAME ${name}.${module} COMMAND /usr/bin/python3 -B -m unittest -v ${module}
+      WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT
+      "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=$<TARGET_FILE:salbench>")
+  endforeach()
+endfunction()

@@ -90,8 +90,7 @@ std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::
 
 template <class Scalar>
 py::array shown_as(Owner owner, std::vector<py::ssize_t> shape, const void* data) {
-  const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
-  return py::array(py::dtype::of<Scalar>(), std::move(shape), data, keeper);
+  return shown(std::move(owner), py::dtype::of<Scalar>(), std::move(shape), data);
 }
 
 py::ssize_t signed_size(std::size_t n) { return static_cast<py::ssize_t>(n); }
@@ -237,6 +236,10 @@ std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uin
   return value;
 }
 
+py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data) {
+  const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
+  return py::array(std::move(type), std::move(shape), data, keeper);
+}
 py::array shown(Owner owner, std::span<const double> values) {
   return shown_as<double>(std::move(owner), {signed_size(values.size())}, values.data());
 }

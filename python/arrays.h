@@ -79,6 +79,7 @@ py::array shown(Owner owner, std::span<const Triangle> values);            // (n
 py::array shown(Owner owner, std::span<const std::int32_t> values);        // (n,)
 py::array shown(Owner owner, std::span<const std::uint8_t> values);        // (n,)
 py::array shown(Owner owner, std::span<const float> values, int columns);  // (n, columns)
+py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data);
 py::array read_only(py::array array);
 
 // A result as an array that may be written to.

@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 
 #include "io/process.h"
+#include "python/log.h"
 #include "stages/core/errors.h"
 
 namespace salbench::python {
@@ -21,6 +22,11 @@ constexpr std::chrono::milliseconds kNowAndThen{100};
 void Caller::carry_out(const std::function<void()>& work) {
   Request request{&work};
   std::unique_lock lock(mutex_);
+  if (run_ended_) {  // a map that was damaged since: the caller itself asks for it
+    lock.unlock();
+    const py::gil_scoped_acquire mine;
+    return work();
+  }
   if (stop_) throw Interrupted("the run was asked to stop");
   requests_.push_back(&request);
   asked_.notify_one();
@@ -78,6 +84,7 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
       }
       end(*request);
     }
+    deliver_log();
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (const auto now = std::chrono::steady_clock::now(); !stop_ && now - last >= kNowAndThen) {
@@ -92,6 +99,7 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
     const py::gil_scoped_release others_go_on;
     thread.join();
   }
+  deliver_log();
   if (of_caller) std::rethrow_exception(of_caller);
   if (of_run) std::rethrow_exception(of_run);
 }

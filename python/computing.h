@@ -5,16 +5,40 @@
 #include <utility>
 
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 #include <tbb/task_arena.h>
+
+#include "python/log.h"
 
 namespace salbench::python {
 
 inline constexpr int kMostThreads = 1024;
 
+// The interpreter goes on without this thread. Once it shuts down it ends threads that come back, by unwinding them
+// (until Python 3.14): through destructors, which would abort the process, and through frames that hold arrays. Such a
+// thread stays here instead, and ends with the process.
+class OthersGoOn {
+ public:
+  OthersGoOn() : state_(PyEval_SaveThread()) {}
+  OthersGoOn(const OthersGoOn&) = delete;
+  OthersGoOn& operator=(const OthersGoOn&) = delete;
+  ~OthersGoOn() {
+    try {
+      PyEval_RestoreThread(state_);
+    } catch (...) {
+      for (;;) pause();
+    }
+  }
+
+ private:
+  PyThreadState* state_;
+};
+
 // A function that works on one thread whatever it is called with.
 template <class Function>
 auto computed(const Function& function) {
-  const pybind11::gil_scoped_release others_go_on;
+  const LogDelivery afterwards;
+  const OthersGoOn unlocked;
   return function();
 }
 
@@ -22,7 +46,8 @@ auto computed(const Function& function) {
 // that was forked may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
-  const pybind11::gil_scoped_release others_go_on;
+  const LogDelivery afterwards;
+  const OthersGoOn unlocked;
   tbb::task_arena arena(threads);
   return arena.execute(function);
 }

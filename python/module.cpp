@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/config/section.h"
+#include "python/log.h"
 #include "stages/core/errors.h"
 
 namespace salbench::python {
@@ -39,6 +40,9 @@ void fail_unknown(std::string_view what, std::string_view name, const std::vecto
 PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
+  keep_log();
+  bind_cache(module);
+  bind_data(module);
   bind_metrics(module);
   bind_models(module);
   bind_run(module);

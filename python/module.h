@@ -13,6 +13,8 @@ namespace salbench::python {
 [[noreturn]] void fail_unknown(std::string_view what, std::string_view name,
                                const std::vector<std::string_view>& known);
 
+void bind_cache(pybind11::module_& module);
+void bind_data(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
 void bind_run(pybind11::module_& module);

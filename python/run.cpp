@@ -15,6 +15,7 @@
 #include "python/arrays.h"
 #include "python/caller.h"
 #include "python/computing.h"
+#include "python/log.h"
 #include "python/module.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
@@ -164,6 +165,7 @@ class Run {
     const Selection selection{.items = text_or_empty(settings, "items")};
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
+    const LogDelivery delivery;
     const py::gil_scoped_release others_go_on;
     session_.emplace(Setup(std::move(config), selection), std::move(counts), caller_.stop());
   }

@@ -9,6 +9,7 @@ import numpy
 
 from report.names import natural, shape_name
 from report.results import LARGEST, Unusable
+from report.viewer_parts import unit_range
 
 BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)  # what h5py raises for a damaged or foreign file
 
@@ -157,14 +158,6 @@ class Shape:
 def usable(values):
     """Compared in double: NumPy 2 would round the limit to the type of the values, to infinity for single precision."""
     return bool((numpy.abs(numpy.asarray(values, dtype=float)) <= LARGEST).all())
-
-
-def unit_range(values):
-    """Minimum to 0 and maximum to 1; NaN to 0; a constant map becomes 0."""
-    values = numpy.nan_to_num(numpy.asarray(values, dtype=float), nan=0.0, posinf=0.0, neginf=0.0)
-    halves = values / 2  # whose differences do not overflow
-    low, high = halves.min(), halves.max()
-    return (halves - low) / (high - low) if high > low else numpy.zeros_like(values)
 
 
 class Shapes:

@@ -10,7 +10,6 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from report.folder import MARK
 from report.painting import colour_bar
 from report.results import text_of
-from report.viewer import palette_script
 
 HERE = Path(__file__).resolve().parent
 THREE = tuple(Path("/usr/share/javascript/three") / name  # Debian's libjs-three
@@ -29,7 +28,6 @@ def copy_static(folder):
     """Style, scripts, colour bar; three.js where Debian's libjs-three is installed."""
     for file in sorted((HERE / "static").iterdir()):
         shutil.copyfile(file, folder.file(f"static/{file.name}"))
-    folder.file("static/palette.js").write_text(palette_script(), encoding="utf-8")
     colour_bar().save(folder.file("static/colourbar.png"))
     for file in THREE:
         if file.is_file():

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A page per mesh or point cloud: its scores and ranks, its pictures, the scans of a mesh, and the viewer."""
 
+from markupsafe import Markup
+
 from report import run_page, statistics
 from report.blocks import Cell, Gallery, Note, Table, Tile, attempt, cell
 from report.gallery import Painter, describe
 from report.names import KIND_NAMES, natural, spoken
 from report.results import DATASETS, Missing
 from report.viewer import label_of, write_scripts
+from report.viewer_parts import section
 
 
 class Scores:
@@ -175,5 +178,6 @@ def write_page(shop, pages, scores, item, category):
         scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
     pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
-                entries=entries, second=label_of(first[0], "after") if first else "", own_blocks=own_blocks,
+                viewer=Markup(section(entries, label_of(first[0], "after") if first else "")) if entries else "",
+                own_blocks=own_blocks,
                 scan_blocks=scan_blocks, scans=scans, notes=notes(shop, item, bool(shapes)))

@@ -126,14 +126,17 @@ std::vector<std::string> split_list(const std::string& list) {
   return parts;
 }
 
-Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard) {
+std::vector<DatasetItem> selected_items(std::vector<DatasetItem> items, const std::string& selection) {
   std::set<std::string> present;
-  for (const DatasetItem& item : dataset.items) present.insert(item.name);
+  for (const DatasetItem& item : items) present.insert(item.name);
   const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
   if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
-
-  std::vector<DatasetItem> items = std::move(dataset.items);
   std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
+  return items;
+}
+
+Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard) {
+  std::vector<DatasetItem> items = selected_items(std::move(dataset.items), selection);
   if (shard) items = share_of(items, *shard);
   std::vector<Family> families(items.size());
   FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;

@@ -43,8 +43,11 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
   return item_of(units.source_of(unit).source);
 }
 
-// The items that `selection` names ("1-20,52,125"; empty: all), or one share of them. Reads no file but those
-// whose name does not say which kind of shape they hold. Throws ConfigError for an item that is not there.
+// The items that `selection` names ("1-20,52,125"; empty: all). Throws ConfigError for one that is not there.
+std::vector<DatasetItem> selected_items(std::vector<DatasetItem> items, const std::string& selection);
+
+// The selected items, or one share of them. Reads no file but those whose name does not say which kind of
+// shape they hold. Throws ConfigError as above.
 Inputs read_inputs(Dataset dataset, const std::string& selection = {},
                    const std::optional<Shard>& shard = {});
 

@@ -11,7 +11,9 @@ All computing is the program's own, with the same bytes: docs/python.md.
 """
 
 from salbench import metrics, models, stats
+from salbench._cache import Cache
 from salbench._core import version as __version__
+from salbench._data import Dataset
 from salbench._results import Results
 from salbench._run import Model, model, run
 from salbench._scoring import histogram, match_histogram, score
@@ -37,7 +39,7 @@ from salbench._shapes import (
 )
 
 __all__ = [
-    "CarriedTruth", "Model", "Picture", "Results", "Scan", "Shape", "Spectrum", "__version__", "carry_ground_truth",
+    "Cache", "CarriedTruth", "Dataset", "Model", "Picture", "Results", "Scan", "Shape", "Spectrum", "__version__", "carry_ground_truth",
     "estimate_normals", "fpfh", "histogram", "match_histogram", "metrics", "model", "models", "partial_mesh", "picture", "run",
     "score", "simplify", "simulate_scan", "simulate_scans", "smooth_picks", "spectrum", "stats", "vertex_areas",
     "vertex_values_of_faces", "vertex_values_of_samples",

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A mesh, a scan or a point cloud, with what is known about it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from salbench._show import View, show
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +59,29 @@ class Shape:
         if self.ground_truth is None:
             return np.ones(len(self.points), bool)
         return ~np.isnan(self.ground_truth)
+
+    def show(self, values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
+        """The shape in the viewer of the report, as an object that a notebook shows and whose `str()` is a page of HTML.
+
+        Parameters
+        ----------
+        values : (n,) array, or dict of them by name, optional
+            Maps to be painted on it, beside the ground truth: each from its lowest to its highest value.
+
+        Raises
+        ------
+        ValueError
+            Values that do not fit the points.
+        FileNotFoundError
+            Without three.js: Debian's package libjs-three.
+        """
+        return show(self, values)
+
+    def _repr_html_(self) -> str | None:
+        try:
+            return self.show()._repr_html_()
+        except (FileNotFoundError, ValueError):  # without three.js, or points
+            return None
 
     def __len__(self) -> int:
         return len(self.points)

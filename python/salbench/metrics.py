@@ -8,8 +8,7 @@ Each takes what `salbench.score` takes but `metrics`, and returns the score alon
 1.0
 """
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from numpy.typing import ArrayLike
 
@@ -36,7 +35,15 @@ def table() -> list[Metric]:
     return [Metric(*row) for row in _core.metric_rows()]
 
 
-def _function(row: Metric) -> Callable[..., Any]:
+class MetricFunction(Protocol):
+    """What the functions of this module take; a float, or an array for several maps."""
+
+    def __call__(
+        self, prediction: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None, **keywords: Any
+    ) -> Any: ...
+
+
+def _function(row: Metric) -> MetricFunction:
     def metric(prediction: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None, **keywords: Any) -> Any:
         return score(prediction, ground_truth, picks, metrics=row.name, **keywords)[row.name]
 
@@ -47,4 +54,8 @@ def _function(row: Metric) -> Callable[..., Any]:
 
 _functions = {row.name: _function(row) for row in table()}
 globals().update(_functions)
-__all__ = ["Metric", "table", *_functions]
+__all__ = ["Metric", "MetricFunction", "table", *_functions]
+
+if TYPE_CHECKING:
+
+    def __getattr__(name: str) -> MetricFunction: ...

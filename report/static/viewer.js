@@ -6,7 +6,12 @@
 salbench.shapes = new Map();   // name -> promise of {points, faces, shade, maps, ...}
 salbench.arrivals = new Map(); // name -> function that takes what its script gives
 
-salbench.give = (name, description, data) => salbench.arrivals.get(name)({description, data});
+// A shape may also stand in the page itself: then it is there before anybody asks for it.
+salbench.give = function (name, description, data) {
+  const arrived = salbench.arrivals.get(name);
+  if (arrived) arrived({description, data});
+  else salbench.shapes.set(name, salbench.unpack({description, data}));
+};
 
 salbench.load = function (entry) {
   if (!salbench.shapes.has(entry.name)) {
@@ -22,7 +27,7 @@ salbench.load = function (entry) {
   return salbench.shapes.get(entry.name);
 };
 
-// The inverse of viewer.py's script(): undoes differences, and spreads positions over the shape's cube.
+// The inverse of viewer_parts.py's call(): undoes differences, and spreads positions over the shape's cube.
 salbench.unpack = async function ({description, data}) {
   const packed = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));

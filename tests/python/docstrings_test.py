@@ -4,6 +4,7 @@
 import doctest
 import importlib
 import inspect
+import os
 import pkgutil
 import subprocess
 import unittest
@@ -15,6 +16,11 @@ import toy
 def modules():
     return [importlib.import_module(f"salbench.{row.name}") for row in pkgutil.iter_modules(salbench.__path__)
             if row.name != "_core"]
+
+
+def mypy(what):
+    return subprocess.run(["mypy", "--strict", "--no-error-summary", "--cache-dir=/dev/null", what], cwd=toy.ROOT,
+                          capture_output=True, text=True, env=os.environ | {"MYPYPATH": "python"})
 
 
 class Docstrings(unittest.TestCase):
@@ -34,10 +40,14 @@ class Docstrings(unittest.TestCase):
                     self.assertIn(parameter, what.__doc__, name)
 
     def test_types(self):
-        ended = subprocess.run(["mypy", "--strict", "--no-error-summary", "--cache-dir=/dev/null", "python/salbench"], cwd=toy.ROOT,
-                               capture_output=True, text=True)
-        self.assertEqual(ended.stdout, "")
-        self.assertEqual(ended.returncode, 0, ended.stderr)
+        checked = mypy("python/salbench")
+        self.assertEqual(checked.stdout, "")
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+
+    def test_types_as_users_meet_them(self):
+        lines = mypy("tests/python/typed_use.py").stdout.splitlines()
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn('typed_use.py:22: error: Argument "threads" to "run" has incompatible type "str"', lines[0])
 
 
 if __name__ == "__main__":

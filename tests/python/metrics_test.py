@@ -53,7 +53,7 @@ class Tables(unittest.TestCase):
             points = file[shape]["scan"]["points"][:] if view else file[item]["mesh"]["vertices"][:]
             faces = file[shape]["surface"]["faces"][:] if view else file[item]["mesh"]["faces"][:]
             found = salbench.score(
-                file[shape][f"map.{model}"]["values"][:], saliency, self.picks(truth), metrics="all",
+                file[shape][f"map.{model}"]["saliency"][:], saliency, self.picks(truth), metrics="all",
                 areas=salbench.vertex_areas(points, faces), points=points,
                 reference=file["means/reference"][level]["density"][:], seed=(SEED, model, shape))
             for name in NAMES:
@@ -62,14 +62,11 @@ class Tables(unittest.TestCase):
         return compared
 
     def picks(self, truth):
-        if "picks" not in truth:
-            return None
-        ends = np.cumsum(truth["picks_per_participant"][:]) if "picks_per_participant" in truth else [len(truth["picks"])]
-        return np.split(truth["picks"][:], ends[:-1])
+        return np.split(truth["picks"][:], truth["pick_offsets"][1:-1]) if "picks" in truth else None
 
     def test_toy_meshes_and_their_scans(self):
         with tempfile.TemporaryDirectory() as folder:
-            compared = self.compare(toy.meshes(folder), [], "dataset: {layout: folder, participants: simulated}\n"
+            compared = self.compare(toy.meshes(f"{folder}/meshes"), [], "dataset: {layout: folder, participants: simulated}\n"
                                     "scan: {step_degrees: 1}\n")
         self.assertEqual(compared, 3 * 13 * 2 * len(NAMES))
 
@@ -77,7 +74,9 @@ class Tables(unittest.TestCase):
         data = toy.schelling()
         if data is None:
             self.skipTest("SALBENCH_DATA names no real data")
-        self.assertEqual(self.compare(data, ["--items", "9,47,124"], "dataset: {scans: false}\n"), 3 * 2 * len(NAMES))
+        items = "9,47,52,58,74,114,124,125,185,200,214,237,257,260,309,341,353,367,386"  # those with ground truth
+        compared = self.compare(data, ["--items", items], "dataset: {scans: false}\n")
+        self.assertEqual(compared, 19 * 2 * len(NAMES))
 
 
 class RandomCases(unittest.TestCase):

@@ -163,6 +163,15 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "nobody"):
             again.maps("AGAIN")["nobody"]
 
+    def test_a_map_that_was_damaged_since_is_computed_again(self):
+        results = self.run_with({"MINE": function(HEIGHT.format(axis=0), self.folder)})
+        name = results.scores.item[0]
+        before = results.maps("MINE")[name].copy()
+        for path in (self.folder / "cache" / "map.MINE").rglob("*.h5"):
+            path.write_bytes(path.read_bytes()[:-1])
+        with self.assertLogs("salbench", "WARNING"):
+            np.testing.assert_array_equal(results.maps("MINE")[name], before)
+
     def test_what_cannot_be_run_is_said_at_once(self):
         for models, error, what in [
             ({"ls": {}}, ValueError, "ls"), ({"LS": {"foci": 1}}, ValueError, "foci_share"), ({"a/b": salbench.Model(len, version=1)}, ValueError, "a/b"),
@@ -172,6 +181,8 @@ class Runs(unittest.TestCase):
                 self.run_with(models)
         with self.assertRaisesRegex(FileNotFoundError, "shrec7"):
             salbench.run("shrec7", data=self.meshes)
+        with self.assertRaisesRegex(FileNotFoundError, "nowhere"):
+            salbench.run(CONFIG, data="nowhere")
         with self.assertRaisesRegex(ValueError, "data is not given"):
             salbench.run(CONFIG)
         with self.assertRaisesRegex(ValueError, "threads must be at least 1"):

@@ -18,10 +18,8 @@ def meshes(folder, count=3, rings=12, sides=10):
 
 def schelling():
     """The meshes and ground truth of the Schelling study; None without them."""
-    for root in (os.environ.get("SALBENCH_DATA"), ROOT.parent / "shared/data"):
-        if root and (pathlib.Path(root) / "SchellingData").is_dir():
-            return pathlib.Path(root) / "SchellingData"
-    return None
+    root = os.environ.get("SALBENCH_DATA")
+    return pathlib.Path(root) / "SchellingData" if root else None
 
 
 def run(config, *options):

@@ -15,6 +15,7 @@ import fixture
 import pinhole
 import support
 from report.exports import Picture, Shapes, unit_range, usable
+from report.pages import HERE
 from report.painting import paint, palette, pixel_values, project, visible, with_dots
 
 
@@ -93,6 +94,11 @@ class Painting(support.ReportTest):
                 self.assertTrue(usable(numpy.array([0, -1e30], kind)))
                 self.assertFalse(usable(numpy.array([0, -numpy.inf], kind)))
                 self.assertFalse(usable(numpy.array([0, numpy.nan], kind)))
+
+    def test_the_viewer_has_the_same_colours(self):
+        script = (HERE / "static/palette.js").read_text()
+        colours = re.search(r'salbench\.palette = "([0-9a-f]+)";', script)[1]
+        self.assertEqual(bytes.fromhex(colours), palette().tobytes())
 
     def test_viewer_data_undo_to_the_shape(self):
         """The steps of viewer.js's unpack() give back points, faces and maps."""

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Caches of runs, read-only and without an export."""
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from salbench import _core
+from salbench._data import Path, _require_folder
+
+Array = NDArray[Any]
+Attributes = Mapping[str, str | int | float]
+
+
+@dataclass(frozen=True, eq=False)
+class Artefact(Mapping[str, Array]):
+    """What one stage computed of one item: its arrays by name, as docs/data_dictionary.md describes them.
+
+    Attributes
+    ----------
+    item, stage : str
+        "52_3", "fpfh".
+    arrays : dict
+        By name; read-only views on the memory that the file was read into.
+    attributes : dict
+        All of the file: "kind", "options", "seed", "inputs", "seconds", "program", ...
+    path : str
+        The file.
+    """
+
+    item: str
+    stage: str
+    arrays: Mapping[str, Array]
+    attributes: Attributes
+    path: str
+
+    def __getitem__(self, name: str) -> Array:
+        """An array. KeyError if there is none of this name."""
+        if name not in self.arrays:
+            _core.fail_unknown(f"array in {self.stage} of {self.item}", name, list(self.arrays))
+        return self.arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.arrays)
+
+    def __len__(self) -> int:
+        return len(self.arrays)
+
+    @property
+    def recipe(self) -> str:
+        """What it was computed by and from: version, options, seed and inputs, a line for each."""
+        lines = [f"stage_version: {self.attributes['stage_version']}", *str(self.attributes["options"]).splitlines()]
+        if self.attributes["seed"]:
+            lines.append(f"seed: {self.attributes['seed']}")
+        return "\n".join(lines + [f"input {line}" for line in str(self.attributes["inputs"]).splitlines()])
+
+    def __repr__(self) -> str:
+        shapes = ", ".join(f"{name} {values.shape}" for name, values in self.arrays.items())
+        return f"Artefact({self.item!r}, {self.stage!r}: {shapes})"
+
+
+class Maps(Mapping[str, Array]):
+    """Saliency maps of an item by model: (n,) arrays."""
+
+    def __init__(self, item: "Item", kind: str) -> None:
+        self._item, self._kind = item, kind
+
+    def __getitem__(self, model: str) -> Array:
+        if model not in self:
+            _core.fail_unknown(f"map of {self._item.name} by a model called", model, list(self))
+        return self._item[f"{self._kind}.{model}"]["saliency"]
+
+    def __contains__(self, model: object) -> bool:
+        return f"{self._kind}.{model}" in self._item.stages
+
+    def __iter__(self) -> Iterator[str]:
+        return (model for kind, _, model in (stage.partition(".") for stage in self._item.stages) if kind == self._kind)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
+class Item:
+    """What a cache holds of one mesh, scan or point cloud, or of a whole data set ("meshes", "scans")."""
+
+    def __init__(self, folder: Any, name: str) -> None:
+        self._folder, self.name = folder, name
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Stages that have computed something of it."""
+        return tuple(dict.fromkeys(stage for stage, _, _ in self._find([])))
+
+    def __getitem__(self, stage: str) -> Artefact:
+        """What a stage computed: `cache["52"]["map.LS"]`. KeyError if there is nothing; LookupError if there are several with
+        different contents, made with other options or of other inputs: choose one of `all(stage)`."""
+        return self._one([stage], stage)
+
+    def all(self, stage: str) -> list[Artefact]:
+        """Everything that a stage has computed of it, by key; `recipe` and `attributes` tell one from another."""
+        return [read for read in (self._read(*row) for row in self._find([stage])) if self._is_of_this(read)]
+
+    def __contains__(self, stage: object) -> bool:
+        return stage in self.stages
+
+    @property
+    def points(self) -> Array:
+        """(n, 3) positions."""
+        artefact = self._one(["mesh", "scan", "cloud"], "points")
+        return artefact["vertices" if artefact.stage == "mesh" else "points"]
+
+    @property
+    def faces(self) -> Array:
+        """(m, 3) corners: of a mesh, or of the partial mesh over a scan or a point cloud."""
+        return self._one(["mesh", "surface"], "faces")["faces"]
+
+    @property
+    def normals(self) -> Array:
+        """(n, 3) unit normals, as they were estimated."""
+        return self._one(["normals", "scan_normals", "cloud_normals"], "normals")["normals"]
+
+    @property
+    def fpfh(self) -> Array:
+        """(n, 33) descriptors, float32."""
+        return self._one(["fpfh"], "fpfh")["fpfh"]
+
+    @property
+    def ground_truth(self) -> Array:
+        """(n,) saliency; NaN where nobody looked."""
+        return self._one(["ground_truth", "scan_ground_truth", "cloud_ground_truth"], "ground_truth")["saliency"]
+
+    @property
+    def maps(self) -> Maps:
+        """Maps by model, as the models computed them."""
+        return Maps(self, "map")
+
+    @property
+    def matched(self) -> Maps:
+        """Maps by model, matched to the histogram of the ground truth."""
+        return Maps(self, "matched")
+
+    def _find(self, stages: list[str]) -> list[tuple[str, str, str]]:
+        found: list[tuple[str, str, str]] = self._folder.find(os.fsencode(self.name), stages)
+        return found
+
+    def _read(self, stage: str, key: str, content: str) -> Artefact:
+        arrays, attributes, path = self._folder.read(os.fsencode(self.name), stage, key, content)
+        return Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path))
+
+    def _is_of_this(self, artefact: Artefact) -> bool:
+        """False for another item whose label is the same."""
+        return artefact.item == self.name or self.name == _core.item_label(os.fsencode(self.name))
+
+    def _one(self, stages: list[str], what: str) -> Artefact:
+        by_content = {(stage, content): (stage, key, content) for stage, key, content in reversed(self._find(stages))}
+        found = [read for read in (self._read(*row) for row in reversed(by_content.values())) if self._is_of_this(read)]
+        if not found:
+            _core.fail_unknown(f"artefact of {self.name} from a stage called", what, list(self.stages))
+        if len(found) > 1:
+            raise LookupError(self._choice(found))
+        return found[0]
+
+    def _choice(self, found: list[Artefact]) -> str:
+        """Which artefacts there are, and in what their recipes differ."""
+        lines = [set(artefact.recipe.splitlines()) for artefact in found]
+        shared = set.intersection(*lines)
+        texts = []
+        for i, artefact in enumerate(found):
+            own = [line for line in artefact.recipe.splitlines() if line not in shared] or ["the same recipe"]
+            texts.append(f"  [{i}] {artefact.item}: {'; '.join(own)}")
+        chosen = f"cache[{self.name!r}].all({found[0].stage!r})"
+        return "\n".join([f"{found[0].stage} of {self.name} was computed {len(found)} times, with different results; "
+                          f"choose one of {chosen}, by its recipe or attributes:", *texts])
+
+    def __repr__(self) -> str:
+        return f"Item({self.name!r}, stages {', '.join(self.stages)})"
+
+
+class Cache(Mapping[str, Item]):
+    """A cache of the program or of `run`, read-only: artefacts by item and stage. A run may go on in it meanwhile.
+
+    Parameters
+    ----------
+    path : path
+        The folder.
+
+    Raises
+    ------
+    FileNotFoundError
+        A folder that there is not.
+    ValueError
+        A folder that is no cache; when an artefact is read, a damaged one: it stays where it is.
+
+    Examples
+    --------
+    >>> cache = salbench.Cache("salbench-cache")            # doctest: +SKIP
+    >>> cache["52_3"].fpfh.shape                            # doctest: +SKIP
+    (12034, 33)
+    >>> cache["52"].maps["LS"], cache["52"]["scores.LS"]["scores"]  # doctest: +SKIP
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = os.fspath(path)
+        _require_folder(self.path)
+        self._folder = _core.CacheFolder(os.fsencode(self.path))
+
+    @property
+    def stages(self) -> tuple[str, ...]:
+        """Stages with artefacts, whatever their items."""
+        return tuple(self._folder.stages())
+
+    def names(self) -> list[str]:
+        """Names of the items, in natural order; characters but letters, digits, '-' and '_' read '_', as in file names."""
+        return sorted(self._folder.items(), key=_natural)
+
+    def __getitem__(self, name: str) -> Item:
+        """What the cache holds of an item. KeyError if that is nothing."""
+        if name not in self:
+            _core.fail_unknown("item", os.fsencode(name), self.names())
+        return Item(self._folder, name)
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and bool(self._folder.find(os.fsencode(name), []))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names())
+
+    def __len__(self) -> int:
+        return len(self._folder.items())
+
+    def __repr__(self) -> str:
+        return f"Cache({self.path!r})"
+
+    def __reduce__(self) -> tuple[type["Cache"], tuple[str]]:
+        return Cache, (os.path.abspath(self.path),)
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """2 before 10, and "52" before "52_3"."""
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in _parts(name)]
+
+
+def _parts(name: str) -> list[str]:
+    parts: list[str] = []
+    for letter in name:
+        if parts and parts[-1][-1].isdigit() == letter.isdigit():
+            parts[-1] += letter
+        else:
+            parts.append(letter)
+    return parts

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Data sets as their authors published them."""
+
+import errno
+import operator
+import os
+from collections.abc import Iterable, Iterator
+from typing import SupportsIndex, overload
+
+from salbench import _core
+from salbench._shape import Shape
+
+Path = str | os.PathLike[str]
+
+
+class Dataset:
+    """The meshes and point clouds of a data set, with what is known about them.
+
+    A sequence of `Shape`, read when it is asked for, and so a map-style data set of PyTorch: workers may be forked or
+    spawned. What the program would warn of goes to the logger "salbench".
+
+    Parameters
+    ----------
+    layout : str or path
+        How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder" or "sal3d", or a
+        description of your own (.yaml). docs/data_sets.md has them all.
+    root : path
+        The folder.
+    items : str or sequence of str, optional
+        Items to take: "1-20,52", or their names. All by default. They keep the order of the data set.
+    twins : str
+        Of several shape files of one name, the extension of the one that counts, such as "off".
+
+    Raises
+    ------
+    FileNotFoundError
+        A folder, or a description, that there is not.
+    KeyError
+        A name of a layout or an item that there is not.
+    ValueError
+        A folder with no shape in it, or a description that cannot be used; when a shape is read, a file that is
+        damaged: the message names file and line.
+
+    Examples
+    --------
+    >>> import pathlib, salbench, tempfile
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> wedge = "OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 2 1\\n3 0 1 3\\n3 1 2 3\\n3 2 0 3\\n"
+    >>> written = pathlib.Path(folder.name, "wedge.off").write_text(wedge)
+    >>> dataset = salbench.Dataset("folder", folder.name)
+    >>> len(dataset), dataset.ids, dataset["wedge"].points.shape, dataset[0].faces.shape
+    (1, ('wedge',), (4, 3), (4, 3))
+    >>> folder.cleanup()
+    """
+
+    def __init__(self, layout: Path, root: Path, items: str | Iterable[str] | None = None, *, twins: str = "refuse") -> None:
+        self._layout = os.fspath(layout)
+        self._root = os.fspath(root)
+        self._twins = twins
+        self._open(items)
+        self._order = list(range(len(self._rows)))
+
+    def _open(self, items: str | Iterable[str] | None) -> None:
+        _require_folder(self._root)
+        _core.require_layout(self._layout)
+        if self._layout not in _core.layouts() and not os.path.exists(self._layout):
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
+        chosen: bytes | list[bytes] | None = None
+        if items is not None:
+            chosen = os.fsencode(items) if isinstance(items, str) else [os.fsencode(str(name)) for name in items]
+        self._data = _core.Data(os.fsencode(self._layout), os.fsencode(self._root), self._twins, chosen)
+        self._rows: list[tuple[str, str]] = self._data.items()
+        self._numbers = {name: number for number, (name, _) in enumerate(self._rows)}
+
+    @property
+    def layout(self) -> str:
+        """Name of the layout found: of "automatic", the one that fits."""
+        return str(self._data.layout)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Remarks on the folder: ground truth without a shape, numbers that are missing, twins left out."""
+        return tuple(self._data.notes)
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Names of the items, in order."""
+        return tuple(self._rows[number][0] for number in self._order)
+
+    @property
+    def categories(self) -> tuple[str, ...]:
+        """Class of each item, or ""; reads no file."""
+        return tuple(self._rows[number][1] for number in self._order)
+
+    def __len__(self) -> int:
+        return len(self._order)
+
+    @overload
+    def __getitem__(self, index: SupportsIndex | str) -> Shape: ...
+    @overload
+    def __getitem__(self, index: slice) -> "Dataset": ...
+
+    def __getitem__(self, index: SupportsIndex | str | slice) -> "Shape | Dataset":
+        """The shape of a number, from the end if it is negative, or of a name; of a slice a `Dataset`."""
+        if isinstance(index, slice):
+            part = object.__new__(Dataset)
+            part.__dict__.update(self.__dict__)
+            part._order = self._order[index]
+            return part
+        if isinstance(index, str):
+            if index not in self:
+                _core.fail_unknown("item", os.fsencode(index), [os.fsencode(name) for name in self.ids])
+            return self._load(self._numbers[index])
+        try:
+            number = self._order[operator.index(index)]
+        except IndexError:
+            raise IndexError(f"index {operator.index(index)}, but the data set has {len(self)} items") from None
+        return self._load(number)
+
+    def _load(self, number: int) -> Shape:
+        name, category = self._rows[number]
+        points, faces, normals, ground_truth, participants, viewers = self._data.load(number)
+        return Shape(name, points, faces, normals, None, category, ground_truth, participants, viewers)
+
+    def __iter__(self) -> Iterator[Shape]:
+        return map(self._load, self._order)
+
+    def __contains__(self, name: object) -> bool:
+        """True if an item has this name."""
+        return isinstance(name, str) and self._numbers.get(name, -1) in self._order
+
+    def __repr__(self) -> str:
+        return f"Dataset({self._layout!r}, {self._root!r}, {len(self)} items)"
+
+    def __getstate__(self) -> dict[str, object]:
+        layout = self._layout if self._layout in _core.layouts() else os.path.abspath(self._layout)
+        return {"layout": layout, "root": os.path.abspath(self._root), "twins": self._twins, "ids": self.ids}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        ids: tuple[str, ...] = state["ids"]  # type: ignore[assignment]
+        self._layout, self._root, self._twins = str(state["layout"]), str(state["root"]), str(state["twins"])
+        self._open(ids)
+        self._order = [self._numbers[name] for name in ids]
+
+
+def _require_folder(path: str) -> None:
+    if not os.path.isdir(path):
+        wrong = errno.ENOTDIR if os.path.exists(path) else errno.ENOENT
+        raise OSError(wrong, os.strerror(wrong), path)  # FileNotFoundError, or NotADirectoryError

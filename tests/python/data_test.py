@@ -1,0 +1,472 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Data sets as arrays: every layout in miniature, beside what the program's artefacts hold, and in other processes."""
+
+import gc
+import logging
+import multiprocessing
+import os
+import pathlib
+import pickle
+import subprocess
+import sys
+import tempfile
+import textwrap
+import threading
+import unittest
+
+import h5py
+import numpy as np
+import scipy.io
+
+import salbench
+import toy
+
+
+def wedge(n=6):
+    """A closed surface without symmetry: a bumpy double cone over a polygon of n corners."""
+    angles = np.arange(n) * 2 * np.pi / n
+    ring = np.column_stack([np.cos(angles), np.sin(angles), 0.1 * np.cos(3 * angles)]) * (1 + 0.1 * np.arange(n)[:, None] / n)
+    points = np.vstack([ring, [0, 0.1, 1], [0.1, 0, -1]])
+    after = (np.arange(n) + 1) % n
+    top = np.column_stack([np.arange(n), after, np.full(n, n)])
+    return points, np.vstack([top, np.column_stack([after, np.arange(n), np.full(n, n + 1)])]).astype(np.int32)
+
+
+POINTS, FACES = wedge()
+
+
+def off(points=POINTS, faces=FACES):
+    rows = [f"OFF\n{len(points)} {len(faces)} 0"] + [" ".join(map(repr, map(float, point))) for point in points]
+    return "\n".join(rows + [f"3 {a} {b} {c}" for a, b, c in faces]) + "\n"
+
+
+def obj(points=POINTS, faces=FACES):
+    rows = ["v " + " ".join(map(repr, map(float, point))) for point in points]
+    return "\n".join(rows + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]) + "\n"
+
+
+def column(values):
+    return "".join(f"{value!r}\n" for value in map(float, values))
+
+
+def xyz(points, normals=None):
+    rows = points if normals is None else np.hstack([points, normals])
+    return "".join(" ".join(map(repr, map(float, row))) + "\n" for row in rows)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.root = self.folder / "data"
+        self.root.mkdir()
+
+    def write(self, path, text):
+        path = self.root / path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def assert_equal(self, values, expected):
+        np.testing.assert_array_equal(values, expected)
+
+    def assert_wedge(self, shape):
+        self.assert_equal(shape.points, POINTS)
+        self.assert_equal(shape.faces, FACES)
+
+
+VALUES = np.arange(len(POINTS)) / 4.0
+
+
+class Layouts(Folder):
+    def test_schelling(self):
+        self.write("Meshes/21.off", off())
+        self.write("Distributions/21.val", column(VALUES))
+        for participant, picks in enumerate(["3\n1\n", "", "1\n"]):
+            self.write(f"RawData/21_{participant}.pid", picks)
+        for layout in ("schelling", "automatic"):
+            with self.subTest(layout):
+                dataset = salbench.Dataset(layout, self.root)
+                self.assertEqual((dataset.layout, dataset.ids, dataset.categories), ("schelling", ("21",), ("cup",)))
+                shape = dataset[0]
+                self.assert_wedge(shape)
+                self.assertEqual((shape.id, shape.category), ("21", "cup"))
+                self.assert_equal(shape.ground_truth, VALUES)
+                self.assertEqual([picks.tolist() for picks in shape.participants], [[3, 1], [], [1]])
+                self.assertEqual(shape.picks.tolist(), [1, 1, 3])
+                self.assertTrue(shape.mask.all())
+                self.assertEqual(shape.viewers, ())
+                self.assertIsNone(shape.normals)
+
+    def test_gs(self):
+        self.write("off/1.off", off())
+        self.write("GS/Saliency/1.val", column(VALUES))
+        self.write("GS/RawData/1_0.pid", "0\n3\n")
+        shape = salbench.Dataset("gs", self.root)["1"]
+        self.assert_equal(shape.ground_truth, VALUES)
+        self.assertEqual(shape.picks.tolist(), [0, 3])
+        self.assertEqual(shape.category, "human")
+
+    def test_princeton(self):
+        self.write("MeshsegBenchmark-1.0/data/off/400.off", off())
+        self.write("SchellingData/Distributions/400.val", column(VALUES))
+        shape = salbench.Dataset("princeton", self.root)["400"]
+        self.assert_equal(shape.ground_truth, VALUES)
+        self.assertEqual(shape.category, "four-legged")
+
+    def test_folder_without_ground_truth(self):
+        self.write("horse.off", off())
+        shape = salbench.Dataset("folder", self.root)["horse"]
+        self.assert_wedge(shape)
+        self.assertIsNone(shape.ground_truth)
+        self.assertEqual((shape.picks.size, shape.participants, shape.mask.all()), (0, (), True))
+
+    def test_dutagaci(self):
+        self.write("MODEL_DATASET/ant.off", off())
+        self.write("GROUND_TRUTH_B/readme.txt", "")
+        cells = np.empty((10, 11), object)
+        for i, j in np.ndindex(cells.shape):
+            cells[i, j] = np.array([[1.0, 3.0, 8.0]]) if (i, j) == (2, 7) else np.array([[2.0]])
+        scipy.io.savemat(self.root / "GROUND_TRUTH_B/ant.mat", {"GT_POINTS": cells})
+        shape = salbench.Dataset("dutagaci", self.root)[0]
+        self.assertEqual([picks.tolist() for picks in shape.participants], [[0, 2, 7]])
+        self.assertTrue(np.isfinite(shape.ground_truth).all())  # smoothed from them
+
+    def test_3dva_averages_what_views_show(self):
+        self.write("Meshes/bunny.off", off())
+        front, back = VALUES + 1, VALUES + 2
+        front[:2] = -1
+        back[1:3] = -1
+        self.write("FixationMaps/bunny_a.txt", column(front))
+        self.write("FixationMaps/bunny_b.txt", column(back))
+        shape = salbench.Dataset("3dva", self.root)[0]
+        expected = VALUES + 1.5
+        expected[:3] = [back[0], np.nan, front[2]]
+        self.assert_equal(shape.ground_truth, expected)
+        self.assertEqual(np.flatnonzero(~shape.mask).tolist(), [1])
+        self.assertEqual(shape.viewers, ())
+
+    def test_sal3d(self):
+        self.write("Models_3D/cat.obj", obj())
+        rows = [" ".join(map(repr, map(float, [*point, 0, 0, 1, value, 0]))) for point, value in zip(POINTS, VALUES)]
+        self.write("dataset_train/cat.txt", "\n".join(rows))
+        shape = salbench.Dataset("sal3d", self.root)["cat"]
+        self.assert_wedge(shape)
+        np.testing.assert_allclose(shape.ground_truth, VALUES)
+
+    def test_meshmamba(self):
+        for kind, value in (("non_texture", 3.0), ("rgb_texture", 5.0)):
+            self.write(f"MeshFile/{kind}/Apple_Red/Apple_v01.obj", obj())
+            self.write(f"SaliencyMap/{kind}/Apple_v01.csv", column([value] * len(FACES)))
+        for layout, value in (("meshmamba", 3.0), ("meshmamba_textured", 5.0)):
+            np.testing.assert_allclose(salbench.Dataset(layout, self.root)["Apple_v01"].ground_truth, value)
+
+    def test_a_description_of_ones_own_with_viewers(self):
+        self.write("off/cat.off", off())
+        for viewer in range(3):
+            self.write(f"maps/cat_{viewer}.csv", column(VALUES + viewer))
+        yaml = self.folder / "mine.yaml"
+        yaml.write_text("places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}_{viewer}.csv'}}]\n")
+        shape = salbench.Dataset(yaml, self.root)[0]
+        self.assertEqual(len(shape.viewers), 3)
+        self.assert_equal(shape.viewers[2], VALUES + 2)
+        self.assert_equal(shape.ground_truth, VALUES + 1)
+
+    def test_every_description_of_the_program_has_a_test_here(self):
+        tested = {"automatic", "schelling", "gs", "princeton", "folder", "dutagaci", "3dva", "sal3d", "meshmamba",
+                  "meshmamba_textured"}
+        self.assertEqual(set(salbench._core.layouts()), tested)
+
+
+class Clouds(Folder):
+    def setUp(self):
+        super().setUp()
+        rng = np.random.default_rng(5)
+        normals = rng.normal(size=(400, 3))
+        self.normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        self.points = self.normals * [1, 1.2, 0.8]
+
+    def test_points_and_normals(self):
+        self.write("a.xyz", xyz(self.points, self.normals))
+        self.write("Distributions/a.val", column(np.arange(400)))
+        shape = salbench.Dataset("folder", self.root)["a"]
+        self.assert_equal(shape.points, self.points)
+        np.testing.assert_allclose(shape.normals, self.normals, atol=1e-15)
+        self.assertIsNone(shape.faces)
+        self.assert_equal(shape.ground_truth, np.arange(400))
+
+    def test_points_that_were_not_seen_are_left_out(self):
+        self.points[7] = np.nan
+        self.write("a.xyz", xyz(self.points))
+        self.write("Distributions/a.val", column(np.arange(400)))
+        self.write("RawData/a_0.pid", "3\n9\n")
+        shape = salbench.Dataset("folder", self.root)["a"]
+        self.assertEqual(len(shape), 399)
+        self.assertEqual(shape.picks.tolist(), [3, 8])
+        self.assert_equal(shape.ground_truth, np.delete(np.arange(400), 7))
+
+    def test_a_ply_file_is_what_it_holds(self):
+        header = "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n{}end_header\n"
+        faces = f"element face {len(FACES)}\nproperty list uchar int vertex_indices\n"
+        self.write("mesh.ply", header.format(len(POINTS), faces) + xyz(POINTS)
+                   + "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES))
+        self.write("points.ply", header.format(400, "") + xyz(self.points))
+        dataset = salbench.Dataset("folder", self.root)
+        self.assert_wedge(dataset["mesh"])
+        self.assertIsNone(dataset["points"].faces)
+        self.assert_equal(dataset["points"].points, self.points)
+
+
+class Sequence(Folder):
+    def setUp(self):
+        super().setUp()
+        for name in ("1", "2", "10"):
+            self.write(f"{name}.off", off(POINTS * float(name)))
+        self.dataset = salbench.Dataset("folder", self.root)
+
+    def test_numbers_names_and_slices(self):
+        self.assertEqual(self.dataset.ids, ("1", "2", "10"))
+        self.assertEqual(len(self.dataset), 3)
+        self.assertEqual([shape.id for shape in self.dataset], ["1", "2", "10"])
+        self.assertEqual((self.dataset[-1].id, self.dataset[np.int64(1)].id, self.dataset["10"].id), ("10", "2", "10"))
+        part = self.dataset[::-2]
+        self.assertEqual((part.ids, part[0].id, len(part), "2" in part, "1" in part), (("10", "1"), "10", 2, False, True))
+        with self.assertRaises(KeyError):
+            part["2"]
+        self.assertEqual(len(self.dataset[5:]), 0)
+        self.assert_equal(self.dataset[2].points, POINTS * 10)
+
+    def test_chosen_items(self):
+        for items, ids in (("1-3,10", ("1", "2", "10")), (["10", "1"], ("1", "10")), ([2], ("2",)), ([], ())):
+            self.assertEqual(salbench.Dataset("folder", self.root, items=items).ids, ids)
+
+    def test_arrays_are_views_that_cannot_be_written_to(self):
+        self.write("Distributions/1.val", column(VALUES))
+        shape = salbench.Dataset("folder", self.root)[0]
+        for array in (shape.points, shape.faces, shape.ground_truth):
+            self.assertFalse(array.flags.writeable)
+            self.assertFalse(array.flags.owndata)
+            self.assertTrue(array.flags.c_contiguous)
+            with self.assertRaises(ValueError):
+                array[0] = 0
+            with self.assertRaises(ValueError):
+                array.setflags(write=True)
+        points = shape.points
+        del shape
+        gc.collect()
+        self.assert_equal(points, POINTS)
+
+    def test_files_are_read_when_asked_for(self):
+        (self.root / "2.off").write_text("OFF\n1 1 0\n")
+        dataset = salbench.Dataset("folder", self.root)
+        self.assertEqual(dataset[0].id, "1")
+        with self.assertRaisesRegex(ValueError, r"2\.off:2: the file ends after 0 of 1 vertices"):
+            dataset[1]
+
+    def test_pickles(self):
+        copy = pickle.loads(pickle.dumps(self.dataset[1:]))
+        self.assertEqual(copy.ids, ("2", "10"))
+        self.assert_equal(copy[-1].points, POINTS * 10)
+        shape = pickle.loads(pickle.dumps(self.dataset[0]))
+        self.assert_wedge(shape)
+
+    def test_threads_read_at_once(self):
+        read = []
+        threads = [threading.Thread(target=lambda: read.extend(shape.points.sum() for _ in range(20) for shape in self.dataset))
+                   for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(read), 240)
+        self.assertEqual(set(read), {shape.points.sum() for shape in self.dataset})
+
+
+class Errors(Folder):
+    def test_folders(self):
+        with self.assertRaises(FileNotFoundError) as raised:
+            salbench.Dataset("folder", self.root / "nowhere")
+        self.assertEqual(raised.exception.filename, str(self.root / "nowhere"))
+        with self.assertRaises(NotADirectoryError):
+            salbench.Dataset("folder", self.write("file", ""))
+        with self.assertRaisesRegex(ValueError, "no .off, .obj or .ply meshes found"):
+            salbench.Dataset("folder", self.root)
+
+    def test_layouts(self):
+        with self.assertRaisesRegex(KeyError, "no layout 'schelin'; did you mean 'schelling'"):
+            salbench.Dataset("schelin", self.root)
+        with self.assertRaises(FileNotFoundError):
+            salbench.Dataset(self.root / "mine.yaml", self.root)
+        yaml = self.write("mine.yaml", "places: [{meshes: '*', thruth: {}}]\n")
+        with self.assertRaisesRegex(ValueError, r"mine\.yaml:1"):
+            salbench.Dataset(yaml, self.root)
+        for layout in (3, None, b"folder\0"):
+            with self.assertRaises((TypeError, ValueError, KeyError)):
+                salbench.Dataset(layout, self.root)
+
+    def test_items(self):
+        self.write("52.off", off())
+        dataset = salbench.Dataset("folder", self.root)
+        for wrong in (lambda: dataset["53"], lambda: salbench.Dataset("folder", self.root, items=["53"]),
+                      lambda: salbench.Dataset("folder", self.root, items="53")):
+            with self.assertRaisesRegex(KeyError, "no item '53'; did you mean '52'"):
+                wrong()
+        for index in (1, -2, 2**70, -2**70):
+            with self.assertRaisesRegex(IndexError, "1 items"):
+                dataset[index]
+        for index in (1.0, None, (0,)):
+            with self.assertRaises(TypeError):
+                dataset[index]
+        with self.assertRaisesRegex(ValueError, "no item in the range 60-70"):
+            salbench.Dataset("folder", self.root, items="60-70")
+        with self.assertRaisesRegex(ValueError, "names no item"):
+            salbench.Dataset("folder", self.root, items=" , ")
+
+    def test_a_bad_shape_and_bad_ground_truth_name_their_files(self):
+        self.write("flat.off", off(POINTS * 0))
+        self.write("short.off", off())
+        self.write("Distributions/short.val", "1\n2\n")
+        self.write("word.off", off())
+        self.write("Distributions/word.val", "1\nx\n")
+        self.write("gone.off", off())
+        dataset = salbench.Dataset("folder", self.root)
+        (self.root / "gone.off").unlink()
+        for name, where in (("flat", r"flat\.off: all faces are degenerate"), ("short", r"short\.val"),
+                            ("word", r"word\.val:2: \"x\""), ("gone", r"gone\.off")):
+            with self.assertRaisesRegex(ValueError, where):
+                dataset[name]
+
+    def test_twins(self):
+        self.write("a.off", off())
+        self.write("a.obj", obj(POINTS * 2))
+        with self.assertRaises(ValueError):
+            salbench.Dataset("folder", self.root)
+        dataset = salbench.Dataset("folder", self.root, twins="obj")
+        self.assert_equal(dataset["a"].points, POINTS * 2)
+        self.assertEqual(len(dataset.notes), 1)
+        with self.assertRaisesRegex(ValueError, "twins must be one of refuse, off"):
+            salbench.Dataset("folder", self.root, twins="zip")
+
+    def test_names_that_are_no_text(self):
+        name = os.fsdecode(b"caf\xe9")
+        self.write(f"{name}.off", off())
+        dataset = salbench.Dataset("folder", self.root)
+        self.assertEqual(dataset.ids, (name,))
+        self.assert_wedge(dataset[name])
+        self.assert_wedge(pickle.loads(pickle.dumps(dataset))[0])
+
+
+class Warnings(Folder):
+    def test_go_to_the_log_and_nowhere_else(self):
+        self.write("odd.off", off(np.vstack([POINTS, [[9, 9, 9]]])))
+        with self.assertLogs("salbench", logging.WARNING) as log:
+            salbench.Dataset("folder", self.root)[0]
+        self.assertEqual([record.getMessage() for record in log.records],
+                         ["odd: 1 isolated vertices kept: no face uses them"])
+        quiet = f"""
+            import logging, salbench
+            logging.getLogger("salbench").addHandler(logging.NullHandler())
+            salbench.Dataset("folder", {str(self.root)!r})[0]
+            """
+        ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(quiet)], capture_output=True, text=True, check=True)
+        self.assertEqual((ended.stdout, ended.stderr), ("", ""))
+
+    def test_threads_and_the_end_of_the_interpreter(self):
+        self.write("odd.off", off(np.vstack([POINTS, [[9, 9, 9]]])))
+        script = f"""
+            import logging, salbench, threading, time
+            logging.basicConfig(filename={str(self.folder / "log")!r})
+            dataset = salbench.Dataset("folder", {str(self.root)!r})
+            def read():
+                while True:
+                    dataset[0]
+            for _ in range(4):
+                threading.Thread(target=read, daemon=True).start()
+            time.sleep(0.3)
+            """
+        for _ in range(5):
+            ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=60)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        self.assertIn("WARNING:salbench:odd: 1 isolated vertices", (self.folder / "log").read_text())
+
+    def test_what_a_handler_raises_ends_nothing(self):
+        class Broken(logging.Filter):
+            def filter(self, record):
+                raise RuntimeError("broken filter")
+
+        self.write("odd.off", off(np.vstack([POINTS, [[9, 9, 9]]])))
+        log, broken = logging.getLogger("salbench"), Broken()
+        log.addFilter(broken)
+        self.addCleanup(log.removeFilter, broken)
+        raised = []
+        hook, sys.unraisablehook = sys.unraisablehook, lambda given: raised.append(given.exc_type)
+        self.addCleanup(setattr, sys, "unraisablehook", hook)
+        self.assertEqual(len(salbench.Dataset("folder", self.root)[0]), len(POINTS) + 1)
+        self.assertEqual(raised, [RuntimeError])
+
+
+def scores_of(dataset, numbers):
+    return [(number, salbench.score(dataset[number].points[:, 2], dataset[number].ground_truth, [1, 2],
+                                    metrics=["cc", "auc_exact"])) for number in numbers]
+
+
+class Processes(Folder):
+    def test_four_workers_read_and_score_at_once(self):
+        for name in range(1, 9):
+            self.write(f"{name}.off", off(POINTS + np.sin(name * POINTS[:, ::-1]) / 10))
+            self.write(f"Distributions/{name}.val", column(np.cos(name * VALUES)))
+        dataset = salbench.Dataset("folder", self.root)
+        expected = scores_of(dataset, range(8))
+        for method in ("fork", "spawn"):
+            with self.subTest(method), multiprocessing.get_context(method).Pool(4) as pool:
+                batches = pool.starmap(scores_of, [(dataset, [i, i + 4]) for i in range(4)] * 4)
+                self.assertEqual(sorted(sum(batches[:4], []), key=lambda row: row[0]), expected)
+                self.assertEqual(batches, batches[:4] * 4)
+
+
+class Artefacts(Folder):
+    """The arrays are those that the program computes with."""
+
+    def compare(self, layout, shapes, config=""):
+        (self.folder / "c.yaml").write_text(f"dataset: {{layout: {layout}, scans: false}}\nmodels: {{RS: {{}}}}\n{config}")
+        toy.run(self.folder / "c.yaml", "--data", self.root, "--cache", self.folder / "cache", "--out", self.folder / "out")
+        toy.export(self.folder / "c.yaml", "--data", self.root, "--cache", self.folder / "cache", "--to", self.folder / "all.h5")
+        dataset = salbench.Dataset(layout, self.root)
+        self.assertEqual(len(dataset), shapes)
+        with h5py.File(self.folder / "all.h5") as file:
+            for shape in dataset:
+                group = file[shape.id]
+                cloud = shape.faces is None
+                self.assert_equal(shape.points, group["cloud/points" if cloud else "mesh/vertices"][:])
+                if not cloud:
+                    self.assert_equal(shape.faces, group["mesh/faces"][:])
+                truth = group["cloud_ground_truth" if cloud else "ground_truth"]
+                self.assert_equal(shape.ground_truth, truth["saliency"][:])
+                self.assert_equal(np.concatenate([*shape.participants, np.empty(0, np.int32)]), truth["picks"][:])
+
+    def test_meshes_and_clouds_with_picks_alone(self):
+        around = np.random.default_rng(1).normal(size=(900, 3))
+        around /= np.linalg.norm(around, axis=1, keepdims=True)
+        self.write("cloud.xyz", xyz(around))
+        self.write("mesh.off", off())
+        for participant in range(3):
+            self.write(f"RawData/cloud_{participant}.pid", f"{participant}\n{50 * participant + 7}\n")
+            self.write(f"RawData/mesh_{participant}.pid", f"{participant}\n7\n")
+        self.write("Distributions/other.val", "")
+        self.compare("folder", 2)
+
+    def test_real_items(self):
+        root = toy.schelling()
+        if root is None:
+            self.skipTest("SALBENCH_DATA is not set")
+        for folder, ending in (("Meshes", "*.off"), ("Distributions", "*.val"), ("RawData", "*.pid")):
+            (self.root / folder).mkdir()
+            for path in (root / folder).glob(ending):
+                if path.stem.partition("_")[0] in ("52", "125"):
+                    (self.root / folder / path.name).symlink_to(path)
+        self.compare("schelling", 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
