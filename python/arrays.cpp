@@ -101,6 +101,12 @@ void Argument::fail(const std::string& what) const {
   throw py::value_error(fmt::format("{} {}", name, what));
 }
 
+Argument required(py::handle value, const char* name) {
+  const Argument argument{value, name};
+  if (!argument.given()) argument.fail("must be given, not None");
+  return argument;
+}
+
 View<double> field(const Argument& argument, std::optional<std::size_t> n) {
   const py::array array = as_array(argument);
   expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", length_text(n)));

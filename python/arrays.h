@@ -34,6 +34,9 @@ struct Argument {
   [[noreturn]] void fail(const std::string& what) const;  // ValueError: "points must have ..."
 };
 
+// One that must not be None.
+Argument required(py::handle value, const char* name);
+
 // A view, and the array that it is of.
 template <class T>
 struct View {

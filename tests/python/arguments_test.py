@@ -138,6 +138,8 @@ def pick(rng, some):
 def mutated(rng, value):
     """Something else in place of an argument; often the same with one thing changed."""
     kind = rng.random()
+    if kind < 0.03:
+        return None
     if kind < 0.15 or not isinstance(value, np.ndarray):
         return pick(rng, values())
     if kind < 0.35:
