@@ -115,10 +115,6 @@ class TablesOf {
 }  // namespace
 
 void bind_stats(py::module_& module) {
-  module.def("fail_unknown",
-             [](const std::string& what, const std::string& name, const std::vector<std::string>& known) {
-               fail_unknown(what, name, {known.begin(), known.end()});
-             });
   py::class_<TablesOf>(module, "Conclusions")
       .def(py::init<const py::dict&, const std::optional<std::vector<std::string>>&, std::vector<std::string>,
                     std::vector<std::string>, const std::string&, py::handle, py::handle>())
