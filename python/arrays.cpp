@@ -101,6 +101,12 @@ void Argument::fail(const std::string& what) const {
   throw py::value_error(fmt::format("{} {}", name, what));
 }
 
+Argument required(py::handle value, const char* name) {
+  const Argument argument{value, name};
+  if (!argument.given()) argument.fail("must be given, not None");
+  return argument;
+}
+
 View<double> field(const Argument& argument, std::optional<std::size_t> n) {
   const py::array array = as_array(argument);
   expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", length_text(n)));
@@ -202,6 +208,15 @@ std::vector<bool> mask(const Argument& argument, std::size_t n) {
   const auto values = ordered<bool>(argument, array, "b", "truth values");
   const std::span view(values.data(), static_cast<std::size_t>(values.size()));
   return std::vector<bool>(view.begin(), view.end());
+}
+
+double real_number(const Argument& argument) {
+  const double value = PyFloat_AsDouble(argument.value.ptr());
+  if (!PyErr_Occurred()) return value;
+  if (!PyErr_ExceptionMatches(PyExc_TypeError) && !PyErr_ExceptionMatches(PyExc_OverflowError))
+    throw py::error_already_set();
+  PyErr_Clear();
+  argument.fail("must be a real number that a double can hold");
 }
 
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high) {

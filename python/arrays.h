@@ -34,6 +34,9 @@ struct Argument {
   [[noreturn]] void fail(const std::string& what) const;  // ValueError: "points must have ..."
 };
 
+// One that must not be None.
+Argument required(py::handle value, const char* name);
+
 // A view, and the array that it is of.
 template <class T>
 struct View {
@@ -64,6 +67,7 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
 // (n,) truth values.
 std::vector<bool> mask(const Argument& argument, std::size_t n);
+double real_number(const Argument& argument);
 // A number by itself, of any integer type.
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high);
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <pybind11/pybind11.h>
-#include <unistd.h>
 #include <tbb/task_arena.h>
 
 #include "python/log.h"
@@ -14,31 +13,26 @@ namespace salbench::python {
 
 inline constexpr int kMostThreads = 1024;
 
-// The interpreter goes on without this thread. Once it shuts down it ends threads that come back, by unwinding them
-// (until Python 3.14): through destructors, which would abort the process, and through frames that hold arrays. Such a
-// thread stays here instead, and ends with the process.
-class OthersGoOn {
+// This thread counts as at work. What lives as long as the process is destroyed at its end, whoever uses it,
+// and an interpreter that has ended ends threads that come back to it, by unwinding them (until Python 3.14):
+// through destructors, which would abort the process. So the end of the interpreter waits for all that are at
+// work; a thread that begins after that, a daemon, stays where it is.
+class AtWork {
  public:
-  OthersGoOn() : state_(PyEval_SaveThread()) {}
-  OthersGoOn(const OthersGoOn&) = delete;
-  OthersGoOn& operator=(const OthersGoOn&) = delete;
-  ~OthersGoOn() {
-    try {
-      PyEval_RestoreThread(state_);
-    } catch (...) {
-      for (;;) pause();
-    }
-  }
-
- private:
-  PyThreadState* state_;
+  AtWork();
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork();
 };
+
+void wait_at_exit();  // from now on; says nothing
 
 // A function that works on one thread whatever it is called with.
 template <class Function>
 auto computed(const Function& function) {
+  const AtWork counted;
   const LogDelivery afterwards;
-  const OthersGoOn unlocked;
+  const pybind11::gil_scoped_release others_go_on;
   return function();
 }
 
@@ -46,8 +40,9 @@ auto computed(const Function& function) {
 // that was forked may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
+  const AtWork counted;
   const LogDelivery afterwards;
-  const OthersGoOn unlocked;
+  const pybind11::gil_scoped_release others_go_on;
   tbb::task_arena arena(threads);
   return arena.execute(function);
 }

@@ -35,7 +35,7 @@ struct ScoreOptions : MetricsOptions {
 std::vector<std::string> names_from(py::handle metrics) {
   std::vector<std::string> names;
   if (py::isinstance<py::str>(metrics)) {
-    names.push_back(metrics.cast<std::string>());
+    names.push_back(std::string(py::str(metrics)));
   } else {
     for (const py::handle name : metrics) names.push_back(py::str(name));
   }
@@ -97,10 +97,10 @@ struct Stream {  // of random numbers, as a run draws them for a model and an it
 };
 
 Stream stream_from(py::handle seed) {
-  if (!py::isinstance<py::tuple>(seed)) return {seed.cast<std::uint64_t>()};
+  if (!py::isinstance<py::tuple>(seed)) return {whole_number({seed, "seed"}, 0, UINT64_MAX)};
   const auto parts = seed.cast<py::tuple>();
   if (parts.size() != 3) throw py::value_error("seed must be a number, or (number, model, item)");
-  return {parts[0].cast<std::uint64_t>(), py::str(parts[1]), py::str(parts[2])};
+  return {whole_number({py::object(parts[0]), "seed"}, 0, UINT64_MAX), py::str(parts[1]), py::str(parts[2])};
 }
 
 // Scores of one prediction after the other: [metric] each.

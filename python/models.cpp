@@ -101,7 +101,7 @@ py::array map_of(const std::string& name, const std::string& function, py::handl
                  bool is_scan, py::handle seed, const std::string& item, py::handle threads,
                  const py::dict& keywords) {
   const Model model = bound(row_of(name), keywords, function);
-  const auto place_of = points({points_of, "points"});
+  const auto place_of = points(required(points_of, "points"));
   const std::size_t n = place_of.size();
   if (n == 0) throw py::value_error("points must have at least one");
   PointCloud cloud{.points = {place_of.values.begin(), place_of.values.end()}};

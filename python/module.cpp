@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/config/section.h"
+#include "python/computing.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
 
@@ -41,6 +42,7 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
   keep_log();
+  wait_at_exit();
   bind_cache(module);
   bind_data(module);
   bind_metrics(module);

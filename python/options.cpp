@@ -12,7 +12,7 @@ namespace py = pybind11;
 
 // As JSON, which YAML is a superset of; numbers of NumPy are taken for what they are.
 std::string yaml_of(py::handle value, const std::string& where) {
-  if (py::isinstance<py::str>(value)) return yaml_quoted(value.cast<std::string>());
+  if (py::isinstance<py::str>(value)) return yaml_quoted(std::string(py::str(value)));
   if (py::isinstance<py::bool_>(value) || py::hasattr(value, "dtype"))
     if (const auto item =
             py::hasattr(value, "item") ? value.attr("item")() : py::reinterpret_borrow<py::object>(value);
@@ -36,7 +36,7 @@ Section section_of(const py::dict& keywords, const std::string& function,
                    const std::vector<std::string_view>& known) {
   std::string yaml = "{";
   for (const auto& [keyword, value] : keywords) {
-    const auto key = keyword.cast<std::string>();
+    const auto key = std::string(py::str(keyword));
     if (std::ranges::find(known, key) == known.end()) {
       const std::string nearest = nearest_word(key, known);
       throw py::type_error(fmt::format("{}() has no argument '{}'{}", function, key,

@@ -32,12 +32,12 @@ int threads_from(py::handle threads) {
 std::vector<Vec3> copy_of(const View<Vec3>& view) { return {view.values.begin(), view.values.end()}; }
 
 Mesh mesh_from(py::handle points_of, py::handle faces_of) {
-  const auto vertices = points({points_of, "points"});
-  return {copy_of(vertices), faces({faces_of, "faces"}, vertices.size())};
+  const auto vertices = points(required(points_of, "points"));
+  return {copy_of(vertices), faces(required(faces_of, "faces"), vertices.size())};
 }
 
 PointCloud cloud_from(py::handle points_of, py::handle viewpoint) {
-  PointCloud cloud{.points = copy_of(points({points_of, "points"}))};
+  PointCloud cloud{.points = copy_of(points(required(points_of, "points")))};
   if (!viewpoint.is_none()) cloud.viewpoint = place({viewpoint, "viewpoint"});
   return cloud;
 }
@@ -65,8 +65,8 @@ py::array descriptors_of(py::handle points_of, py::handle normals_of, bool of_sc
                          const py::dict& keywords) {
   const FpfhOptions options =
       options_from<FpfhOptions>(keywords, "fpfh", of_scan ? ScanFpfhOptions() : FpfhOptions());
-  const auto place_of = points({points_of, "points"});
-  const auto normal_of = normals({normals_of, "normals"}, place_of.size());
+  const auto place_of = points(required(points_of, "points"));
+  const auto normal_of = normals(required(normals_of, "normals"), place_of.size());
   return moved(computed(threads_from(threads),
                         [&] { return fpfh(place_of.values, normal_of.values, options).values; }),
                kFpfhBins);
@@ -107,8 +107,8 @@ py::list all_scans(py::handle points_of, py::handle faces_of, py::handle threads
 
 py::array partial_mesh_of(py::handle points_of, py::handle normals_of, const py::dict& keywords) {
   const auto options = options_from<SurfaceOptions>(keywords, "partial_mesh");
-  const auto place_of = points({points_of, "points"});
-  const Normals normal_of = copy_of(normals({normals_of, "normals"}, place_of.size()));
+  const auto place_of = points(required(points_of, "points"));
+  const Normals normal_of = copy_of(normals(required(normals_of, "normals"), place_of.size()));
   return moved(computed(1, [&] { return partial_mesh(place_of.values, normal_of, options); }));
 }
 
@@ -121,14 +121,14 @@ py::tuple simplify(py::handle points_of, py::handle faces_of, py::handle target_
 }
 
 py::array vertex_areas(py::handle points_of, py::handle faces_of) {
-  const auto vertices = points({points_of, "points"});
-  const Faces surface = faces({faces_of, "faces"}, vertices.size());
+  const auto vertices = points(required(points_of, "points"));
+  const Faces surface = faces(required(faces_of, "faces"), vertices.size());
   return moved(computed([&] { return barycentric_areas(vertices.values, surface); }));
 }
 
 py::tuple spectrum(py::handle points_of, py::handle faces_of, py::handle count) {
-  const auto vertices = points({points_of, "points"});
-  const Faces surface = faces({faces_of, "faces"}, vertices.size());
+  const auto vertices = points(required(points_of, "points"));
+  const Faces surface = faces(required(faces_of, "faces"), vertices.size());
   const std::uint64_t k = whole_number({count, "k"}, 2, std::numeric_limits<std::int32_t>::max());
   const Eigenpairs pairs = computed(1, [&] { return spectrum_of(vertices.values, surface, k); });
   std::vector<double> vectors(static_cast<std::size_t>(pairs.vectors.size()));
@@ -144,13 +144,13 @@ py::tuple spectrum(py::handle points_of, py::handle faces_of, py::handle count) 
 py::array smooth(py::handle points_of, py::handle faces_of, py::handle picked, const py::dict& keywords) {
   const auto options = options_from<SmoothingOptions>(keywords, "smooth_picks");
   const Mesh mesh = mesh_from(points_of, faces_of);
-  const auto participants = picks({picked, "picks"}, mesh.vertices.size());
+  const auto participants = picks(required(picked, "picks"), mesh.vertices.size());
   return moved(computed([&] { return smoothed_picks(mesh, participants, options); }));
 }
 
 // A carrying looks at points alone.
 py::tuple carry(py::handle points_of, py::handle ground_truth, py::handle picked, py::handle scan_points) {
-  const Mesh mesh{copy_of(points({points_of, "points"})), {}};
+  const Mesh mesh{copy_of(points(required(points_of, "points"))), {}};
   const std::size_t n = mesh.vertices.size();
   GroundTruth truth;
   if (const Argument saliency{ground_truth, "ground_truth"}; saliency.given()) {
@@ -158,7 +158,7 @@ py::tuple carry(py::handle points_of, py::handle ground_truth, py::handle picked
     truth.saliency.assign(values.values.begin(), values.values.end());
   }
   truth.picks = picks({picked, "picks"}, n);
-  const Scan scan{copy_of(points({scan_points, "scan_points"}))};
+  const Scan scan{copy_of(points(required(scan_points, "scan_points")))};
   if (n == 0 && !scan.points.empty()) throw py::value_error("points must have at least one");
   GroundTruth carried = computed([&] { return scan_ground_truth(scan, mesh, truth); });
   py::list participants;
@@ -168,17 +168,18 @@ py::tuple carry(py::handle points_of, py::handle ground_truth, py::handle picked
 }
 
 py::array of_faces(py::handle points_of, py::handle faces_of, py::handle values_of) {
-  const auto vertices = points({points_of, "points"});
-  const Faces surface = faces({faces_of, "faces"}, vertices.size());
+  const auto vertices = points(required(points_of, "points"));
+  const Faces surface = faces(required(faces_of, "faces"), vertices.size());
   const auto values = field({values_of, "values"}, surface.size());
   return moved(computed([&] { return vertex_values_of_faces(vertices.values, surface, values.values); }));
 }
 
-py::array of_samples(py::handle points_of, py::handle samples_of, py::handle values_of, double max_distance) {
-  const auto vertices = points({points_of, "points"});
-  const auto samples = points({samples_of, "samples"});
+py::array of_samples(py::handle points_of, py::handle samples_of, py::handle values_of, py::handle distance) {
+  const auto vertices = points(required(points_of, "points"));
+  const auto samples = points(required(samples_of, "samples"));
   if (samples.size() == 0) throw py::value_error("samples must have at least one point");
   const auto values = field({values_of, "values"}, samples.size());
+  const double max_distance = real_number({distance, "max_distance"});
   if (!(max_distance >= 0)) throw py::value_error("max_distance must be a distance >= 0");
   return moved(computed([&] {
     return vertex_values_of_samples(vertices.values, samples.values, values.values, max_distance);
@@ -197,7 +198,7 @@ Picture rendered(py::handle points_of, py::handle faces_of, py::handle normals_o
     return computed(threads, [&] { return picture_of_mesh(mesh, options, random); });
   }
   const PointCloud cloud = cloud_from(points_of, viewpoint);
-  const Normals normal_of = copy_of(normals({normals_of, "normals"}, cloud.points.size()));
+  const Normals normal_of = copy_of(normals(required(normals_of, "normals"), cloud.points.size()));
   const Faces surface = faces({faces_of, "faces"}, cloud.points.size());
   return computed(threads, [&] { return picture_of_cloud(cloud, normal_of, surface, options, random); });
 }

@@ -23,10 +23,10 @@ Table table_from(const py::dict& columns) {
   Table table{.columns = {}, .rows = {}, .name = "table"};
   std::optional<std::size_t> n;
   for (const auto& [key, values] : columns) {
-    const auto name = key.cast<std::string>();
+    const auto name = std::string(py::str(key));
     std::vector<Cell> cells;
     if (py::isinstance<py::list>(values)) {
-      for (const py::handle text : values) cells.emplace_back(text.cast<std::string>());
+      for (const py::handle text : values) cells.emplace_back(std::string(py::str(text)));
     } else {
       const auto numbers = field({values, name.c_str()});
       cells.assign(numbers.values.begin(), numbers.values.end());
@@ -115,10 +115,6 @@ class TablesOf {
 }  // namespace
 
 void bind_stats(py::module_& module) {
-  module.def("fail_unknown",
-             [](const std::string& what, const std::string& name, const std::vector<std::string>& known) {
-               fail_unknown(what, name, {known.begin(), known.end()});
-             });
   py::class_<TablesOf>(module, "Conclusions")
       .def(py::init<const py::dict&, const std::optional<std::vector<std::string>>&, std::vector<std::string>,
                     std::vector<std::string>, const std::string&, py::handle, py::handle>())

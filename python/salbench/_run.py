@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark as a function call, with models that are functions of Python."""
 
+import errno
 import hashlib
 import inspect
 import json
@@ -103,10 +104,12 @@ def run(
     ValueError
         A configuration, a data set or an argument that cannot be used.
     OSError
-        A cache or a folder that cannot be written to.
+        A cache or a folder that cannot be written to; FileNotFoundError for data or a configuration that is not there.
     KeyboardInterrupt
         After Ctrl-C, once the run has ended in order.
     """
+    if data is not None and not os.path.isdir(data):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(data))
     functions = [] if models is None else [
         (name, given) for name, given in models.items() if callable(given) or isinstance(given, Model)]
     others = None if models is None else {

@@ -541,7 +541,7 @@ def vertex_values_of_samples(
     >>> salbench.vertex_values_of_samples([[0, 0, 0], [5, 0, 0]], [[0, 0, 1]], [0.5], max_distance=2).tolist()
     [0.5, nan]
     """
-    return _core.vertex_values_of_samples(points, samples, values, float(max_distance))
+    return _core.vertex_values_of_samples(points, samples, values, max_distance)
 
 
 @with_options(_core.picture_options())

@@ -83,10 +83,11 @@ def _columns(table: Any, named: set[str]) -> dict[str, Any]:
     from pandas.api.types import is_numeric_dtype
 
     columns: dict[str, Any] = {}
-    for name in map(str, table.columns):
-        if name in columns:
+    names = [str(name) for name in table.columns]
+    for i, name in enumerate(names):
+        if names.count(name) > 1:
             raise ValueError(f"table has two columns '{name}'")
-        values = table[name]
+        values = table.iloc[:, i]
         if name in _TEXTS:
             columns[name] = [_text(value) for value in values]
         elif name in named or is_numeric_dtype(values.dtype):

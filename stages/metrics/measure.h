@@ -32,7 +32,8 @@ struct Measure {
 
 Measure vertex_measure(std::size_t n);
 // n, or none: an empty measure. Areas that are very large or small are multiplied by a power of four, for
-// which no metric changes: products of three weights would overflow or vanish.
+// which no metric changes: products of three weights would overflow or vanish. Throws InputError for one that
+// is not finite.
 Measure area_measure(std::span<const double> areas);
 
 // A number per weighting. A sum in the order of the points waits for each addition before the next one; the

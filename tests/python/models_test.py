@@ -293,6 +293,8 @@ class Functions(unittest.TestCase):
             (r"viewpoint must have shape \(3,\)", ValueError, lambda: salbench.estimate_normals(points, viewpoint=[1, 2])),
             (r"viewpoint must be None for a mesh", ValueError,
              lambda: salbench.estimate_normals(points, faces, viewpoint=[1, 2, 3])),
+            (r"normals must be given, not None", ValueError, lambda: salbench.fpfh(points, None)),
+            (r"points must be given, not None", ValueError, lambda: salbench.models.ls(None)),
             (r"normals must be given", ValueError, lambda: salbench.picture(points)),
             (r"max_distance must be", ValueError, lambda: salbench.vertex_values_of_samples(points, points, up[:, 0], -1)),
         ]:

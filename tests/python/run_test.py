@@ -181,6 +181,8 @@ class Runs(unittest.TestCase):
                 self.run_with(models)
         with self.assertRaisesRegex(FileNotFoundError, "shrec7"):
             salbench.run("shrec7", data=self.meshes)
+        with self.assertRaisesRegex(FileNotFoundError, "nowhere"):
+            salbench.run(CONFIG, data="nowhere")
         with self.assertRaisesRegex(ValueError, "data is not given"):
             salbench.run(CONFIG)
         with self.assertRaisesRegex(ValueError, "threads must be at least 1"):

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "stages/core/centre.h"
+#include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/metrics/metrics.h"
 #include "tests/support/shapes.h"
@@ -132,6 +134,24 @@ TEST(ByArea, EqualAreasGiveWhatVerticesGive) {
   // Its negatives are the whole surface, in which the picks win over each other half of the time.
   const double picked = 3.0 / 80;
   EXPECT_NEAR(value("auc_exact_area"), value("auc_exact") * (1 - picked) + 0.5 * picked, 1e-12);
+}
+
+// 2^1017 and more: their sum overflows.
+TEST(ByArea, HugeAreasGiveWhatOnesInAnotherUnitDo) {
+  const Marked marked = patches();
+  ScalarField areas = barycentric_areas(marked.mesh.vertices, marked.mesh.faces), huge = areas;
+  for (double& area : huge) area = std::ldexp(area, 1024);
+  const auto scores = [&](const ScalarField& weights) {
+    return score(metric_table(), marked.map, marked.truth, {}, Rng(1, "scores", "x"), weights,
+                 distances_from_centroid(marked.mesh.vertices))
+        .values;
+  };
+  ASSERT_TRUE(std::isinf(std::accumulate(huge.begin(), huge.end(), 0.0)));
+  const std::vector<double> expected = scores(areas), found = scores(huge);
+  for (std::size_t m = 0; m < expected.size(); ++m)
+    EXPECT_EQ(found[m], expected[m]) << metric_table()[m].name;
+  huge[3] = HUGE_VAL;
+  EXPECT_THROW(scores(huge), InputError);
 }
 
 TEST(ByArea, BarycentricAreasSumToTheSurface) {

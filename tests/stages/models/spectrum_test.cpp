@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "stages/core/errors.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -143,6 +144,24 @@ TEST(Spectrum, SphereHasItsRepeatedValuesAsOftenAsTheyOccur) {
     EXPECT_LT((pairs.values - dense.eigenvalues().head(k)).cwiseAbs().maxCoeff(),
               1e-12 * dense.eigenvalues().maxCoeff());
   }
+}
+
+TEST(Spectrum, OfASurfaceDependsOnNeitherUnitNorPlace) {
+  Mesh mesh = shapes::sphere(2);
+  const Eigenpairs before = spectrum_of(mesh.vertices, mesh.faces, 6);
+  for (Vec3& p : mesh.vertices) p = 1e100 * p + Vec3(2e100, 0, 0);
+  const Eigenpairs after = spectrum_of(mesh.vertices, mesh.faces, 6);
+  for (Eigen::Index k = 0; k < 6; ++k)
+    EXPECT_NEAR(after.values[k], before.values[k], 1e-9 * before.values[5]);
+}
+
+TEST(Spectrum, OfASurfaceThatIsNotOnePartIsRefused) {
+  Mesh mesh = shapes::sphere(1);
+  EXPECT_THROW(spectrum_of(mesh.vertices, mesh.faces, 1), InputError);
+  EXPECT_THROW(spectrum_of(mesh.vertices, mesh.faces, mesh.vertices.size() - 1), InputError);
+  EXPECT_THROW(spectrum_of({}, {}, 2), InputError);
+  mesh.vertices.emplace_back(9, 9, 9);
+  EXPECT_THROW(spectrum_of(mesh.vertices, mesh.faces, 2), InputError);
 }
 
 TEST(Spectrum, SameBytesOnEveryCall) {

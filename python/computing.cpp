@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/computing.h"
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include <pthread.h>
+#include <unistd.h>
+
+namespace salbench::python {
+namespace {
+
+namespace py = pybind11;
+
+std::atomic<int> at_work = 0;
+std::atomic<bool> ends = false;
+std::atomic<std::thread::id> last;  // the thread that the interpreter ends in, which may still compute
+
+// Of the modules that were imported before this one handlers may still follow.
+void end() {
+  last = std::this_thread::get_id();
+  ends = true;
+  const py::gil_scoped_release others_come_back;
+  while (at_work > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+}  // namespace
+
+AtWork::AtWork() {
+  if (ends && last.load() != std::this_thread::get_id()) {
+    const py::gil_scoped_release others_go_on;
+    for (;;) ::pause();
+  }
+  ++at_work;
+}
+
+AtWork::~AtWork() { --at_work; }
+
+void wait_at_exit() {
+  ::pthread_atfork(nullptr, nullptr, [] { at_work = 0; });  // threads at work are not copied
+  py::module_::import("atexit").attr("register")(py::cpp_function(end));
+}
+
+}  // namespace salbench::python
