@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from salbench import _tables
+
 if TYPE_CHECKING:
     import pandas
-
-# What pandas would read as numbers.
-NAMES = {"item": str, "view": str, "class": str}
 
 
 class Maps:
@@ -56,9 +55,7 @@ class Results:
         self.failures: list[tuple[str, str, str]] = run.failures() if run else []
 
     def _table(self, name: str) -> "pandas.DataFrame":
-        import pandas
-
-        return pandas.read_csv(self.folder / f"{name}.csv", comment="#", dtype=NAMES, keep_default_na=True)
+        return _tables.read((self.folder / f"{name}.csv").read_text(encoding="utf-8"))
 
     @cached_property
     def scores(self) -> "pandas.DataFrame":

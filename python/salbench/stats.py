@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What scores per shape show: how good each model is, which differ, which is best, and how sure that is."""
 
-import io
 import math
 from collections.abc import Iterable
 from functools import cached_property
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from salbench import _core
+from salbench import _core, _tables
 
 if TYPE_CHECKING:
     import pandas
@@ -27,11 +26,7 @@ class Conclusions:
         self._tables = tables
 
     def _table(self, name: str) -> "pandas.DataFrame":
-        import pandas
-
-        names = {name: str for name in ("model", "model_a", "model_b", "class", "group")}
-        return pandas.read_csv(io.StringIO(self._tables.table(name)), dtype=names, keep_default_na=False, na_values=[""],
-                               float_precision="round_trip")
+        return _tables.read(self._tables.table(name))
 
     @cached_property
     def summary(self) -> "pandas.DataFrame":

@@ -61,6 +61,8 @@ class Runs(unittest.TestCase):
             self.assertEqual((self.folder / "out" / f"{name}.csv").read_bytes(),
                              (self.folder / "o" / f"{name}.csv").read_bytes())
         self.assertEqual(len(results.scores), 2 * 13 * 2)
+        rows = (self.folder / "out" / "results.csv").read_text().splitlines()
+        self.assertEqual([float(row.rsplit(",", 1)[1]) for row in rows[-26:]], results.scores.iloc[-26:, -1].tolist())
         self.assertEqual(set(results.ranking.model), {"LS", "MINE"})
 
     def test_a_rerun_computes_nothing_and_an_edit_its_maps_alone(self):
