@@ -76,8 +76,8 @@ std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::
     return static_cast<std::int32_t>(number);
   };
   std::vector<std::int32_t> numbers;
-  numbers.reserve(static_cast<std::size_t>(array.size()));
   const auto read = [&](const auto& whole) {
+    numbers.reserve(static_cast<std::size_t>(whole.size()));
     const auto* first = whole.data();
     std::transform(first, first + whole.size(), std::back_inserter(numbers), check);
   };
