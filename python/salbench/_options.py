@@ -2,6 +2,7 @@
 """Options of the stages in docstrings and signatures: the program's table of them is the only one."""
 
 import inspect
+import re
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
 
@@ -26,7 +27,7 @@ def default_from(text: str) -> Value:
 Row = tuple[str, str, str]  # name, default, note
 
 
-def option_lines(rows: Iterable[Row], indent: str = "    ") -> str:
+def option_lines(rows: Iterable[Row], indent: str) -> str:
     """The options as parameters of a docstring."""
     return "".join(f"{indent}{name} : {type(default_from(default)).__name__}, default {default}\n{indent}    {note}\n"
                    for name, default, note in rows)
@@ -47,11 +48,14 @@ def with_options(rows: Iterable[Row]) -> Callable[[Function], Function]:
     return documented
 
 
-def with_options_of(place: str, rows: Iterable[Row], indent: str = "    ") -> Callable[[Function], Function]:
+def with_options_of(place: str, rows: Iterable[Row]) -> Callable[[Function], Function]:
     """Puts options in place of a line of a docstring; the signature stays, where they depend on other arguments."""
+    rows = list(rows)
 
     def documented(function: Function) -> Function:
-        function.__doc__ = (function.__doc__ or "").replace(f"{indent}{place}\n", option_lines(rows, indent))
+        # Since Python 3.13 docstrings come without the indentation of their source.
+        function.__doc__ = re.sub(rf"^( *){re.escape(place)}\n", lambda found: option_lines(rows, found[1]),
+                                  function.__doc__ or "", flags=re.MULTILINE)
         return function
 
     return documented

@@ -127,7 +127,7 @@ def histogram(values: ArrayLike) -> NDArray[np.float64]:
     Examples
     --------
     >>> import salbench
-    >>> round(salbench.histogram([0, 0.5, 1]).sum(), 6)
+    >>> round(float(salbench.histogram([0, 0.5, 1]).sum()), 6)
     100.0
     """
     return _core.histogram(values)

@@ -75,8 +75,8 @@ class Picture:
     view_projection: NDArray[np.float64]
 
 
-@with_options_of("**normals", _core.mesh_normals_options(), " " * 8)
-@with_options_of("**scan_normals", _core.scan_normals_options(), " " * 8)
+@with_options_of("**normals", _core.mesh_normals_options())
+@with_options_of("**scan_normals", _core.scan_normals_options())
 def estimate_normals(
     points: ArrayLike,
     faces: ArrayLike | None = None,

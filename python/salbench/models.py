@@ -105,7 +105,7 @@ seed, item : int, str
     Of random numbers, as a run draws them for a shape of this name.
 threads : int
     That may work on it; the map does not depend on it.
-    **options
+**options
 
 Returns
 -------

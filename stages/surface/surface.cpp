@@ -12,6 +12,9 @@
 #include <utility>
 #include <vector>
 
+// PCL's triangulation is compiled here, so that it takes our atan2f wherever this file is linked, and rounds
+// as the rest does: Debian's own for arm64 fuses products and sums.
+#define PCL_NO_PRECOMPILE
 #include <flann/algorithms/dist.h>
 #include <flann/algorithms/kdtree_single_index.h>
 #include <pcl/console/print.h>
@@ -27,9 +30,6 @@
 
 namespace salbench {
 namespace {
-
-// Links atan2f.cpp, whose definition PCL takes.
-[[gnu::used]] float (*const kOwnAtan2f)(float, float) = ::atan2f;
 
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
@@ -58,10 +57,6 @@ TEST(Atan2f, IsTheAngleToTheRoundingOfAFloat) {
     const double exact = std::atan2(static_cast<double>(y), static_cast<double>(x));
     EXPECT_NEAR(angle(y, x), exact, 2e-7 * std::abs(exact) + 1e-45) << y << ", " << x;
   }
-}
-
-TEST(Atan2f, IsWhatLibrariesCall) {
-  EXPECT_EQ(::dlsym(RTLD_DEFAULT, "atan2f"), reinterpret_cast<void*>(&::atan2f));
 }
 
 }  // namespace
