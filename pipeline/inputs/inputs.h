@@ -43,10 +43,11 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
   return item_of(units.source_of(unit).source);
 }
 
-// The items that `selection` names ("1-20,52,125"; empty: all), or one share of them. Reads no file but those
-// whose name does not say which kind of shape they hold. Throws ConfigError for an item that is not there.
-Inputs read_inputs(Dataset dataset, const std::string& selection = {},
-                   const std::optional<Shard>& shard = {});
+// The items that `selection` names ("1-20,52,125"; empty: all), of one split if that is named, or one share
+// of them. A view that is scored by itself is named like its shape, too. Reads no file but those whose name
+// does not say which kind of shape they hold. Throws ConfigError for an item or a split that is not there.
+Inputs read_inputs(Dataset dataset, const std::string& selection = {}, const std::optional<Shard>& shard = {},
+                   const std::string& split = {});
 
 // Identity of a run's data, wherever they lie.
 struct DataIdentity {
