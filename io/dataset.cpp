@@ -304,6 +304,7 @@ Dataset find_dataset(const fs::path& root, std::span<const Layout> layouts, Twin
   add_truth(found, folder, items, dataset.notes);
   const DataSplits& splits = found.layout.splits;
   dataset.no_splits = add_splits(folder, splits, items, dataset.notes);
+  dataset.splits_where = splits.where;
   for (const std::string& file : {splits.table, splits.list})
     if (!file.empty()) dataset.read.push_back((folder / file).lexically_normal());
   for (auto& [name, item] : items) {

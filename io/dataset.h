@@ -95,6 +95,7 @@ struct Dataset {
   std::vector<DatasetItem> items;  // in natural order: 2 before 10
   std::vector<std::string> notes;  // one line each: ground truth without a shape, numbers that are missing
   std::vector<std::string> read = {};  // files beside those of items: that of the splits
+  std::string splits_where = {};       // of the description
   std::string no_splits = {};          // why no item is in a split; empty: some are, or none are described
 };
 

@@ -59,19 +59,19 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
 }
 
 // Keeps the items of a split. Those that are in two stay, to fail with what is wrong.
-void select_split(std::vector<DatasetItem>& items, const std::string& split, const std::string& no_splits) {
+void select_split(std::vector<DatasetItem>& items, const std::string& split, const Dataset& dataset) {
   std::set<std::string_view> known;
   for (const DatasetItem& item : items)
     if (!item.split.empty()) known.insert(item.split);
   if (known.empty())
     throw ConfigError(fmt::format(
         "split '{}': the data set has no splits{}", split,
-        no_splits.empty() ? "; a description names them (splits:)" : fmt::format("; {}", no_splits)));
+        dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
   if (!known.contains(split)) {
     const std::string nearest = nearest_word(split, {known.begin(), known.end()});
-    throw ConfigError(fmt::format("split '{}': the data set has no such split; {}it has {}", split,
+    throw ConfigError(fmt::format("split '{}': the data set has no such split; {}it has {} ({})", split,
                                   nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest),
-                                  fmt::join(known, ", ")));
+                                  fmt::join(known, ", "), dataset.splits_where));
   }
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
 }
@@ -157,7 +157,7 @@ Inputs read_inputs(Dataset dataset, const std::string& selection, const std::opt
   if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
 
   std::vector<DatasetItem> items = std::move(dataset.items);
-  if (!split.empty()) select_split(items, split, dataset.no_splits);
+  if (!split.empty()) select_split(items, split, dataset);
   std::erase_if(items, [&](const DatasetItem& item) {
     return !names.contains(item.name) && !names.contains(item.shape_name());
   });
