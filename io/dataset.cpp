@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <ranges>
 #include <set>
 
 #include <fmt/format.h>
@@ -47,7 +49,8 @@ bool is_open(const Place& place, const fs::path& root) {
          (place.root_is.empty() || root.filename() == place.root_is);
 }
 
-bool is_in(Domain domain, const fs::path& file) {
+bool is_in(Domain domain, const TruthFormat& format, const fs::path& file) {
+  if (is_column_cloud(file, format.columns)) return domain != Domain::meshes;
   if (domain == Domain::any) return has_shape_extension(file);
   return domain == Domain::meshes ? has_mesh_extension(file) : has_cloud_extension(file);
 }
@@ -57,7 +60,7 @@ std::optional<Found> find_layout(const fs::path& root, const Layout& layout) {
     if (!is_open(place, root)) continue;
     std::vector<fs::path> meshes;
     for (FoundFile& file : files_like(root, place.meshes, {}).fit)
-      if (is_in(layout.domain, file.path)) meshes.push_back(std::move(file.path));
+      if (is_in(layout.domain, layout.format, file.path)) meshes.push_back(std::move(file.path));
     if (!meshes.empty()) return Found{layout, place, std::move(meshes)};
   }
   return {};
@@ -149,6 +152,8 @@ class TruthFinder {
         throw InputError(fmt::format("{}: {} has a file already, {}, and {} means one: keep one of them",
                                      file.path.string(), file.item, of_item[0], pattern.where));
       of_item.push_back(file.path);
+      if (files == &DatasetItem::saliency && !one_file_per_item(pattern))
+        item->second.views.push_back(file.part);
       ++added;
     }
     for (const fs::path& file : found.left_out)
@@ -168,6 +173,71 @@ class TruthFinder {
   std::vector<std::string>& notes_;
   std::map<std::string, std::string, NaturalLess> without_mesh_;  // name -> one of its files
 };
+
+// Gives each saliency file its mask. One that is missing is its item's failure.
+void add_masks(const fs::path& root, const FilePattern& pattern, ItemsByName& items,
+               std::vector<std::string>& notes) {
+  if (pattern.empty()) return;
+  std::map<std::pair<std::string, std::string>, std::string> masks;  // (item, view) -> file
+  for (const FoundFile& file :
+       files_like(root, pattern, [&](std::string_view name) { return items.contains(name); }).fit)
+    masks.emplace(std::pair(file.item, file.part), file.path);
+  const bool one = one_file_per_item(pattern);
+  std::set<std::string> used;
+  for (auto& [name, item] : items)
+    for (std::size_t k = 0; k < item.saliency.size(); ++k) {
+      const std::string view = one ? std::string() : item.views[k];
+      const auto found = masks.find({name, view});
+      if (found != masks.end()) {
+        used.insert(found->second);
+        item.masks.push_back({found->second});
+        continue;
+      }
+      const std::string path = (root / filled_in(pattern, name, view)).lexically_normal();
+      item.masks.push_back(
+          {path, fmt::format("{}: is missing, the mask of {}: add it, or take its ground truth away ({})",
+                             path, item.saliency[k], pattern.where)});
+    }
+  for (const auto& [key, file] : masks)
+    if (!used.contains(file)) notes.push_back(fmt::format("{}: mask without ground truth", file));
+}
+
+// An item for each view, in the order of their files.
+std::vector<DatasetItem> items_of_views(const DatasetItem& item) {
+  std::vector<DatasetItem> views;
+  for (std::size_t k = 0; k < item.saliency.size(); ++k) {
+    DatasetItem& view = views.emplace_back(item);
+    view.name = item.name + "_" + item.views[k];
+    view.shape = item.name;
+    view.view = item.views[k];
+    view.saliency = {item.saliency[k]};
+    view.views = {item.views[k]};
+    if (!item.masks.empty()) view.masks = {item.masks[k]};
+  }
+  return views;
+}
+
+// Returns why there are none, if a description has them.
+std::string add_splits(const fs::path& root, const DataSplits& splits, ItemsByName& items,
+                       std::vector<std::string>& notes) {
+  if (splits.empty()) return {};
+  FoundSplits found = read_splits(root, splits, [&](std::string_view name) { return items.contains(name); });
+  std::ranges::move(found.notes, std::back_inserter(notes));
+  std::vector<std::string_view> in_none;
+  for (auto& [name, item] : items) {
+    if (const auto split = found.of_item.find(name); split != found.of_item.end()) item.split = split->second;
+    if (const auto problem = found.problems.find(name); problem != found.problems.end())
+      item.problem = problem->second;
+    else if (item.split.empty())
+      in_none.push_back(name);
+  }
+  constexpr std::size_t kMostNamed = 5;
+  if (!found.of_item.empty() && !in_none.empty())
+    notes.push_back(fmt::format("{} of {} items are in no split ({}): {}{}", in_none.size(), items.size(),
+                                splits.where, fmt::join(in_none | std::views::take(kMostNamed), ", "),
+                                in_none.size() > kMostNamed ? ", ..." : ""));
+  return found.missing;
+}
 
 void require_files(const fs::path& root, const FilePattern& pattern, std::size_t found) {
   if (!pattern.empty() && found == 0)
@@ -194,6 +264,7 @@ void add_truth(const Found& found, const fs::path& root, ItemsByName& items,
     if (found.layout.needs_truth) require_files(root, pattern, added);
   }
   finder.note_files_without_mesh();
+  add_masks(root, there->mask, items, notes);
 }
 
 // "261-280, 399"
@@ -231,7 +302,17 @@ Dataset find_dataset(const fs::path& root, std::span<const Layout> layouts, Twin
   dataset.layout = found.layout.name;
   if (found.layout.classes == Classes::shrec07) note_missing_numbers(items, dataset.notes);
   add_truth(found, folder, items, dataset.notes);
-  for (auto& [name, item] : items) dataset.items.push_back(std::move(item));
+  const DataSplits& splits = found.layout.splits;
+  dataset.no_splits = add_splits(folder, splits, items, dataset.notes);
+  dataset.splits_where = splits.where;
+  for (const std::string& file : {splits.table, splits.list})
+    if (!file.empty()) dataset.read.push_back((folder / file).lexically_normal());
+  for (auto& [name, item] : items) {
+    if (found.place.views == Views::scored && !item.views.empty())
+      std::ranges::move(items_of_views(item), std::back_inserter(dataset.items));
+    else
+      dataset.items.push_back(std::move(item));
+  }
   return dataset;
 }
 

@@ -224,6 +224,18 @@ bool one_file_per_item(const FilePattern& pattern) {
 
 bool has_viewers(const FilePattern& pattern) { return contains(pattern.text, "{viewer}"); }
 
+bool has_views(const FilePattern& pattern) { return contains(pattern.text, "{view}"); }
+
+std::string filled_in(const FilePattern& pattern, std::string_view item, std::string_view part) {
+  std::string path;
+  for (const std::string_view name : names_of(pattern.text)) {
+    if (!path.empty()) path += '/';
+    for (const Piece& piece : pieces_of(name))
+      path += piece.kind == Kind::item ? item : piece.kind == Kind::part ? part : piece.text;
+  }
+  return path;
+}
+
 std::string expected_name(const FilePattern& pattern) {
   std::string name;
   for (const Piece& piece : pieces_of(names_of(pattern.text).back())) {

@@ -51,6 +51,10 @@ bool has_folder_for(const std::filesystem::path& root, const FilePattern& patter
 
 bool one_file_per_item(const FilePattern& pattern);  // neither {participant} nor {view} nor {viewer}
 bool has_viewers(const FilePattern& pattern);        // {viewer}
+bool has_views(const FilePattern& pattern);          // {view}
+
+// The pattern with these in place of {item} and of {view} or {viewer}.
+std::string filled_in(const FilePattern& pattern, std::string_view item, std::string_view part);
 
 // "NAME_NUMBER.pid" for "RawData/{item}_{participant}.pid".
 std::string expected_name(const FilePattern& pattern);

@@ -18,6 +18,16 @@ void check(const ValuesFormat& format) {
     throw OptionError("unseen", "is '" + format.unseen + "', not a number or nan");
 }
 
+void check(const ColumnsFormat& format) {
+  check_ranges(format);
+  if (!format.given() && (format.has_truth() || !format.normal.empty()))
+    throw OptionError("position", "is missing; expected the columns of x, y and z");
+  if (format.given() && format.position.size() != 3)
+    throw OptionError("position", "must be three columns, of x, y and z");
+  if (!format.normal.empty() && format.normal.size() != 3)
+    throw OptionError("normal", "must be three columns, of x, y and z");
+}
+
 void check(const IndicesFormat& format) {
   check_ranges(format);
   const auto is_place = [](const std::string& text) {

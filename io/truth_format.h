@@ -62,9 +62,55 @@ struct IndicesFormat {
 
 void check(const IndicesFormat& format);  // throws OptionError
 
+// Rows at the end of a file that fill it up to a fixed number: all zeros, or copies of a row before them.
+enum class Padding { none, zeros, copies, any };
+template <>
+struct EnumNames<Padding> {
+  static constexpr std::array<std::string_view, 4> names = {"none", "zeros", "copies", "any"};
+};
+
+// Points at the very coordinates of a point before them.
+enum class Duplicates { kept, dropped };
+template <>
+struct EnumNames<Duplicates> {
+  static constexpr std::array<std::string_view, 2> names = {"kept", "dropped"};
+};
+
+// A point cloud in columns of a text, with its ground truth beside it. Columns are named as in ValuesFormat.
+struct ColumnsFormat {
+  std::vector<std::string> position;  // x, y, z; empty: shapes are no such texts
+  std::vector<std::string> normal;    // x, y, z; empty: none
+  bool normalise_normals = false;
+  Padding padding = Padding::none;
+  Duplicates duplicates = Duplicates::kept;
+  std::string density;
+  std::string flag;
+
+  bool given() const { return !position.empty(); }
+  bool has_truth() const { return !density.empty() || !flag.empty(); }
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("position", self.position, {"columns of x, y and z", "", {}, "[]"});
+    visit("normal", self.normal, {"columns of the normal's x, y and z; none: computed", "", {}, "[]"});
+    visit("normalise_normals", self.normalise_normals,
+          {"make directions of any length to normals; false: another length than 1 is an error",
+           "",
+           {},
+           "false"});
+    visit("padding", self.padding, {"rows at the end that fill up the file", "", {}, "none"});
+    visit("duplicates", self.duplicates, {"points at the coordinates of one before them", "", {}, "kept"});
+    visit("density", self.density, {"column of the saliency; none: no such column", "", {}, kEmpty});
+    visit("flag", self.flag, {"column of 0 and 1, 1 for picks; none: no such column", "", {}, kEmpty});
+  }
+};
+
+void check(const ColumnsFormat& format);  // throws OptionError
+
 struct TruthFormat {
   ValuesFormat values;
   IndicesFormat indices;
+  ColumnsFormat columns = {};
 };
 
 }  // namespace salbench

@@ -5,6 +5,7 @@
 #include <any>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -59,7 +60,7 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
 
   auto loaded = std::make_shared<Loaded>();
   std::string remark;
-  if (is_point_cloud(of_shape[0].text(), item.mesh)) {
+  if (has_columns(item) || is_point_cloud(of_shape[0].text(), item.mesh)) {
     const auto& cloud = loaded->shape.emplace<PointCloud>(load_cloud(shape_file, Remark{remark}));
     const bool needs_surface = item.saliency.empty() && !of_truth.empty();
     const Faces surface = needs_surface ? surface_of(cloud) : Faces();
@@ -99,27 +100,34 @@ py::tuple all_shown(const std::shared_ptr<const Loaded>& owner, const std::vecto
 
 class Data {
  public:
-  // `items`: None, a text such as "1-20,52", or a list of names.
-  Data(const std::string& layout, const std::string& root, const std::string& twins,
-       const py::object& items) {
+  // `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
+  Data(const std::string& layout, const std::string& root, const std::string& twins, const py::object& items,
+       const std::string& split) {
     Twins kept = Twins::refuse;
     if (!parse_option(twins, kept))
       throw py::value_error(
           fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), twins));
     salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
     layout_ = found.layout;
+    for (const DatasetItem& item : found.items)
+      if (!item.split.empty()) splits_.insert(item.split);
+    choose(found, items, split);
     notes_ = std::move(found.notes);
-    for (DatasetItem& item : chosen(std::move(found.items), items)) items_.emplace_back(std::move(item));
+    for (DatasetItem& item : found.items) items_.emplace_back(std::move(item));
   }
 
   std::string layout() const { return layout_; }
   std::vector<std::string> notes() const { return notes_; }
 
-  // (name, category) of each.
+  std::vector<std::string> splits() const { return {splits_.begin(), splits_.end()}; }
+
+  // (name, category, split) of each.
   py::list items() const {
     py::list rows;
-    for (const std::any& item : items_)
-      rows.append(py::make_tuple(file_text(item_of(item).name), file_text(item_of(item).category)));
+    for (const std::any& source : items_) {
+      const DatasetItem& item = item_of(source);
+      rows.append(py::make_tuple(file_text(item.name), file_text(item.category), file_text(item.split)));
+    }
     return rows;
   }
 
@@ -151,35 +159,45 @@ class Data {
  private:
   static void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
     std::vector<std::string_view> known;
-    for (const DatasetItem& item : items) known.push_back(item.name);
-    if (std::ranges::find(known, name) == known.end()) fail_unknown("item", name, known);
+    for (const DatasetItem& item : items) {
+      if (item.name == name || item.shape_name() == name) return;
+      known.push_back(item.name);
+    }
+    fail_unknown("item", name, known);
   }
 
-  static std::vector<DatasetItem> chosen(std::vector<DatasetItem> items, const py::object& wanted) {
-    if (wanted.is_none()) return items;
+  // A split that there is not is a name like those of items: a KeyError.
+  static void select(salbench::Dataset& found, const std::string& selection, const std::string& split) {
+    try {
+      select_items(found, selection, split);
+    } catch (const ConfigError& error) {
+      const std::string_view what = error.what();
+      if (what.starts_with("split")) throw py::key_error(error.what());
+      throw py::value_error(error.what() + 2);  // without the dashes of the command's option
+    }
+  }
+
+  static void choose(salbench::Dataset& found, const py::object& wanted, const std::string& split) {
     if (py::isinstance<py::bytes>(wanted)) {
       const auto selection = wanted.cast<std::string>();
       for (const std::string& part : split_list(selection))
-        if (part.find('-') == std::string::npos) require_known(items, part);
-      try {
-        if (!split_list(selection).empty()) return selected_items(std::move(items), selection);
-      } catch (const ConfigError& error) {
-        throw py::value_error(
-            std::string(error.what()).substr(2));  // without the dashes of the command's option
-      }
-      throw py::value_error("items names no item");
+        if (part.find('-') == std::string::npos) require_known(found.items, part);
+      if (split_list(selection).empty()) throw py::value_error("items names no item");
+      return select(found, selection, split);
     }
+    select(found, {}, split);
+    if (wanted.is_none()) return;
     const auto names = wanted.cast<std::vector<std::string>>();
-    for (const std::string& name : names) require_known(items, name);
-    std::vector<std::string> sorted = names;
-    std::ranges::sort(sorted);
-    std::erase_if(items,
-                  [&](const DatasetItem& item) { return !std::ranges::binary_search(sorted, item.name); });
-    return items;
+    for (const std::string& name : names) require_known(found.items, name);
+    const std::set<std::string> kept(names.begin(), names.end());
+    std::erase_if(found.items, [&](const DatasetItem& item) {
+      return !kept.contains(item.name) && !kept.contains(item.shape_name());
+    });
   }
 
   std::string layout_;
   std::vector<std::string> notes_;
+  std::set<std::string> splits_;
   std::vector<std::any> items_;  // of DatasetItem
 };
 
@@ -194,11 +212,13 @@ void bind_data(py::module_& module) {
   module.def("layouts", &layout_names);
   module.def("require_layout", &require_layout);
   py::class_<Data>(module, "Data")
-      .def(py::init<const std::string&, const std::string&, const std::string&, const py::object&>())
+      .def(py::init<const std::string&, const std::string&, const std::string&, const py::object&,
+                    const std::string&>())
       .def("items", &Data::items)
       .def("load", &Data::load)
       .def_property_readonly("layout", &Data::layout)
-      .def_property_readonly("notes", &Data::notes);
+      .def_property_readonly("notes", &Data::notes)
+      .def_property_readonly("splits", &Data::splits);
 }
 
 }  // namespace salbench::python

@@ -19,7 +19,8 @@ fs::path share() {
 
 std::string configuration_path(const std::string& given) {
   std::error_code error;
-  if (fs::exists(given, error) || fs::path(given).has_parent_path()) return given;
+  if (fs::exists(given, error) || (fs::path(given).has_parent_path() && !given.starts_with("protocols/")))
+    return given;
   for (const std::string& name : {given, given + ".yaml"})
     if (const fs::path path = share() / "configs" / name; fs::is_regular_file(path, error))
       return path.string();

@@ -31,6 +31,7 @@ constexpr const char* kFooter =
   salbench explain configs/shrec07.yaml 52_3 --data SchellingData   what differs from what the cache has
   salbench status configs/shrec07.yaml --data SchellingData         what is there already
   salbench doctor configs/shrec07.yaml --data SchellingData         whether machine and disk are fit for it
+  salbench inspect 3dva --data 3DVA                                 what a description finds in a folder
   salbench config                                                   every option, its default, unit and range
 
 Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
@@ -38,9 +39,10 @@ Exit status: 0 all done; 1 some items failed, each was named; 2 unusable argumen
 130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
-    run_subcommand,         maps_subcommand,   evaluate_subcommand, pictures_subcommand, export_subcommand,
-    conclusions_subcommand, power_subcommand,  plan_subcommand,     graph_subcommand,    explain_subcommand,
-    status_subcommand,      doctor_subcommand, config_subcommand,   verify_subcommand,   gc_subcommand,
+    run_subcommand,    maps_subcommand,        evaluate_subcommand, pictures_subcommand,
+    export_subcommand, conclusions_subcommand, power_subcommand,    plan_subcommand,
+    graph_subcommand,  explain_subcommand,     status_subcommand,   doctor_subcommand,
+    config_subcommand, verify_subcommand,      gc_subcommand,       inspect_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {

@@ -57,6 +57,7 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
   }
   config.pictures = std::max(config.pictures, pictures);
   if (!arguments.data.empty()) config.data = arguments.data;
+  if (!arguments.split.empty()) config.dataset.split = arguments.split;
   if (!arguments.cache.empty()) config.cache = arguments.cache;
   if (!arguments.output.empty()) config.output = arguments.output;
   if (config.data.empty())
@@ -77,7 +78,7 @@ int thread_count(const Arguments& arguments) {
 Setup::Setup(Config the_config, const Selection& selection)
     : config(std::move(the_config)),
       inputs(read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
-                         selection.items, selection.shard)),
+                         selection.items, selection.shard, config.dataset.split)),
       project(make_project(config, inputs, selection.reference)),
       cache(config.cache),
       output(config.output) {

@@ -48,6 +48,7 @@ Parameters run_parameters(Arguments& arguments, const Parameters& further) {
        {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
         1024},
        {"--items", &arguments.items, "only these shapes and their scans, such as 1-20,52,125"},
+       {"--split", &arguments.split, "only this split of the data set, such as test"},
        {"--reference", &arguments.reference,
         "match to this histogram (CSV with a column GS of 100 bins), not to the data set's own mean"},
        {"--quiet", &arguments.quiet, "neither progress nor tables; warnings and errors only"}},
@@ -58,6 +59,7 @@ Parameters cache_parameters(Arguments& arguments, const Parameters& further) {
   return joined({data_parameter(arguments),
                  cache_parameter(arguments),
                  {"--items", &arguments.items, "as of the run: only these shapes and their scans"},
+                 {"--split", &arguments.split, "as of the run: only this split of the data set"},
                  {"--reference", &arguments.reference, "as of the run: match to this histogram"},
                  {"--quiet", &arguments.quiet, "name what is wrong, and nothing else"}},
                 further);

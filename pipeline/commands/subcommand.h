@@ -26,6 +26,7 @@ struct Arguments {
   std::string config;
   std::string data, cache, output;
   std::string items;      // "1-20,52,125"
+  std::string split;      // "test"
   std::string shard;      // "2/4"
   std::string reference;  // CSV file with a reference histogram in column GS
   std::string models;     // "LS,PS"; empty: all of the configuration

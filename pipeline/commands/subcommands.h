@@ -27,6 +27,8 @@ Subcommand pictures_subcommand(Arguments& arguments);
 Subcommand conclusions_subcommand(Arguments& arguments);
 // Planners of a study, before it; authors, where two models do not differ.
 Subcommand power_subcommand(Arguments& arguments);
+// Whoever has a data set and a description of it, before the first run.
+Subcommand inspect_subcommand(Arguments& arguments);
 // Before a long run, to see what it would compute, and why.
 Subcommand plan_subcommand(Arguments& arguments);
 // Whoever changes the table of rules, or explains the pipeline to others.

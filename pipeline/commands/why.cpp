@@ -49,6 +49,8 @@ std::string source_text(const DatasetItem& item, const std::string& name) {
     if (name.starts_with(kind)) return kind + fs::path(item.mesh).filename().string();
   if (name.starts_with("saliency file") && item.saliency.size() == 1)
     return "saliency file " + fs::path(item.saliency[0]).filename().string();
+  if (name.starts_with("mask ") && item.masks.size() == 1)
+    return "mask " + fs::path(item.masks[0].path).filename().string();
   return name;
 }
 

@@ -2,6 +2,7 @@
 #include "pipeline/config/data_layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -30,7 +31,7 @@ FilePattern read_pattern(const Section& section, std::string_view key, const Wro
 }
 
 TruthPlace read_truth(const Section& section) {
-  section.reject_unknown({"saliency", "picks"});
+  section.reject_unknown({"saliency", "picks", "mask"});
   TruthPlace truth;
   truth.saliency = read_pattern(section, "saliency", [](std::string_view text) {
     return wrong_with_truth_pattern(text, {"{view}", "{viewer}"});
@@ -38,11 +39,20 @@ TruthPlace read_truth(const Section& section) {
   truth.picks = read_pattern(section, "picks", [](std::string_view text) {
     return wrong_with_truth_pattern(text, {"{participant}"});
   });
+  truth.mask = read_pattern(section, "mask", [&](std::string_view text) {
+    const std::string wrong = wrong_with_truth_pattern(text, {"{view}", "{viewer}"});
+    if (!wrong.empty() || one_file_per_item(FilePattern{std::string(text)})) return wrong;
+    const bool same = !one_file_per_item(truth.saliency) &&
+                      has_viewers(FilePattern{std::string(text)}) == has_viewers(truth.saliency);
+    return same ? "" : std::string("must have the {view} or {viewer} that `saliency` has, or none");
+  });
+  if (!truth.mask.empty() && truth.saliency.empty())
+    section.fail("mask", "is there without saliency: expected a pattern of the files that it masks");
   return truth;
 }
 
 Place read_place(const Section& section) {
-  section.reject_unknown({"meshes", "needs", "root_is", "truth"});
+  section.reject_unknown({"meshes", "needs", "root_is", "truth", "views"});
   Place place;
   place.meshes = read_pattern(section, "meshes", wrong_with_mesh_pattern);
   if (place.meshes.empty()) section.fail("meshes", "is missing; expected a pattern such as Meshes/*");
@@ -53,7 +63,49 @@ Place read_place(const Section& section) {
     if (place.truth.back().saliency.empty() && place.truth.back().picks.empty())
       section.fail("truth", "names neither saliency nor picks");
   }
+  section.read_value("views", place.views);
+  if (place.views == Views::scored &&
+      !std::ranges::all_of(place.truth, [](const TruthPlace& truth) { return has_views(truth.saliency); }))
+    section.fail("views", "is 'scored', but saliency has no {view} in its pattern");
   return place;
+}
+
+// "80%" or "0.8".
+double read_share(const Section& shares, const std::string& split) {
+  std::string text = shares.text(split).value_or("");
+  const bool percent = text.ends_with('%');
+  if (percent) text.pop_back();
+  double share = 0;
+  if (!parse_option(text, share) || !(share > 0 && share <= (percent ? 100 : 1)))
+    shares.fail(split, "is not a share of the lines, such as 80% or 0.8");
+  return percent ? share / 100 : share;
+}
+
+DataSplits read_splits(const Section& root) {
+  DataSplits splits;
+  if (!root.has("splits")) return splits;
+  const Section section = root.child("splits");
+  splits.where = root.where("splits");
+  section.reject_unknown({"file", "item", "split", "list", "shares", "items"});
+  if ((section.has("file") ? 1 : 0) + (section.has("list") ? 1 : 0) + (section.has("items") ? 1 : 0) != 1)
+    root.fail("splits", "must have one of file (a CSV file), list (with shares), or items");
+  section.read_value("file", splits.table);
+  section.read_value("item", splits.item);
+  section.read_value("split", splits.split);
+  section.read_value("list", splits.list);
+  const Section shares = section.child("shares"), items = section.child("items");
+  double sum = 0;
+  for (const std::string& name : shares.keys()) {
+    splits.shares.emplace_back(name, read_share(shares, name));
+    sum += splits.shares.back().second;
+  }
+  constexpr double kRounding = 1e-9;
+  if (splits.list.empty() != splits.shares.empty() || (!splits.list.empty() && std::abs(sum - 1) > kRounding))
+    section.fail("shares", "must name each split's share of the lines of `list`, which sum to 1");
+  for (const std::string& name : items.keys())
+    splits.named.push_back({name, items.words(name), items.where(name)});
+  if (splits.empty()) section.fail("items", "names no split");
+  return splits;
 }
 
 Section section_of(const Description& description) {
@@ -96,7 +148,8 @@ std::vector<Layout> layouts_of(const std::string& layout) {
 }
 
 Layout read_layout(const Section& root, const std::string& name) {
-  root.reject_unknown({"automatic", "domain", "classes", "ground_truth", "places", "values", "indices"});
+  root.reject_unknown(
+      {"automatic", "domain", "classes", "ground_truth", "places", "values", "indices", "columns", "splits"});
   Layout layout;
   layout.name = name;
   root.read_value("domain", layout.domain);
@@ -106,6 +159,8 @@ Layout read_layout(const Section& root, const std::string& name) {
   layout.needs_truth = truth == Truth::required;
   root.child("values").read(layout.format.values);
   root.child("indices").read(layout.format.indices);
+  root.child("columns").read(layout.format.columns);
+  layout.splits = read_splits(root);
   for (const Section& place : root.list("places")) layout.places.push_back(read_place(place));
   if (layout.places.empty()) root.fail("places", "is missing; expected a list of places with meshes");
   return layout;

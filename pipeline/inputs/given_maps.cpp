@@ -88,20 +88,28 @@ std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>&
     };
     return File{.name = "map file", .place = maps->place(item), .read = std::make_shared<ReadFile>(read)};
   };
+  // Views of one shape that are scored by themselves may share its map.
+  const auto name_of_map = [&](Unit unit) {
+    const std::string name = units.name(unit);
+    const DatasetItem& item = item_of(units, unit);
+    return item.view.empty() || maps->items.contains(name)
+               ? name
+               : item.shape_name() + name.substr(item.name.size());
+  };
   std::map<Level, FileColumnPtr> columns;
   std::string example;  // of a name that would be one
   bool any = false;
   for (const Level level : levels) {
     const std::vector<Unit> all = units.of(level);
-    const auto given = [&](Unit unit) { return maps->items.contains(units.name(unit)); };
+    const auto given = [&](Unit unit) { return maps->items.contains(name_of_map(unit)); };
     const bool any_here = std::ranges::any_of(all, given);
     auto column = std::make_shared<FileColumn>();
     column->expected = false;
     column->files.resize(units.slots(level));
     for (const Unit unit : all)
-      if (any_here) column->files[unit.index].push_back(file_of(units.name(unit)));
+      if (any_here) column->files[unit.index].push_back(file_of(name_of_map(unit)));
     for (const Unit unit : all)
-      if (units.family_of(unit) == 0) example = maps->place(units.name(unit));
+      if (units.family_of(unit) == 0) example = maps->place(name_of_map(unit));
     columns[level] = std::move(column);
     any |= any_here;
   }

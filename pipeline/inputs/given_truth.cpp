@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "io/cloud_file.h"
 #include "io/file.h"
 #include "io/ground_truth_file.h"
 #include "io/mat_file.h"
@@ -53,6 +57,49 @@ bool are_in_file_order(const DatasetItem& item) {
   return format_of(item).values.per == ValuePer::face && !item.saliency.empty();
 }
 
+// The columns of ground truth alone, or those of the points.
+ColumnsFormat truth_columns(const DatasetItem& item) {
+  ColumnsFormat columns;
+  columns.density = format_of(item).columns.density;
+  columns.flag = format_of(item).columns.flag;
+  return columns;
+}
+
+ColumnsFormat shape_columns(const DatasetItem& item) {
+  ColumnsFormat columns = format_of(item).columns;
+  // Padding is told by all columns.
+  if (columns.padding == Padding::none) columns.density = columns.flag = "";
+  return columns;
+}
+
+bool has_truth_in_columns(const DatasetItem& item) {
+  return has_columns(item) && format_of(item).columns.has_truth();
+}
+
+// A file that fails its item as soon as it is read.
+File unusable(std::string name, std::string place, std::string why) {
+  auto fail = [why = std::move(why)]() -> FileData { throw InputError(why); };
+  return {.name = std::move(name),
+          .place = std::move(place),
+          .read = std::make_shared<const ReadFile>(std::move(fail))};
+}
+
+// Hides the values where the mask is 0.
+void apply_mask(ScalarField& values, std::string_view bytes, const std::string& name,
+                const Elements& elements) {
+  const ScalarField mask =
+      parse_columns(bytes, name, {""}, {}, elements, [](std::span<const double> row) -> std::string_view {
+        return row[0] == 0 || row[0] == 1 ? "" : "a mask has 0 for hidden and 1 for seen, and nothing else";
+      })[0];
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (mask[i] == 0) values[i] = std::numeric_limits<double>::quiet_NaN();
+  if (std::ranges::none_of(mask, [](double seen) { return seen == 1; }))
+    throw InputError(
+        fmt::format("{}: hides everything: nothing is left to be scored; correct it, or take it "
+                    "and its ground truth away",
+                    name));
+}
+
 // The points that the files describe. A cloud may have left out some that its file has.
 struct Target {
   Points points;
@@ -72,13 +119,29 @@ struct Target {
   }
 };
 
+// A mask's file, if there is one.
+struct Mask {
+  std::string name = {};
+  std::string_view bytes = {};
+
+  void apply(ScalarField& values, const Elements& elements) const {
+    if (!name.empty()) apply_mask(values, bytes, name, elements);
+  }
+};
+
 // The values of one file, on the points.
 ScalarField on_points(const Target& target, const ValuesFormat& format, std::string_view bytes,
-                      std::string_view name) {
-  if (key_text(format).empty() && !is_npy(bytes) && !is_mat(bytes))
-    return target.left(parse_saliency(bytes, name, target.in_file()));
+                      std::string_view name, const Mask& mask) {
+  if (key_text(format).empty() && !is_npy(bytes) && !is_mat(bytes)) {
+    ScalarField values = parse_saliency(bytes, name, target.in_file());
+    mask.apply(values, target.in_file());
+    return target.left(std::move(values));
+  }
   const Mesh& written = target.as_written;
   TruthValues truth = parse_truth_values(bytes, name, format, target.described_by(format));
+  mask.apply(truth.values, format.per == ValuePer::point
+                               ? Elements{truth.values.size(), "file", "point", "points"}
+                               : target.described_by(format));
   if (format.per == ValuePer::face)
     return vertex_values_of_faces(written.vertices, written.faces, truth.values);
   if (format.per == ValuePer::vertex) return target.left(std::move(truth.values));
@@ -100,15 +163,36 @@ void add_saliency(GroundTruth& truth, const DatasetItem& item, std::vector<Scala
   if (item.by_viewer && maps.size() >= kMinParticipants) truth.viewers = std::move(maps);
 }
 
+// Flags of points that the cloud left out do not count.
+GroundTruth truth_in_columns(const Target& target, const DatasetItem& item, const Files& files) {
+  ColumnTruth found = parse_column_truth(files.data[0].text(), item.mesh, format_of(item).columns);
+  GroundTruth truth;
+  if (!found.saliency.empty()) truth.saliency = target.left(std::move(found.saliency));
+  const std::vector<std::int32_t> numbers = numbers_left(*target.cloud);
+  std::erase_if(found.picks,
+                [&](std::int32_t pick) { return numbers.at(static_cast<std::size_t>(pick)) < 0; });
+  if (!found.picks.empty()) truth.picks = {std::move(found.picks)};
+  if (truth.saliency.empty() && truth.picks.empty())
+    throw InputError(
+        fmt::format("{}: no point has its flag set: there is nothing to compare with", item.mesh));
+  return truth;
+}
+
 // All but the saliency of picks alone. Picks count the points of the file.
 GroundTruth read_truth(Target target, const Files& files) {
   const DatasetItem& item = item_of(files.source);
   const TruthFormat& format = format_of(item);
+  if (has_truth_in_columns(item)) return truth_in_columns(target, item, files);
   auto file = files.data.begin();
   if (are_in_file_order(item)) target.as_written = parse_mesh((file++)->text(), item.mesh);
   std::vector<ScalarField> maps;
-  for (const auto& path : item.saliency)
-    maps.push_back(on_points(target, format.values, (file++)->text(), path));
+  const auto masks = file + static_cast<std::ptrdiff_t>(item.saliency.size());
+  for (std::size_t k = 0; k < item.saliency.size(); ++k) {
+    const Mask mask =
+        item.masks.empty() ? Mask{} : Mask{item.masks[k].path, masks[static_cast<std::ptrdiff_t>(k)].text()};
+    maps.push_back(on_points(target, format.values, (file++)->text(), item.saliency[k], mask));
+  }
+  file += std::ssize(item.masks);
 
   GroundTruth truth;
   add_saliency(truth, item, std::move(maps));
@@ -131,28 +215,52 @@ File mesh_file_of(const DatasetItem& item) {
 
 FilesOfUnit truth_files_of(const DatasetItem& item) {
   FilesOfUnit files;
+  if (!item.problem.empty()) return {unusable("split", item.mesh, item.problem)};
+  if (has_truth_in_columns(item))
+    return {{.name = "ground truth in columns" + described(truth_columns(item)), .place = item.mesh}};
   if (are_in_file_order(item)) files.push_back(mesh_file_of(item));
   for (std::size_t k = 0; k < item.saliency.size(); ++k)
     files.push_back({.name = saliency_name(item, k), .place = item.saliency[k]});
+  for (std::size_t k = 0; k < item.masks.size(); ++k) {
+    const std::string name = fmt::format("mask {}", k);
+    const auto& [path, missing] = item.masks[k];
+    files.push_back(missing.empty() ? File{.name = name, .place = path} : unusable(name, path, missing));
+  }
   for (std::size_t k = 0; k < item.picks.size(); ++k)
     files.push_back(
         {.name = fmt::format("picks {}{}", k, described(format_of(item).indices)), .place = item.picks[k]});
   return files;
 }
 
+bool has_columns(const DatasetItem& item) { return is_column_cloud(item.mesh, format_of(item).columns); }
+
+std::string column_cloud_name(const DatasetItem& item) {
+  return fmt::format("point cloud file {}{}", lower_case_extension(item.mesh),
+                     described(shape_columns(item)));
+}
+
+GroundTruth measured_truth(const Mesh& mesh, const Files& files) {
+  return read_truth({.points = mesh.vertices}, files);
+}
+
 GroundTruth given_truth(const Mesh& mesh, const Files& files) {
-  GroundTruth truth = read_truth({.points = mesh.vertices}, files);
+  GroundTruth truth = measured_truth(mesh, files);
   if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh, truth.picks);
   return truth;
 }
 
-GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files) {
+GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files) {
   const DatasetItem& item = item_of(files.source);
   if (are_in_file_order(item))
     throw InputError(fmt::format("{}: has values per face, but {} is a point cloud, which has none",
                                  item.saliency[0], item.mesh));
   GroundTruth truth = read_truth({.points = cloud.points, .cloud = &cloud}, files);
   truth.picks = picks_left(cloud, std::move(truth.picks));
+  return truth;
+}
+
+GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files) {
+  GroundTruth truth = measured_cloud_truth(cloud, files);
   if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh_of(cloud, surface), truth.picks);
   return truth;
 }

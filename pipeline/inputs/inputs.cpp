@@ -9,6 +9,7 @@
 
 #include "io/cloud_file.h"
 #include "io/file.h"
+#include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
@@ -57,10 +58,33 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
   return names;
 }
 
+// Keeps the items of a split. Those that are in two stay, to fail with what is wrong.
+void select_split(Dataset& dataset, const std::string& split) {
+  std::vector<DatasetItem>& items = dataset.items;
+  std::set<std::string_view> known;
+  for (const DatasetItem& item : items)
+    if (!item.split.empty()) known.insert(item.split);
+  if (known.empty())
+    throw ConfigError(fmt::format(
+        "split '{}': the data set has no splits{}", split,
+        dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
+  if (!known.contains(split)) {
+    const std::string nearest = nearest_word(split, {known.begin(), known.end()});
+    throw ConfigError(fmt::format("split '{}': the data set has no such split; {}it has {} ({})", split,
+                                  nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest),
+                                  fmt::join(known, ", "), dataset.splits_where));
+  }
+  std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
+}
+
 // The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
 // a name that says so.
 std::pair<Level, File> shape_file_of(const DatasetItem& item) {
   File file = mesh_file_of(item);
+  if (has_columns(item)) {
+    file.name = column_cloud_name(item);
+    return {kClouds, std::move(file)};
+  }
   const std::string extension = lower_case_extension(item.mesh);
   FileData data;
   if (extension == ".ply") look(file, &data);
@@ -126,17 +150,24 @@ std::vector<std::string> split_list(const std::string& list) {
   return parts;
 }
 
-std::vector<DatasetItem> selected_items(std::vector<DatasetItem> items, const std::string& selection) {
+void select_items(Dataset& dataset, const std::string& selection, const std::string& split) {
   std::set<std::string> present;
-  for (const DatasetItem& item : items) present.insert(item.name);
+  for (const DatasetItem& item : dataset.items) present.insert({item.name, item.shape_name()});
   const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
   if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
-  std::erase_if(items, [&](const DatasetItem& item) { return !names.contains(item.name); });
-  return items;
+
+  if (!split.empty()) select_split(dataset, split);
+  std::erase_if(dataset.items, [&](const DatasetItem& item) {
+    return !names.contains(item.name) && !names.contains(item.shape_name());
+  });
+  if (dataset.items.empty())
+    throw ConfigError(fmt::format("--items {}: none of them is in the split '{}'", selection, split));
 }
 
-Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard) {
-  std::vector<DatasetItem> items = selected_items(std::move(dataset.items), selection);
+Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard,
+                   const std::string& split) {
+  select_items(dataset, selection, split);
+  std::vector<DatasetItem> items = std::move(dataset.items);
   if (shard) items = share_of(items, *shard);
   std::vector<Family> families(items.size());
   FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;

@@ -43,13 +43,15 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
   return item_of(units.source_of(unit).source);
 }
 
-// The items that `selection` names ("1-20,52,125"; empty: all). Throws ConfigError for one that is not there.
-std::vector<DatasetItem> selected_items(std::vector<DatasetItem> items, const std::string& selection);
+// Keeps the items that `selection` names ("1-20,52,125"; empty: all), of one split if that is named. A view
+// that is scored by itself is named like its shape, too. Throws ConfigError for an item or a split that is
+// not there.
+void select_items(Dataset& dataset, const std::string& selection, const std::string& split = {});
 
 // The selected items, or one share of them. Reads no file but those whose name does not say which kind of
 // shape they hold. Throws ConfigError as above.
-Inputs read_inputs(Dataset dataset, const std::string& selection = {},
-                   const std::optional<Shard>& shard = {});
+Inputs read_inputs(Dataset dataset, const std::string& selection = {}, const std::optional<Shard>& shard = {},
+                   const std::string& split = {});
 
 // Identity of a run's data, wherever they lie.
 struct DataIdentity {

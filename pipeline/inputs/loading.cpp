@@ -9,6 +9,7 @@
 
 #include "io/cloud_file.h"
 #include "io/mesh_file.h"
+#include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "stages/core/mesh_check.h"
 #include "stages/core/scale.h"
@@ -39,7 +40,10 @@ Mesh load_mesh(const Files& file, const Remark& remark) {
 }
 
 PointCloud load_cloud(const Files& file, const Remark& remark) {
-  CheckedCloud checked = check_cloud(parse_cloud(file.data[0].text(), item_of(file.source).mesh));
+  const DatasetItem& item = item_of(file.source);
+  CheckedCloud checked =
+      check_cloud(has_columns(item) ? parse_column_cloud(file.data[0].text(), item.mesh, item.format->columns)
+                                    : parse_cloud(file.data[0].text(), item.mesh));
   for (const std::string& warning : checked.warnings) spdlog::warn("{}: {}", file.name, warning);
   make(remark, file.name, {}, odd_scale(checked.cloud.points));
   return std::move(checked.cloud);

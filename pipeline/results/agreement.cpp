@@ -102,7 +102,7 @@ class AgreementOfMetrics {
     const Common common(dataset_.metrics[a].scores, dataset_.metrics[b].scores);
     if (common.models.size() < 2 || common.units.size() < 2) return {};
     const Agreement found = agreement_of(*orders(a, common), *orders(b, common));
-    return {cells(dataset_.scores.dataset(), conclusions_.metrics[a].name, conclusions_.metrics[b].name,
+    return {cells(dataset_.scores.label(), conclusions_.metrics[a].name, conclusions_.metrics[b].name,
                   common.units.size(), common.models.size(), found.tau, found.interval)};
   }
 
@@ -125,7 +125,8 @@ class AgreementOfMetrics {
 }  // namespace
 
 Table agreement_table(const Conclusions& conclusions) {
-  Table table{.columns = {"dataset", "metric_a", "metric_b", "n", "n_models", "tau", "ci95_low", "ci95_high"},
+  Table table{.columns = conclusions.labelled(
+                  {"dataset", "metric_a", "metric_b", "n", "n_models", "tau", "ci95_low", "ci95_high"}),
               .rows = {}};
   for (const DatasetConclusions& dataset : conclusions.datasets) {
     const AgreementOfMetrics agreement(conclusions, dataset);

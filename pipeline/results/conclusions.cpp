@@ -26,7 +26,7 @@ std::vector<Cell> summary_row(const DatasetScores& scores, std::size_t model, co
   const UnitScores compared = scores.compared(ranked.metric, {&model, 1});
   const UnitScores own = scores.own(ranked.metric, model);
   const Summary summary = summarise(compared.scores.values);
-  return cells(scores.dataset(), scores.models()[model], metric, summary.n, summary.mean, summary.sd,
+  return cells(scores.label(), scores.models()[model], metric, summary.n, summary.mean, summary.sd,
                student_interval(summary), bca_of(compared, model, ranked, bootstrap), compared.n_shapes,
                own.n_shapes, summarise(own.scores.values).mean);
 }
@@ -41,7 +41,7 @@ Rows ranking_rows(const DatasetScores& scores, const RankedMetric& ranked, const
   Rows rows;
   for (const std::size_t m : order) {
     const ModelRank& model = ranked.ranking.models[m];
-    rows.push_back(cells(scores.dataset(), metric.name, scores.models()[ranked.scores.models[m]],
+    rows.push_back(cells(scores.label(), metric.name, scores.models()[ranked.scores.models[m]],
                          ranked.scores.units.size(), ranked.scores.n_shapes, model.mean,
                          rank_cell(model.rank), rank_cell(model.rank_low), rank_cell(model.rank_high),
                          model.first, model.letters));
@@ -54,8 +54,13 @@ Rows ranking_rows(const DatasetScores& scores, const RankedMetric& ranked, const
 Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
                      const StatisticsOptions& options, std::uint64_t seed) {
   Conclusions conclusions{metrics, options.unit, std::make_shared<Bootstrap>(seed), {}};
+  std::vector<std::pair<std::string_view, std::string>> parts;  // data set and split
   for (const std::string_view dataset : kShapeNames) {
-    DatasetScores scores(rows, dataset, options.unit);
+    parts.emplace_back(dataset, "");
+    for (const std::string& split : splits_among(rows, dataset)) parts.emplace_back(dataset, split);
+  }
+  for (const auto& [dataset, split] : parts) {
+    DatasetScores scores(rows, dataset, options.unit, {}, split);
     if (scores.models().empty()) continue;
     std::vector<RankedMetric> ranked(metrics.size());
     for (std::size_t m = 0; m < metrics.size(); ++m) {
@@ -73,6 +78,11 @@ Conclusions conclude(const std::vector<ResultRow>& rows, const Metrics& metrics,
   return conclusions;
 }
 
+std::vector<std::string> Conclusions::labelled(std::vector<std::string> columns) const {
+  if (!datasets.empty() && datasets[0].scores.in_splits()) columns.insert(columns.begin() + 1, "split");
+  return columns;
+}
+
 const DatasetConclusions* Conclusions::of(std::string_view dataset) const {
   const auto found =
       std::ranges::find(datasets, dataset, [](const auto& one) { return one.scores.dataset(); });
@@ -80,8 +90,9 @@ const DatasetConclusions* Conclusions::of(std::string_view dataset) const {
 }
 
 Table summary_table(const Conclusions& conclusions) {
-  Table table{.columns = {"dataset", "model", "metric", "n", "mean", "sd", "ci95_low", "ci95_high",
-                          "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean"},
+  Table table{.columns = conclusions.labelled({"dataset", "model", "metric", "n", "mean", "sd", "ci95_low",
+                                               "ci95_high", "bca95_low", "bca95_high", "n_shapes",
+                                               "n_own_shapes", "own_mean"}),
               .rows = {}};
   for (const auto& [scores, metrics] : conclusions.datasets) {
     const Rows rows = rows_of_each(scores.models().size() * metrics.size(), [&](std::size_t row) {
@@ -95,9 +106,9 @@ Table summary_table(const Conclusions& conclusions) {
 }
 
 Table overview_table(const Conclusions& conclusions) {
-  Table table{
-      .columns = {"dataset", "model", "metric", "n", "mean", "ci95_low", "ci95_high", "rank", "group"},
-      .rows = {}};
+  Table table{.columns = conclusions.labelled(
+                  {"dataset", "model", "metric", "n", "mean", "ci95_low", "ci95_high", "rank", "group"}),
+              .rows = {}};
   for (const auto& [scores, metrics] : conclusions.datasets)
     for (std::size_t model = 0; model < scores.models().size(); ++model)
       for (const RankedMetric& ranked : metrics) {
@@ -105,7 +116,7 @@ Table overview_table(const Conclusions& conclusions) {
         const std::size_t place = ranked.scores.column_of(model);
         const ModelRank rank =
             place < ranked.scores.models.size() ? ranked.ranking.models[place] : ModelRank{};
-        table.rows.push_back(cells(scores.dataset(), scores.models()[model],
+        table.rows.push_back(cells(scores.label(), scores.models()[model],
                                    conclusions.metrics[ranked.metric].name, summary.n, summary.mean,
                                    student_interval(summary), rank_cell(rank.rank), rank.letters));
       }
@@ -113,8 +124,8 @@ Table overview_table(const Conclusions& conclusions) {
 }
 
 Table ranking_table(const Conclusions& conclusions) {
-  return {.columns = {"dataset", "metric", "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high",
-                      "first", "group"},
+  return {.columns = conclusions.labelled({"dataset", "metric", "model", "n", "n_shapes", "mean", "rank",
+                                           "rank_low", "rank_high", "first", "group"}),
           .rows = rows_by_metric(conclusions, ranking_rows)};
 }
 

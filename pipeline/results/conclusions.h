@@ -32,8 +32,12 @@ struct Conclusions {
   Metrics metrics;
   Observation unit = Observation::mesh;
   std::shared_ptr<const Bootstrap> bootstrap;  // the resamples of all tables
-  std::vector<DatasetConclusions> datasets;    // those with scores: meshes, scans, clouds
+  // Those with scores: meshes, scans, clouds, each followed by its splits.
+  std::vector<DatasetConclusions> datasets;
 
+  // Names of the columns of a table whose rows begin with DatasetScores::label().
+  std::vector<std::string> labelled(std::vector<std::string> columns) const;
+  // All splits of a data set together.
   const DatasetConclusions* of(std::string_view dataset) const;  // null if it has no scores
 };
 

@@ -90,8 +90,11 @@ class Exporter {
   void add_shape(Unit shape) {
     const std::string name = project_.units.name(shape);
     const DatasetItem& item = item_of(project_.units, shape);
-    Attributes attributes = {
-        {"dataset", std::string(shapes_name(shape.level))}, {"item", item.name}, {"class", item.category}};
+    Attributes attributes = {{"dataset", std::string(shapes_name(shape.level))},
+                             {"item", item.shape_name()},
+                             {"class", item.category}};
+    if (!item.view.empty()) attributes.emplace_back("truth_view", item.view);
+    if (!item.split.empty()) attributes.emplace_back("split", item.split);
     if (shape.level == kScans) attributes.emplace_back("view", std::int64_t{project_.units.place(shape)});
     file_->attributes(name, attributes);
     for (const Job& job : project_.jobs_of(shape))

@@ -66,7 +66,7 @@ std::vector<Cell> row_of(const DatasetScores& scores, const std::string& metric,
   const Share share = scored && !scale.shares.empty() ? scale.shares[place] : Share{};
   std::string remark = scale.remark;
   if (remark.empty()) remark = scored ? remark_on(share.interval, scale.scores.units.size()) : "no scores";
-  return cells(scores.dataset(), metric, scores.models()[model], scored ? scale.scores.units.size() : 0,
+  return cells(scores.label(), metric, scores.models()[model], scored ? scale.scores.units.size() : 0,
                scored ? scale.scores.n_shapes : 0, scored ? scale.means[place] : kNotScored,
                scored ? scale.means.end()[-2] : kNotScored, scored ? scale.means.back() : kNotScored,
                share.value, remark.empty() ? share.interval : Interval{}, remark);
@@ -86,8 +86,8 @@ Table human_share_table(const Conclusions& conclusions) {
       }
     return rows;
   };
-  return {.columns = {"dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs", "mean_hs", "share",
-                      "ci95_low", "ci95_high", "remark"},
+  return {.columns = conclusions.labelled({"dataset", "metric", "model", "n", "n_shapes", "mean", "mean_rs",
+                                           "mean_hs", "share", "ci95_low", "ci95_high", "remark"}),
           .rows = rows_by_metric(conclusions, rows_of)};
 }
 

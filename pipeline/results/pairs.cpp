@@ -18,7 +18,7 @@ Rows pair_rows(const DatasetScores& scores, std::size_t metric, const std::strin
                const Cells& cells_of) {
   Rows rows;
   for (const ModelPair& pair : model_pairs(scores, metric))
-    rows.push_back(cells(scores.dataset(), name, scores.models()[pair.a], scores.models()[pair.b],
+    rows.push_back(cells(scores.label(), name, scores.models()[pair.a], scores.models()[pair.b],
                          pair.by_unit.n, pair.n_shapes, cells_of(pair, pair.by_unit)));
   return rows;
 }
@@ -71,20 +71,20 @@ Table significance_table(const Conclusions& conclusions) {
     for (std::vector<Cell>& row : rows) row.emplace_back(std::int64_t{n_tests});
     return rows;
   };
-  return {
-      .columns = split_list("dataset,metric,model_a,model_b,n,n_shapes,mean_difference,ci95_low,ci95_high,"
-                            "t_p,ci90_low,ci90_high,d_z,rank_biserial,superiority,superiority_low,"
-                            "superiority_high,rank_sum_z,rank_sum_p,signed_rank,signed_rank_p,"
-                            "signed_rank_p_holm,n_tests"),
-      .rows = rows_by_metric(conclusions, rows_of)};
+  return {.columns = conclusions.labelled(
+              split_list("dataset,metric,model_a,model_b,n,n_shapes,mean_difference,ci95_low,ci95_high,"
+                         "t_p,ci90_low,ci90_high,d_z,rank_biserial,superiority,superiority_low,"
+                         "superiority_high,rank_sum_z,rank_sum_p,signed_rank,signed_rank_p,"
+                         "signed_rank_p_holm,n_tests")),
+          .rows = rows_by_metric(conclusions, rows_of)};
 }
 
 Table power_table(const Conclusions& conclusions) {
   const auto rows_of = [](const DatasetScores& scores, const RankedMetric& ranked, const Metric& metric) {
     return pair_rows(scores, ranked.metric, metric.name, power_cells);
   };
-  return {.columns = {"dataset", "metric", "model_a", "model_b", "n", "n_shapes", "sd", "detectable",
-                      "mean_difference", "n_to_detect"},
+  return {.columns = conclusions.labelled({"dataset", "metric", "model_a", "model_b", "n", "n_shapes", "sd",
+                                           "detectable", "mean_difference", "n_to_detect"}),
           .rows = rows_by_metric(conclusions, rows_of)};
 }
 

@@ -35,8 +35,8 @@ void add_class_rows(Table& table, const std::string& category, const DatasetScor
   const auto add = [&](const std::string& model, std::size_t metric, const UnitScores& of) {
     if (of.units.empty()) return;
     const Summary summary = summarise(mean_of_columns(of.scores));
-    table.rows.push_back(cells(scores.dataset(), category, model, metrics[metric].name, summary.n,
-                               of.n_shapes, summary.mean, student_interval(summary)));
+    table.rows.push_back(cells(scores.label(), category, model, metrics[metric].name, summary.n, of.n_shapes,
+                               summary.mean, student_interval(summary)));
   };
   for (std::size_t model = 0; model < scores.models().size(); ++model)
     for (std::size_t m = 0; m < metrics.size(); ++m)
@@ -53,8 +53,13 @@ Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics
   Table table{
       .columns = {"dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"},
       .rows = {}};
-  for (const auto& [dataset, category] : datasets_and_classes(rows))
+  if (std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); }))
+    table.columns.insert(table.columns.begin() + 1, "split");
+  for (const auto& [dataset, category] : datasets_and_classes(rows)) {
     add_class_rows(table, category, DatasetScores(rows, dataset, unit, category), metrics);
+    for (const std::string& split : splits_among(rows, dataset))
+      add_class_rows(table, category, DatasetScores(rows, dataset, unit, category, split), metrics);
+  }
   return table;
 }
 

@@ -18,6 +18,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Number of a scan, behind the view of the ground truth that it was given, if that is scored by itself.
+std::string view_of(const Units& units, Unit unit) {
+  const std::string& view = item_of(units, unit).view;
+  if (unit.level != kScans) return view;
+  return fmt::format("{}{}{}", view, view.empty() ? "" : "_", units.place(unit));
+}
+
 std::vector<ResultRow> collect(const RunState& run, bool of_constant) {
   struct Scored {
     std::size_t scores;  // the rule that the table is made of
@@ -36,9 +43,9 @@ std::vector<ResultRow> collect(const RunState& run, bool of_constant) {
       const Job job{rule, unit};
       if (rules[rule].over != unit.level || !run.decision(job).known()) continue;
       const DatasetItem& item = item_of(run.units(), unit);
-      rows.push_back({std::string(shapes_name(unit.level)), item.name, item.category,
-                      unit.level == kScans ? std::to_string(run.units().place(unit)) : "",
-                      rules[rule].subject, value_as<ScoreTable>(*table).rows.at(taken++), job});
+      rows.push_back({std::string(shapes_name(unit.level)), item.shape_name(), item.category,
+                      view_of(run.units(), unit), rules[rule].subject,
+                      value_as<ScoreTable>(*table).rows.at(taken++), job, item.split});
     }
   return rows;
 }
@@ -79,12 +86,16 @@ std::vector<ResultRow> collect_results(const RunState& run) { return collect(run
 std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, true); }
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
+  const bool in_splits = std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); });
   Table table{.columns = {"dataset", "item", "class", "view", "model"}, .rows = {}};
+  if (in_splits) table.columns.insert(table.columns.begin() + 1, "split");
   for (const Metric& metric : metrics) table.columns.push_back(metric.name);
   table.columns.insert(table.columns.end(), {"n_points", "n_picks"});
   for (const ResultRow& row : rows) {
     CHECK_EQ(row.scores.values.size(), metrics.size());
-    table.rows.push_back(cells(row.dataset, row.item, row.category, row.view, row.model,
+    std::vector<Cell> dataset = {row.dataset};
+    if (in_splits) dataset.emplace_back(row.split);
+    table.rows.push_back(cells(dataset, row.item, row.category, row.view, row.model,
                                std::vector<Cell>(row.scores.values.begin(), row.scores.values.end()),
                                row.scores.n_points, row.scores.n_picks));
   }

@@ -26,7 +26,8 @@ struct ResultRow {
   std::string view;  // of a scan; empty for others
   std::string model;
   Scores scores;
-  Job job = {};  // that gave them
+  Job job = {};            // that gave them
+  std::string split = {};  // of the data set; empty if it has none
 
   // Score by one of the metrics that the scores hold.
   double value(std::size_t metric) const { return scores.values.at(metric); }

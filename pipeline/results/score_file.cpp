@@ -83,8 +83,8 @@ std::map<std::string, std::string> read_classes(const fs::path& path) {
 }
 
 std::vector<std::string> notes_of(const Table& table, const std::vector<ScoreColumn>& scores) {
-  std::set<std::string, std::less<>> known{"dataset", "item",     "class",  "view",
-                                           "model",   "n_points", "n_picks"};
+  std::set<std::string, std::less<>> known{"dataset", "item",     "class",   "view",
+                                           "model",   "n_points", "n_picks", "split"};
   for (const ScoreColumn& column : scores) known.insert(column.metric.name);
   std::vector<std::string> left_out;
   std::ranges::copy_if(table.columns, std::back_inserter(left_out),
@@ -112,14 +112,14 @@ std::vector<std::string> names_of_scores(const Table& table, const ScoreColumns&
 ScoreFile scores_from(const Table& table, const ScoreColumns& columns, const fs::path& classes) {
   const std::vector<std::string> items = text_column(table, "item"), models = text_column(table, "model"),
                                  views = words_of(table, "view"), datasets = words_of(table, "dataset"),
-                                 categories = words_of(table, "class");
+                                 categories = words_of(table, "class"), splits = words_of(table, "split");
   const std::vector<ScoreColumn> scores = score_columns(table, columns);
   const std::map<std::string, std::string> class_of = read_classes(classes);
   ScoreFile file{{}, {}, notes_of(table, scores)};
   for (const ScoreColumn& column : scores) file.metrics.push_back(column.metric);
   std::set<std::tuple<std::string, std::string, std::string, std::string>> seen;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    ResultRow row{datasets[i], items[i], categories[i], views[i], models[i], {}};
+    ResultRow row{datasets[i], items[i], categories[i], views[i], models[i], {}, {}, splits[i]};
     if (row.dataset.empty()) row.dataset = row.view.empty() ? "meshes" : "scans";
     if (std::ranges::find(kShapeNames, row.dataset) == kShapeNames.end())
       throw InputError(fmt::format("{}:{}: data set '{}', expected one of {}", table.name, table.lines[i],

@@ -26,15 +26,32 @@ std::string unit_name(const ResultRow& row, Observation unit) {
 
 }  // namespace
 
+std::vector<std::string> splits_among(const std::vector<ResultRow>& rows, std::string_view dataset) {
+  std::vector<std::string> splits;
+  for (const ResultRow& row : rows) {
+    if (row.dataset != dataset) continue;
+    if (std::ranges::find(splits, row.split) == splits.end()) splits.push_back(row.split);
+  }
+  if (splits.size() < 2) return {};
+  std::erase(splits, "");
+  return splits;
+}
+
 DatasetScores::DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Observation unit,
-                             std::string_view only_class)
-    : dataset_(dataset) {
+                             std::string_view only_class, std::string_view only_split)
+    : dataset_(dataset),
+      in_splits_(std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); })) {
+  if (splits_among(rows, dataset).empty())
+    for (const ResultRow& row : rows)
+      if (row.dataset == dataset) split_ = row.split;
+  if (!only_split.empty()) split_ = only_split;
   std::map<std::string, std::size_t> models, units;
   std::map<std::pair<std::string, std::string>, std::size_t> shapes;
   for (const ResultRow& row : rows) {
     // A shape without a class is no unit of them.
     if (row.dataset != dataset || (unit == Observation::item_class && row.category.empty())) continue;
     if (!only_class.empty() && row.category != only_class) continue;
+    if (!only_split.empty() && row.split != only_split) continue;
     const std::size_t model = number_of(models, row.model);
     if (model == models_.size()) {
       models_.push_back(row.model);
@@ -47,6 +64,12 @@ DatasetScores::DatasetScores(const std::vector<ResultRow>& rows, std::string_vie
     shapes_[shape].rows[model] = &row;
   }
   n_units_ = units.size();
+}
+
+std::vector<Cell> DatasetScores::label() const {
+  std::vector<Cell> cells = {dataset_};
+  if (in_splits_) cells.emplace_back(split_);
+  return cells;
 }
 
 double DatasetScores::value(const Shape& shape, std::size_t metric, std::size_t model) const {

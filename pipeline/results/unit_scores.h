@@ -29,13 +29,20 @@ struct UnitScores {
   }
 };
 
-// The scores of one data set, or of one class of it. Keeps references to the rows.
+// Splits among the rows of a data set, in their order; none where all rows are of one, or of none.
+std::vector<std::string> splits_among(const std::vector<ResultRow>& rows, std::string_view dataset);
+
+// The scores of one data set, or of one class or one split of it. Keeps references to the rows.
 class DatasetScores {
  public:
   DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Observation unit,
-                std::string_view only_class = {});
+                std::string_view only_class = {}, std::string_view only_split = {});
 
   const std::string& dataset() const { return dataset_; }
+  // First cells of a row of a table: the data set and, where items are in splits, the one that all of these
+  // are in, empty for several.
+  std::vector<Cell> label() const;
+  bool in_splits() const { return in_splits_; }
   const std::vector<std::string>& models() const { return models_; }  // in the order of their first row
   bool is_reference(std::size_t model) const { return is_reference_[model]; }
   // Number of a model by its name; that after the last if there is none.
@@ -70,7 +77,8 @@ class DatasetScores {
 
   double value(const Shape& shape, std::size_t metric, std::size_t model) const;
 
-  std::string dataset_;
+  std::string dataset_, split_;
+  bool in_splits_ = false;
   std::vector<std::string> models_;
   std::vector<bool> is_reference_;
   std::vector<Shape> shapes_;

@@ -30,6 +30,7 @@ struct EnumNames<Participants> {
 
 struct DatasetOptions {
   std::string layout{kAutomaticLayout};
+  std::string split;
   Twins twins = Twins::refuse;
   bool meshes = true;
   bool scans = true;
@@ -40,6 +41,7 @@ struct DatasetOptions {
     visit("layout", self.layout,
           {"how the folder is laid out: automatic, a name in configs/datasets, or a description of your own "
            "(.yaml)"});
+    visit("split", self.split, {"only the items of this split, such as test; none: all items"});
     visit("twins", self.twins, {"of several shape files of one name, the extension of the one that counts"});
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});

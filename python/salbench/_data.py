@@ -26,6 +26,8 @@ class Dataset:
         description of your own (.yaml). docs/data_sets.md has them all.
     root : path
         The folder.
+    split : str, optional
+        Items of one split alone, such as "test".
     items : str or sequence of str, optional
         Items to take: "1-20,52", or their names. All by default. They keep the order of the data set.
     twins : str
@@ -53,14 +55,15 @@ class Dataset:
     >>> folder.cleanup()
     """
 
-    def __init__(self, layout: Path, root: Path, items: str | Iterable[str] | None = None, *, twins: str = "refuse") -> None:
+    def __init__(self, layout: Path, root: Path, split: str | None = None, items: str | Iterable[str] | None = None, *,
+                 twins: str = "refuse") -> None:
         self._layout = os.fspath(layout)
         self._root = os.fspath(root)
         self._twins = twins
-        self._open(items)
+        self._open(items, split or "")
         self._order = list(range(len(self._rows)))
 
-    def _open(self, items: str | Iterable[str] | None) -> None:
+    def _open(self, items: str | Iterable[str] | None, split: str = "") -> None:
         _require_folder(self._root)
         _core.require_layout(self._layout)
         if self._layout not in _core.layouts() and not os.path.exists(self._layout):
@@ -68,9 +71,9 @@ class Dataset:
         chosen: bytes | list[bytes] | None = None
         if items is not None:
             chosen = os.fsencode(items) if isinstance(items, str) else [os.fsencode(str(name)) for name in items]
-        self._data = _core.Data(os.fsencode(self._layout), os.fsencode(self._root), self._twins, chosen)
-        self._rows: list[tuple[str, str]] = self._data.items()
-        self._numbers = {name: number for number, (name, _) in enumerate(self._rows)}
+        self._data = _core.Data(os.fsencode(self._layout), os.fsencode(self._root), self._twins, chosen, split)
+        self._rows: list[tuple[str, str, str]] = self._data.items()
+        self._numbers = {name: number for number, (name, _) in enumerate(row[:2] for row in self._rows)}
 
     @property
     def layout(self) -> str:
@@ -91,6 +94,11 @@ class Dataset:
     def categories(self) -> tuple[str, ...]:
         """Class of each item, or ""; reads no file."""
         return tuple(self._rows[number][1] for number in self._order)
+
+    @property
+    def splits(self) -> tuple[str, ...]:
+        """Names of the splits that the description has, such as "train" and "test"; reads no file."""
+        return tuple(self._data.splits)
 
     def __len__(self) -> int:
         return len(self._order)
@@ -118,9 +126,9 @@ class Dataset:
         return self._load(number)
 
     def _load(self, number: int) -> Shape:
-        name, category = self._rows[number]
+        name, category, split = self._rows[number]
         points, faces, normals, ground_truth, participants, viewers = self._data.load(number)
-        return Shape(name, points, faces, normals, None, category, ground_truth, participants, viewers)
+        return Shape(name, points, faces, normals, None, category, split, ground_truth, participants, viewers)
 
     def __iter__(self) -> Iterator[Shape]:
         return map(self._load, self._order)

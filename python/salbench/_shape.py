@@ -28,6 +28,8 @@ class Shape:
         Descriptors. [rusu2009]
     category : str
         Class of the shape, or "".
+    split : str
+        Split that the data set has it in, or "".
     ground_truth : (n,) array
         Saliency; NaN where nobody looked.
     participants : list of (p,) arrays of int32
@@ -42,6 +44,7 @@ class Shape:
     normals: NDArray[np.float64] | None = None
     fpfh: NDArray[np.float32] | None = None
     category: str = ""
+    split: str = ""
     ground_truth: NDArray[np.float64] | None = None
     participants: tuple[NDArray[np.int32], ...] = ()
     viewers: tuple[NDArray[np.float64], ...] = ()

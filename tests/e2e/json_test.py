@@ -167,6 +167,37 @@ class JsonTest(unittest.TestCase):
             self.seen["doctor"].setdefault(key, set()).add(kind)
         return document
 
+    def check_inspection(self):
+        """Of two views of one mesh in two splits, one of which has a problem."""
+        data = self.folder / "views"
+        for name in ("off", "maps"):
+            (data / name).mkdir(parents=True)
+        for name in ("cat", "dog"):
+            (data / f"off/{name}.off").write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+            (data / f"maps/{name}_1.txt").write_text("1\n2\n-1\n4.5\n")
+        (data / "maps/dog_2.txt").write_text("1\n2\n3\n")
+        (data / "readme.txt").write_text("")
+        own = self.folder / "own.yaml"
+        own.write_text("places: [{meshes: 'off/*', views: scored, truth: {saliency: 'maps/{item}_{view}.txt'}}]\n"
+                       "values: {unseen: -1}\nsplits: {items: {train: [cat], test: [dog]}}\n")
+        said = []
+        for further in ([], ["--format", "json"]):
+            done = subprocess.run([PROGRAM, "inspect", own, "--data", data, *further], capture_output=True)
+            self.assertEqual((done.returncode, done.stderr), (1, b""))
+            said.append(done.stdout.decode("utf-8"))
+        document = json.loads(said[1])
+        self.assertEqual((document["schema"], document["command"], document["layout"]), (1, "inspect", "own"))
+        for key, kind in keys_of(document):
+            self.seen.setdefault("inspect", {}).setdefault(key, set()).add(kind)
+        self.assertEqual([(item["name"], item["view"], item["split"], item["seen"]) for item in document["items"]],
+                         [("cat_1", "1", "train", 3), ("dog_1", "1", "test", 3), ("dog_2", "2", "test", 0)])
+        self.assertEqual((document["items"][0]["low"], document["items"][0]["high"]), ("1", "4.5"))
+        self.assertEqual((document["shapes"], document["unused"]), (2, [str(data / "readme.txt")]))
+        (problem,) = document["problems"]
+        self.assertIn("maps/dog_2.txt:3: the file has 3 values, but the mesh has 4 vertices", problem)
+        self.assertIn(f"\n1 problems:\n  {problem}\n", said[0])
+        self.assertRegex(said[0], r"(?m)^dog_1 +test +4 +4 +1.7321 +0.7500 +1.0000 +4.5000 ")
+
     def test_documents_agree_with_their_documentation_and_with_the_text(self):
         with self.subTest("no cache"):
             left, state = self.check_counts()
@@ -227,6 +258,8 @@ class JsonTest(unittest.TestCase):
             nodes = json.loads(done.stdout)["nodes"]
             self.assertEqual({node["to_do"] for node in nodes}, {None})
             self.seen["graph"]["nodes[].to_do"].add("null")
+        with self.subTest("a description"):
+            self.check_inspection()
         for subcommand, keys in documented().items():
             with self.subTest(subcommand):
                 self.assertEqual(self.seen[subcommand], keys)

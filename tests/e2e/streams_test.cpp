@@ -37,6 +37,7 @@ std::vector<std::string> command_of(const Workspace& toy, const std::string& cal
     }
     return words;
   }
+  if (call == "inspect") return {SALBENCH_PROGRAM, call, "schelling", "--data", data};
   if (call == "config") return {SALBENCH_PROGRAM, call, config};
   if (call == "verify" || call == "gc")
     return {SALBENCH_PROGRAM, call, config, "--data", data, "--cache", cache};
@@ -81,8 +82,8 @@ TEST_P(StandardOutput, ThatNobodyReadsEndsTheProgramSilently) {
 }
 INSTANTIATE_TEST_SUITE_P(Calls, StandardOutput,
                          testing::Values("run", "maps", "evaluate", "pictures", "export", "plan", "graph",
-                                         "explain", "status", "doctor", "config", "verify", "gc", "--help",
-                                         "run --help", "--version"),
+                                         "explain", "status", "doctor", "config", "verify", "gc", "inspect",
+                                         "--help", "run --help", "--version"),
                          [](const auto& test) {
                            std::string name;
                            for (const char c : std::string(test.param))

@@ -101,6 +101,7 @@ TEST(Usage, ItemsThatTheDataSetHasNot) {
   EXPECT_THAT(complaint(toy, {"--items", "1,7"}), AllOf(HasSubstr("--items"), HasSubstr("'7'")));
   EXPECT_THAT(complaint(toy, {"--items", "30-40"}), HasSubstr("30-40"));
   EXPECT_THAT(complaint(toy, {"--items", ","}), HasSubstr("no item"));
+  EXPECT_THAT(complaint(toy, {"--split", "test"}), HasSubstr("split 'test': the data set has no splits"));
 }
 
 std::string reference_csv(const std::string& column, int bins) {

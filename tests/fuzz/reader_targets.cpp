@@ -106,6 +106,17 @@ std::size_t count_words(std::string_view text) {
   return n;
 }
 
+// A point cloud in columns, with and without normals and duplicates, by the length of the text.
+PointCloud parse_some_columns(std::string_view text, std::string_view name) {
+  ColumnsFormat format;
+  format.position = {"1", "2", "3"};
+  if (text.size() % 2 == 1) format.normal = {"1", "3", "2"};
+  format.padding = Padding::any;
+  format.duplicates = text.size() % 3 == 0 ? Duplicates::dropped : Duplicates::kept;
+  format.density = "2";
+  return parse_column_cloud(text, name, format);
+}
+
 }  // namespace
 
 void fuzz_off(std::string_view bytes) { check_mesh_reader(parse_off, bytes); }
@@ -129,6 +140,7 @@ void fuzz_val(std::string_view bytes) {
 }
 
 void fuzz_csv(std::string_view bytes) {
+  check_cloud_reader(parse_some_columns, bytes);
   for (const std::vector<std::string>& columns :
        {std::vector<std::string>{""}, {"2"}, {"value", "1"}, {"1", "value", "2", "3"}}) {
     const auto values = read_or_refuse([&] { return parse_columns(bytes, kFile, columns, "-1"); });

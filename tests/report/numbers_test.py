@@ -17,11 +17,24 @@ import pandas
 import fixture
 import support
 from report.exports import unit_range
-from report.results import TEXT_COLUMNS, number_of, read_table
+from report.results import TEXT_COLUMNS, number_of, read_results, read_table
 
 ITEMS = fixture.eight_meshes()[:3]
 MODELS = ("LS", "HS", "RS")
 ROOT = Path(__file__).resolve().parents[2]
+
+
+class Splits(unittest.TestCase):
+    def test_conclusions_are_those_of_all_splits_together(self):
+        folder = Path(self.enterContext(support.tempfile.TemporaryDirectory()))
+        head = "dataset,split,model,metric,n,mean\n"
+        (folder / "summary.csv").write_text(head + "meshes,,PS,cc,3,0.5\nmeshes,train,PS,cc,2,0.4\nmeshes,test,PS,cc,1,0.7\n")
+        (folder / "results.csv").write_text("dataset,split,item,class,view,model,cc\nmeshes,train,a,,,PS,0.1\nmeshes,test,b,,,PS,0.7\n")
+        results = read_results(folder)
+        self.assertEqual(list(results.table("summary.csv")["mean"]), [0.5])
+        self.assertEqual(list(results.table("results.csv")["split"]), ["train", "test"])
+        (folder / "summary.csv").write_text(head + "meshes,test,PS,cc,1,0.7\n")
+        self.assertEqual(list(read_results(folder).table("summary.csv")["mean"]), [0.7])
 
 
 class Numbers(unittest.TestCase):

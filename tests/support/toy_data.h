@@ -83,8 +83,8 @@ struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
       : config(std::move(the_config)),
-        inputs(
-            read_inputs(find_dataset(root, layouts_of(config.dataset.layout), config.dataset.twins), items)),
+        inputs(read_inputs(find_dataset(root, layouts_of(config.dataset.layout), config.dataset.twins), items,
+                           {}, config.dataset.split)),
         project(make_project(config, inputs)),
         store(the_store) {
     make_plan_again();

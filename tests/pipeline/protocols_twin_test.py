@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scores by configs/protocols/ beside NumPy, SciPy and scikit-learn, which read the published files themselves: a miniature of each
+public archive in its published names. Of the program only the maps are taken."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy import io, stats
+from sklearn import metrics
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ["SALBENCH_PROGRAM"]
+EPS = 2.2204e-16  # as code_forMetrics/KLdiv.m has MATLAB's eps
+
+
+def bumpy_sphere(seed, n=22):
+    """A grid of longitudes and latitudes with a pole at each end; every corner is used."""
+    rng = np.random.default_rng(seed)
+    longitude, latitude = np.meshgrid(np.arange(n) * 2 * np.pi / n, np.pi * (np.arange(1, n) / n - 0.5))
+    points = np.stack([np.cos(longitude) * np.cos(latitude), np.sin(longitude) * np.cos(latitude), np.sin(latitude)], -1).reshape(-1, 3)
+    points = np.vstack([points, [[0, 0, -1], [0, 0, 1]]])
+    points *= (1 + 0.1 * np.sin(points @ rng.normal(size=(3, 2)) * 4).sum(1))[:, None]
+    faces = []
+    for i in range(n):
+        j = (i + 1) % n
+        faces += [(j, i, len(points) - 2), ((n - 2) * n + i, (n - 2) * n + j, len(points) - 1)]
+        for k in range(n - 2):
+            faces += [(k * n + i, k * n + j, (k + 1) * n + j), (k * n + i, (k + 1) * n + j, (k + 1) * n + i)]
+    return points, np.array(faces)
+
+
+def density(field):
+    return field / field.sum()
+
+
+def min_max(field):
+    return (field - field.min()) / (field.max() - field.min())
+
+
+def divergence(map_, truth):
+    """MIT's benchmark of saliency models."""
+    p, q = density(min_max(map_)), density(truth)
+    return (q * np.log(EPS + q / (EPS + p))).sum()
+
+
+def smoothed_divergence(map_, truth):
+    """1e-12 added to both before they are made densities, as in many programs for training."""
+    p, q = density(min_max(map_) + 1e-12), density(truth + 1e-12)
+    return (q * np.log(q / p)).sum()
+
+
+def similarity(map_, truth):
+    return np.minimum(density(min_max(map_)), density(truth)).sum()
+
+
+def auc_of_upper_fifth(map_, truth):
+    positives = np.zeros(len(truth), bool)
+    positives[np.argsort(truth)[-int(np.ceil(0.2 * len(truth))):]] = True
+    return metrics.roc_auc_score(positives, map_)
+
+
+def correlation(map_, truth):
+    return stats.pearsonr(map_, truth)[0]
+
+
+def auc_of_picks(map_, picks):
+    labels = np.zeros(len(map_))
+    labels[np.unique(picks)] = 1
+    return metrics.roc_auc_score(labels, map_)
+
+
+def nss(map_, picks):
+    return ((map_ - map_.mean()) / map_.std())[np.unique(picks)].mean()
+
+
+class Protocols(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+        self.data = self.folder / "data"
+        self.rng = np.random.default_rng(1)
+
+    def write(self, name, text):
+        path = self.data / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def write_mesh(self, name, points, faces):
+        """With all digits: what is read are these very points."""
+        lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+        if name.endswith(".off"):
+            lines = ["OFF", f"{len(points)} {len(faces)} 0"]
+            lines += [f"{x!r} {y!r} {z!r}" for x, y, z in points.tolist()] + [f"3 {a} {b} {c}" for a, b, c in faces]
+        self.write(name, "\n".join(lines) + "\n")
+
+    def write_lines(self, name, values):
+        self.write(name, "".join(f"{value}\n" for value in np.asarray(values).tolist()))
+
+    def scored(self, protocol):
+        """The table of scores, and maps by model and item."""
+        for subcommand, further in (("run", []), ("maps", ["--to", self.folder / "maps"])):
+            subprocess.run([PROGRAM, subcommand, ROOT / f"configs/protocols/{protocol}.yaml", "--data", self.data, "--cache",
+                            self.folder / "cache", "--out", self.folder / "out", "--quiet", *further], check=True)
+        found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
+        return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
+
+    def agree(self, row, **expected):
+        for metric, value in expected.items():
+            self.assertAlmostEqual(row[metric], value, delta=1e-9, msg=f"{row['model']} {row['item']} {metric}")
+
+    def test_3dva(self):
+        truth = {}
+        for k, mesh in enumerate(("bunny", "dragon")):
+            points, faces = bumpy_sphere(k)
+            self.write_mesh(f"3DModels-Simplif/{mesh}.obj", points, faces)
+            for view in (300, 413, 599):
+                seen = points @ self.rng.normal(size=3) > -0.2
+                looked = np.where(seen, self.rng.random(len(points)), 0)
+                truth[mesh, str(view)] = looked, seen
+                self.write_lines(f"FixationMaps/{mesh}_{view}norm.txt", looked)
+                self.write_lines(f"CentricityAndVisibilityMaps/{mesh}_{view}_visibility.txt", seen.astype(int))
+        table, maps = self.scored("3dva")
+        self.assertEqual(len(table), 8 * 6)
+        for _, row in table.iterrows():
+            looked, seen = truth[row["item"], row["view"]]
+            map_ = maps[row["model"], f"{row['item']}_{row['view']}"]
+            self.assertEqual(row["n_points"], seen.sum())
+            self.agree(row, cc=correlation(map_[seen], looked[seen]), auc_top20=auc_of_upper_fifth(map_[seen], looked[seen]))
+
+    def test_sal3d(self):
+        truth = {}
+        for k, mesh in enumerate(("cat", "cow", "dog", "horse")):
+            points, _ = bumpy_sphere(k)
+            truth[mesh] = np.maximum(0, self.rng.normal(size=len(points)))
+            rows = np.column_stack([points, 6.28 * points, truth[mesh], truth[mesh] > 1])
+            self.write(f"Gaze/{mesh}.txt", "".join(" ".join(map(repr, row)) + "\n" for row in rows.tolist()))
+        self.write("splits.csv", "item,split\ncat,train\ncow,test\ndog,val\nhorse,test\n")
+        table, maps = self.scored("sal3d")
+        self.assertEqual(set(table["item"]), {"cow", "horse"})
+        self.assertEqual(set(table["split"]), {"test"})
+        for _, row in table.iterrows():
+            looked, map_ = truth[row["item"]], maps[row["model"], row["item"]]
+            self.agree(row, cc=correlation(map_, looked), kl=divergence(map_, looked), kl_smoothed=smoothed_divergence(map_, looked),
+                       sim=similarity(map_, looked))
+
+    def test_meshmamba(self):
+        truth, paths = {}, ""
+        for k in range(5):
+            mesh = f"Apple_v{k}"
+            points, faces = bumpy_sphere(k)
+            self.write_mesh(f"MeshFile/non_texture/Apple/{mesh}.obj", points, faces)
+            paths += f"MeshFile/rgb_texture/Apple/{mesh}.obj\n"
+            of_faces = self.rng.random(len(faces))
+            self.write_lines(f"SaliencyMap/non_texture/{mesh}.csv", of_faces)
+            areas = np.linalg.norm(np.cross(points[faces[:, 1]] - points[faces[:, 0]], points[faces[:, 2]] - points[faces[:, 0]]), axis=1)
+            around = np.zeros((2, len(points)))
+            for corner in range(3):
+                np.add.at(around[0], faces[:, corner], areas * of_faces)
+                np.add.at(around[1], faces[:, corner], areas)
+            truth[mesh] = around[0] / around[1]
+        self.write("paths_dataset_rgb.txt", paths)
+        table, maps = self.scored("meshmamba")
+        self.assertEqual(set(table["item"]), {"Apple_v4"})
+        for _, row in table.iterrows():
+            looked, map_ = truth[row["item"]], maps[row["model"], row["item"]]
+            self.agree(row, cc=correlation(map_, looked), kl=divergence(map_, looked), kl_smoothed=smoothed_divergence(map_, looked),
+                       sim=similarity(map_, looked))
+
+    def test_zaragoza(self):
+        points, faces = bumpy_sphere(0)
+        self.write_mesh("Meshes/bimba.off", points, faces)
+        looked, picks = self.rng.random(len(points)), np.sort(self.rng.choice(len(points), 20, replace=False))
+        self.write_lines("Distributions/bimba.val", looked)
+        self.write_lines("RawData/bimba_0.pid", picks)
+        table, maps = self.scored("zaragoza")
+        for _, row in table.iterrows():
+            map_ = maps[row["model"], row["item"]]
+            self.agree(row, cc=correlation(map_, looked), kl=divergence(map_, looked), kl_smoothed=smoothed_divergence(map_, looked),
+                       sim=similarity(map_, looked), auc_exact=auc_of_picks(map_, picks), nss=nss(map_, picks))
+
+    def test_dutagaci(self):
+        points, faces = bumpy_sphere(0)
+        self.write_mesh("MODEL_DATASET/ant.off", points, faces)
+        cells = np.empty((10, 11), dtype=object)
+        for place in np.ndindex(cells.shape):
+            cells[place] = 1.0 + np.sort(self.rng.choice(len(points), 9, replace=False)).astype(float)
+        (self.data / "GROUND_TRUTH_B").mkdir()
+        io.savemat(self.data / "GROUND_TRUTH_B/ant.mat", {"GT_POINTS": cells})
+        table, maps = self.scored("dutagaci")
+        picks = cells[2, 7].astype(int) - 1
+        self.assertGreater(len(table), 0)
+        for _, row in table.iterrows():
+            map_ = maps[row["model"], row["item"]]
+            self.agree(row, auc_exact=auc_of_picks(map_, picks), nss=nss(map_, picks))
+
+
+if __name__ == "__main__":
+    unittest.main()
