@@ -54,6 +54,9 @@ def xyz(points, normals=None):
     return "".join(" ".join(map(repr, map(float, row))) + "\n" for row in rows)
 
 
+CLOUD = np.random.default_rng(3).normal(size=(20, 3))
+
+
 class Folder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -133,6 +136,18 @@ class Layouts(Folder):
         self.assertEqual([picks.tolist() for picks in shape.participants], [[0, 2, 7]])
         self.assertTrue(np.isfinite(shape.ground_truth).all())  # smoothed from them
 
+    def test_3dva_as_published_has_a_shape_for_each_view(self):
+        self.write("3DModels-Simplif/bunny.obj", obj())
+        for view, hidden in (("300", [0]), ("413", [1, 2])):
+            self.write(f"FixationMaps/bunny_{view}norm.txt", column(VALUES))
+            self.write(f"CentricityAndVisibilityMaps/bunny_{view}_visibility.txt",
+                       column(~np.isin(np.arange(len(VALUES)), hidden)))
+        dataset = salbench.Dataset("3dva", self.root)
+        self.assertEqual(dataset.ids, ("bunny_300", "bunny_413"))
+        self.assertEqual(np.flatnonzero(~dataset["bunny_413"].mask).tolist(), [1, 2])
+        self.assert_equal(dataset["bunny_300"].ground_truth[1:], VALUES[1:])
+        self.assertEqual(salbench.Dataset("3dva", self.root, items=["bunny"]).ids, dataset.ids)
+
     def test_3dva_averages_what_views_show(self):
         self.write("Meshes/bunny.off", off())
         front, back = VALUES + 1, VALUES + 2
@@ -146,6 +161,40 @@ class Layouts(Folder):
         self.assert_equal(shape.ground_truth, expected)
         self.assertEqual(np.flatnonzero(~shape.mask).tolist(), [1])
         self.assertEqual(shape.viewers, ())
+
+    def test_sal3d_as_published_is_of_clouds_in_splits(self):
+        for name in ("cat", "dog", "elk"):
+            rows = [" ".join(map(repr, map(float, [*point, 0, 0, 6.28, value, value > 0.5])))
+                    for point, value in zip(CLOUD, np.linspace(0, 1, len(CLOUD)))]
+            self.write(f"Gaze/{name}.txt", "\n".join(rows) + "\n")
+        self.write("splits.csv", "item,split\ncat,train\ndog,train\nelk,test\n")
+        dataset = salbench.Dataset("sal3d", self.root)
+        self.assertEqual(dataset.splits, ("test", "train"))
+        self.assertEqual([shape.split for shape in dataset], ["train", "train", "test"])
+        tests = salbench.Dataset("sal3d", self.root, split="test")
+        self.assertEqual(tests.ids, ("elk",))
+        self.assertEqual(pickle.loads(pickle.dumps(tests)).ids, ("elk",))
+        shape = tests[0]
+        self.assert_equal(shape.points, CLOUD)
+        self.assert_equal(shape.normals, np.tile([0.0, 0, 1], (len(CLOUD), 1)))
+        self.assert_equal(shape.ground_truth, np.linspace(0, 1, len(CLOUD)))
+        self.assert_equal(shape.picks, np.flatnonzero(np.linspace(0, 1, len(CLOUD)) > 0.5))
+        with self.assertRaisesRegex(KeyError, "did you mean 'test'"):
+            salbench.Dataset("sal3d", self.root, split="tests")
+
+    def test_sal3d_on_the_vertices_of_its_meshes(self):
+        self.write("Meshes/cat.obj", obj())
+        rows = [" ".join(map(repr, map(float, [*point, 0, 0, 1, value, 0]))) for point, value in zip(POINTS, VALUES)]
+        self.write("Gaze/cat.txt", "\n".join(rows))
+        np.testing.assert_allclose(salbench.Dataset("sal3d_meshes", self.root)[0].ground_truth, VALUES)
+
+    def test_zaragoza(self):
+        self.write("Meshes/carter.off", off())
+        self.write("Distributions/carter.val", column(VALUES))
+        self.write("RawData/carter_0.pid", "3\n1\n")
+        shape = salbench.Dataset("zaragoza", self.root)["carter"]
+        self.assert_equal(shape.ground_truth, VALUES)
+        self.assertEqual(shape.participants[0].tolist(), [3, 1])
 
     def test_sal3d(self):
         self.write("Models_3D/cat.obj", obj())
@@ -174,8 +223,8 @@ class Layouts(Folder):
         self.assert_equal(shape.ground_truth, VALUES + 1)
 
     def test_every_description_of_the_program_has_a_test_here(self):
-        tested = {"automatic", "schelling", "gs", "princeton", "folder", "dutagaci", "3dva", "sal3d", "meshmamba",
-                  "meshmamba_textured"}
+        tested = {"automatic", "schelling", "gs", "princeton", "folder", "dutagaci", "3dva", "sal3d", "sal3d_meshes",
+                  "meshmamba", "meshmamba_textured", "zaragoza"}
         self.assertEqual(set(salbench._core.layouts()), tested)
 
 
