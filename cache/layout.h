@@ -30,7 +30,8 @@ std::filesystem::path shard_of(std::string_view stage, const Digest& key);
 // Throws StorageError if a newer program wrote the folder; a folder without a tag passes.
 void check_format(const std::filesystem::path& folder);
 
-bool is_cache(const std::filesystem::path& folder);  // one that a program made, of any format
+// True of a folder that a salbench, this one or another, made as a cache.
+bool is_cache(const std::filesystem::path& folder);
 
 // Throws StorageError unless the folder is a cache that this program knows. Called before files are inspected
 // or removed, so that a mistyped folder is left alone.

@@ -25,7 +25,7 @@ struct TruthPlace {
   FilePattern mask = {};  // 0 for hidden, 1 for seen; one file per file of saliency, or one per item
 };
 
-// What the views of a shape are: parts of one ground truth, or units that are scored by themselves.
+// Views of a shape are averaged into one ground truth, or each is scored as a unit of its own.
 enum class Views { averaged, scored };
 template <>
 struct EnumNames<Views> {

@@ -48,9 +48,10 @@ struct DiskTrial {
 inline constexpr int kDiskTrials = 9;
 inline constexpr std::size_t kTrialBytes = 64 * 1024;
 
-// Of a folder for unfinished files, whose names they have.
+// Writes files into the folder, as unfinished ones are named, and renames them.
 DiskTrial try_disk(const std::filesystem::path& scratch);
-// Of any folder: the files have no names, so that nothing is seen or left behind, and none is renamed.
+// Writes files without names, so that any folder will do: nothing is seen or left behind, and nothing
+// renamed.
 DiskTrial try_disk_without_names(const std::filesystem::path& folder);
 
 }  // namespace salbench

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What writer and reader of images (io/hdf5_image.h) share of the HDF5 file format: superblock 0, object
-// headers 1, groups as symbol tables, attributes and data spaces 1, layout 3 [hdf5_format]. Numbers are
-// little-endian.
+// The HDF5 file format, as far as writer and reader of images (io/hdf5_image.h) share it: superblock 0,
+// object headers 1, groups as symbol tables, attributes and data spaces 1, layout 3 [hdf5_format]. Numbers
+// are little-endian.
 #pragma once
 
 #include <array>
@@ -61,7 +61,7 @@ std::size_t value_bytes(std::size_t alternative);  // of one value
 inline constexpr std::size_t kTypes = std::variant_size_v<ArrayValues>;
 inline constexpr std::size_t kReal = 0, kInteger = 3;  // the alternatives that numbers in attributes have
 
-// What a message of the type of a text of that many bytes holds: UTF-8, filled up with zeros.
+// The message that types a text of so many bytes: UTF-8, filled up with zeros.
 Bytes text_type_message(std::size_t bytes);
 
 }  // namespace salbench::hdf5

@@ -135,7 +135,7 @@ void end_commands() {
 
 bool commands_are_ended() { return ended; }
 
-// What polls the old event, if anything is left, goes on seeing it.
+// A keeper that is left polls the event that it was started with, and still sees that it is to end.
 void allow_commands() {
   const std::lock_guard lock(kept().starting);
   if (!ended) return;
