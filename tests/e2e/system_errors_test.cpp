@@ -117,11 +117,11 @@ TEST(SystemError, MemoryThatRunsOutForAFileCostsItsItemAlone) {
   GTEST_SKIP() << "AddressSanitizer needs all of the address space";
 #endif
   const Workspace toy(kMeshesOnly);
-  // A header that announces ten million vertices, and the room in the file for them.
+  // A header that announces ten million vertices, 240 MB, and the room in the file for them.
   std::string mesh = "OFF\n10000000 1 0\n";
   for (int i = 0; i < 10'000'000; ++i) mesh += "0 0 0\n";
   toy.write("data set/Meshes/3.off", mesh);
-  std::string line = "ulimit -v 400000; exec";
+  std::string line = "ulimit -v 340000; exec";
   for (const std::string& word : toy.command("run", {"--threads", "1"})) line += " '" + word + "'";
   const Outcome run = run_process({"/bin/sh", "-c", line});
   EXPECT_EQ(run.status, 1) << run.err;
