@@ -30,6 +30,7 @@ fresh_root() {
   rm -rf --one-file-system "${folder:?}/$1" "$folder/$1.part" &&
     cp -a --reflink=auto "$folder/$base" "$folder/$1.part" &&
     cp /etc/resolv.conf "$folder/$1.part/etc/resolv.conf" &&
+    printf '127.0.0.1 localhost\n' > "$folder/$1.part/etc/hosts" &&  # an installed system has it, a bare root of Debian 12 not
     mv "$folder/$1.part" "$folder/$1" &&
     echo "$folder/$1"
 }
