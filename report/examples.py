@@ -80,7 +80,7 @@ def chosen(shop, dataset, count):
     painters = scored_pictures(shop, dataset)
     named = [painter for painter in painters if painter.shape.item in shop.examples]
     if not painters:
-        raise Missing(HOW.format(spoken(dataset), "see README.md."))
+        raise Missing(HOW.format(spoken(dataset), "see docs/results.md."))
     return named[:count] if named else spread(painters, count)
 
 

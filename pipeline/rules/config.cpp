@@ -53,7 +53,7 @@ void require_metric(const std::string& name, const Section& section, std::string
   if (name == kEveryName || std::ranges::find(known, name) != known.end()) return;
   const std::string nearest = nearest_word(name, known);
   const std::string hint =
-      nearest.empty() ? "the README has a table of them" : fmt::format("did you mean '{}'?", nearest);
+      nearest.empty() ? "docs/metrics.md has a table of them" : fmt::format("did you mean '{}'?", nearest);
   section.fail(key, fmt::format("has no metric '{}'; {}", name, hint));
 }
 

@@ -42,9 +42,12 @@ struct MetricsOptions {
           {"points of the ROC curve, evenly spaced over the values", "points", at_least(2)});
     visit("constant_nss", self.constant_nss, {"NSS of a constant map", "standard deviations", {}, "0"});
     visit("names", self.names,
-          {"metrics, or all: the README has a table of them", "", {}, "[auc, auc_exact, nss, cc, lcc]"});
+          {"metrics, or all: docs/metrics.md has a table of them", "", {}, "[auc, auc_exact, nss, cc, lcc]"});
     visit("matching", self.matching,
-          {"matching of the maps, one for all metrics or by name; else as the README has it", "", {}, "{}"});
+          {"matching of the maps, one for all metrics or by name; else as docs/metrics.md has it",
+           "",
+           {},
+           "{}"});
   }
 };
 

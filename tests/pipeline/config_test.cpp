@@ -133,7 +133,7 @@ TEST(Config, UnknownMetricsAreErrorsWithTheNearestName) {
   EXPECT_EQ(error_of("metrics:\n  names: [klx]"),
             "x.yaml:2: metrics.names has no metric 'klx'; did you mean 'kl'?");
   EXPECT_THAT(error_of("metrics: [a_very_long_name_of_nothing]"),
-              HasSubstr("the README has a table of them"));
+              HasSubstr("docs/metrics.md has a table of them"));
   EXPECT_THAT(error_of("metrics: []"), HasSubstr("names no metric"));
   EXPECT_THAT(error_of("metrics: [[nss]]"), HasSubstr("must be a list of names"));
   EXPECT_THAT(error_of("metrics: {names: {nss: 1}}"), HasSubstr("must be a list of names"));
