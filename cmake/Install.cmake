@@ -39,8 +39,9 @@ endif()
 install(TARGETS salbench)
 install(PROGRAMS scripts/report DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME salbench-report)
 install(DIRECTORY configs report DESTINATION ${share} PATTERN __pycache__ EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE CITATION.cff docs/data_dictionary.md docs/data_sets.md docs/json.md
-  docs/statistics.md docs/bibliography.bib DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  FILES_MATCHING PATTERN *.md PATTERN *.bib PATTERN *.png PATTERN *.svg)
 install(FILES scripts/read_export.py DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES cmake/completion.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME salbench)

@@ -8,6 +8,7 @@ author = "The salbench maintainers"
 version = release = salbench.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 myst_heading_anchors = 3  # [text](page.md#heading) is checked
+smartquotes = False  # texts of the program stand as it prints them
 html_theme = "furo"
 html_title = f"salbench {version}"
 html_copy_source = False

@@ -12,7 +12,7 @@ cd /
 salbench=$prefix/bin/salbench
 version=$("$salbench" --version)
 version=${version#salbench }
-for file in share/doc/salbench/{README.md,CHANGELOG.md,CITATION.cff,LICENSE,data_dictionary.md} share/man/man1/salbench.1; do
+for file in share/doc/salbench/{README.md,CHANGELOG.md,CITATION.cff,LICENSE,docs/data_dictionary.md,docs/index.md} share/man/man1/salbench.1; do
   [[ -s $prefix/$file ]] || complain "$file: not installed"
 done
 

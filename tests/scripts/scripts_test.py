@@ -89,7 +89,7 @@ class ScriptsTest(unittest.TestCase):
             self.assertRegex(head, r"(?m)^(#|//) (Run|Read|Sourced|Imported|Included) (by|before) ", name_of(path))
 
     def test_each_program_is_mentioned_where_people_look(self):
-        documents = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md"))
+        documents = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *ROOT.glob("docs/*.md")))
         others = {"slurm/task", "slurm/toy_meshes.py"}  # run by scripts/slurm/submit and by tests
         names = {name_of(path) for path in FILES if os.access(path, os.X_OK)} - others
         self.assertEqual([name for name in sorted(names) if not re.search(rf"scripts/{re.escape(name)}\b", documents)], [])

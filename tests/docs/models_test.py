@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every folder of models/ runs, without its container, and has a card and a Containerfile of the form that CONTRIBUTING.md asks for."""
+
+import csv
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import yaml
+
+import pages
+
+MODELS = sorted(path for path in (pages.ROOT / "models").iterdir() if path.is_dir())
+FILES = ("model.yaml", "card.yaml", "Containerfile")
+CARD = ("name", "citation", "licence", "training_data", "test_overlap")
+
+
+def own(folder):
+    """Sections of model.yaml that are commands, by name."""
+    sections = yaml.safe_load((folder / "model.yaml").read_text(encoding="utf-8"))["models"]
+    return {name: section for name, section in sections.items() if section and "command" in section}
+
+
+def objections(text):
+    """What is wrong with the form of a Containerfile."""
+    lines = re.sub(r"\\\n", " ", re.sub(r"^\s*#.*\n", "", text, flags=re.M)).strip().splitlines()
+    instructions = [tuple(line.split(None, 1)) for line in lines if line.strip()]
+    known = {"ARG", "FROM", "RUN", "COPY", "ENV", "WORKDIR", "USER", "LABEL", "ENTRYPOINT", "CMD"}
+    yield from (f"unknown instruction {name[0]}" for name in instructions if name[0] not in known or len(name) < 2)
+    names = [name[0] for name in instructions]
+    if not names or names[0] not in ("FROM", "ARG"):
+        yield "does not begin with FROM"
+    for name, *rest in instructions:
+        if name == "FROM" and (":" not in rest[0] or rest[0].endswith(":latest")):
+            yield f"FROM {rest[0]}: name a release"
+        if name == "RUN" and re.search(r"\b(curl|wget)\b", rest[0]) and "sha256sum" not in rest[0]:
+            yield "fetches a file without checking its digest"
+    if names.count("ENTRYPOINT") != 1:
+        yield "needs one ENTRYPOINT"
+
+
+class Models(unittest.TestCase):
+    def test_there_are_some_with_all_files(self):
+        self.assertTrue(MODELS)
+        for folder in MODELS:
+            for name in FILES:
+                self.assertTrue((folder / name).is_file(), f"{folder.name}/{name}")
+
+    def test_each_runs_beside_chance_and_gives_a_value_per_point(self):
+        for folder in MODELS:
+            with self.subTest(folder.name), tempfile.TemporaryDirectory() as name:
+                here = Path(name)
+                environment = pages.workspace(here)
+                done = subprocess.run([pages.PROGRAM, "run", folder.relative_to(pages.ROOT) / "model.yaml", "--data", "SchellingData",
+                                       "--out", "out", "--quiet"], cwd=here, env=environment, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                with open(here / "out/results.csv", encoding="utf-8") as file:
+                    rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+                for model in [*own(folder), "RS"]:
+                    scored = [row for row in rows if row["model"] == model and row["dataset"] == "meshes" and row["nss"]]
+                    self.assertEqual(len(scored), len(pages.MESHES), model)
+
+    def test_each_has_a_card_of_the_model_and_depends_on_its_files(self):
+        for folder in MODELS:
+            card = yaml.safe_load((folder / "card.yaml").read_text(encoding="utf-8"))
+            self.assertEqual([key for key in CARD if not str(card.get(key) or "").strip()], [], folder.name)
+            self.assertEqual([card["name"]], list(own(folder)))
+            for section in own(folder).values():
+                named = re.findall(r"models/[\w./-]+", section["command"])
+                self.assertLessEqual(set(named), set(section["depends"]))
+
+    def test_each_containerfile_has_the_form(self):
+        for folder in MODELS:
+            text = (folder / "Containerfile").read_text(encoding="utf-8")
+            self.assertEqual(list(objections(text)), [], folder.name)
+            for copied in re.findall(r"^COPY (\S+) ", text, flags=re.M):
+                self.assertTrue((folder / copied).exists(), copied)
+
+    def test_a_containerfile_without_the_form_is_seen(self):
+        good = "FROM debian:12-slim\nRUN true\nENTRYPOINT [\"x\"]\n"
+        self.assertEqual(list(objections(good)), [])
+        for bad in (good.replace(":12-slim", ""), good.replace("12-slim", "latest"), good.replace("RUN", "RNU"), good.replace("ENTRYPOINT", "CMD"),
+                    good.replace("true", "wget https://example.org/weights.pt"), good.partition("\n")[2]):
+            self.assertEqual(len(list(objections(bad))), 1, bad)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the pages name exists, and what they list is all that the program has."""
+
+import re
+import unittest
+import urllib.parse
+
+import salbench
+from report import elements
+
+import pages
+
+ENDINGS = ("_multiplicity", "_area")
+
+
+def documented_metrics():
+    """Name -> (map, better) of the tables of docs/metrics.md: "`auc_top20`, `_top10`" are two names."""
+    rows = {}
+    for line in (pages.ROOT / "docs/metrics.md").read_text(encoding="utf-8").splitlines():
+        cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if len(cells) != 5 or cells[3] not in ("higher", "lower"):
+            continue
+        first, *others = re.findall(r"`([^`]+)`", cells[0])
+        stem = first[:first.rindex("_")] if "_" in first else first
+        for name in [first] + [stem + other if other.startswith("_") else other for other in others]:
+            rows[name] = (cells[2], cells[3])
+    return rows
+
+
+def base(name):
+    for ending in reversed(ENDINGS):
+        name = name.removesuffix(ending)
+    return name
+
+
+class Pages(unittest.TestCase):
+    def test_every_metric_has_its_row_with_its_direction(self):
+        rows = documented_metrics()
+        table = salbench.metrics.table()
+        self.assertEqual(set(rows), {base(row.name) for row in table})
+        for row in table:
+            self.assertEqual(rows[base(row.name)][1], "higher" if row.higher_is_better else "lower", row.name)
+
+    def test_every_model_has_its_words(self):
+        text = (pages.ROOT / "docs/methods.md").read_text(encoding="utf-8")
+        for row in salbench.models.table():
+            self.assertRegex(text, rf"(?m)^(### .*\b{row.name}\b|\| {row.name} \|)")
+
+    def test_every_element_of_the_report_says_how_to_read_it(self):
+        text = (pages.ROOT / "docs/results.md").read_text(encoding="utf-8")
+        self.assertEqual([element.title for element in elements.ELEMENTS if f"| {element.title} |" not in text], [])
+
+    def test_files_named_exist(self):
+        """Of the tree, as `docs/metrics.md`; names with a part to fill in, and the model XS of one page, are left out."""
+        tops = "cache|cmake|configs|docs|io|models|pipeline|python|report|scripts|stages|tests"
+        for page in pages.PAGES:
+            for name in re.findall(rf"`((?:{tops})/[\w./-]*)`", pages.prose(page)):
+                if not re.search(r"NAME|/xs", name):
+                    self.assertTrue((pages.ROOT / name).exists(), f"{page.name}: {name}")
+
+    def test_links_of_the_files_beside_the_site(self):
+        """Those within docs/ are checked by scripts/docs; here those from the root, and that addresses are addresses."""
+        for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"):
+            for target in re.findall(r"\]\(([^)\s]+)\)", pages.prose(pages.ROOT / name)):
+                if "://" not in target:
+                    path, _, anchor = target.partition("#")
+                    self.assertTrue((pages.ROOT / path).exists(), f"{name}: {target}")
+                    if anchor:
+                        heads = re.findall(r"^#+ (.*)$", (pages.ROOT / path).read_text(encoding="utf-8"), flags=re.M)
+                        self.assertIn(anchor, [re.sub(r"[^\w -]", "", head).lower().replace(" ", "-") for head in heads], f"{name}: {target}")
+        for page in [*pages.PAGES, pages.ROOT / "CHANGELOG.md"]:
+            for address in re.findall(r"https?://[^\s)>`\"]+", page.read_text(encoding="utf-8")):
+                parts = urllib.parse.urlsplit(address)
+                self.assertRegex(parts.hostname or "", r"^[\w-]+(\.[\w-]+)+$", f"{page.name}: {address}")
+
+
+if __name__ == "__main__":
+    unittest.main()
