@@ -13,5 +13,7 @@ html_theme = "furo"
 html_title = f"salbench {version}"
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
+default_role = "code"  # `names` in docstrings
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # signatures have them; docstrings say what an argument means

@@ -5,11 +5,14 @@
 import re
 import subprocess
 import sys
+import unicodedata
 from pathlib import Path
 
 import salbench
+import yaml
 
 DOCS = Path(__file__).resolve().parent
+ACCENTS = {'"': "\u0308", "'": "\u0301", "`": "\u0300", "v": "\u030c"}  # of TeX, as combining characters
 
 
 def output(*words):
@@ -27,16 +30,40 @@ def table(head, rows):
     return "\n".join([line(head), "|" + "---|" * len(head), *map(line, rows)]) + "\n"
 
 
+def sections(text):
+    """The parts of a help text by their head, "" for what is above the first: CLI11 writes "Options:" and indents what follows."""
+    parts = re.split(r"^([A-Z][\w ]*):(?: *\n| (?=\S))", text, flags=re.M)
+    return {"": parts[0].strip()} | {head: part.rstrip() for head, part in zip(parts[1::2], parts[2::2])}
+
+
+def rows(text):
+    """[name, meaning] of lines that are indented by two blanks; what is indented further belongs to the meaning."""
+    found = []
+    for line in text.splitlines():
+        if row := re.match(r"  (\S.*?)(?: {2,}(.*))?$", line):
+            found.append([f"`{row[1]}`", row[2] or ""])
+        elif found:
+            found[-1][1] = f"{found[-1][1]} {line.strip()}".strip()
+    return found
+
+
+def command(program, name, ending):
+    parts = sections(output(program, name, "--help"))
+    text = [f"## {name}\n", parts[""] + ".\n", fenced(parts["Usage"])]
+    text += [table(("argument", "meaning"), rows("\n".join(parts.get(head, "") for head in ("Positionals", "Options"))))]
+    if parts.get("Examples") and parts["Examples"] != ending:
+        text.append(fenced(parts["Examples"]))
+    return text
+
+
 def commands(program):
     """The help of the program and of each subcommand, without what all of them end with."""
-    whole = output(program, "--help")
-    ending = whole[whole.index("\nExit status:"):]
-    names = re.findall(r"^  ([a-z]+) ", whole[whole.index("Subcommands:"):whole.index("\nExamples:")], flags=re.M)
-    pages = ["# Commands\n", fenced(whole)]
-    for name in names:
-        text = output(program, name, "--help").replace(ending, "")
-        pages += [f"## {name}\n", fenced(text.split("\nExamples:")[0] if whole.split("\nExamples:")[1].split(ending)[0] in text else text)]
-    return "\n".join(pages)
+    whole = sections(output(program, "--help"))
+    names = [name.strip("`") for name, _ in rows(whole["Subcommands"])]
+    links = [(f"[{name}](#{name})", meaning) for name, (_, meaning) in zip(names, rows(whole["Subcommands"]))]
+    pages = ["# Commands\n", fenced(whole["Usage"]), table(("subcommand", "what it does"), links)]
+    pages += [fenced(whole["Examples"]), f"Exit status: {whole['Exit status']}\n"]
+    return "\n".join(pages + [line for name in names for line in command(program, name, whole["Examples"])])
 
 
 def configuration(program):
@@ -63,35 +90,50 @@ def models():
     return "\n".join(parts)
 
 
+def data_sets():
+    """Terms of use, which stand in the descriptions."""
+    found = []
+    for path in sorted((DOCS.parent / "configs/datasets").glob("*.yaml")):
+        description = yaml.safe_load(path.read_text(encoding="utf-8"))
+        found.append((f"`{path.stem}`", description.get("licence", "not known; ask the authors")))
+    return ("# Terms of data sets\n\nNone of the data is part of salbench; [Data sets](../data_sets.md) says whose it is. On which terms its\n"
+            "authors give it, as far as that is known (`licence:` in `configs/datasets/NAME.yaml`):\n\n" + table(("layout", "terms"), found))
+
+
 def python():
     """Autodoc's directives, since docstrings are reStructuredText."""
-    def directive(name, options=":members:\n   :no-special-members:"):
-        return f".. automodule:: {name}\n   {options}\n"
+    def directive(name):
+        what = getattr(salbench, name)
+        with_members = isinstance(what, type) and not issubclass(what, tuple)  # fields of a tuple stand in its docstring
+        return f".. auto{'class' if isinstance(what, type) else 'function'}:: salbench.{name}" + "\n   :members:" * with_members
     names = [name for name in salbench.__all__ if name not in ("__version__", "metrics", "models", "stats")]
-    members = "\n".join(f".. auto{'class' if isinstance(getattr(salbench, name), type) else 'function'}:: salbench.{name}"
-                        + ("\n   :members:" if isinstance(getattr(salbench, name), type) else "") for name in names)
-    return ("# Python package\n\n[salbench in Python](../python.md) introduces it.\n\n## salbench\n\n" + fenced(members, "{eval-rst}") +
-            "\n## salbench.stats\n\n" + fenced(directive("salbench.stats"), "{eval-rst}"))
+    return ("# Python package\n\n[salbench in Python](../python.md) introduces it.\n\n## salbench\n\n" +
+            fenced("\n\n".join(map(directive, names)), "{eval-rst}") +
+            "\n## salbench.stats\n\n" + fenced(".. automodule:: salbench.stats\n   :members:\n", "{eval-rst}"))
+
+
+def entry(line):
+    """A line of the bibliography as text: its key, and the fields, with braces up to two deep, without TeX."""
+    fields = dict(re.findall(r"(\w+)=\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}", line))
+    accented = re.compile(r"\\([\"'`v])\{?(\w)\}?")
+    fields = {name: re.sub("[{}]", "", accented.sub(lambda found: unicodedata.normalize("NFC", found[2] + ACCENTS[found[1]]), value))
+              for name, value in fields.items()}
+    venue = next((fields[name] for name in ("journal", "booktitle", "institution", "publisher") if name in fields), "")
+    parts = filter(None, (fields.get("author", "").rstrip("."), f"*{fields['title']}*", venue, fields.get("year")))
+    return f"`{re.match(r'@[a-z]+{([^,]+),', line)[1]}`: " + ". ".join(parts)
 
 
 def bibliography():
-    entries = []
-    for line in (DOCS / "bibliography.bib").read_text(encoding="utf-8").splitlines():
-        key = re.match(r"@\w+\{([^,]+),", line)
-        if not key:
-            continue
-        fields = {name: re.sub(r"\\[\"'^`~]|[{}]", "", value) for name, value in re.findall(r"(\w+)=\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}", line)}
-        venue = next((fields[name] for name in ("journal", "booktitle", "institution", "publisher") if name in fields), "")
-        entries.append(f"`{key[1]}`\n: " + ". ".join(filter(None, (fields.get("author"), f"*{fields['title']}*", venue, fields.get("year")))))
-    return "# Bibliography\n\nKeys in brackets, on these pages and in the program's sources, are these.\n\n" + \
-        "\n\n".join(sorted(entry.replace("\n: ", ": ") for entry in entries)) + "\n"
+    lines = (DOCS / "bibliography.bib").read_text(encoding="utf-8").splitlines()
+    return ("# Bibliography\n\nKeys in brackets, on these pages and in the program's sources, are these.\n\n" +
+            "\n\n".join(sorted(entry(line) for line in lines if line.startswith("@"))) + "\n")
 
 
 def main():
     program, folder = sys.argv[1], Path(sys.argv[2])
     folder.mkdir(parents=True)
     pages = {"commands": commands(program), "configuration": configuration(program), "metrics": metrics(), "models": models(),
-             "python": python(), "bibliography": bibliography()}
+             "python": python(), "data_sets": data_sets(), "bibliography": bibliography()}
     for name, text in pages.items():
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
 

@@ -3,7 +3,7 @@
 
 sh      run by bash
 python  executed; the blocks of a page share their names
-yaml    a configuration, read by `salbench config`; or the description of a data set, read by `salbench inspect`
+yaml    a configuration, read by `salbench config`; the description of a data set, read by `salbench inspect`; or a model's card
 cpp     compiled (docs/add_a_model.md)
 text    not run
 
@@ -51,7 +51,10 @@ class Runner:
 
     def yaml(self, block):
         path = self.folder / (block.file or "block.yaml")
+        path.parent.mkdir(exist_ok=True)
         path.write_text(block.text)
+        if path.name == "card.yaml":  # read by the commands after it
+            return ""
         if not DESCRIPTION & set(yaml.safe_load(block.text)):
             done = self.program("config", path)
             return done.stderr if done.returncode else ""

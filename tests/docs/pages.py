@@ -43,13 +43,14 @@ def shape_files(folder):
     rng = np.random.default_rng(1)
     subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", folder / "toy", str(len(MESHES)), "12", "10"], check=True)
     data = folder / "SchellingData"
-    for part in (data / "Meshes", data / "Distributions", data / "RawData", folder / "my_maps", folder / "my_clouds"):
+    for part in (data / "Meshes", data / "Distributions", data / "RawData", folder / "my_maps", folder / "mine", folder / "my_clouds"):
         part.mkdir(parents=True)
     for number, path in zip(MESHES, sorted((folder / "toy").glob("*.off"))):
         shutil.copy(path, data / "Meshes" / f"{number}.off")
         n = int(path.read_text().split()[1])
         np.savetxt(data / "Distributions" / f"{number}.val", rng.random(n))
-        np.savetxt(folder / "my_maps" / f"{number}.val", rng.random(n))
+        for maps in ("my_maps", "mine"):
+            np.savetxt(folder / maps / f"{number}.val", rng.random(n))
         for participant in range(4):
             np.savetxt(data / "RawData" / f"{number}_{participant}.pid", rng.choice(n, 5, replace=False), fmt="%d")
     np.savetxt(folder / "my_clouds/statue.xyz", rng.normal(size=(200, 3)))

@@ -55,7 +55,7 @@ class Site(unittest.TestCase):
         for name in listed:
             for option in re.findall(r"^  (--[a-z-]+)", subprocess.run([pages.PROGRAM, name, "--help"], capture_output=True, text=True).stdout,
                                      flags=re.M):
-                self.assertIn(option, commands.split(f"Usage: salbench {name} ")[1].split("Usage: ")[0], name)
+                self.assertIn(option, commands.split(f"salbench {name} [OPTIONS]")[1].split("[OPTIONS]")[0], name)
         metrics = self.page("reference/metrics")
         self.assertEqual([row.name for row in salbench.metrics.table() if row.help not in metrics], [])
         models = self.page("reference/models")
