@@ -14,16 +14,14 @@ ENDINGS = ("_multiplicity", "_area")
 
 
 def documented_metrics():
-    """Name -> (map, better) of the tables of docs/metrics.md: "`auc_top20`, `_top10`" are two names."""
+    """Name -> better, of the tables of docs/metrics.md: "`auc_top20`, `_top10`" are two names."""
     rows = {}
     for line in (pages.ROOT / "docs/metrics.md").read_text(encoding="utf-8").splitlines():
-        cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
-        if len(cells) != 5 or cells[3] not in ("higher", "lower"):
-            continue
-        first, *others = re.findall(r"`([^`]+)`", cells[0])
-        stem = first[:first.rindex("_")] if "_" in first else first
-        for name in [first] + [stem + other if other.startswith("_") else other for other in others]:
-            rows[name] = (cells[2], cells[3])
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        if len(cells) == 5 and cells[3] in ("higher", "lower"):
+            first, *others = re.findall(r"`([^`]+)`", cells[0])
+            for name in [first] + [first[:first.rindex("_")] + other if other[0] == "_" else other for other in others]:
+                rows[name] = cells[3]
     return rows
 
 
@@ -39,7 +37,7 @@ class Pages(unittest.TestCase):
         table = salbench.metrics.table()
         self.assertEqual(set(rows), {base(row.name) for row in table})
         for row in table:
-            self.assertEqual(rows[base(row.name)][1], "higher" if row.higher_is_better else "lower", row.name)
+            self.assertEqual(rows[base(row.name)], "higher" if row.higher_is_better else "lower", row.name)
 
     def test_every_model_has_its_words(self):
         text = (pages.ROOT / "docs/methods.md").read_text(encoding="utf-8")
