@@ -41,7 +41,7 @@ install(PROGRAMS scripts/report DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME salbe
 install(DIRECTORY configs report DESTINATION ${share} PATTERN __pycache__ EXCLUDE)
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
-  FILES_MATCHING PATTERN *.md PATTERN *.bib PATTERN *.png PATTERN *.svg)
+  FILES_MATCHING PATTERN *.md PATTERN *.bib PATTERN *.png PATTERN *.svg PATTERN own_model.py)
 install(FILES scripts/read_export.py DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES cmake/completion.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME salbench)

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the pages name exists, and what they list is all that the program has."""
 
+import fnmatch
 import re
+import subprocess
+import tempfile
 import unittest
 import urllib.parse
+from pathlib import Path
 
 import salbench
 from report import elements
@@ -47,6 +51,17 @@ class Pages(unittest.TestCase):
     def test_every_element_of_the_report_says_how_to_read_it(self):
         text = (pages.ROOT / "docs/results.md").read_text(encoding="utf-8")
         self.assertEqual([element.title for element in elements.ELEMENTS if f"| {element.title} |" not in text], [])
+
+    def test_every_file_of_a_run_has_its_row(self):
+        text = (pages.ROOT / "docs/results.md").read_text(encoding="utf-8")
+        named = [name for row in re.findall(r"(?m)^\| (`[^|]+) \|", text) for name in re.findall(r"`([\w.*]+)`", row)]
+        with tempfile.TemporaryDirectory() as name:
+            here = Path(name)
+            subprocess.run([pages.PROGRAM, "run", "configs/shrec07_meshes.yaml", "--data", "SchellingData", "--out", "out", "--quiet"],
+                           cwd=here, env=pages.workspace(here), check=True, stderr=subprocess.PIPE)
+            left = sorted(path.name for path in (here / "out").iterdir())
+        self.assertIn("results.csv", left)
+        self.assertEqual([file for file in left if not any(fnmatch.fnmatch(file, pattern) for pattern in named)], [])
 
     def test_files_named_exist(self):
         """Of the tree, as `docs/metrics.md`; names with a part to fill in, and the model XS of one page, are left out."""
