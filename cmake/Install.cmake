@@ -39,7 +39,7 @@ endif()
 install(TARGETS salbench)
 install(PROGRAMS scripts/report DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME salbench-report)
 install(DIRECTORY configs report DESTINATION ${share} PATTERN __pycache__ EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE CITATION.cff docs/data_dictionary.md docs/data_sets.md docs/json.md
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff docs/conventions.md docs/data_dictionary.md docs/data_sets.md docs/json.md
   docs/statistics.md docs/bibliography.bib DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES scripts/read_export.py DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES cmake/completion.bash

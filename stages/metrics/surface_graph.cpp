@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/surface_graph.h"
 
-#include <algorithm>
 #include <queue>
 #include <tuple>
 
@@ -26,24 +25,6 @@ SurfaceGraph SurfaceGraph::at(std::span<const std::int32_t> some) const {
     graph.edges.offsets.push_back(static_cast<std::int32_t>(graph.edges.neighbours.size()));
   }
   return graph;
-}
-
-// Two points are at most as far apart as the sum of their distances from the centroid: outer ones come first,
-// and the rest is left out.
-double diameter_of(Points points) {
-  if (points.empty()) return 0;
-  const Vec3 centre = centroid(points);
-  std::vector<std::pair<double, std::size_t>> outer;
-  for (std::size_t i = 0; i < points.size(); ++i) outer.emplace_back((points[i] - centre).norm(), i);
-  std::ranges::sort(outer, std::greater<>());
-  double largest = 0;
-  for (std::size_t a = 1; a < outer.size(); ++a) {
-    const auto [reach, i] = outer[a];
-    if ((outer[0].first + reach) * (1 + 1e-12) < largest) break;
-    for (std::size_t b = 0; b < a && (outer[b].first + reach) * (1 + 1e-12) >= largest; ++b)
-      largest = std::max(largest, (points[i] - points[outer[b].second]).norm());
-  }
-  return largest;
 }
 
 std::vector<NearestSource> nearest_sources(const SurfaceGraph& graph, std::span<const std::int32_t> sources,

@@ -25,7 +25,7 @@ struct SurfaceGraph {
 // Throws InputError for a face whose point does not exist.
 SurfaceGraph surface_graph(Points points, Surface surface);
 
-// The largest distance of two points, exactly; 0 of none. O(n^2) at worst, on a sphere.
+// The largest distance of two points, exactly; 0 of none.
 double diameter_of(Points points);
 
 // Which of some points is nearest along the edges; of those at equal distance, the first in the list.

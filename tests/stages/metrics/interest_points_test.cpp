@@ -161,6 +161,7 @@ TEST(SurfaceGraph, DiameterIsTheLargestDistance) {
     EXPECT_EQ(diameter_of(points), largest);
   }
   EXPECT_NEAR(diameter_of(shapes::sphere(3).vertices), 2, 1e-12);
+  EXPECT_EQ(diameter_of(std::vector<Vec3>(100, Vec3(1, 2, 3))), 0);
   EXPECT_EQ(diameter_of({}), 0);
 }
 
