@@ -55,8 +55,7 @@ InterestPointScores interest_point_scores(std::span<const std::int32_t> detected
   scores.fne = 1 - n_correct / n_marked;
   scores.wme = 1 - times_correct / static_cast<double>(marked.size());
   scores.recall = count_reached(truth.points, nearest_sources(graph, detected, reach)) / n_marked;
-  if (detected.empty()) return scores;
-  const auto n_detected = static_cast<double>(detected.size());
+  const double n_detected = std::max(1.0, static_cast<double>(detected.size()));
   scores.fpe = 1 - n_correct / n_detected;
   scores.precision = count_reached(detected, nearest_marked) / n_detected;
   return scores;

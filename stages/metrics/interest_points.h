@@ -10,7 +10,7 @@
 
 namespace salbench {
 
-// All NaN without marked points; fpe and precision also without detected ones. A marked point is detected
+// All NaN without marked points. Without detected ones each has its worst value. A marked point is detected
 // correctly if a detected point lies within the tolerance and is not closer to another marked one: each
 // detected point counts for the marked point nearest to it, of several at equal distance the first.
 struct InterestPointScores {

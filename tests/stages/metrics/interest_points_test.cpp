@@ -123,7 +123,8 @@ TEST(InterestPointScores, OfNothingDetectedMissEverything) {
   EXPECT_EQ(scores.fne, 1);
   EXPECT_EQ(scores.wme, 1);
   EXPECT_EQ(scores.recall, 0);
-  EXPECT_TRUE(std::isnan(scores.fpe) && std::isnan(scores.precision));
+  EXPECT_EQ(scores.fpe, 1) << "a map that says nothing is no good detector";
+  EXPECT_EQ(scores.precision, 0);
   const InterestPointScores unmarked = interest_point_scores(std::vector{1}, {}, line(5), 0.5);
   for (const double value : {unmarked.fne, unmarked.fpe, unmarked.wme, unmarked.precision, unmarked.recall})
     EXPECT_TRUE(std::isnan(value));

@@ -61,9 +61,9 @@ def errors(detected, marks, distances, reach):
     n = len(detected)
     return {
         "fne": 1 - found.sum() / len(marked),
-        "fpe": 1 - found.sum() / n if n else math.nan,
+        "fpe": 1 - found.sum() / n if n else 1.0,
         "wme": 1 - times[found].sum() / times.sum(),
-        "precision": (near <= reach).any(axis=0).mean() if n else math.nan,
+        "precision": (near <= reach).any(axis=0).mean() if n else 0.0,
         "recall": (near <= reach).any(axis=1).mean() if n else 0.0,
     }
 
