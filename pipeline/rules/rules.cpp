@@ -61,6 +61,12 @@ Histogram mean_over(const Members<T>& members) {
   return mean_histogram(histograms);
 }
 
+CentreDensity sum_of_densities(const Members<CentreDensity>& members) {
+  CentreDensity sum;
+  for (std::size_t i = 0; i < members.size; ++i) add(sum, *members[i]);
+  return sum;
+}
+
 ScoreTable score_table(const Members<Scores>& members) {
   ScoreTable table;
   for (std::size_t i = 0; i < members.size; ++i) table.rows.push_back(*members[i]);
@@ -69,8 +75,13 @@ ScoreTable score_table(const Members<Scores>& members) {
 
 // --- groups of rules ---------------------------------------------------------------------------------------
 
-ScalarField centre_bias_if(bool needed, Points points) {
-  return needed ? distances_from_centroid(points) : ScalarField{};
+// Only where a metric asks for it: of other configurations no job, and no key, knows of it.
+void add_centre_densities(RuleTable& table, ShapeOutputs& shape, const Config& config) {
+  if (!any_of_others(chosen_metrics(config.metrics))) return;
+  shape.centre_density = table.add(shape.level, stage(Role::centre_density, 1), centre_density, shape.points,
+                                   shape.ground_truth);
+  shape.centre_densities = table.add<CentreDensities>(shape.level, stage(Role::centre_densities, 1),
+                                                      sum_of_densities, shape.centre_density);
 }
 
 // Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
@@ -78,16 +89,16 @@ ScalarField centre_bias_if(bool needed, Points points) {
 void add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config, const Model& model,
                 const Output<FieldView>& map, const Output<Matched>& matched_map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
-  const bool by_area = any_by_area(metrics->all()), of_positions = any_of_positions(metrics->all());
   RuleHead head = stage_of(model.name, Role::scores, scores_version(metrics->all()));
   table.add(
       shape.level, head,
-      [name = head.stage, metrics, of_positions](FieldView matched_values, FieldView values,
-                                                 const GroundTruth& truth, Points points, Surface surface,
-                                                 const MetricsOptions& options, const RandomSource& random) {
+      [name = head.stage, metrics](FieldView matched_values, FieldView values, const GroundTruth& truth,
+                                   Points points, Surface surface, const CentreDensity* own,
+                                   const CentreDensity* set, const MetricsOptions& options,
+                                   const RandomSource& random) {
         Draws draws(random.rng(name));
-        const Measures measures(std::max(matched_values.size(), values.size()),
-                                barycentric_areas(points, surface), centre_bias_if(of_positions, points));
+        const Measures measures = measures_of(metrics->all(), std::max(matched_values.size(), values.size()),
+                                              points, surface, density_if_known(points, own, set));
         return metrics->score([&](std::span<const Metric> of_part, Matching read) {
           return read == Matching::histogram
                      ? score(of_part, matched_values, truth, options, draws, measures)
@@ -96,7 +107,8 @@ void add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& confi
       },
       only_if<FieldView>(metrics->any(Matching::histogram), matched_map),
       only_if(metrics->any(Matching::none), map), shape.ground_truth,
-      only_if(by_area || of_positions, shape.points), only_if(by_area, shape.surface),
+      only_if(any_of_points(metrics->all()), shape.points),
+      only_if(any_of_faces(metrics->all()), shape.surface), shape.centre_density, shape.centre_densities,
       section("metrics", config.metrics), kRandom);
 }
 
@@ -112,12 +124,12 @@ void add_constant_scores(RuleTable& table, const ShapeOutputs& shape, const Conf
   const std::vector<Metric> metrics = chosen_metrics(varying);
   table.add(
       shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(metrics)),
-      [metrics, of_positions = any_of_positions(metrics)](const GroundTruth& truth, Points points,
-                                                          Surface surface, const MetricsOptions& options) {
-        return score(metrics, ScalarField(points.size(), 0.5), truth, options, Rng(0, "", ""),
-                     barycentric_areas(points, surface), centre_bias_if(of_positions, points));
+      [metrics](const GroundTruth& truth, Points points, Surface surface, const MetricsOptions& options) {
+        Draws draws(Rng(0, "", ""));
+        return score(metrics, ScalarField(points.size(), 0.5), truth, options, draws,
+                     measures_of(metrics, points.size(), points, surface));
       },
-      shape.ground_truth, shape.points, only_if(any_by_area(metrics), shape.surface),
+      shape.ground_truth, shape.points, only_if(any_of_faces(metrics), shape.surface),
       section("metrics", varying));
 }
 
@@ -260,6 +272,7 @@ Rules make_rules(const Config& config, const Inputs& inputs,
   if (on_meshes) evaluated.push_back(&meshes);
   if (on_scans) evaluated.push_back(&scans);
   if (any_cloud) evaluated.push_back(&clouds);
+  for (ShapeOutputs* shape : evaluated) add_centre_densities(table, *shape, config);
   for (const Model& model : config.models) {
     if (model.human && on_meshes) add_human_performance(table, meshes, mesh, config, model);
     if (model.given) give_map_files(evaluated, inputs.units, model.given);

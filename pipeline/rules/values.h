@@ -31,12 +31,15 @@ enum class Role {
   score_table,
   curve,  // of human performance over the number of participants
   picture,
+  centre_density,    // of the ground truth of a shape
+  centre_densities,  // their sum over a set
 };
 template <>
 struct EnumNames<Role> {
-  static constexpr std::array<std::string_view, 13> names{
-      "shape",   "ground_truth",   "reference", "normals",     "surface", "fpfh",   "map",
-      "matched", "mean_histogram", "scores",    "score_table", "curve",   "picture"};
+  static constexpr std::array<std::string_view, 15> names{
+      "shape",       "ground_truth", "reference", "normals",        "surface",
+      "fpfh",        "map",          "matched",   "mean_histogram", "scores",
+      "score_table", "curve",        "picture",   "centre_density", "centre_densities"};
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 
@@ -58,6 +61,10 @@ struct Matched {
 };
 struct Reference {
   using Type = Histogram;
+};
+
+struct CentreDensities {
+  using Type = CentreDensity;
 };
 
 // --- types -------------------------------------------------------------------------------------------------
