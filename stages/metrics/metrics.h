@@ -33,6 +33,7 @@ struct MetricsOptions {
   double constant_nss = 0;
   std::vector<std::string> names = {"auc", "auc_exact", "nss", "cc", "lcc"};
   ByName<Matching> matching = {};
+  std::vector<std::string> smoothing = {};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -45,8 +46,17 @@ struct MetricsOptions {
           {"metrics, or all: the README has a table of them", "", {}, "[auc, auc_exact, nss, cc, lcc]"});
     visit("matching", self.matching,
           {"matching of the maps, one for all metrics or by name; else as the README has it", "", {}, "{}"});
+    visit("smoothing", self.smoothing,
+          {"scores of smoothed maps beside the others: numbers of steps, such as [0, 10, 40, 120]",
+           "",
+           {},
+           "[]"});
   }
 };
+
+void check(const MetricsOptions& options);  // throws OptionError
+
+std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options);  // throws OptionError
 
 // Area under the ROC curve by the paper's protocol: as many negatives as there are picks are drawn with
 // replacement from all points but the first, once per split. NaN without picks or with a single point.
