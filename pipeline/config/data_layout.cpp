@@ -106,7 +106,7 @@ LengthUnit read_unit(const Section& root) {
   } else if (root.has("scale")) {
     unit.where = root.where("scale");
     root.read_value("scale", unit.scale);
-    if (!(unit.scale > 0)) root.fail("scale", fmt::format("must be > 0, not {}", unit.scale));
+    if (!(unit.scale > 0)) root.fail("scale", fmt::format("must be a number above 0, not {}", unit.scale));
   }
   return unit;
 }

@@ -64,6 +64,13 @@ std::string saliency_name(const DatasetItem& item, std::size_t k) {
   return name + described(format_of(item).values) + camera_text(item, k);
 }
 
+// True if the saliency files may say that something was not seen.
+bool may_hide(const DatasetItem& item) {
+  const ValuesFormat& values = format_of(item).values;
+  return !item.saliency.empty() && (!item.masks.empty() || !item.cameras.empty() || !values.unseen.empty() ||
+                                    values.per != ValuePer::vertex);
+}
+
 bool are_in_file_order(const DatasetItem& item) {
   return format_of(item).values.per == ValuePer::face && !item.saliency.empty();
 }
@@ -194,8 +201,15 @@ void add_saliency(GroundTruth& truth, const DatasetItem& item, std::vector<Scala
   if (item.by_viewer && maps.size() >= kMinParticipants) truth.viewers = std::move(maps);
 }
 
-// Densities with the picks that a rule makes of them.
+// Picks where nothing was seen do not count. Their participants stay.
+void drop_picks_where(const auto& hidden, GroundTruth& truth) {
+  for (std::vector<std::int32_t>& picks : truth.picks)
+    std::erase_if(picks, [&](std::int32_t pick) { return hidden(index(pick)); });
+}
+
+// The picks that count, or those that a rule makes of densities.
 GroundTruth with_positives(GroundTruth truth, const DatasetItem& item) {
+  if (may_hide(item)) drop_picks_where([&](std::size_t i) { return std::isnan(truth.saliency[i]); }, truth);
   const auto [by, percent] = positive_rule(format_of(item).values);
   if (by == PositiveRule::By::picks || truth.saliency.empty()) return truth;
   std::vector<std::int32_t> positives = by == PositiveRule::By::mean ? points_above_mean(truth.saliency)
@@ -207,8 +221,11 @@ GroundTruth with_positives(GroundTruth truth, const DatasetItem& item) {
 // That of picks alone is made from them, and is seen where the camera sees.
 GroundTruth with_saliency(GroundTruth truth, const Mesh& shape, const DatasetItem& item) {
   if (!truth.saliency.empty()) return truth;
+  ScalarField seen(shape.vertices.size());
+  hide_unseen(seen, {.points = shape.vertices, .surface = shape.faces}, item, 0);
+  drop_picks_where([&](std::size_t i) { return std::isnan(seen[i]); }, truth);
   truth.saliency = smoothed_picks(shape, truth.picks);
-  hide_unseen(truth.saliency, {.points = shape.vertices, .surface = shape.faces}, item, 0);
+  for (std::size_t i = 0; i < seen.size(); ++i) truth.saliency[i] += seen[i];
   return truth;
 }
 
@@ -279,7 +296,8 @@ FilesOfUnit truth_files_of(const DatasetItem& item) {
     files.push_back(missing.empty() ? File{.name = name, .place = path} : unusable(name, path, missing));
   }
   for (std::size_t k = 0; k < item.picks.size(); ++k)
-    files.push_back({.name = fmt::format("picks {}{}{}", k, described(format_of(item).indices),
+    files.push_back({.name = fmt::format("picks {}{}{}{}", k, described(format_of(item).indices),
+                                         may_hide(item) ? " of what was seen" : "",
                                          item.saliency.empty() && k == 0 ? camera_text(item, k) : ""),
                      .place = item.picks[k]});
   return files;
