@@ -83,6 +83,36 @@ TEST_F(Smoothing, ScoresAreThoseOfTheSmoothedMaps) {
   EXPECT_EQ(smoothed[2].rows.at(0).scores.values, expected.values);
 }
 
+TEST_F(Smoothing, OfCloudsIsOverTheirPartialMesh) {
+  const Mesh sphere = shapes::bumpy_sphere(2);
+  const TemporaryFolder folder;
+  std::string points, values;
+  for (const Vec3& v : sphere.vertices) {
+    points += fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
+    values += fmt::format("{}\n", v.z());
+  }
+  folder.write("data/clouds/cat.xyz", points);
+  folder.write("data/maps/cat.txt", values);
+  const auto own =
+      folder.write("own.yaml", "places: [{meshes: 'clouds/*', truth: {saliency: 'maps/{item}.txt'}}]\n");
+  ToyRun toy(folder / "data", store_,
+             fmt::format("dataset: {{layout: {}}}\nmodels: {{RS: }}\nmetrics: {{names: [cc], matching: none, "
+                         "smoothing: [0, 2]}}\n",
+                         own.string()));
+  toy.run();
+  const auto value = [&](std::string_view stage) {
+    return toy.resolver->value({toy.index(stage, kClouds), Unit{kClouds, 0}});
+  };
+  const Faces surface = value_as<Faces>(*value("surface"));
+  const ScalarField map = smoothed_by_steps(value_as<ScalarField>(*value("map.RS")),
+                                            edge_adjacency(sphere.vertices.size(), surface), 2);
+  const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), chosen_metrics(toy.config.metrics));
+  ASSERT_THAT(smoothed.at(1).rows, SizeIs(1));
+  EXPECT_EQ(smoothed[1].rows[0].dataset, "clouds");
+  EXPECT_NEAR(smoothed[1].rows[0].value(0),
+              cc(map, value_as<GroundTruth>(*value("cloud_ground_truth")).saliency), 1e-12);
+}
+
 TEST_F(Smoothing, TheBestIsMarkedAsABound) {
   ToyRun& toy = run(kSmoothing);
   const std::vector<Metric> metrics = chosen_metrics(toy.config.metrics);
