@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/cameras.h"
 #include "io/file_pattern.h"
 #include "io/splits.h"
 #include "io/truth_format.h"
@@ -23,6 +24,7 @@ struct TruthPlace {
   FilePattern saliency;   // values; one file per item, or one per view or viewer
   FilePattern picks;      // one file per participant, or one per item
   FilePattern mask = {};  // 0 for hidden, 1 for seen; one file per file of saliency, or one per item
+  Cameras cameras = {};   // what they do not see is hidden, too
 };
 
 // Views of a shape are averaged into one ground truth, or each is scored as a unit of its own.
@@ -55,6 +57,12 @@ struct EnumNames<Domain> {
   static constexpr std::array<std::string_view, 3> names = {"any", "meshes", "points"};
 };
 
+// Unit of length of the shapes' files.
+struct LengthUnit {
+  std::string where = {};  // of the description; empty: it names none
+  double scale = 1;        // of the files' coordinates, where lengths are shown
+};
+
 struct Layout {
   std::string name;
   std::vector<Place> places;  // below the folder that the user names; the first with a mesh is taken
@@ -63,6 +71,7 @@ struct Layout {
   bool needs_truth = true;  // patterns of ground truth that fit no file are an error
   TruthFormat format = {};
   DataSplits splits = {};
+  LengthUnit unit = {};
 };
 
 struct MaskFile {
@@ -82,6 +91,7 @@ struct DatasetItem {
   std::shared_ptr<const TruthFormat> format = {};  // how these are read; null: as TruthFormat's defaults are
   std::vector<std::string> views = {};             // of each saliency file: its view or viewer
   std::vector<MaskFile> masks = {};                // one per saliency file; none: all was seen
+  std::vector<ItemCamera> cameras = {};            // likewise; one if there is no saliency file
   std::string shape = {};    // of a view that is scored: the mesh file's name; else empty
   std::string view = {};     // that is scored
   std::string split = {};    // empty if it is in none
@@ -94,9 +104,11 @@ struct Dataset {
   std::string layout;              // name of the layout found
   std::vector<DatasetItem> items;  // in natural order: 2 before 10
   std::vector<std::string> notes;  // one line each: ground truth without a shape, numbers that are missing
-  std::vector<std::string> read = {};  // files beside those of items: that of the splits
-  std::string splits_where = {};       // of the description
-  std::string no_splits = {};          // why no item is in a split; empty: some are, or none are described
+  std::vector<std::string> read = {};    // files beside those of items: that of the splits
+  std::string splits_where = {};         // of the description
+  std::string no_splits = {};            // why no item is in a split; empty: some are, or none are described
+  std::vector<SplitEntry> unknown = {};  // names in splits that are no items
+  LengthUnit unit = {};
 };
 
 // Takes the first layout that fits. Lists folders and reads no file but that of the splits; the result does

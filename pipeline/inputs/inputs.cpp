@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
+#include "pipeline/inputs/sizes.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 #include "stages/scan/scan.h"
@@ -75,6 +76,17 @@ void select_split(Dataset& dataset, const std::string& split) {
                                   dataset.splits_where));
   }
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
+}
+
+// Of the names in splits that are no items: those of the split asked for are an error, others a note.
+std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& split) {
+  std::vector<SplitEntry> of_split, of_others;
+  for (const SplitEntry& entry : dataset.unknown)
+    (entry.split == split ? of_split : of_others).push_back(entry);
+  if (split.empty() || of_split.empty()) return {};
+  std::erase(dataset.notes, text_of_unknown(dataset.unknown));
+  if (!of_others.empty()) dataset.notes.push_back(text_of_unknown(of_others));
+  return {text_of_unknown(of_split)};
 }
 
 // The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
@@ -166,6 +178,9 @@ void select_items(Dataset& dataset, const std::string& selection, const std::str
 
 Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard,
                    const std::string& split) {
+  std::vector<std::string> errors;
+  if (selection.empty()) errors = errors_of_split(dataset, split);
+  if (!dataset.unit.where.empty()) fail_mixed_units(dataset);
   select_items(dataset, selection, split);
   std::vector<DatasetItem> items = std::move(dataset.items);
   if (shard) items = share_of(items, *shard);
@@ -179,6 +194,7 @@ Inputs read_inputs(Dataset dataset, const std::string& selection, const std::opt
   });
   return {dataset.layout,
           dataset.notes,
+          std::move(errors),
           Units(levels(), std::move(families)),
           std::make_shared<FileColumn>(std::move(shapes)),
           std::make_shared<FileColumn>(std::move(truths)),

@@ -33,13 +33,15 @@ enum class Role {
   picture,
   centre_density,    // of the ground truth of a shape
   centre_densities,  // their sum over a set
+  smoothed_scores,   // of the map after each number of smoothing steps
+  smoothed_table,    // [shape][steps], one after the other
 };
 template <>
 struct EnumNames<Role> {
-  static constexpr std::array<std::string_view, 15> names{
-      "shape",       "ground_truth", "reference", "normals",        "surface",
-      "fpfh",        "map",          "matched",   "mean_histogram", "scores",
-      "score_table", "curve",        "picture",   "centre_density", "centre_densities"};
+  static constexpr std::array<std::string_view, 17> names{
+      "shape",   "ground_truth",   "reference",        "normals",         "surface",       "fpfh",
+      "map",     "matched",        "mean_histogram",   "scores",          "score_table",   "curve",
+      "picture", "centre_density", "centre_densities", "smoothed_scores", "smoothed_table"};
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 

@@ -2,6 +2,7 @@
 #include "stages/metrics/metrics.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -54,6 +55,27 @@ GroundTruth scaled(GroundTruth truth, double scale) {
 }
 
 }  // namespace
+
+void check(const MetricsOptions& options) {
+  check_ranges(options);
+  smoothing_steps(options);
+}
+
+std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options) {
+  constexpr std::int32_t kMostSteps = 100000;
+  std::vector<std::int32_t> steps;
+  for (const std::string& word : options.smoothing) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), steps.emplace_back());
+    if (error != std::errc() || end != word.data() + word.size() || steps.back() < 0 ||
+        steps.back() > kMostSteps)
+      throw OptionError("smoothing",
+                        "has '" + word + "', not a number of steps from 0 to " + std::to_string(kMostSteps));
+    if (steps.size() > 1 && steps.back() <= steps.end()[-2])
+      throw OptionError("smoothing", "has " + word + " after " + std::to_string(steps.end()[-2]) +
+                                         ": expected ascending numbers of steps");
+  }
+  return steps;
+}
 
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {

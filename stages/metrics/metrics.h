@@ -37,6 +37,7 @@ struct MetricsOptions {
   double peak_radius = 0;
   double peak_height = 1;
   double tolerance = 0.03;
+  std::vector<std::string> smoothing = {};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -61,8 +62,17 @@ struct MetricsOptions {
           {"least height of interest points", "mean height of the local maxima", at_least(0), "1"});
     visit("tolerance", self.tolerance,
           {"distance at which an interest point is found", "diameter", above(0), "0.03"});
+    visit("smoothing", self.smoothing,
+          {"scores of smoothed maps beside the others: numbers of steps, such as [0, 10, 40, 120]",
+           "",
+           {},
+           "[]"});
   }
 };
+
+void check(const MetricsOptions& options);  // throws OptionError
+
+std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options);  // throws OptionError
 
 // Area under the ROC curve by the paper's protocol: as many negatives as there are picks are drawn with
 // replacement from all points but the first, once per split. NaN without picks or with a single point.

@@ -97,6 +97,14 @@ def correlation(map_, truth):
     return stats.pearsonr(map_, truth)[0]
 
 
+def smoother(n, faces, steps):
+    """The matrix by which a point takes, in each step, the mean over itself and its neighbours along edges."""
+    ring = np.eye(n)
+    for corner in range(3):
+        ring[faces[:, corner], faces[:, corner - 1]] = ring[faces[:, corner - 1], faces[:, corner]] = 1
+    return np.linalg.matrix_power(ring / ring.sum(1, keepdims=True), steps)
+
+
 def matched(map_, reference):
     """Values moved through two cumulative histograms. [tasse2016]"""
     heights, edges = np.histogram(min_max(map_), bins=100, density=True)
@@ -166,9 +174,10 @@ class Protocols(unittest.TestCase):
             self.assertAlmostEqual(row[metric], value, delta=1e-9, msg=f"{row['model']} {row['item']} {metric}")
 
     def test_3dva(self):
-        truth = {}
-        for k, mesh in enumerate(("bunny", "dragon")):
+        truth, faces_of = {}, {}
+        for k, mesh in enumerate(("bunny", "dragon", "horse")):
             points, faces = bumpy_sphere(k)
+            faces_of[mesh] = faces
             self.write_mesh(f"3DModels-Simplif/{mesh}.obj", points, faces)
             for view in (300, 413, 599):
                 seen = points @ self.rng.normal(size=3) > -0.2
@@ -177,12 +186,35 @@ class Protocols(unittest.TestCase):
                 self.write_lines(f"FixationMaps/{mesh}_{view}norm.txt", looked)
                 self.write_lines(f"CentricityAndVisibilityMaps/{mesh}_{view}_visibility.txt", seen.astype(int))
         table, maps = self.scored("3dva")
-        self.assertEqual(len(table), 8 * 6)
+        self.assertEqual(len(table), 8 * 9)
         for _, row in table.iterrows():
             looked, seen = truth[row["item"], row["view"]]
             map_ = maps[row["model"], f"{row['item']}_{row['view']}"]
             self.assertEqual(row["n_points"], seen.sum())
             self.agree(row, cc=correlation(map_[seen], looked[seen]), auc_top20=auc_of_upper_fifth(map_[seen], looked[seen]))
+        self.check_smoothing(table[["model", "item", "view"]], truth, maps, faces_of)
+
+    def check_smoothing(self, shapes, truth, maps, faces_of):
+        scores = []
+        smoothers = {(mesh, steps): smoother(faces.max() + 1, faces, steps) for mesh, faces in faces_of.items() for steps in (0, 10, 40, 120)}
+        for shape in shapes.itertuples():
+            looked, seen = truth[shape.item, shape.view]
+            of_shape = {}
+            for steps in (0, 10, 40, 120):
+                map_ = (smoothers[shape.item, steps] @ maps[shape.model, f"{shape.item}_{shape.view}"])[seen]
+                of_shape[str(steps)] = {"cc": correlation(map_, looked[seen]), "auc_top20": auc_of_upper_fifth(map_, looked[seen])}
+            of_shape["best"] = {metric: max(values[metric] for values in of_shape.values()) for metric in ("cc", "auc_top20")}
+            scores += [(shape.model, shape.item, metric, steps, value) for steps, values in of_shape.items() for metric, value in values.items()]
+        scores = pd.DataFrame(scores, columns=["model", "item", "metric", "steps", "value"])
+        by_mesh = scores.groupby(["model", "metric", "steps", "item"])["value"].mean()
+        table = pd.read_csv(self.folder / "out/smoothing.csv", dtype={"steps": str})
+        self.assertEqual(len(table), 8 * 2 * 5)
+        for row in table.itertuples():
+            values = by_mesh[row.model, row.metric, row.steps]
+            half = stats.t.ppf(0.975, 2) * values.std() / 3**0.5
+            self.assertEqual((row.n, row.n_shapes, row.upper_bound), (3, 9, int(row.steps == "best")))
+            for ours, expected in ((row.mean, values.mean()), (row.ci95_low, values.mean() - half), (row.ci95_high, values.mean() + half)):
+                self.assertAlmostEqual(ours, expected, delta=1e-9, msg=f"{row}")
 
     def test_sal3d(self):
         truth = {}
