@@ -148,8 +148,8 @@ std::vector<Layout> layouts_of(const std::string& layout) {
 }
 
 Layout read_layout(const Section& root, const std::string& name) {
-  root.reject_unknown(
-      {"automatic", "domain", "classes", "ground_truth", "places", "values", "indices", "columns", "splits"});
+  root.reject_unknown({"automatic", "domain", "classes", "ground_truth", "places", "values", "indices",
+                       "columns", "splits", "index", "licence"});
   Layout layout;
   layout.name = name;
   root.read_value("domain", layout.domain);
@@ -162,7 +162,12 @@ Layout read_layout(const Section& root, const std::string& name) {
   root.child("columns").read(layout.format.columns);
   layout.splits = read_splits(root);
   for (const Section& place : root.list("places")) layout.places.push_back(read_place(place));
-  if (layout.places.empty()) root.fail("places", "is missing; expected a list of places with meshes");
+  root.read_value("licence", layout.licence);
+  root.read_value("index", layout.index);
+  if (!layout.index.empty() && !layout.places.empty())
+    root.fail("index", "is there beside `places`: a set is in the one form or in files of its own");
+  if (layout.places.empty() && layout.index.empty())
+    root.fail("places", "is missing; expected a list of places with meshes");
   return layout;
 }
 
