@@ -126,7 +126,7 @@ class Protocols(unittest.TestCase):
                 self.write_lines(f"FixationMaps/{mesh}_{view}norm.txt", looked)
                 self.write_lines(f"CentricityAndVisibilityMaps/{mesh}_{view}_visibility.txt", seen.astype(int))
         table, maps = self.scored("3dva")
-        self.assertEqual(len(table), 8 * 6)
+        self.assertEqual(len(table), 10 * 6)
         for _, row in table.iterrows():
             looked, seen = truth[row["item"], row["view"]]
             map_ = maps[row["model"], f"{row['item']}_{row['view']}"]
