@@ -51,10 +51,9 @@ Parameter layout_parameter(std::string* layout) {
 
 void require_layout(const std::string& subcommand, const std::string& layout) {
   if (is_layout(layout)) return;
-  const std::string nearest = nearest_word(layout, layout_names());
-  throw ConfigError(fmt::format("{}: there is no layout '{}'; {}", subcommand, layout,
-                                nearest.empty() ? "name one of docs/data_sets.md, or a file NAME.yaml"
-                                                : fmt::format("did you mean '{}'?", nearest)));
+  throw ConfigError(fmt::format(
+      "{}: there is no layout '{}'; {}", subcommand, layout,
+      did_you_mean(layout, layout_names(), "name one of docs/data_sets.md, or a file NAME.yaml")));
 }
 
 Parameters run_parameters(Arguments& arguments, const Parameters& further) {

@@ -43,14 +43,10 @@ struct ShapeReader {
   const Inputs& inputs;
   std::map<std::string, std::string> files = {};  // path -> line that describes it
 
-  std::vector<FileData> read(FilesOfUnit& of_unit) {
-    std::vector<FileData> all;
-    for (File& file : of_unit) {
-      FileData& data = all.emplace_back();
-      look(file, &data);
-      if (!data.digest) throw InputError(data.error);
-      files[file.place] = source.described(file.place, *data.digest);
-    }
+  std::vector<FileData> read(const FilesOfUnit& of_unit) {
+    std::vector<FileData> all = read_all(of_unit);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      files[of_unit[i].place] = source.described(of_unit[i].place, *all[i].digest);
     return all;
   }
 
@@ -67,7 +63,7 @@ struct ShapeReader {
   }
   void add_truth(ShapeInForm& shape, std::size_t family) {
     const Family& of = inputs.units.families()[family];
-    FilesOfUnit& truth_files = inputs.truth_files->files[family];
+    const FilesOfUnit& truth_files = inputs.truth_files->files[family];
     if (truth_files.empty()) return;
     const std::vector<FileData> data = read(truth_files);
     const Files in{of.source, of.name, data};

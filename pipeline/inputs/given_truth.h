@@ -31,8 +31,8 @@ GroundTruth given_truth(const Mesh& mesh, const Files& files);
 // cloud's file, those without a position included; values per face are refused.
 GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files);
 
-// What the files hold, without a saliency made from picks. `as_read`, where it is given, takes the files
-// whose values are not those of the result: of faces or other points, masked, or averaged.
+// The ground truth as its files have it: no saliency is made from picks. `as_read`, where it is given, takes
+// the files whose values are not those of the result: of faces or other points, masked, or averaged.
 GroundTruth measured_truth(const Mesh& mesh, const Files& files,
                            std::vector<ValuesAsRead>* as_read = nullptr);
 GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files,

@@ -67,8 +67,8 @@ class Converted(protocols_twin_test.Protocols):
         self.addCleanup(file.close)
         return file
 
-    def write_schelling(self):
-        """Participants, of whom one picked nothing; one mesh has picks alone."""
+    def test_participants_stay_apart(self):
+        """One of them picked nothing, and one mesh has picks alone."""
         picked = {}
         for k, mesh in enumerate(("21", "22", "41")):
             points, faces = bumpy_sphere(k)
@@ -78,10 +78,6 @@ class Converted(protocols_twin_test.Protocols):
                 self.write_lines(f"RawData/{mesh}_{participant}.pid", picks)
             if mesh != "22":
                 self.write_lines(f"Distributions/{mesh}.val", self.rng.random(len(points)))
-        return picked
-
-    def test_schelling(self):
-        picked = self.write_schelling()
         table, _ = self.scored("schelling")
         self.assertEqual(set(table["class"]), {"cup", "glasses"})
         self.assertIn("HS", set(table["model"]))
