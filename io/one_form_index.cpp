@@ -48,8 +48,7 @@ struct IndexReader {
   // The name of a file, which leads nowhere else.
   std::string name(std::string_view column) const {
     const std::string word = text(column);
-    if (word.empty() || word.starts_with('.') || word.find('/') != std::string::npos ||
-        word.find('\0') != std::string::npos)
+    if (!may_be_name(word))
       fail(fmt::format("{} is {}, expected the name of a file without its extension", column,
                        in_quotes(word)));
     return word;
@@ -57,6 +56,11 @@ struct IndexReader {
 };
 
 }  // namespace
+
+bool may_be_name(std::string_view word) {
+  return !word.empty() && word != "." && word != ".." && word.find('/') == std::string_view::npos &&
+         word.find('\0') == std::string_view::npos;
+}
 
 std::string file_of_shape(const std::string& shape) { return fmt::format("items/{}.h5", shape); }
 

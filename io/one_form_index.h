@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/dataset.h"
@@ -21,6 +22,9 @@ struct IndexRow {
 
   std::string name() const { return view.empty() ? shape : shape + "_" + view; }
 };
+
+// True of what a file can be called, which leads nowhere else. A view's name is a group's.
+bool may_be_name(std::string_view word);
 
 std::string file_of_shape(const std::string& shape);  // "items/cow.h5"
 

@@ -68,6 +68,9 @@ struct ShapeReader {
     const std::vector<FileData> data = read(truth_files);
     const Files in{of.source, of.name, data};
     TruthInForm truth{.view = item_of(of.source).view};
+    if (!truth.view.empty() && !may_be_name(truth.view))
+      throw InputError(
+          fmt::format("{}: a view cannot be called '{}': rename its files", of.name, truth.view));
     truth.truth = of.level == kClouds ? measured_cloud_truth(shape.cloud, in, &truth.as_read)
                                       : measured_truth(shape.mesh, in, &truth.as_read);
     shape.truths.push_back(std::move(truth));
