@@ -224,7 +224,7 @@ class Layouts(Folder):
 
     def test_every_description_of_the_program_has_a_test_here(self):
         tested = {"automatic", "schelling", "gs", "princeton", "folder", "dutagaci", "3dva", "sal3d", "sal3d_meshes",
-                  "meshmamba", "meshmamba_textured", "zaragoza"}
+                  "meshmamba", "meshmamba_textured", "zaragoza", "hdf5"}
         self.assertEqual(set(salbench._core.layouts()), tested)
 
 
