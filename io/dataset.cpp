@@ -17,6 +17,7 @@
 #include "io/cloud_file.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
+#include "io/one_form_index.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
 
@@ -339,6 +340,7 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
 Dataset find_dataset(const fs::path& root, std::span<const Layout> layouts, Twins twins) {
   fs::path folder = root.lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "data/" is "data"
+  if (layouts.size() == 1 && !layouts[0].index.empty()) return indexed_dataset(folder, layouts[0]);
   const Found found = find_meshes(folder, layouts);
   Dataset dataset;
   ItemsByName items = items_of(found, twins, dataset.notes);
@@ -348,6 +350,7 @@ Dataset find_dataset(const fs::path& root, std::span<const Layout> layouts, Twin
   const DataSplits& splits = found.layout.splits;
   dataset.no_splits = add_splits(folder, splits, items, dataset.notes, dataset.unknown);
   dataset.splits_where = splits.where;
+  dataset.licence = found.layout.licence;
   for (const std::string& file : {splits.table, splits.list})
     if (!file.empty()) dataset.read.push_back((folder / file).lexically_normal());
   for (auto& [name, item] : items) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,11 +73,20 @@ struct Layout {
   TruthFormat format = {};
   DataSplits splits = {};
   LengthUnit unit = {};
+  std::string index = {};    // file below the folder that lists items in the one form; no places then
+  std::string licence = {};  // on what terms the authors give the data, as far as is known
 };
 
 struct MaskFile {
   std::string path;          // where it is, or where it should be
   std::string missing = {};  // what to do about it, if it is not there
+};
+
+// What the index of a set in the one form says of an item. (io/one_form_index.h)
+struct IndexedItem {
+  bool is_cloud = false;
+  bool has_truth = false;
+  std::size_t participants = 0, viewers = 0;  // files of picks, and of saliency by viewer
 };
 
 // Places of files are text: std::filesystem::path takes some 350 bytes for each.
@@ -92,10 +102,11 @@ struct DatasetItem {
   std::vector<std::string> views = {};             // of each saliency file: its view or viewer
   std::vector<MaskFile> masks = {};                // one per saliency file; none: all was seen
   std::vector<ItemCamera> cameras = {};            // likewise; one if there is no saliency file
-  std::string shape = {};    // of a view that is scored: the mesh file's name; else empty
-  std::string view = {};     // that is scored
-  std::string split = {};    // empty if it is in none
-  std::string problem = {};  // why its ground truth cannot be used: one line
+  std::string shape = {};                   // of a view that is scored: the mesh file's name; else empty
+  std::string view = {};                    // that is scored
+  std::string split = {};                   // empty if it is in none
+  std::optional<IndexedItem> indexed = {};  // `mesh` is a file in the one form, with everything in it
+  std::string problem = {};                 // why its ground truth cannot be used: one line
 
   const std::string& shape_name() const { return shape.empty() ? name : shape; }
 };
@@ -109,6 +120,7 @@ struct Dataset {
   std::string no_splits = {};            // why no item is in a split; empty: some are, or none are described
   std::vector<SplitEntry> unknown = {};  // names in splits that are no items
   LengthUnit unit = {};
+  std::string licence = {};              // of the description
 };
 
 // Takes the first layout that fits. Lists folders and reads no file but that of the splits; the result does

@@ -124,10 +124,7 @@ std::string text_of(const DataInspection& found) {
 }
 
 ExitStatus print_inspection(const Arguments& arguments, const std::string& layout, ReportFormat format) {
-  if (!is_layout(layout))
-    throw ConfigError(fmt::format(
-        "inspect: there is no layout '{}'; {}", layout,
-        did_you_mean(layout, layout_names(), "name one of docs/data_sets.md, or a file NAME.yaml")));
+  require_layout("inspect", layout);
   if (arguments.data.empty()) throw ConfigError("inspect: names no data set: give --data DIR");
   const DataInspection found = inspect_data(arguments.data, layouts_of(layout));
   print_report(format, "inspect", json_of(found), text_of(found));
@@ -144,9 +141,7 @@ Subcommand inspect_subcommand(Arguments& arguments) {
   return {
       "inspect",
       "read all files of a data set and print what its description finds: items, splits, ranges, problems",
-      {{"LAYOUT", layout.get(),
-        "description of the data set: automatic, a name in configs/datasets, or a file of your own (.yaml)",
-        true},
+      {layout_parameter(layout.get()),
        {"--data", &arguments.data, "folder of the data set"},
        format_parameter(format)},
       [&arguments, layout, format](const std::atomic<bool>&) {

@@ -221,7 +221,7 @@ std::vector<Layout> layouts_of(const std::string& layout) {
 
 Layout read_layout(const Section& root, const std::string& name) {
   root.reject_unknown({"automatic", "domain", "classes", "ground_truth", "places", "values", "indices",
-                       "columns", "splits", "units", "scale"});
+                       "columns", "splits", "units", "scale", "index", "licence"});
   Layout layout;
   layout.name = name;
   root.read_value("domain", layout.domain);
@@ -234,7 +234,12 @@ Layout read_layout(const Section& root, const std::string& name) {
   root.child("columns").read(layout.format.columns);
   layout.splits = read_splits(root);
   for (const Section& place : root.list("places")) layout.places.push_back(read_place(place));
-  if (layout.places.empty()) root.fail("places", "is missing; expected a list of places with meshes");
+  root.read_value("licence", layout.licence);
+  root.read_value("index", layout.index);
+  if (!layout.index.empty() && !layout.places.empty())
+    root.fail("index", "is there beside `places`: a set is in the one form or in files of its own");
+  if (layout.places.empty() && layout.index.empty())
+    root.fail("places", "is missing; expected a list of places with meshes");
   layout.unit = read_unit(root);
   check_positives(root, layout);
   return layout;

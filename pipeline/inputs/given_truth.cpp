@@ -109,20 +109,17 @@ File unusable(std::string name, std::string place, std::string why) {
           .read = std::make_shared<const ReadFile>(std::move(fail))};
 }
 
-// Hides the values where the mask is 0.
-void apply_mask(ScalarField& values, std::string_view bytes, const std::string& name,
-                const Elements& elements) {
-  const ScalarField mask =
+ScalarField parse_mask(std::string_view bytes, const std::string& name, const Elements& elements) {
+  ScalarField mask =
       parse_columns(bytes, name, {""}, {}, elements, [](std::span<const double> row) -> std::string_view {
         return row[0] == 0 || row[0] == 1 ? "" : "a mask has 0 for hidden and 1 for seen, and nothing else";
       })[0];
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (mask[i] == 0) values[i] = std::numeric_limits<double>::quiet_NaN();
   if (std::ranges::none_of(mask, [](double seen) { return seen == 1; }))
     throw InputError(
         fmt::format("{}: hides everything: nothing is left to be scored; correct it, or take it "
                     "and its ground truth away",
                     name));
+  return mask;
 }
 
 // The points that the files describe. A cloud may have left out some that its file has.
@@ -161,29 +158,39 @@ struct Mask {
   std::string name = {};
   std::string_view bytes = {};
 
-  void apply(ScalarField& values, const Elements& elements) const {
-    if (!name.empty()) apply_mask(values, bytes, name, elements);
+  ScalarField read(const Elements& elements) const {
+    return name.empty() ? ScalarField{} : parse_mask(bytes, name, elements);
   }
 };
 
-// The values of one file, on the points.
-ScalarField on_points(const Target& target, ValuesFormat format, std::string_view bytes,
-                      std::string_view name, const Mask& mask) {
-  format.positives = kPositivesArePicks;
+// What one file holds, before its mask is applied.
+ValuesAsRead read_values(const Target& target, ValuesFormat format, std::string_view bytes,
+                         const std::string& path, const Mask& mask) {
+  ValuesAsRead read{.file = std::filesystem::path(path).filename(), .per = name_of(format.per), .values = {}};
+  Elements elements = target.in_file();
+  format.positives = kPositivesArePicks;  // what is picked is no matter of reading
   if (key_text(format).empty() && !is_npy(bytes) && !is_mat(bytes)) {
-    ScalarField values = parse_saliency(bytes, name, target.in_file());
-    mask.apply(values, target.in_file());
-    return target.left(std::move(values));
+    read.values = parse_saliency(bytes, path, elements);
+  } else {
+    TruthValues truth = parse_truth_values(bytes, path, format, target.described_by(format));
+    read.values = std::move(truth.values);
+    read.points = std::move(truth.points);
+    elements = format.per == ValuePer::point ? Elements{read.values.size(), "file", "point", "points"}
+                                             : target.described_by(format);
   }
-  const Mesh& written = target.as_written;
-  TruthValues truth = parse_truth_values(bytes, name, format, target.described_by(format));
-  mask.apply(truth.values, format.per == ValuePer::point
-                               ? Elements{truth.values.size(), "file", "point", "points"}
-                               : target.described_by(format));
+  read.mask = mask.read(elements);
+  return read;
+}
+
+// The values that are not hidden, on the points.
+ScalarField on_points(const Target& target, const ValuesFormat& format, const ValuesAsRead& read) {
+  ScalarField values = read.values;
+  for (std::size_t i = 0; i < read.mask.size(); ++i)
+    if (read.mask[i] == 0) values[i] = std::numeric_limits<double>::quiet_NaN();
   if (format.per == ValuePer::face)
-    return vertex_values_of_faces(written.vertices, written.faces, truth.values);
-  if (format.per == ValuePer::vertex) return target.left(std::move(truth.values));
-  return vertex_values_of_samples(target.points, truth.points, truth.values,
+    return vertex_values_of_faces(target.as_written.vertices, target.as_written.faces, values);
+  if (format.per == ValuePer::vertex) return target.left(std::move(values));
+  return vertex_values_of_samples(target.points, read.points, values,
                                   format.max_distance * bounding_radius(target.points));
 }
 
@@ -245,7 +252,7 @@ GroundTruth truth_in_columns(const Target& target, const DatasetItem& item, cons
 }
 
 // All but the saliency of picks alone. Picks count the points of the file.
-GroundTruth read_truth(Target target, const Files& files) {
+GroundTruth read_truth(Target target, const Files& files, std::vector<ValuesAsRead>* as_read) {
   const DatasetItem& item = item_of(files.source);
   const TruthFormat& format = format_of(item);
   if (has_truth_in_columns(item)) return truth_in_columns(target, item, files);
@@ -256,9 +263,14 @@ GroundTruth read_truth(Target target, const Files& files) {
   for (std::size_t k = 0; k < item.saliency.size(); ++k) {
     const Mask mask =
         item.masks.empty() ? Mask{} : Mask{item.masks[k].path, masks[static_cast<std::ptrdiff_t>(k)].text()};
-    maps.push_back(on_points(target, format.values, (file++)->text(), item.saliency[k], mask));
+    ValuesAsRead read = read_values(target, format.values, (file++)->text(), item.saliency[k], mask);
+    maps.push_back(on_points(target, format.values, read));
     hide_unseen(maps.back(), target, item, k);
+    if (as_read != nullptr) as_read->push_back(std::move(read));
   }
+  if (as_read != nullptr && item.masks.empty() && format.values.per == ValuePer::vertex &&
+      (maps.size() == 1 || item.by_viewer))
+    as_read->clear();
   file += std::ssize(item.masks);
 
   GroundTruth truth;
@@ -283,6 +295,10 @@ File mesh_file_of(const DatasetItem& item) {
 FilesOfUnit truth_files_of(const DatasetItem& item) {
   FilesOfUnit files;
   if (!item.problem.empty()) return {unusable("split", item.mesh, item.problem)};
+  if (item.indexed && !item.indexed->has_truth) return {};
+  if (item.indexed)
+    return {{.name = "ground truth in one form" + (item.view.empty() ? "" : ", view " + item.view),
+             .place = item.mesh}};
   if (has_truth_in_columns(item))
     return {{.name = "ground truth in columns" + described(truth_columns(item)) +
                      described(positives_alone(item)),
@@ -310,21 +326,25 @@ std::string column_cloud_name(const DatasetItem& item) {
                      described(shape_columns(item)));
 }
 
-GroundTruth measured_truth(const Mesh& mesh, const Files& files) {
-  return with_positives(read_truth({.points = mesh.vertices, .surface = mesh.faces}, files),
-                        item_of(files.source));
+GroundTruth measured_truth(const Mesh& mesh, const Files& files, std::vector<ValuesAsRead>* as_read) {
+  const DatasetItem& item = item_of(files.source);
+  if (item.indexed) return truth_in_form(files.data[0].text(), item.mesh, item.view);
+  return with_positives(read_truth({.points = mesh.vertices, .surface = mesh.faces}, files, as_read), item);
 }
 
 GroundTruth given_truth(const Mesh& mesh, const Files& files) {
   return with_saliency(measured_truth(mesh, files), mesh, item_of(files.source));
 }
 
-GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files) {
+GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files,
+                                 std::vector<ValuesAsRead>* as_read) {
   const DatasetItem& item = item_of(files.source);
+  if (item.indexed) return truth_in_form(files.data[0].text(), item.mesh, item.view);
   if (are_in_file_order(item))
     throw InputError(fmt::format("{}: has values per face, but {} is a point cloud, which has none",
                                  item.saliency[0], item.mesh));
-  GroundTruth truth = read_truth({.points = cloud.points, .surface = surface, .cloud = &cloud}, files);
+  GroundTruth truth =
+      read_truth({.points = cloud.points, .surface = surface, .cloud = &cloud}, files, as_read);
   truth.picks = picks_left(cloud, std::move(truth.picks));
   return with_positives(std::move(truth), item);
 }
@@ -335,6 +355,8 @@ GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Fi
 }
 
 bool has_participants(const DatasetItem& item) {
+  if (item.indexed)
+    return item.indexed->participants >= kMinParticipants || item.indexed->viewers >= kMinParticipants;
   return item.picks.size() >= kMinParticipants ||
          (item.by_viewer && item.saliency.size() >= kMinParticipants);
 }

@@ -2,7 +2,10 @@
 // Ground truth from the files of an item, as the description of its data set says that they are written.
 #pragma once
 
+#include <vector>
+
 #include "io/dataset.h"
+#include "io/one_form.h"
 #include "pipeline/engine/binding.h"
 #include "stages/core/point_cloud.h"
 
@@ -30,9 +33,12 @@ GroundTruth given_truth(const Mesh& mesh, const Files& files);
 GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files);
 
 // The ground truth as its files have it: no saliency is made from picks. Without a surface, cameras see all
-// of a cloud.
-GroundTruth measured_truth(const Mesh& mesh, const Files& files);
-GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files);
+// of a cloud. `as_read`, where it is given, takes the files whose values are not those of the result: of faces
+// or other points, masked, or averaged.
+GroundTruth measured_truth(const Mesh& mesh, const Files& files,
+                           std::vector<ValuesAsRead>* as_read = nullptr);
+GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files,
+                                 std::vector<ValuesAsRead>* as_read = nullptr);
 
 // True if the files tell participants apart, at least two.
 bool has_participants(const DatasetItem& item);

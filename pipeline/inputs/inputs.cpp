@@ -100,7 +100,7 @@ std::pair<Level, File> shape_file_of(const DatasetItem& item) {
   const std::string extension = lower_case_extension(item.mesh);
   FileData data;
   if (extension == ".ply") look(file, &data);
-  const bool is_cloud = is_point_cloud(data.text(), item.mesh);
+  const bool is_cloud = holds_cloud(item, data.text());
   if (is_cloud) file.name = "point cloud file " + extension;
   return {is_cloud ? kClouds : kMeshes, std::move(file)};
 }
@@ -114,6 +114,11 @@ const std::vector<LevelInfo>& levels() {
       {.unit = "scan", .units = shapes_name(kScans), .parent = kMeshes, .parts = kViews, .place = "view"},
       {.unit = "cloud", .units = shapes_name(kClouds)}};
   return levels;
+}
+
+bool holds_cloud(const DatasetItem& item, std::string_view bytes) {
+  if (item.indexed) return item.indexed->is_cloud;
+  return has_columns(item) || is_point_cloud(bytes, item.mesh);
 }
 
 const DatasetItem& item_of(const std::any& source) { return std::any_cast<const DatasetItem&>(source); }

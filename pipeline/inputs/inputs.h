@@ -40,6 +40,10 @@ struct Inputs {
 };
 
 const DatasetItem& item_of(const std::any& source);  // the source of a family
+
+// True of a point cloud: `bytes` may be the beginning of the file's, and are looked at of .ply alone.
+bool holds_cloud(const DatasetItem& item, std::string_view bytes);
+
 inline const DatasetItem& item_of(const Units& units, Unit unit) {
   return item_of(units.source_of(unit).source);
 }

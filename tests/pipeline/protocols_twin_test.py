@@ -186,7 +186,7 @@ class Protocols(unittest.TestCase):
                 self.write_lines(f"FixationMaps/{mesh}_{view}norm.txt", looked)
                 self.write_lines(f"CentricityAndVisibilityMaps/{mesh}_{view}_visibility.txt", seen.astype(int))
         table, maps = self.scored("3dva")
-        self.assertEqual(len(table), 8 * 9)
+        self.assertEqual(len(table), 10 * 9)
         for _, row in table.iterrows():
             looked, seen = truth[row["item"], row["view"]]
             map_ = maps[row["model"], f"{row['item']}_{row['view']}"]
@@ -245,7 +245,7 @@ class Protocols(unittest.TestCase):
         reference = np.mean([np.histogram(min_max(values), bins=100, density=True)[0] for values, _ in truth.values()], axis=0)
         table, maps = self.scored("schelling")
         table = table[table["model"] != "HS"]  # people, not maps
-        self.assertEqual(len(table), 5 * 3)
+        self.assertEqual(len(table), 9 * 3)
         for _, row in table.iterrows():
             values, picks = truth[row["item"]]
             map_ = matched(maps[row["model"], row["item"]], reference)
