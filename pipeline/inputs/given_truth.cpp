@@ -31,12 +31,13 @@
 #include "stages/models/hs.h"
 
 namespace salbench {
-namespace {
 
 const TruthFormat& format_of(const DatasetItem& item) {
   static const TruthFormat defaults;
   return item.format ? *item.format : defaults;
 }
+
+namespace {
 
 // " (per: face, column: 3)"; nothing for the defaults, which older keys imply.
 template <class Format>

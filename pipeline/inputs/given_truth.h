@@ -40,6 +40,9 @@ GroundTruth measured_truth(const Mesh& mesh, const Files& files,
 GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files,
                                  std::vector<ValuesAsRead>* as_read = nullptr);
 
+// How the files of an item are written.
+const TruthFormat& format_of(const DatasetItem& item);
+
 // True if the files tell participants apart, at least two.
 bool has_participants(const DatasetItem& item);
 

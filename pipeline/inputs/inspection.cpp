@@ -118,7 +118,7 @@ DataInspection inspect_data(const fs::path& root, std::span<const Layout> layout
   if (!folder.has_filename()) folder = folder.parent_path();
   Dataset dataset = find_dataset(folder, layouts);
   DataInspection found{.layout = dataset.layout,
-                       .positives = dataset.items[0].format->values.positives,
+                       .positives = format_of(dataset.items[0]).values.positives,
                        .scale = dataset.unit.scale,
                        .items = {},
                        .notes = dataset.notes,

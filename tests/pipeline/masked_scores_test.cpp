@@ -47,13 +47,17 @@ class MaskedScores : public DataSets {
   }
   // Scores of a shape that has only the points seen.
   void expect_scores_of_seen(const ResultRow& row, Level level) const {
-    const auto value = [&](std::string_view stage) {
-      return toy_->resolver->value({toy_->index(stage, level), row.job.unit});
+    const auto value_of_unit = [&](std::string_view stage, Unit unit) {
+      return toy_->resolver->value({toy_->index(stage, level), unit});
     };
+    const auto value = [&](std::string_view stage) { return value_of_unit(stage, row.job.unit); };
     const bool is_cloud = level == kClouds;
-    const ValuePtr shape = value(is_cloud ? "cloud" : "mesh"), surface = is_cloud ? value("surface") : shape;
+    const char *const of_shape = is_cloud ? "cloud" : "mesh", *const of_truth = is_cloud
+                                                                                    ? "cloud_ground_truth"
+                                                                                    : "ground_truth";
+    const ValuePtr shape = value(of_shape), surface = is_cloud ? value("surface") : shape;
     const Points points = Part<Points>::of(*shape);
-    const GroundTruth truth = value_as<GroundTruth>(*value(is_cloud ? "cloud_ground_truth" : "ground_truth"));
+    const GroundTruth truth = value_as<GroundTruth>(*value(of_truth));
     const ScalarField map = value_as<ScalarField>(*value("map." + row.model)),
                       matched = value_as<ScalarField>(*value("matched." + row.model));
     const std::vector<std::int32_t> seen = *seen_points(truth.saliency);
@@ -61,13 +65,22 @@ class MaskedScores : public DataSets {
     ASSERT_LT(seen.size(), n_);
     const ScalarField areas = values_at(barycentric_areas(points, Part<Surface>::of(*surface)), seen),
                       centre = values_at(distances_from_centroid(points), seen);
+    CentreDensity set;
+    for (const Unit unit : toy_->project.units.of(level))
+      add(set, centre_density(Part<Points>::of(*value_of_unit(of_shape, unit)),
+                              value_as<GroundTruth>(*value_of_unit(of_truth, unit))));
     const auto& options = toy_->config.metrics;
+    Measures measures(seen.size(), areas, centre);
+    measures.surface =
+        measures_of(chosen_metrics(options), n_, points, Part<Surface>::of(*surface)).at(seen).surface;
+    if (const ScalarField others = density_of_others(points, centre_density(points, truth), set);
+        !others.empty())
+      measures.negatives = values_at(others, seen);
     const Scores expected = MetricsByMatching(options).score([&](std::span<const Metric> metrics,
                                                                  Matching read) {
+      Draws draws(Rng(toy_->config.seed, "scores." + row.model, toy_->project.units.name(row.job.unit)));
       return score(metrics, values_at(read == Matching::histogram ? matched : min_max_normalised(map), seen),
-                   truth_at(truth, seen), options,
-                   Rng(toy_->config.seed, "scores." + row.model, toy_->project.units.name(row.job.unit)),
-                   areas, centre);
+                   truth_at(truth, seen), options, draws, measures);
     });
     EXPECT_THAT(row.scores.values, testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.values))
         << row.model;
@@ -107,7 +120,10 @@ TEST_F(MaskedScores, OfMeshesAreThoseOfThePartThatWasSeen) {
   for (const std::string& matching : kMatchings) {
     run_all_metrics(own, matching);
     expect_all_of_seen(kMeshes, 3);
-    for (const double value : toy_->results()[0].scores.values) EXPECT_TRUE(std::isfinite(value));
+    const std::vector<double> scores = toy_->results()[0].scores.values;
+    const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
+    for (std::size_t m = 0; m < metrics.size(); ++m)  // alone in its set, a shape has none of others
+      EXPECT_EQ(std::isfinite(scores[m]), !metrics[m].reads_others) << metrics[m].name;
   }
 }
 

@@ -17,6 +17,7 @@ import protocols_twin_test
 from protocols_twin_test import PROGRAM, ROOT, bumpy_sphere
 
 # Where the real sets lie below SALBENCH_DATA, and what of them is taken.
+LAYOUT = r"(?m)^(dataset: {|  )layout: (\w+)"
 REAL = {"sal3d": ("sal3d", "cart,camel,chair"), "zaragoza": ("eyetracking", "cow,fandisk"), "schelling": ("SchellingData", "9,125")}
 
 
@@ -28,9 +29,9 @@ class Converted(protocols_twin_test.Protocols):
     """The tests of the archives over what they are converted to."""
 
     def configured(self, protocol, layout=None):
-        text = (ROOT / f"configs/protocols/{protocol}.yaml").read_text()
-        file = self.folder / f"{protocol}.yaml"
-        file.write_text(text if layout is None else re.sub(r"(?m)^  layout: \w+", f"  layout: {layout}", text))
+        text = protocol if "\n" in protocol else (ROOT / f"configs/protocols/{protocol}.yaml").read_text()
+        file = self.folder / "protocol.yaml"
+        file.write_text(text if layout is None else re.sub(LAYOUT, rf"\1layout: {layout}", text))
         return file
 
     def tables(self, config, data, *further):
@@ -42,7 +43,7 @@ class Converted(protocols_twin_test.Protocols):
 
     def agrees_converted(self, protocol, data, *items):
         """Converts, compares all tables, and returns the folder of the converted set."""
-        layout = re.search(r"(?m)^  layout: (\w+)", self.configured(protocol).read_text())[1]
+        layout = re.search(LAYOUT, self.configured(protocol).read_text())[2]
         expected = self.tables(self.configured(protocol), data, *items)
         to = self.folder / "one_form"
         done = convert(layout, data, to, "--quiet", *items)
