@@ -59,7 +59,7 @@ TEST_F(Archive, ThatIsWholeHasNoFailure) {
 TEST_F(Archive, WithoutAMask) {
   std::filesystem::remove(data_ / mask("dragon", 413));
   EXPECT_THAT(only_failure(), AllOf(StartsWith(place(mask("dragon", 413)) + ": is missing, the mask of"),
-                                    HasSubstr("add it"), HasSubstr("3dva.yaml:10")));
+                                    HasSubstr("add it"), HasSubstr("3dva.yaml:11")));
 }
 
 TEST_F(Archive, WithAWrongCountByOne) {
@@ -77,7 +77,7 @@ TEST_F(Archive, WithAViewWithoutGroundTruth) {
   EXPECT_THAT(only_failure(),
               AllOf(StartsWith(place(fixations("bunny", 413)) + ": is missing, the ground truth"),
                     HasSubstr(place(mask("bunny", 413))), HasSubstr("add it, or take the mask"),
-                    HasSubstr("3dva.yaml:9")));
+                    HasSubstr("3dva.yaml:10")));
   EXPECT_THAT(units(), ElementsAre("bunny_300", "bunny_413", "dragon_300", "dragon_413"));
 }
 
