@@ -8,6 +8,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from report.drawing import Drawing
+
 INK = "#1a1a1a"
 GRID = "#dddddd"
 MAP = "viridis"  # every saliency and score map: even in lightness, safe for colour-blind readers
@@ -43,8 +45,8 @@ def apply():
 
 
 def new_figure(width, height, layout="constrained"):
-    """An empty figure; inches."""
-    return Figure(figsize=(width, height), layout=layout)
+    """An empty figure; inches. What is drawn on it is recorded, and drawn when it is saved (drawing.py)."""
+    return Drawing(lambda: Figure(figsize=(width, height), layout=layout), (width, height), layout)
 
 
 def scale():

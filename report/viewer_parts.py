@@ -55,7 +55,7 @@ def call(name, title, points, faces, maps, *, picks, shade, on_surface, step, ey
         "levels": levels, "shaded": shade is not None, "maps": list(maps), "picks": picks.tolist(),
         "spacing": step, "camera": None if eye is None else eye.tolist(), "up": up,
     }
-    data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()
+    data = base64.b64encode(zlib.compress(b"".join(parts), 6)).decode()
     return f"salbench.give({json.dumps(name)}, {json.dumps(description)}, {json.dumps(data)});\n"
 
 
