@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Galleries of painted pictures: the paper's examples, before and after matching, difficult shapes, scans."""
 
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, Normalize
 from PIL import Image
 
 from report import statistics, style
@@ -149,6 +147,9 @@ def pixels(path):
 
 def scale():
     """What the colour bar of maps is drawn from."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+
     return ScalarMappable(Normalize(0, 1), ListedColormap(palette() / 255))
 
 

@@ -3,8 +3,8 @@
 
 import os
 from dataclasses import dataclass, field
+from importlib.metadata import version
 
-import matplotlib
 import numpy
 
 from report import crew, drawing, kept, names, statistics, style
@@ -13,7 +13,8 @@ from report.drawing import Drawing
 from report.folder import Folder
 from report.results import Results, write_csv
 
-LOOKS = kept.digest_of_code(drawing, style)  # figures that other code draws are drawn again
+# Of what draws figures: those that something else drew are drawn again.
+LOOKS = kept.digest(kept.digest_of_code(drawing, style), version("matplotlib"), numpy.__version__)
 
 
 @dataclass
@@ -52,12 +53,14 @@ class Workshop:
             self._save((name, figure))
             return
         content = figure.key()
-        key = content and kept.digest(name, content, LOOKS, matplotlib.__version__, numpy.__version__)
+        key = content and kept.digest(name, content, LOOKS)
         if key is None or self.folder.find(key) is None:
             self.waiting.append((name, (name, figure, key)))
 
     def draw_figures(self):
         """Draws what `draw` left waiting, on all processes."""
+        if self.waiting:
+            style.apply()  # once for all processes
         for (_, (_, _, key)), names_ in zip(self.waiting, crew.each(self._save, self.waiting, self.processes)):
             if key:
                 self.folder.add(key, names_, None)

@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from report import comparison, metric_page, run_page, score_pages, shape_files, shape_pages, style
+from report import comparison, metric_page, run_page, score_pages, shape_files, shape_pages
 from report.blocks import attempt
 from report.elements import elements_of
 from report.exports import Shapes
@@ -21,7 +21,6 @@ def write_report(options, protocols):
     other = read_results(options.compare) if options.compare else None
     shapes = Shapes(exports(options, results))
     folder = Folder(out)
-    style.apply()
     copy_static(folder)
     shop = Workshop(results, folder, shapes, protocols, shape_pages.items(results, shapes),
                     tuple(options.examples.split(",")) if options.examples else (), other=other, processes=options.processes)
