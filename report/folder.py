@@ -60,8 +60,10 @@ class Folder:
         return self.kept.add(key, names, facts)
 
     def finish(self):
-        """Removes what is not part of the report any more."""
+        """Removes what is not part of the report any more, and halves that an ended call left of what is."""
         self.names.add(LEDGER)
+        for name in self.names:
+            (self.path / f"{name}.part").unlink(missing_ok=True)
         self.kept.finish()
         remove(self.path, (set(read_list(self.path)) | self.kept.names) - self.names)
         write(self.path / LIST, "".join(f"{name}\n" for name in sorted(self.names)).encode())

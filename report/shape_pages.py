@@ -135,8 +135,8 @@ def gallery(painter, scores, models, caption):
 def difference_gallery(painter, scores, models):
     """Where each model is wrong; none where no map can be compared."""
     tiles = [tile(painter, scores, model, DIFFERENCE) for model in models if painter.has(model, DIFFERENCE)]
-    return [Gallery(f"Errors on {describe(painter.shape)}: each model's map after histogram matching less the ground truth.",
-                    [("Difference to the ground truth", tiles)], differences=True)] if tiles else []
+    return [Gallery(f"Errors on {describe(painter.shape)}: ranks of the points on each model's map less those on the ground truth; "
+                    "a point's rank is the share of points with lower values.", [("Difference to the ground truth", tiles)], differences=True)] if tiles else []
 
 
 def models_of(shop, maps):

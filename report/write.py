@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from report import comparison, metric_page, run_page, score_pages, shape_files, shape_pages
+from report import comparison, gallery_page, metric_page, run_page, score_pages, shape_files, shape_pages
 from report.blocks import attempt
 from report.elements import elements_of
 from report.exports import Shapes
@@ -27,9 +27,11 @@ def write_report(options, protocols):
     shop.drawn = shape_files.draw_all(shop)
     comparing = [("comparison.html", "Comparison")] if other else []
     metrics = [("metrics.html", "Other metrics")] if metric_page.others(shop) else []
-    pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), *metrics, ("run.html", "Run"),
+    gallery = [("gallery.html", "Gallery")] if gallery_page.pictured(shop) else []
+    pages = Pages(shop, [("index.html", "Results"), *gallery, ("scores.html", "Scores and shapes"), *metrics, ("run.html", "Run"),
                          *comparing])
     scores = shop.scores = shape_pages.Scores(results)
+    gallery_page.write_page(shop, pages)
     for item, category in shop.items.items():
         shape_pages.write_page(shop, pages, scores, item, category)
     score_pages.write_page(
