@@ -2,6 +2,8 @@
 """The files of one shape: its maps painted on its picture, and its script for the viewer. Drawn by several processes, and kept
 while neither the shape nor what draws it changes."""
 
+import sys
+import zlib
 from dataclasses import dataclass
 from io import BytesIO
 
@@ -52,18 +54,17 @@ def task_of(shop, shape):
     return Task(shape, title, f"pictures/{shop.shape_files[shape.item]}", f"{shop.shape_files[shape.name]}.js", shop.model_files)
 
 
-CODE = kept.digest_of_code(exports, painting, viewer, viewer_parts)
+# Of what draws: files that something else drew are drawn again.
+CODE = kept.digest(kept.digest_of_code(exports, painting, viewer, viewer_parts, sys.modules[__name__]), painting.COLOURS.read_bytes(),
+                   numpy.__version__, PIL.__version__, str(features.version("webp")), zlib.ZLIB_RUNTIME_VERSION)
 
 
 def key_of(task):
     """Of the shape's content, of all names and titles in its files, and of what draws them."""
-    with open(__file__, "rb") as own, open(painting.COLOURS, "rb") as colours:
-        parts = [CODE, own.read(), colours.read(), numpy.__version__, PIL.__version__, str(features.version("webp"))]
-    shape = task.shape
-    parts += [shape.name, shape.dataset, shape.item, shape.view, task.title, task.folder, task.script]
-    stages = stages_of(shape)
-    parts += [text for model, name in task.models.items() if model == TRUTH[0] or any(stage.endswith(f".{model}") for stage in stages)
-              for text in (model, name)]
+    shape, stages = task.shape, stages_of(task.shape)
+    models = {TRUTH[0], *(stage.partition(".")[2] for stage in stages)} & set(task.models)
+    parts = [CODE, shape.name, shape.dataset, shape.item, shape.view, task.title, task.folder, task.script]
+    parts += [text for model in sorted(models) for text in (model, task.models[model])]
     return kept.digest(*parts, *(part for stage in stages for part in (stage, *content(shape.group, stage))))
 
 

@@ -61,11 +61,10 @@ class Workshop:
         """Draws what `draw` left waiting, on all processes."""
         if self.waiting:
             style.apply()  # once for all processes
-        for (_, (_, _, key)), names_ in zip(self.waiting, crew.each(self._save, self.waiting, self.processes)):
+        for (_, (_, _, key)), written in zip(self.waiting, crew.each(self._save, self.waiting, self.processes)):
+            self.folder.names.update(written)
             if key:
-                self.folder.add(key, names_, None)
-            else:
-                self.folder.names.update(names_)
+                self.folder.add(key, written, None)
         self.waiting.clear()
 
     def _save(self, task):
