@@ -98,7 +98,7 @@ class Kept(support.ReportTest):
         self.assertEqual(found, [["00"], ["00"], ["01"]])
 
     def test_a_call_that_was_ended_is_gone_on_with(self):
-        self.made("ended")
+        self.copied("ended")
         with self.assertRaises(KeyboardInterrupt), unittest.mock.patch("report.run_page.blocks", side_effect=KeyboardInterrupt):
             self.made("ended")
         (self.folder / "ended" / "pictures/1/mesh-LS-before.webp.part").write_text("half of a")
@@ -114,10 +114,9 @@ class Kept(support.ReportTest):
         lines = (to / LEDGER).read_text().splitlines()
         spoilt = [json.dumps([*json.loads(line)[:2], ["../precious", str(precious)], None]) for line in lines]
         (to / LEDGER).write_text("\n".join([*spoilt, "3", "[]", "{}"]) + "\n")
-        shapes, figures = self.drawn("spoilt")
+        with support.without_figures():
+            shapes, _ = self.drawn("spoilt")
         self.assertEqual((len(shapes), precious.read_text()), (6, "years of work"))
-        self.assertGreater(len(figures), 5)
-        self.expect_anew("spoilt")
 
     def test_an_error_in_a_process_names_the_shape(self):
         def draw(work, original=shape_files.draw):
