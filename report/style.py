@@ -32,8 +32,12 @@ _SETTINGS = {
 
 
 def apply():
-    """No window system, and the settings above. Matplotlib is loaded here, where there is something to draw."""
+    """No window system, and the settings above. Matplotlib is loaded here, where there is something to draw, with all that processes
+    which are forked later need of it."""
     import matplotlib
+    import matplotlib.backends.backend_pdf
+    import matplotlib.backends.backend_svg
+    import matplotlib.figure  # noqa: F401
 
     matplotlib.use("Agg")
     matplotlib.rcParams.update(_SETTINGS)
