@@ -31,15 +31,15 @@ class Page:
 PAGES = (
     Page("index.html", "Results", "Which saliency models predict what people find important?", ""),
     Page("ranking.html", "Ranking", "How the models rank, and how sure that is",
-         "One table of all models and metrics to paste into a paper; ranks with their intervals."),
-    Page("scores.html", "Shapes", "", "Every shape under every model, with pictures and a viewer."),
-    Page("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside what these scores say."),
-    Page("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, and for which model."),
+         "One table to paste into a paper; ranks with their intervals."),
+    Page("scores.html", "Shapes", "", "Every shape under every model, with a viewer."),
+    Page("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores."),
+    Page("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model."),
     Page("statistics.html", "Statistics", "Means, tests and conventions",
-         "Means with two kinds of intervals, every pair of models, and where the ranking depends on the convention."),
-    Page("metrics.html", "Other metrics", "", "Every metric that the other pages leave out."),
-    Page("run.html", "Run", "", "What was computed and why, what failed, time, space and the configuration."),
-    Page("paper.html", "Figures", "The paper's figures and tables", "Every figure and table of the paper, made from this run."),
+         "Means, every pair of models, and how conventions change the ranking."),
+    Page("metrics.html", "Other metrics", "", "What the other pages leave out."),
+    Page("run.html", "Run", "", "What was computed, what failed, the configuration."),
+    Page("paper.html", "Figures", "The paper's figures and tables", "The paper's figures and tables, made from this run."),
     Page("comparison.html", "Comparison", "", "This run beside another one."),
 )
 
