@@ -154,7 +154,7 @@ def add_shapes(shop, made):
     chosen = dict(zip((0, (len(painters) - 1) // 2, len(painters) - 1), ("Best", "Typical", "Worst")))
     for at, label in chosen.items():
         shape = painters[at].shape
-        pictures = [(painters[at].paint(what, small=True), alt) for what, alt in
+        pictures = [(painters[at].paint(what), alt) for what, alt in
                     (("ground truth", f"What people marked on {shape.name}"), (leaders[0], f"Map of {leaders[0]} on {shape.name}"))]
         score = f"{of.label} {number(scores[shape.item, shape.view])}"
         made.shapes.append((label, describe(shape), shop.page_of(shape.item), score, [pair for pair in pictures if pair[0]]))
