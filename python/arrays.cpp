@@ -53,6 +53,11 @@ Ordered<double> numbers(const Argument& argument, const py::array& array) {
   return ordered<double>(argument, array, "biuf", "real numbers");
 }
 
+View<double> view_of(Ordered<double> values) {
+  const std::span<const double> view(values.data(), static_cast<std::size_t>(values.size()));
+  return {std::move(values), view};
+}
+
 void expect(const Argument& argument, const py::array& array, bool fits, const std::string& shape) {
   if (!fits) argument.fail(fmt::format("must have shape {}, not {}", shape, shape_of(array)));
 }
@@ -110,9 +115,7 @@ Argument required(py::handle value, const char* name) {
 View<double> field(const Argument& argument, std::optional<std::size_t> n) {
   const py::array array = as_array(argument);
   expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", length_text(n)));
-  auto values = numbers(argument, array);
-  const std::span view(values.data(), static_cast<std::size_t>(values.size()));
-  return {std::move(values), view};
+  return view_of(numbers(argument, array));
 }
 
 View<double> rows(const Argument& argument, std::optional<std::size_t> n) {
@@ -120,9 +123,7 @@ View<double> rows(const Argument& argument, std::optional<std::size_t> n) {
   const int columns = static_cast<int>(array.ndim()) - 1;
   expect(argument, array, (columns == 0 || columns == 1) && has_length(array, columns, n),
          fmt::format("({0},) or (k, {0})", length_text(n)));
-  auto values = numbers(argument, array);
-  const std::span view(values.data(), static_cast<std::size_t>(values.size()));
-  return {std::move(values), view};
+  return view_of(numbers(argument, array));
 }
 
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
@@ -131,13 +132,12 @@ View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
   expect(argument, array, array.ndim() == 2 && array.shape(1) == 3 && has_length(array, 0, n),
          fmt::format("({}, 3)", length_text(n)));
   if (array.shape(0) > std::numeric_limits<std::int32_t>::max()) argument.fail("has more than 2^31 points");
-  auto values = numbers(argument, array);
-  const std::span coordinates(values.data(), static_cast<std::size_t>(values.size()));
+  auto [values, coordinates] = view_of(numbers(argument, array));
   for (std::size_t i = 0; i < coordinates.size(); ++i)
     if (!is_coordinate(coordinates[i]))
       argument.fail(fmt::format("must have finite coordinates whose squares are finite too, not {} in row {}",
                                 coordinates[i], i / 3));
-  const std::span view(reinterpret_cast<const Vec3*>(values.data()), coordinates.size() / 3);
+  const std::span view(reinterpret_cast<const Vec3*>(coordinates.data()), coordinates.size() / 3);
   return {std::move(values), view};
 }
 
@@ -206,8 +206,7 @@ std::vector<bool> mask(const Argument& argument, std::size_t n) {
   const py::array array = as_array(argument);
   expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", n));
   const auto values = ordered<bool>(argument, array, "b", "truth values");
-  const std::span view(values.data(), static_cast<std::size_t>(values.size()));
-  return std::vector<bool>(view.begin(), view.end());
+  return std::vector<bool>(values.data(), values.data() + values.size());
 }
 
 double real_number(const Argument& argument) {

@@ -5,7 +5,8 @@
 //
 // Here: arguments and results. A float64 array in C order is not copied; other types, memory orders and lists
 // are. Numbers that point at something are, always: another thread may change the array while it is read.
-// What fits nothing is a ValueError that names the argument, the shape expected and the shape found.
+// An argument of no such form raises a ValueError that names the argument, the shape expected and the shape
+// found.
 #pragma once
 
 #include <cstddef>

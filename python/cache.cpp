@@ -16,6 +16,7 @@
 #include "cache/layout.h"
 #include "cache/verify.h"
 #include "io/file.h"
+#include "io/file_pattern.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/module.h"
@@ -68,17 +69,17 @@ class Folder {
     return computed([&] { return list_stages(path_); });
   }
 
-  // Labels of the items of all stages, looked for now.
-  std::set<std::string> items() {
+  // Labels of the items of all stages, looked for now, in natural order.
+  std::vector<std::string> items() {
     return computed([&] {
-      std::set<std::string> labels;
+      std::set<std::string, decltype(&natural_less)> labels(natural_less);
       for (const std::string& stage : list_stages(path_))
         for (const ArtefactName& name : names_of(stage, true)) labels.insert(name.item);
-      return labels;
+      return std::vector<std::string>(labels.begin(), labels.end());
     });
   }
 
-  // (stage, key, content, size) of the artefacts of an item in some stages; all if there are none given.
+  // (stage, key, content) of the artefacts of an item in some stages; all if there are none given.
   // Names that are known already are looked up; where none fits, folders are listed again.
   std::vector<std::tuple<std::string, std::string, std::string>> find(const std::string& item,
                                                                       std::vector<std::string> stages) {

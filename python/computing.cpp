@@ -17,7 +17,7 @@ std::atomic<int> at_work = 0;
 std::atomic<bool> ends = false;
 std::atomic<std::thread::id> last;  // the thread that the interpreter ends in, which may still compute
 
-// Of the modules that were imported before this one handlers may still follow.
+// Exit handlers of modules that were imported before this one may still follow.
 void end() {
   last = std::this_thread::get_id();
   ends = true;

@@ -30,18 +30,11 @@
 namespace salbench::python {
 namespace {
 
-// What the files of an item hold.
+// The shape and the ground truth in the files of an item.
 struct Loaded {
   std::variant<Mesh, PointCloud> shape;
   std::optional<GroundTruth> truth;
 };
-
-FileData read(File file) {
-  FileData data;
-  look(file, &data);
-  if (!data.error.empty()) throw InputError(data.error);
-  return data;
-}
 
 // The partial mesh, which picks are smoothed over, with the options that a configuration has by itself.
 Faces surface_of(const PointCloud& cloud) {
@@ -51,11 +44,9 @@ Faces surface_of(const PointCloud& cloud) {
 
 std::shared_ptr<const Loaded> load(const std::any& source) {
   const DatasetItem& item = item_of(source);
-  std::vector<FileData> of_shape;
-  of_shape.push_back(read(mesh_file_of(item)));
+  const std::vector<FileData> of_shape = read_all({mesh_file_of(item)});
   const Files shape_file{source, item.name, of_shape};
-  std::vector<FileData> of_truth;
-  for (File& file : truth_files_of(item)) of_truth.push_back(read(std::move(file)));
+  const std::vector<FileData> of_truth = read_all(truth_files_of(item));
   const Files truth_files{source, item.name, of_truth};
 
   auto loaded = std::make_shared<Loaded>();

@@ -32,10 +32,13 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
+std::string hint(std::string_view name, const std::vector<std::string_view>& known) {
+  const std::string text = did_you_mean(name, known);
+  return text.empty() ? text : "; " + text;
+}
+
 void fail_unknown(std::string_view what, std::string_view name, const std::vector<std::string_view>& known) {
-  const std::string nearest = nearest_word(name, known);
-  throw py::key_error(fmt::format("there is no {} '{}'{}", what, name,
-                                  nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+  throw py::key_error(fmt::format("there is no {} '{}'{}", what, name, hint(name, known)));
 }
 
 PYBIND11_MODULE(_core, module) {

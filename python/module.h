@@ -2,6 +2,7 @@
 // What the files of this folder add to the module, and the exceptions that Python sees.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -9,6 +10,8 @@
 
 namespace salbench::python {
 
+// "; did you mean 'auc'?", or nothing.
+std::string hint(std::string_view name, const std::vector<std::string_view>& known);
 // KeyError: "there is no metric 'aucs'; did you mean 'auc'?"
 [[noreturn]] void fail_unknown(std::string_view what, std::string_view name,
                                const std::vector<std::string_view>& known);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "python/module.h"
+
 namespace salbench::python {
 namespace {
 
@@ -37,11 +39,8 @@ Section section_of(const py::dict& keywords, const std::string& function,
   std::string yaml = "{";
   for (const auto& [keyword, value] : keywords) {
     const auto key = std::string(py::str(keyword));
-    if (std::ranges::find(known, key) == known.end()) {
-      const std::string nearest = nearest_word(key, known);
-      throw py::type_error(fmt::format("{}() has no argument '{}'{}", function, key,
-                                       nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
-    }
+    if (std::ranges::find(known, key) == known.end())
+      throw py::type_error(fmt::format("{}() has no argument '{}'{}", function, key, hint(key, known)));
     yaml += fmt::format("{}{}: {}", yaml.size() > 1 ? ", " : "", key, yaml_of(value, key));
   }
   return Section::from_text(yaml + "}", function);

@@ -37,19 +37,18 @@ struct FunctionModel {
 
 // A copy, since the run forgets its values when it likes; None where the function does not read it.
 template <class T>
-py::object copied(bool read, std::span<const T> values) {
-  if (!read) return py::none();
+py::array copied(std::span<const T> values) {
   return read_only(moved(std::vector<T>(values.begin(), values.end())));
 }
 
 py::object shape_of(const std::string& id, Points points, const Normals* normals, bool reads_faces,
                     Surface faces, const Descriptors* fpfh) {
-  const py::object descriptors =
-      fpfh == nullptr ? py::none()
-                      : py::object(read_only(moved(std::vector<float>(fpfh->values), kFpfhBins)));
-  return py::module_::import("salbench._run")
-      .attr("_shape")(id, copied<Vec3>(true, points), copied<Triangle>(reads_faces, faces),
-                      normals == nullptr ? py::none() : copied<Vec3>(true, *normals), descriptors);
+  py::object of_normals = py::none(), of_faces = py::none(), descriptors = py::none();
+  if (reads_faces) of_faces = copied<Triangle>(faces);
+  if (normals != nullptr) of_normals = copied<Vec3>(*normals);
+  if (fpfh != nullptr) descriptors = read_only(moved(std::vector<float>(fpfh->values), kFpfhBins));
+  return py::module_::import("salbench._shape")
+      .attr("Shape")(id, copied<Vec3>(points), of_faces, of_normals, descriptors);
 }
 
 // One line, with the user's innermost line: "ValueError: bad (model.py, line 12)".

@@ -72,8 +72,7 @@ py::array descriptors_of(py::handle points_of, py::handle normals_of, bool of_sc
                kFpfhBins);
 }
 
-// --- scans
-// ---------------------------------------------------------------------------------------------------
+// --- scans ------------------------------------------------------------------------------------------------
 
 py::tuple scan_tuple(Scan scan) {
   return py::make_tuple(moved(std::move(scan.points)),
@@ -102,8 +101,7 @@ py::list all_scans(py::handle points_of, py::handle faces_of, py::handle threads
   return result;
 }
 
-// --- surfaces
-// ------------------------------------------------------------------------------------------------
+// --- surfaces ---------------------------------------------------------------------------------------------
 
 py::array partial_mesh_of(py::handle points_of, py::handle normals_of, const py::dict& keywords) {
   const auto options = options_from<SurfaceOptions>(keywords, "partial_mesh");
@@ -138,8 +136,7 @@ py::tuple spectrum(py::handle points_of, py::handle faces_of, py::handle count) 
                         moved(std::move(vectors)).reshape({pairs.vectors.rows(), pairs.vectors.cols()}));
 }
 
-// --- ground truth
-// --------------------------------------------------------------------------------------------
+// --- ground truth -----------------------------------------------------------------------------------------
 
 py::array smooth(py::handle points_of, py::handle faces_of, py::handle picked, const py::dict& keywords) {
   const auto options = options_from<SmoothingOptions>(keywords, "smooth_picks");
@@ -186,8 +183,7 @@ py::array of_samples(py::handle points_of, py::handle samples_of, py::handle val
   }));
 }
 
-// --- pictures
-// ------------------------------------------------------------------------------------------------
+// --- pictures ---------------------------------------------------------------------------------------------
 
 Picture rendered(py::handle points_of, py::handle faces_of, py::handle normals_of, py::handle viewpoint,
                  const RandomSource& random, int threads, const PictureOptions& options) {

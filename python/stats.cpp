@@ -3,6 +3,7 @@
 // a file.
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -101,10 +102,11 @@ class TablesOf {
     if (name == "summary") return summary_table(conclusions_);
     if (name == "ranking") return ranking_table(conclusions_);
     if (name == "significance") return significance_table(conclusions_);
-    if (name == "agreement") return agreement_table(conclusions_);
+    if (name == "ranking_agreement") return agreement_table(conclusions_);
     if (name == "human_share") return human_share_table(conclusions_);
     if (name == "per_class") return per_class_table(scores_.rows, conclusions_.metrics, conclusions_.unit);
-    return power_table(conclusions_);
+    if (name == "power") return power_table(conclusions_);
+    throw std::logic_error("no table of conclusions is called " + name);
   }
 
   ScoreFile scores_;

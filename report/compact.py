@@ -10,7 +10,7 @@ from report.units import counted, several
 
 MOST = 12  # metrics of one table; the page of the other metrics has the rest
 CAPTION = ("{}, {}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best of each metric in "
-           "bold; below: the group. Two models without a letter in common differ. HS and RS, human performance and chance, are "
+           "bold; letters: two models without one in common differ. HS and RS, human performance and chance, are "
            "references.{}")
 
 
@@ -57,7 +57,7 @@ def counted_of(results, dataset, parts):
 def missing(model, metrics, by_cell):
     """On how many shapes a competitor has no score that others have, at most over the metrics."""
     rows = [by_cell[model, metric] for metric in metrics if (model, metric) in by_cell]
-    return int(max((row["n_missing"] for row in rows if row["kind"] == "model"), default=0))
+    return int(max((row["n_missing"] for row in rows if row["kind"] == "model" and row["n_missing"] == row["n_missing"]), default=0))
 
 
 def remark(dataset, failed):
@@ -71,7 +71,7 @@ def remark(dataset, failed):
 def score(row):
     if row is None or row["mean"] != row["mean"]:
         return cell(None)
-    return cell(row["mean"], bold=row["best"] == 1, after=spread(row), below=row["group"])
+    return cell(row["mean"], bold=row["best"] == 1, after=" ".join(filter(None, (spread(row), row["group"]))))
 
 
 def spread(row, digits=3):

@@ -32,10 +32,9 @@ void require_stage(const Project& project, const std::vector<Job>& jobs, const E
   std::vector<std::string_view> known;
   for (const Job& job : jobs) known.push_back(project.rule(job).stage);
   if (options.stage.empty() || std::find(known.begin(), known.end(), options.stage) != known.end()) return;
-  const std::string nearest = nearest_word(options.stage, known);
-  throw ConfigError(fmt::format("explain: {} has no stage '{}'; {}", options.item, options.stage,
-                                nearest.empty() ? fmt::format("it has {}", fmt::join(known, ", "))
-                                                : fmt::format("did you mean '{}'?", nearest)));
+  throw ConfigError(
+      fmt::format("explain: {} has no stage '{}'; {}", options.item, options.stage,
+                  did_you_mean(options.stage, known, fmt::format("it has {}", fmt::join(known, ", ")))));
 }
 
 std::string state_of(const Decision& job, const Cause& cause) {

@@ -108,12 +108,10 @@ std::string text_of(const DataInspection& found) {
 }
 
 ExitStatus print_inspection(const Arguments& arguments, const std::string& layout, ReportFormat format) {
-  if (!is_layout(layout)) {
-    const std::string nearest = nearest_word(layout, layout_names());
-    throw ConfigError(fmt::format("inspect: there is no layout '{}'; {}", layout,
-                                  nearest.empty() ? "name one of docs/data_sets.md, or a file NAME.yaml"
-                                                  : fmt::format("did you mean '{}'?", nearest)));
-  }
+  if (!is_layout(layout))
+    throw ConfigError(fmt::format(
+        "inspect: there is no layout '{}'; {}", layout,
+        did_you_mean(layout, layout_names(), "name one of docs/data_sets.md, or a file NAME.yaml")));
   if (arguments.data.empty()) throw ConfigError("inspect: names no data set: give --data DIR");
   const DataInspection found = inspect_data(arguments.data, layouts_of(layout));
   print_report(format, "inspect", json_of(found), text_of(found));

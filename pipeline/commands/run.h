@@ -10,7 +10,7 @@
 
 namespace salbench {
 
-// What is done with the conclusions of a run that was finished; nothing for a shard.
+// Callback with the conclusions of a finished run; a shard has none.
 using Show = std::function<void(const Conclusions&)>;
 
 // Computes what is missing and writes the tables; when interrupted, those of what was finished.

@@ -18,7 +18,7 @@ namespace salbench {
 
 int thread_count(const Arguments& arguments);
 
-// What of a data set is taken, and what maps are matched to.
+// The items of a data set that are run, and the histogram that their maps are matched to.
 struct Selection {
   std::string items = {};  // "1-20,52,125"; empty: all
   std::optional<Shard> shard = {};

@@ -128,14 +128,18 @@ std::string options_text(const Options& options, bool annotated = false, bool qu
 
 // An option for whoever documents it.
 struct OptionRow {
-  std::string name, value, note;  // the value as it is where nobody sets it
+  std::string name, value,
+      note;  // the value as it is where nobody sets it; of a real number never "1" but "1.0"
 };
 template <class Options>
 std::vector<OptionRow> option_rows(const Options& options) {
   std::vector<OptionRow> rows;
   Options::fields(options,
                   [&]<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {
-                    rows.push_back({std::string(key), option_text(value), option_note<Value>(help)});
+                    std::string text = option_text(value);
+                    if (std::is_floating_point_v<Value> && text.find_first_of(".e") == std::string::npos)
+                      text += ".0";
+                    rows.push_back({std::string(key), std::move(text), option_note<Value>(help)});
                   });
   return rows;
 }

@@ -82,16 +82,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string nearest_word(std::string_view word, const std::vector<std::string_view>& candidates) {
-  std::string nearest;
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
+                         std::string_view otherwise) {
+  std::string_view nearest;
   std::size_t best = word.size() / 2 + 2;  // farther away it is another word
-  for (const std::string_view candidate : candidates) {
+  for (const std::string_view candidate : known) {
     const std::size_t distance = edit_distance(word, candidate);
     if (distance >= best) continue;
     best = distance;
     nearest = candidate;
   }
-  return nearest;
+  return nearest.empty() ? std::string(otherwise) : fmt::format("did you mean '{}'?", nearest);
 }
 
 std::string yaml_quoted(std::string_view text) {
@@ -187,9 +188,8 @@ void Section::fail(std::string_view key, std::string_view what) const {
 void Section::reject_unknown(const std::vector<std::string_view>& known) const {
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const std::string nearest = nearest_word(key, known);
-    fail(key, nearest.empty() ? fmt::format("is not a known key; known are: {}", fmt::join(known, ", "))
-                              : fmt::format("is not a known key; did you mean '{}'?", nearest));
+    fail(key, "is not a known key; " +
+                  did_you_mean(key, known, fmt::format("known are: {}", fmt::join(known, ", "))));
   }
 }
 

@@ -79,7 +79,9 @@ class Section {
   std::shared_ptr<const Impl> impl_;
 };
 
-// The candidate with the smallest edit distance to `word`; empty where none is near.
-std::string nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
+// "did you mean 'scans'?", which of the known words is the nearest to a mistyped one by edit distance;
+// `otherwise` where none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
+                         std::string_view otherwise = {});
 
 }  // namespace salbench

@@ -50,13 +50,17 @@ std::vector<FileData> read_again(FilesOfUnit& files) {
   return all;
 }
 
-std::vector<FileData> read_unchanged(const FilesOfUnit& files) {
+std::vector<FileData> read_all(const FilesOfUnit& files) {
   std::vector<FileData> all;
-  for (const File& file : files) {
-    all.push_back(read(file));
-    if (all.back().digest != file.digest)
-      throw InputError(fmt::format("{}: changed since this run was planned; run it again", file.place));
-  }
+  for (const File& file : files) all.push_back(read(file));
+  return all;
+}
+
+std::vector<FileData> read_unchanged(const FilesOfUnit& files) {
+  std::vector<FileData> all = read_all(files);
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (all[i].digest != files[i].digest)
+      throw InputError(fmt::format("{}: changed since this run was planned; run it again", files[i].place));
   return all;
 }
 

@@ -51,6 +51,9 @@ void look(File& file, FileData* data = nullptr);
 // names it.
 std::vector<FileData> read_again(FilesOfUnit& files);
 
+// Reads the files, whatever was planned. Throws InputError where one cannot be read.
+std::vector<FileData> read_all(const FilesOfUnit& files);
+
 // Reads them as they were planned. Throws InputError where one cannot be read or has changed.
 std::vector<FileData> read_unchanged(const FilesOfUnit& files);
 

@@ -28,7 +28,7 @@ GroundTruth given_truth(const Mesh& mesh, const Files& files);
 // cloud's file, those without a position included; values per face are refused.
 GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files);
 
-// What the files hold, without a saliency made from picks.
+// The ground truth as its files have it: no saliency is made from picks.
 GroundTruth measured_truth(const Mesh& mesh, const Files& files);
 GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files);
 

@@ -69,10 +69,10 @@ void select_split(Dataset& dataset, const std::string& split) {
         "split '{}': the data set has no splits{}", split,
         dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
   if (!known.contains(split)) {
-    const std::string nearest = nearest_word(split, {known.begin(), known.end()});
-    throw ConfigError(fmt::format("split '{}': the data set has no such split; {}it has {} ({})", split,
-                                  nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest),
-                                  fmt::join(known, ", "), dataset.splits_where));
+    const std::string hint = did_you_mean(split, {known.begin(), known.end()});
+    throw ConfigError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})", split,
+                                  hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
+                                  dataset.splits_where));
   }
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
 }

@@ -20,17 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The files as a rule is given them. Throws InputError for one that cannot be read.
-std::vector<FileData> read_files(FilesOfUnit& files) {
-  std::vector<FileData> all;
-  for (File& file : files) {
-    FileData& data = all.emplace_back();
-    look(file, &data);
-    if (!data.digest) throw InputError(data.error);
-  }
-  return all;
-}
-
 double diagonal_of(Points points) {
   Vec3 low = points[0], high = points[0];
   for (const Vec3& point : points) {
@@ -58,21 +47,22 @@ void add_truth(ItemFacts& facts, const GroundTruth& truth) {
   }
 }
 
-void read_item(const Family& family, FilesOfUnit& shape_files, FilesOfUnit& truth_files, ItemFacts& facts) {
-  const std::vector<FileData> shape = read_files(shape_files);
+void read_item(const Family& family, const FilesOfUnit& shape_files, const FilesOfUnit& truth_files,
+               ItemFacts& facts) {
+  const std::vector<FileData> shape = read_all(shape_files);
   const Files in_shape{family.source, family.name, shape};
   if (facts.is_cloud) {
     const PointCloud cloud = load_cloud(in_shape, Remark{facts.remark});
     add_points(facts, cloud.points);
     if (truth_files.empty()) return;
-    const std::vector<FileData> truth = read_files(truth_files);
+    const std::vector<FileData> truth = read_all(truth_files);
     add_truth(facts, measured_cloud_truth(cloud, {family.source, family.name, truth}));
   } else {
     const Mesh mesh = load_mesh(in_shape, Remark{facts.remark});
     add_points(facts, mesh.vertices);
     facts.faces = mesh.faces.size();
     if (truth_files.empty()) return;
-    const std::vector<FileData> truth = read_files(truth_files);
+    const std::vector<FileData> truth = read_all(truth_files);
     add_truth(facts, measured_truth(mesh, {family.source, family.name, truth}));
   }
 }
@@ -82,7 +72,7 @@ void add_files_below(const fs::path& folder, std::vector<std::string>& files) {
     if (entry.path.filename().string().starts_with('.')) continue;
     if (!entry.is_folder)
       files.push_back(entry.path);
-    else if (!fs::is_symlink(entry.path))  // one to a folder above would never end
+    else if (!fs::is_symlink(entry.path))  // a link to a folder above would be followed for ever
       add_files_below(entry.path, files);
   }
 }

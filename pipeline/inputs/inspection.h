@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a description finds in a folder: every file of every item is read, and nothing is computed from it.
+// Inspection of a data set: every file of every item is read, and nothing is computed from it.
 #pragma once
 
 #include <cstddef>

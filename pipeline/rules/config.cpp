@@ -51,10 +51,8 @@ std::vector<std::string_view> known_metrics() {
 void require_metric(const std::string& name, const Section& section, std::string_view key) {
   const std::vector<std::string_view> known = known_metrics();
   if (name == kEveryName || std::ranges::find(known, name) != known.end()) return;
-  const std::string nearest = nearest_word(name, known);
-  const std::string hint =
-      nearest.empty() ? "the README has a table of them" : fmt::format("did you mean '{}'?", nearest);
-  section.fail(key, fmt::format("has no metric '{}'; {}", name, hint));
+  section.fail(key, fmt::format("has no metric '{}'; {}", name,
+                                did_you_mean(name, known, "the README has a table of them")));
 }
 
 // The metrics named, in the order of the table: the order in a file is no other choice, and must make no

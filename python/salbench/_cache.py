@@ -196,10 +196,17 @@ class Cache(Mapping[str, Item]):
 
     Examples
     --------
-    >>> cache = salbench.Cache("salbench-cache")            # doctest: +SKIP
-    >>> cache["52_3"].fpfh.shape                            # doctest: +SKIP
-    (12034, 33)
-    >>> cache["52"].maps["LS"], cache["52"]["scores.LS"]["scores"]  # doctest: +SKIP
+    >>> import pathlib, tempfile
+    >>> import salbench
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> _ = (folder / "box.off").write_text("OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 2 1\\n3 0 1 3\\n3 0 3 2\\n3 1 2 3\\n")
+    >>> _ = salbench.run({"dataset": {"participants": "simulated", "scans": False}, "metrics": {"names": ["nss"]}},
+    ...                  data=folder, models={"CB": None}, cache=folder / "cache", out=folder / "out", progress=False)
+    >>> cache = salbench.Cache(folder / "cache")
+    >>> cache["box"].points.shape, cache["box"].maps["CB"].shape
+    ((4, 3), (4,))
+    >>> list(cache["box"]["scores.CB"])
+    ['counts', 'scores']
     """
 
     def __init__(self, path: Path) -> None:
@@ -214,7 +221,8 @@ class Cache(Mapping[str, Item]):
 
     def names(self) -> list[str]:
         """Names of the items, in natural order; characters but letters, digits, '-' and '_' read '_', as in file names."""
-        return sorted(self._folder.items(), key=_natural)
+        names: list[str] = self._folder.items()
+        return names
 
     def __getitem__(self, name: str) -> Item:
         """What the cache holds of an item. KeyError if that is nothing."""
@@ -236,18 +244,3 @@ class Cache(Mapping[str, Item]):
 
     def __reduce__(self) -> tuple[type["Cache"], tuple[str]]:
         return Cache, (os.path.abspath(self.path),)
-
-
-def _natural(name: str) -> list[tuple[int, str]]:
-    """2 before 10, and "52" before "52_3"."""
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in _parts(name)]
-
-
-def _parts(name: str) -> list[str]:
-    parts: list[str] = []
-    for letter in name:
-        if parts and parts[-1][-1].isdigit() == letter.isdigit():
-            parts[-1] += letter
-        else:
-            parts.append(letter)
-    return parts

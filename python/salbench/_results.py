@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from salbench import _tables
+from salbench._tables import Tables
 
 if TYPE_CHECKING:
     import pandas
@@ -30,7 +30,7 @@ class Maps:
         return values
 
 
-class Results:
+class Results(Tables):
     """Tables of a run, from the folder that it wrote them to; of one that `run` returns also its maps and failures.
 
     Parameters
@@ -54,28 +54,13 @@ class Results:
         self.computed: int = run.computed if run else 0
         self.failures: list[tuple[str, str, str]] = run.failures() if run else []
 
-    def _table(self, name: str) -> "pandas.DataFrame":
-        return _tables.read((self.folder / f"{name}.csv").read_text(encoding="utf-8"))
+    def _text(self, name: str) -> str:
+        return (self.folder / f"{name}.csv").read_text(encoding="utf-8")
 
     @cached_property
     def scores(self) -> "pandas.DataFrame":
         """A row per shape and model (results.csv)."""
         return self._table("results")
-
-    @cached_property
-    def summary(self) -> "pandas.DataFrame":
-        """Means with their intervals (summary.csv)."""
-        return self._table("summary")
-
-    @cached_property
-    def ranking(self) -> "pandas.DataFrame":
-        """Ranks and groups that cannot be told apart (ranking.csv)."""
-        return self._table("ranking")
-
-    @cached_property
-    def significance(self) -> "pandas.DataFrame":
-        """Every pair of models under every metric (significance.csv)."""
-        return self._table("significance")
 
     def maps(self, model: str) -> Maps:
         """The maps of a model by name of the shape, as it made them: maps("LS")["52_3"].

@@ -166,7 +166,18 @@ def _source_of(function: Any) -> str:
         code = getattr(function, "__code__", None) or getattr(type(function).__call__, "__code__", None)
         if code is None:
             raise ValueError(f"{function!r} has no source text that says when its maps are stale: give a version") from None
-        return repr((code.co_code.hex(), code.co_consts, code.co_names))
+        return _code_text(code)
+
+
+def _code_text(value: Any) -> str:
+    """A constant of byte code, or the code itself, as text without addresses and without the order of a set."""
+    if inspect.iscode(value):
+        return f"code({value.co_code.hex()}, {_code_text(value.co_consts)}, {value.co_names!r})"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_code_text, value))})"
+    if isinstance(value, frozenset):
+        return f"{{{', '.join(sorted(map(_code_text, value)))}}}"
+    return repr(value)
 
 
 def _content_of(what: Any) -> str:
@@ -174,10 +185,6 @@ def _content_of(what: Any) -> str:
         with open(what, "rb") as file:
             return hashlib.sha256(file.read()).hexdigest()
     return _source_of(what) if callable(what) or inspect.ismodule(what) else repr(what)
-
-
-def _shape(name: str, points: Any, faces: Any, normals: Any, fpfh: Any) -> Shape:
-    return Shape(name, points, faces, normals, fpfh)
 
 
 def _raised(error: BaseException, trace: Any) -> str:

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from salbench import _core, _tables
+from salbench import _core
+from salbench._tables import Tables
 
 if TYPE_CHECKING:
     import pandas
 
-_TEXTS = ("item", "model", "dataset", "view", "class")
+_TEXTS = ("item", "model", "dataset", "view", "class", "split")
 
 
-class Conclusions:
+class Conclusions(Tables):
     """Tables of what scores show, as data frames with the columns of docs/data_dictionary.md.
 
     Each is worked out when it is first asked for; all speak of the same units, shapes and resamples.
@@ -25,38 +26,9 @@ class Conclusions:
     def __init__(self, tables: Any) -> None:
         self._tables = tables
 
-    def _table(self, name: str) -> "pandas.DataFrame":
-        return _tables.read(self._tables.table(name))
-
-    @cached_property
-    def summary(self) -> "pandas.DataFrame":
-        """Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by unit [efron1987]."""
-        return self._table("summary")
-
-    @cached_property
-    def ranking(self) -> "pandas.DataFrame":
-        """Ranks with their intervals, and letters of groups that cannot be told apart [mogstad2024]."""
-        return self._table("ranking")
-
-    @cached_property
-    def significance(self) -> "pandas.DataFrame":
-        """Every pair of models: paired differences, signed-rank tests [wilcoxon1945], corrected for all pairs [holm1979]."""
-        return self._table("significance")
-
-    @cached_property
-    def agreement(self) -> "pandas.DataFrame":
-        """How far the rankings by two metrics agree [kendall1945]."""
-        return self._table("agreement")
-
-    @cached_property
-    def per_class(self) -> "pandas.DataFrame":
-        """Means and intervals by class of the items; empty without classes."""
-        return self._table("per_class")
-
-    @cached_property
-    def human_share(self) -> "pandas.DataFrame":
-        """Scores as a share of what people reach; empty without the model HS."""
-        return self._table("human_share")
+    def _text(self, name: str) -> str:
+        text: str = self._tables.table(name)
+        return text
 
     @cached_property
     def power(self) -> "pandas.DataFrame":

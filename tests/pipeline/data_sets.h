@@ -42,6 +42,12 @@ class DataSets : public testing::Test {
     ADD_FAILURE() << "no scores of " << model;
     return 0;
   }
+  std::string place(const std::string& name) const { return (data_ / name).string(); }
+  std::vector<std::string> units() const {
+    std::vector<std::string> names;
+    for (const Family& family : toy_->inputs.units.families()) names.push_back(family.name);
+    return names;
+  }
   std::string description(const std::string& yaml) { return folder_.write("own.yaml", yaml).string(); }
 
   TemporaryFolder data_, folder_;

@@ -88,7 +88,7 @@ TEST(Leaders, EqualModelsCannotBeToldApart) {
   EXPECT_LT(leader.lead_interval.low, 0);
   EXPECT_THAT(level.sentence, HasSubstr("cannot be told apart"));
   EXPECT_THAT(level.sentence, testing::Not(HasSubstr("leads")));
-  EXPECT_THAT(level.sentence, testing::Not(HasSubstr("C")));
+  EXPECT_THAT(level.sentence, testing::Not(HasSubstr(" C ")));
 }
 
 // A is ahead of B, which varies little beside it, but not of C, which varies much.
@@ -169,8 +169,8 @@ TEST(Leaders, EachSplitHasASentenceOfItsOwn) {
 }
 
 TEST(Leaders, TheTableHasTheSentenceAndARowPerMetric) {
-  const Conclusions conclusions =
-      conclude(scored({{"A", 0.6}, {"B", 0.5}}, 20), metrics_named({"auc"}), {}, 1);
+  const std::vector<ResultRow> rows = scored({{"A", 0.6}, {"B", 0.5}}, 20);
+  const Conclusions conclusions = conclude(rows, metrics_named({"auc"}), {}, 1);
   const std::vector<LevelLeaders> levels = find_leaders(conclusions);
   const Table table = leaders_table(conclusions, levels);
   EXPECT_THAT(column(table, "metric"), ElementsAre(Cell(""), Cell("auc")));
@@ -196,16 +196,15 @@ TEST(Leaders, NoSentenceClaimsMoreThanItsInterval) {
     ++seen[leader.verdict];
     const bool says_leads = level.sentence.find(" leads ") != std::string::npos;
     EXPECT_EQ(says_leads, leader.verdict == Lead::leads);
-    if (says_leads) EXPECT_GT(leader.lead_interval.low, 0) << level.sentence;
-    if (leader.lead_interval.low <= 0) EXPECT_FALSE(says_leads) << level.sentence;
+    EXPECT_TRUE(leader.lead_interval.low > 0 || !says_leads) << level.sentence;
   }
   EXPECT_GT(seen[Lead::leads], 0);
   EXPECT_GT(seen[Lead::not_apart], 0);
 }
 
 TEST(Compact, IntervalsStayWithinTheRangeOfTheMetric) {
-  const Conclusions conclusions =
-      conclude(scored({{"A", 0.99}, {"B", 0.5}}, 3), metrics_named({"auc"}), {}, 1);
+  const std::vector<ResultRow> rows = scored({{"A", 0.99}, {"B", 0.5}}, 3, 0.002);
+  const Conclusions conclusions = conclude(rows, metrics_named({"auc"}), {}, 1);
   const Table table = compact_table(conclusions);
   const auto high = column(table, "high"), half = column(table, "half"), mean = column(table, "mean");
   ASSERT_THAT(table.rows, SizeIs(2));

@@ -68,6 +68,23 @@ def correlation(map_, truth):
     return stats.pearsonr(map_, truth)[0]
 
 
+def matched(map_, reference):
+    """Values moved through two cumulative histograms. [tasse2016]"""
+    heights, edges = np.histogram(min_max(map_), bins=100, density=True)
+    own, wanted = np.r_[0, heights.cumsum()], np.r_[0, reference.cumsum()]
+    return min_max(np.interp(min_max(map_), edges, np.interp(own, wanted, edges)))
+
+
+def sampled_aucs(map_, picks, rng, splits):
+    """The comparison's AUC, split by split: as many negatives as picks, 20 thresholds."""
+    high = map_[np.unique(picks)]
+    for _ in range(splits):
+        low = map_[rng.integers(1, len(map_), len(high))]
+        at = np.linspace(0, max(high.max(), low.max()), 20)[:, None]
+        true, false = np.r_[1, (high >= at).mean(1), 0], np.r_[1, (low >= at).mean(1), 0]
+        yield metrics.auc(false, true)
+
+
 def auc_of_picks(map_, picks):
     labels = np.zeros(len(map_))
     labels[np.unique(picks)] = 1
@@ -148,6 +165,27 @@ class Protocols(unittest.TestCase):
             looked, map_ = truth[row["item"]], maps[row["model"], row["item"]]
             self.agree(row, cc=correlation(map_, looked), kl=divergence(map_, looked), kl_smoothed=smoothed_divergence(map_, looked),
                        sim=similarity(map_, looked))
+
+    def test_schelling(self):
+        truth = {}
+        for k in range(1, 4):
+            points, faces = bumpy_sphere(k)
+            self.write_mesh(f"Meshes/{k}.off", points, faces)
+            picks = [np.sort(self.rng.choice(len(points), 12, replace=False)) for _ in range(3)]
+            truth[str(k)] = self.rng.random(len(points)) ** 3, np.concatenate(picks)
+            self.write_lines(f"Distributions/{k}.val", truth[str(k)][0])
+            for participant, picked in enumerate(picks):
+                self.write_lines(f"RawData/{k}_{participant}.pid", picked)
+        reference = np.mean([np.histogram(min_max(values), bins=100, density=True)[0] for values, _ in truth.values()], axis=0)
+        table, maps = self.scored("schelling")
+        table = table[table["model"] != "HS"]  # people, not maps
+        self.assertEqual(len(table), 5 * 3)
+        for _, row in table.iterrows():
+            values, picks = truth[row["item"]]
+            map_ = matched(maps[row["model"], row["item"]], reference)
+            self.agree(row, nss=nss(map_, picks), lcc=abs(correlation(map_, values)))
+            drawn = np.array(list(sampled_aucs(map_, picks, self.rng, 400)))  # by other draws: 100 there, 400 here
+            self.assertAlmostEqual(row["auc"], drawn.mean(), delta=5 * drawn.std() * (1 / 100 + 1 / 400) ** 0.5)
 
     def test_meshmamba(self):
         truth, paths = {}, ""

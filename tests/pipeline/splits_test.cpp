@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Splits of a data set, as a description says where they are written.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/results/conclusions.h"
+#include "stages/core/errors.h"
+#include "tests/pipeline/data_sets.h"
+
+namespace salbench {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+using testing::ThrowsMessage;
+
+const Mesh kTetrahedron = shapes::tetrahedron();
+
+class WithSplits : public DataSets {
+ protected:
+  WithSplits() {
+    for (const char* name : {"ant", "bee", "cat", "dog", "eel"}) {
+      data_.write(fmt::format("off/{}.off", name), off_text(kTetrahedron));
+      data_.write(fmt::format("maps/{}.val", name), "0\n1\n2\n3\n");
+    }
+  }
+  std::string split_by(const std::string& splits) {
+    return description("places:\n  - meshes: off/*\n    truth: {saliency: 'maps/{item}.val'}\n" + splits);
+  }
+  // Each item with its split: "ant:train".
+  std::vector<std::string> run_splits(const std::string& splits, const std::string& chosen = "''") {
+    run(split_by(splits), "scans: false, split: " + chosen);
+    std::vector<std::string> found;
+    for (const Family& family : toy_->inputs.units.families())
+      found.push_back(family.name + ":" + item_of(family.source).split);
+    return found;
+  }
+};
+
+TEST_F(WithSplits, ATableNamesTheSplitOfEachItem) {
+  data_.write("splits.csv", "item,split\nbee,test\nant,train\neel,val\ncat,train\n");
+  EXPECT_THAT(run_splits("splits: {file: splits.csv}\n"),
+              ElementsAre("ant:train", "bee:test", "cat:train", "dog:", "eel:val"));
+  EXPECT_THAT(toy_->inputs.notes, Contains(HasSubstr("own.yaml:4): dog")));
+  EXPECT_THAT(run_splits("splits: {file: splits.csv}\n", "train"), ElementsAre("ant:train", "cat:train"));
+  data_.write("parts.csv", "part;name\n");
+  EXPECT_THAT([&] { run_splits("splits: {file: parts.csv}\n"); },
+              ThrowsMessage<InputError>(HasSubstr("parts.csv")));
+}
+
+TEST_F(WithSplits, TheFirstLinesOfAListAreOneSplit) {
+  data_.write("paths.txt", "rgb/dog.obj\nD:\\data\\ant.obj,maps/ant.csv\n\nbee\nrgb/eel.obj\nrgb/cat.obj\n");
+  EXPECT_THAT(run_splits("splits: {list: paths.txt, shares: {train: 80%, test: 0.2}}\n"),
+              ElementsAre("ant:train", "bee:train", "cat:test", "dog:train", "eel:train"));
+  EXPECT_THAT(run_splits("splits: {list: paths.txt, shares: {train: 0.5, test: 0.5}}\n"),
+              ElementsAre("ant:train", "bee:test", "cat:test", "dog:train", "eel:test"))
+      << "int(5 * 0.5) lines";
+}
+
+TEST_F(WithSplits, ADescriptionMayNameTheItems) {
+  EXPECT_THAT(run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n"),
+              ElementsAre("ant:train", "bee:train", "cat:train", "dog:test", "eel:test"));
+}
+
+TEST_F(WithSplits, TablesHaveMeansPerSplit) {
+  run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n");
+  const std::vector<ResultRow> rows = toy_->results();
+  const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
+  const Conclusions conclusions = conclude(rows, metrics, {}, 1);
+  const Table results = results_table(rows, metrics), summary = summary_table(conclusions);
+  EXPECT_THAT(std::vector(results.columns.begin(), results.columns.begin() + 3),
+              ElementsAre("dataset", "split", "item"));
+  EXPECT_EQ(std::get<std::string>(results.rows.back()[1]), "test");
+  ASSERT_THAT(summary.columns.at(1), "split");
+  const auto means = [&](const std::string& split) {
+    for (const auto& row : summary.rows)
+      if (row[1] == Cell(split) && row[2] == Cell(std::string("RS")) && row[3] == Cell(std::string("cc")))
+        return std::pair(std::get<std::int64_t>(row[4]), std::get<double>(row[5]));
+    return std::pair(std::int64_t{-1}, 0.0);
+  };
+  const auto [n_all, all] = means("");
+  const auto [n_train, train] = means("train");
+  const auto [n_test, test] = means("test");
+  EXPECT_EQ(std::tuple(n_all, n_train, n_test), std::tuple(5, 3, 2));
+  EXPECT_NEAR(5 * all, 3 * train + 2 * test, 1e-12);
+  EXPECT_EQ(&conclusions.datasets[0], conclusions.of("meshes")) << "all splits together come first";
+}
+
+TEST_F(WithSplits, TablesOfOneSplitNameItAndHaveEachRowOnce) {
+  run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n", "test");
+  const std::vector<ResultRow> rows = toy_->results();
+  const Conclusions conclusions = conclude(rows, chosen_metrics(toy_->config.metrics), {}, 1);
+  ASSERT_THAT(conclusions.datasets, SizeIs(1));
+  EXPECT_THAT(conclusions.datasets[0].scores.label(),
+              ElementsAre(Cell(std::string("meshes")), Cell(std::string("test"))));
+}
+
+TEST_F(WithSplits, TablesOfASetWithoutSplitsHaveNoSuchColumn) {
+  run_splits("");
+  const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
+  const std::vector<ResultRow> rows = toy_->results();
+  EXPECT_EQ(results_table(rows, metrics).columns[1], "item");
+  EXPECT_EQ(summary_table(conclude(rows, metrics, {}, 1)).columns[1], "model");
+}
+
+TEST_F(WithSplits, AnItemInTwoSplitsFailsAlone) {
+  data_.write("splits.csv",
+              "item,split\nant,train\nbee,test\nant,test\nbee,test\ncat,val\ndog,val\neel,val\n");
+  run_splits("splits: {file: splits.csv}\n");
+  EXPECT_THAT(failures(), ElementsAre(fmt::format(
+                              "{0}:4: 'ant' is in the split 'test', and by {0}:2 in 'train': keep one "
+                              "of them",
+                              place("splits.csv"))));
+  EXPECT_EQ(truth(1).saliency, (ScalarField{0, 1, 2, 3}));
+}
+
+TEST_F(WithSplits, ANameThatIsNoItemIsNotedWithItsLine) {
+  data_.write("splits.csv", "item,split\nant,train\nbeee,test\n");
+  run_splits("splits: {file: splits.csv}\n");
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_THAT(
+      toy_->inputs.notes,
+      Contains(StartsWith(place("splits.csv") + ":3: the split 'test' names 'beee', which is no item")));
+}
+
+TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {
+  const std::string splits = "splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n";
+  EXPECT_THAT([&] { run_splits(splits, "tets"); },
+              ThrowsMessage<ConfigError>("split 'tets': the data set has no such split; did you mean 'test'? "
+                                         "it has test, train (" +
+                                         (folder_ / "own.yaml").string() + ":4)"));
+  EXPECT_THAT([&] { run_splits("", "test"); },
+              ThrowsMessage<ConfigError>(HasSubstr("split 'test': the data set has no splits")));
+  EXPECT_THAT([&] { run_splits("splits: {file: splits.csv}\n", "test"); },
+              ThrowsMessage<ConfigError>(HasSubstr(place("splits.csv") + ": is missing (")));
+}
+
+TEST_F(WithSplits, WrongDescriptionsAreNamedWithTheirLine) {
+  const auto refused = [&](const std::string& splits, const std::string& why) {
+    EXPECT_THAT([&] { run_splits(splits); },
+                ThrowsMessage<ConfigError>(AllOf(HasSubstr("own.yaml:4"), HasSubstr(why))))
+        << splits;
+  };
+  refused("splits: {file: a.csv, list: b.txt}\n", "one of file");
+  refused("splits: {list: b.txt, shares: {train: 80%, test: 30%}}\n", "sum to 1");
+  refused("splits: {list: b.txt}\n", "sum to 1");
+  refused("splits: {list: b.txt, shares: {train: 180%}}\n", "splits.shares.train is not a share");
+  refused("splits: {fle: b.txt}\n", "did you mean 'file'?");
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Views of a shape that are averaged or scored by themselves, and masks of what they show.
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cache/folder_store.h"
+#include "pipeline/inputs/given_maps.h"
+#include "pipeline/results/conclusions.h"
+#include "stages/core/errors.h"
+#include "tests/pipeline/data_sets.h"
+
+namespace salbench {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsNan;
+using testing::StartsWith;
+using testing::ThrowsMessage;
+
+const Mesh kTetrahedron = shapes::tetrahedron();
+
+class WithViews : public DataSets {
+ protected:
+  WithViews() {
+    write_view("1", "1\n2\n3\n4\n", "1\n1\n0\n1\n");
+    write_view("2", "5\n0\n0\n8\n", "1\n1\n1\n0\n");
+    data_.write("off/cat.off", off_text(kTetrahedron));
+  }
+  void write_view(const std::string& view, const std::string& values, const std::string& mask) {
+    data_.write("fix/cat_" + view + ".txt", values);
+    data_.write("seen/cat_" + view + "_visibility.txt", mask);
+  }
+  std::string described(const std::string& more = "    views: scored\n") {
+    return description(
+        "places:\n  - meshes: off/*\n    truth: {saliency: 'fix/{item}_{view}.txt', mask: "
+        "'seen/{item}_{view}_visibility.txt'}\n" +
+        more);
+  }
+};
+
+TEST_F(WithViews, AreAveragedWhereTheyHaveAVertexSeen) {
+  run(described(""));
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_EQ(truth().saliency, (ScalarField{3, 1, 0, 4}));
+  EXPECT_THAT(units(), ElementsAre("cat"));
+}
+
+TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
+  run(described());
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_THAT(units(), ElementsAre("cat_1", "cat_2"));
+  EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, IsNan(), 4));
+  EXPECT_THAT(truth(1).saliency, ElementsAre(5, 0, 0, IsNan()));
+  std::set<std::pair<std::string, std::string>> rows;
+  for (const ResultRow& row : toy_->results()) {
+    rows.emplace(row.item, row.view);
+    EXPECT_EQ(row.scores.n_points, 3);
+  }
+  EXPECT_THAT(rows, ElementsAre(std::pair("cat", "1"), std::pair("cat", "2")));
+  const DatasetScores scores(toy_->results(), "meshes", Observation::mesh);
+  EXPECT_EQ(scores.own(0, scores.find("RS")).units.size(), 1U) << "the mesh is the unit of inference";
+}
+
+// A family is claimed by its mesh: threads that come to another view of it take up other work first.
+TEST_F(WithViews, ShareWhatIsComputedOfTheirMesh) {
+  for (int view = 3; view < 9; ++view) write_view(std::to_string(view), "1\n2\n3\n4\n", "1\n1\n0\n1\n");
+  FolderStore store(folder_ / "cache", Access::read_write);
+  ToyRun toy(data_.path(), store,
+             fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{MS: , RS: }}\n", described()));
+  toy.run(4);
+  const auto computed = [&](std::string_view stage) {
+    return toy.resolver->records()[toy.index(stage)].seconds.size();
+  };
+  EXPECT_EQ(computed("mesh"), 1U);
+  EXPECT_EQ(computed("map.MS"), 1U);
+  EXPECT_EQ(computed("map.RS"), 8U) << "random numbers are of the unit";
+  EXPECT_EQ(computed("ground_truth"), 2U) << "six views are as the first";
+}
+
+TEST_F(WithViews, AreChosenByTheirNameOrByThatOfTheirMesh) {
+  const Dataset dataset = find_dataset(data_.path(), layouts_of(described()));
+  EXPECT_EQ(read_inputs(dataset, "cat").count(kMeshes), 2U);
+  EXPECT_EQ(read_inputs(dataset, "cat_2").count(kMeshes), 1U);
+}
+
+TEST_F(WithViews, ShareAGivenMapUnlessTheyHaveTheirOwn) {
+  const Inputs inputs = read_inputs(find_dataset(data_.path(), layouts_of(described())));
+  const auto maps = [&] {
+    const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
+    std::vector<std::string> places;
+    const FileColumnPtr column = map_files(given, inputs.units, {kMeshes}).at(kMeshes);
+    for (const FilesOfUnit& files : column->files)
+      places.push_back(std::filesystem::path(files.at(0).place).filename());
+    return places;
+  };
+  folder_.write("given/cat.val", "1\n2\n3\n4\n");
+  EXPECT_THAT(maps(), ElementsAre("cat.val", "cat.val"));
+  folder_.write("given/cat_2.val", "1\n2\n3\n4\n");
+  EXPECT_THAT(maps(), ElementsAre("cat.val", "cat_2.val"));
+}
+
+TEST_F(WithViews, FailAloneWithoutTheirMask) {
+  std::filesystem::remove(data_ / "seen/cat_2_visibility.txt");
+  run(described());
+  EXPECT_THAT(failures(), ElementsAre(AllOf(StartsWith(place("seen/cat_2_visibility.txt") + ": is missing"),
+                                            HasSubstr("own.yaml:3"))));
+  EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, IsNan(), 4));
+}
+
+TEST_F(WithViews, FailAloneWithAWrongMask) {
+  const auto failure = [&](const std::string& mask) {
+    data_.write("seen/cat_2_visibility.txt", mask);
+    run(described());
+    return failures();
+  };
+  const std::string file = place("seen/cat_2_visibility.txt");
+  EXPECT_THAT(failure("1\n1\n0\n"),
+              ElementsAre(file + ":3: the file has 3 values, but the mesh has 4 vertices"));
+  EXPECT_THAT(failure("1\n1\n0.5\n1\n"), ElementsAre(StartsWith(file + ":3: a mask has 0 for hidden")));
+  EXPECT_THAT(failure("0\n0\n0\n0\n"), ElementsAre(StartsWith(file + ": hides everything")));
+}
+
+TEST_F(WithViews, MasksWithoutGroundTruthAreNoted) {
+  data_.write("seen/cat_3_visibility.txt", "1\n1\n0\n1\n");
+  run(described());
+  EXPECT_THAT(toy_->inputs.notes,
+              Contains(place("seen/cat_3_visibility.txt") + ": mask without ground truth"));
+}
+
+TEST_F(WithViews, WhatAMaskHoldsIsPartOfTheKey) {
+  run(described());
+  const Digest before = toy_->decision("ground_truth", 0).key;
+  data_.write("seen/cat_1_visibility.txt", "1\n1\n1\n0\n");
+  run(described());
+  EXPECT_NE(toy_->decision("ground_truth", 0).key, before);
+  EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, 3, IsNan()));
+}
+
+TEST_F(WithViews, WrongDescriptionsAreNamedWithTheirLine) {
+  const auto refused = [&](const std::string& place, const std::string& why) {
+    EXPECT_THAT([&] { run(description("places:\n  - " + place)); },
+                ThrowsMessage<ConfigError>(AllOf(HasSubstr("own.yaml:2"), HasSubstr(why))));
+  };
+  refused("{meshes: 'off/*', views: scored, truth: {saliency: 'fix/{item}.txt'}}\n", "has no {view}");
+  refused("{meshes: 'off/*', truth: {saliency: 'fix/{item}.txt', mask: 'm/{item}_{view}'}}\n",
+          "must have the");
+  refused("{meshes: 'off/*', truth: {picks: 'fix/{item}.txt', mask: 'm/{item}'}}\n", "without saliency");
+}
+
+}  // namespace
+}  // namespace salbench
