@@ -123,7 +123,8 @@ def first_of(results, dataset, metric):
 
 
 def number(value, digits=3):
-    return f"{value:.{digits}f}".replace("-", "−")
+    text = f"{value:.{digits}f}"
+    return (text.lstrip("-") if float(text) == 0 else text).replace("-", "−")
 
 
 def limits(metric, shown, references):

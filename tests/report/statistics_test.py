@@ -83,7 +83,7 @@ class Statistics(support.ReportTest):
         self.assert_equal_columns(pairs, [column for column in self.results.table("significance.csv").columns[4:]], **exact)
 
     def test_the_compact_table_and_the_leaders_equal_numpys(self):
-        lower, exact = fixture.is_distance, {"rtol": 1e-9, "atol": 1e-12}
+        lower, exact = fixture.is_distance, {"rtol": 1e-9, "atol": 1e-9}
         compact = self.matched("compact.csv", twin.compact(self.scores, lower, resamples=10_000), ["dataset", "metric", "model"])
         self.assert_equal_columns(compact, ["n", "n_shapes", "n_missing", "mean", "low", "high", "half", "rank", "best"], **exact)
         for column in ("better", "kind"):
