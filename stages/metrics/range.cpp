@@ -14,14 +14,21 @@ namespace {
 constexpr Range kShare{0, 1}, kCorrelation{-1, 1}, kDivergence{0, std::numeric_limits<double>::infinity()};
 
 // By the part of the name before the first '_'. Heights in standard deviations and gains have no bounds.
-constexpr std::array<std::pair<std::string_view, Range>, 8> kRanges = {{{"auc", kShare},
-                                                                        {"cc", kCorrelation},
-                                                                        {"lcc", kShare},
-                                                                        {"spearman", kCorrelation},
-                                                                        {"kl", kDivergence},
-                                                                        {"sim", kShare},
-                                                                        {"mse", kShare},
-                                                                        {"mae", kShare}}};
+constexpr std::array<std::pair<std::string_view, Range>, 15> kRanges = {{{"auc", kShare},
+                                                                         {"cc", kCorrelation},
+                                                                         {"lcc", kShare},
+                                                                         {"spearman", kCorrelation},
+                                                                         {"kl", kDivergence},
+                                                                         {"sim", kShare},
+                                                                         {"mse", kShare},
+                                                                         {"mae", kShare},
+                                                                         {"sauc", kShare},
+                                                                         {"cosine", kCorrelation},
+                                                                         {"fne", kShare},
+                                                                         {"fpe", kShare},
+                                                                         {"wme", kShare},
+                                                                         {"precision", kShare},
+                                                                         {"recall", kShare}}};
 
 }  // namespace
 
