@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -54,7 +55,7 @@ class Growth {
     }
     const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
     std::nth_element(squared.begin(), middle, squared.end());
-    const double steps = std::log(std::sqrt(*middle) / radii_.front()) / std::log(kFactor);
+    const double steps = (std::log(*middle) / 2 - std::log(radii_.front())) / std::log(kFactor);
     return steps > 0 ? static_cast<std::size_t>(steps) : 0;
   }
 
@@ -76,7 +77,9 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   // The search below ends only for finite coordinates: at 2 R every point reaches every other.
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
     throw InputError("the shape has a coordinate that is not finite");
-  const double first = factor * bounding_radius(points);
+  const double extent = bounding_radius(points);
+  // Below that a tenth more may be lost in rounding, and the radius would not grow.
+  const double first = extent > 0 ? std::max(factor * extent, std::numeric_limits<double>::min()) : 0;
   enough = static_cast<std::int32_t>(std::min(static_cast<std::size_t>(enough), points.size() - 1));
 
   // The count grows with the radius: from a likely step, the first that holds enough is up or down.

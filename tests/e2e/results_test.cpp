@@ -36,8 +36,9 @@ TEST(Results, TheTablesHaveTheDocumentedColumnsAndARowForEverythingScored) {
   EXPECT_THAT(summary.rows, SizeIs(2 * toy_config().models.size() * chosen_metrics({}).size()));
   EXPECT_THAT(run.out, HasSubstr("protocol published"));
   for (const std::string& sentence : text_column(read_csv(toy.out() / "leaders.csv"), "sentence"))
-    if (sentence.find("AUC") != std::string::npos && sentence.find("LCC") != std::string::npos)
+    if (sentence.find("AUC") != std::string::npos && sentence.find("LCC") != std::string::npos) {
       EXPECT_THAT(run.out, HasSubstr("\n" + sentence + "\n"));
+    }
 }
 
 TEST(Results, TheSummaryIsTheMeanOfTheRows) {

@@ -72,6 +72,20 @@ TEST(GrownSupportRadius, FewerThanSevenPointsGrowUntilItHoldsThemAll) {
   }
 }
 
+// A tenth of the smallest number is nothing, and of a smaller product nothing is left to grow.
+TEST(GrownSupportRadius, GrowsFromWhateverIsAboveZero) {
+  auto cloud = shapes::random_cloud(50, 8);
+  for (const double size : {1.0, 1e-200, 1e150}) {
+    for (Vec3& point : cloud) point *= size;
+    for (const double factor : {5e-324, 1e-300, 1e-150}) {
+      const SupportRadius support = grown_support_radius(cloud, factor);
+      EXPECT_GE(support.neighbours, 6) << size << " " << factor;
+      EXPECT_GT(support.radius, 0);
+    }
+    for (Vec3& point : cloud) point /= size;
+  }
+}
+
 TEST(GrownSupportRadius, OfCoincidentPointsIsZero) {
   const std::vector<Vec3> same(20, Vec3(1, 2, 3));
   const SupportRadius support = grown_support_radius(same, 0.01);
