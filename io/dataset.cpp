@@ -17,6 +17,7 @@
 #include "io/cloud_file.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
+#include "io/one_form_index.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
 
@@ -174,9 +175,22 @@ class TruthFinder {
   std::map<std::string, std::string, NaturalLess> without_mesh_;  // name -> one of its files
 };
 
+// A view without ground truth, which fails.
+void add_view_without_truth(DatasetItem& item, const std::string& view, const std::string& mask,
+                            const std::string& expected, const std::string& where) {
+  item.saliency.emplace_back();
+  item.views.push_back(view);
+  item.masks.push_back(
+      {mask,
+       fmt::format("{}: is missing, the ground truth of the view that {} is the mask of: add it, or take "
+                   "the mask away ({})",
+                   expected, mask, where)});
+}
+
 // Gives each saliency file its mask. One that is missing is its item's failure.
-void add_masks(const fs::path& root, const FilePattern& pattern, ItemsByName& items,
+void add_masks(const fs::path& root, const Place& place, const TruthPlace& truth, ItemsByName& items,
                std::vector<std::string>& notes) {
+  const FilePattern& pattern = truth.mask;
   if (pattern.empty()) return;
   std::map<std::pair<std::string, std::string>, std::string> masks;  // (item, view) -> file
   for (const FoundFile& file :
@@ -198,8 +212,32 @@ void add_masks(const fs::path& root, const FilePattern& pattern, ItemsByName& it
           {path, fmt::format("{}: is missing, the mask of {}: add it, or take its ground truth away ({})",
                              path, item.saliency[k], pattern.where)});
     }
-  for (const auto& [key, file] : masks)
-    if (!used.contains(file)) notes.push_back(fmt::format("{}: mask without ground truth", file));
+  for (const auto& [key, file] : masks) {
+    if (used.contains(file)) continue;
+    const auto item = items.find(key.first);
+    if (place.views == Views::scored && item != items.end() && !item->second.saliency.empty())
+      add_view_without_truth(item->second, key.second, file,
+                             (root / filled_in(truth.saliency, key.first, key.second)).lexically_normal(),
+                             truth.saliency.where);
+    else
+      notes.push_back(fmt::format("{}: mask without ground truth", file));
+  }
+}
+
+// Gives each saliency file the camera of its view. One that is missing is its item's failure.
+void add_cameras(const FoundCameras& found, const Cameras& cameras, DatasetItem& item) {
+  const std::vector<std::string> views = item.views.empty() ? std::vector<std::string>(1) : item.views;
+  for (const std::string& view : views) {
+    if (const ItemCamera* camera = found.find(item.shape_name(), view)) {
+      item.cameras.push_back(*camera);
+      continue;
+    }
+    item.cameras.clear();
+    if (item.problem.empty())
+      item.problem = fmt::format("{}: there is no camera of {}{}: add it", cameras.where, item.shape_name(),
+                                 view.empty() ? "" : fmt::format(" for the view '{}'", view));
+    return;
+  }
 }
 
 // An item for each view, in the order of their files.
@@ -213,16 +251,20 @@ std::vector<DatasetItem> items_of_views(const DatasetItem& item) {
     view.saliency = {item.saliency[k]};
     view.views = {item.views[k]};
     if (!item.masks.empty()) view.masks = {item.masks[k]};
+    if (!item.saliency[k].empty()) continue;
+    view.problem = view.masks[0].missing;
+    view.saliency.clear();
   }
   return views;
 }
 
 // Returns why there are none, if a description has them.
 std::string add_splits(const fs::path& root, const DataSplits& splits, ItemsByName& items,
-                       std::vector<std::string>& notes) {
+                       std::vector<std::string>& notes, std::vector<SplitEntry>& unknown) {
   if (splits.empty()) return {};
   FoundSplits found = read_splits(root, splits, [&](std::string_view name) { return items.contains(name); });
-  std::ranges::move(found.notes, std::back_inserter(notes));
+  if (!found.unknown.empty()) notes.push_back(text_of_unknown(found.unknown));
+  unknown = std::move(found.unknown);
   std::vector<std::string_view> in_none;
   for (auto& [name, item] : items) {
     if (const auto split = found.of_item.find(name); split != found.of_item.end()) item.split = split->second;
@@ -245,8 +287,9 @@ void require_files(const fs::path& root, const FilePattern& pattern, std::size_t
                                  pattern.text, place_of(root, pattern)));
 }
 
-void add_truth(const Found& found, const fs::path& root, ItemsByName& items,
-               std::vector<std::string>& notes) {
+// Returns where the ground truth was found; null if it is nowhere.
+const TruthPlace* add_truth(const Found& found, const fs::path& root, ItemsByName& items,
+                            std::vector<std::string>& notes) {
   const std::vector<TruthPlace>& places = found.place.truth;
   const auto there = std::find_if(places.begin(), places.end(), [&](const TruthPlace& place) {
     return has_folder_for(root, place.saliency) || has_folder_for(root, place.picks);
@@ -254,7 +297,7 @@ void add_truth(const Found& found, const fs::path& root, ItemsByName& items,
   if (there == places.end()) {
     if (found.layout.needs_truth && !places.empty())
       require_files(root, places[0].saliency.empty() ? places[0].picks : places[0].saliency, 0);
-    return;
+    return nullptr;
   }
   TruthFinder finder(root, items, notes);
   for (auto& [name, item] : items) item.by_viewer = has_viewers(there->saliency);
@@ -264,7 +307,8 @@ void add_truth(const Found& found, const fs::path& root, ItemsByName& items,
     if (found.layout.needs_truth) require_files(root, pattern, added);
   }
   finder.note_files_without_mesh();
-  add_masks(root, there->mask, items, notes);
+  add_masks(root, found.place, *there, items, notes);
+  return &*there;
 }
 
 // "261-280, 399"
@@ -296,15 +340,17 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
 Dataset find_dataset(const fs::path& root, std::span<const Layout> layouts, Twins twins) {
   fs::path folder = root.lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();  // "data/" is "data"
+  if (layouts.size() == 1 && !layouts[0].index.empty()) return indexed_dataset(folder, layouts[0]);
   const Found found = find_meshes(folder, layouts);
   Dataset dataset;
   ItemsByName items = items_of(found, twins, dataset.notes);
   dataset.layout = found.layout.name;
   if (found.layout.classes == Classes::shrec07) note_missing_numbers(items, dataset.notes);
-  add_truth(found, folder, items, dataset.notes);
+  const TruthPlace* truth = add_truth(found, folder, items, dataset.notes);
   const DataSplits& splits = found.layout.splits;
-  dataset.no_splits = add_splits(folder, splits, items, dataset.notes);
+  dataset.no_splits = add_splits(folder, splits, items, dataset.notes, dataset.unknown);
   dataset.splits_where = splits.where;
+  dataset.licence = found.layout.licence;
   for (const std::string& file : {splits.table, splits.list})
     if (!file.empty()) dataset.read.push_back((folder / file).lexically_normal());
   for (auto& [name, item] : items) {
@@ -313,6 +359,12 @@ Dataset find_dataset(const fs::path& root, std::span<const Layout> layouts, Twin
     else
       dataset.items.push_back(std::move(item));
   }
+  dataset.unit = found.layout.unit;
+  if (truth == nullptr || truth->cameras.empty()) return dataset;
+  const FoundCameras cameras(folder, truth->cameras);
+  for (DatasetItem& item : dataset.items)
+    if (!item.saliency.empty() || !item.picks.empty()) add_cameras(cameras, truth->cameras, item);
+  if (!truth->cameras.file.empty()) dataset.read.push_back((folder / truth->cameras.file).lexically_normal());
   return dataset;
 }
 

@@ -6,11 +6,13 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/cameras.h"
 #include "io/file_pattern.h"
 #include "io/splits.h"
 #include "io/truth_format.h"
@@ -23,6 +25,7 @@ struct TruthPlace {
   FilePattern saliency;   // values; one file per item, or one per view or viewer
   FilePattern picks;      // one file per participant, or one per item
   FilePattern mask = {};  // 0 for hidden, 1 for seen; one file per file of saliency, or one per item
+  Cameras cameras = {};   // what they do not see is hidden, too
 };
 
 // Views of a shape are averaged into one ground truth, or each is scored as a unit of its own.
@@ -55,6 +58,12 @@ struct EnumNames<Domain> {
   static constexpr std::array<std::string_view, 3> names = {"any", "meshes", "points"};
 };
 
+// Unit of length of the shapes' files.
+struct LengthUnit {
+  std::string where = {};  // of the description; empty: it names none
+  double scale = 1;        // of the files' coordinates, where lengths are shown
+};
+
 struct Layout {
   std::string name;
   std::vector<Place> places;  // below the folder that the user names; the first with a mesh is taken
@@ -63,11 +72,21 @@ struct Layout {
   bool needs_truth = true;  // patterns of ground truth that fit no file are an error
   TruthFormat format = {};
   DataSplits splits = {};
+  LengthUnit unit = {};
+  std::string index = {};    // file below the folder that lists items in the one form; no places then
+  std::string licence = {};  // on what terms the authors give the data, as far as is known
 };
 
 struct MaskFile {
   std::string path;          // where it is, or where it should be
   std::string missing = {};  // what to do about it, if it is not there
+};
+
+// What the index of a set in the one form says of an item. (io/one_form_index.h)
+struct IndexedItem {
+  bool is_cloud = false;
+  bool has_truth = false;
+  std::size_t participants = 0, viewers = 0;  // files of picks, and of saliency by viewer
 };
 
 // Places of files are text: std::filesystem::path takes some 350 bytes for each.
@@ -82,10 +101,12 @@ struct DatasetItem {
   std::shared_ptr<const TruthFormat> format = {};  // how these are read; null: as TruthFormat's defaults are
   std::vector<std::string> views = {};             // of each saliency file: its view or viewer
   std::vector<MaskFile> masks = {};                // one per saliency file; none: all was seen
-  std::string shape = {};    // of a view that is scored: the mesh file's name; else empty
-  std::string view = {};     // that is scored
-  std::string split = {};    // empty if it is in none
-  std::string problem = {};  // why its ground truth cannot be used: one line
+  std::vector<ItemCamera> cameras = {};            // likewise; one if there is no saliency file
+  std::string shape = {};                   // of a view that is scored: the mesh file's name; else empty
+  std::string view = {};                    // that is scored
+  std::string split = {};                   // empty if it is in none
+  std::optional<IndexedItem> indexed = {};  // `mesh` is a file in the one form, with everything in it
+  std::string problem = {};                 // why its ground truth cannot be used: one line
 
   const std::string& shape_name() const { return shape.empty() ? name : shape; }
 };
@@ -94,9 +115,12 @@ struct Dataset {
   std::string layout;              // name of the layout found
   std::vector<DatasetItem> items;  // in natural order: 2 before 10
   std::vector<std::string> notes;  // one line each: ground truth without a shape, numbers that are missing
-  std::vector<std::string> read = {};  // files beside those of items: that of the splits
-  std::string splits_where = {};       // of the description
-  std::string no_splits = {};          // why no item is in a split; empty: some are, or none are described
+  std::vector<std::string> read = {};    // files beside those of items: that of the splits
+  std::string splits_where = {};         // of the description
+  std::string no_splits = {};            // why no item is in a split; empty: some are, or none are described
+  std::vector<SplitEntry> unknown = {};  // names in splits that are no items
+  LengthUnit unit = {};
+  std::string licence = {};              // of the description
 };
 
 // Takes the first layout that fits. Lists folders and reads no file but that of the splits; the result does

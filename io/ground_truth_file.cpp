@@ -31,14 +31,16 @@ ScalarField all_values(TextScanner& in) {
 }
 
 // Rows of a value and the coordinates of its point.
-std::string_view wrong_with_sample(std::span<const double> row) {
-  return wrong_with_point({row[1], row[2], row[3]});
-}
-
-TruthValues with_points(const std::vector<ScalarField>& columns) {
+TruthValues values_with_points(std::string_view text, std::string_view name, const ValuesFormat& format) {
+  std::vector<std::string> names = {format.column};
+  names.insert(names.end(), format.points.begin(), format.points.end());
+  const std::vector<ScalarField> columns =
+      parse_columns(text, name, names, format.unseen, {}, [&](std::span<const double> row) {
+        return wrong_with_point(format.scale * Vec3(row[1], row[2], row[3]));
+      });
   TruthValues truth{columns[0], {}};
   for (std::size_t i = 0; i < truth.values.size(); ++i)
-    truth.points.emplace_back(columns[1][i], columns[2][i], columns[3][i]);
+    truth.points.emplace_back(format.scale * Vec3(columns[1][i], columns[2][i], columns[3][i]));
   return truth;
 }
 
@@ -91,9 +93,7 @@ TruthValues parse_truth_values(std::string_view bytes, std::string_view name, co
     if (is_npy(bytes) || is_mat(bytes))
       throw InputError(
           fmt::format("{}: values per point stand in columns beside x, y and z: write them as text", name));
-    std::vector<std::string> columns = {format.column};
-    columns.insert(columns.end(), format.points.begin(), format.points.end());
-    return with_points(parse_columns(bytes, name, columns, format.unseen, {}, wrong_with_sample));
+    return values_with_points(bytes, name, format);
   }
   if (!is_npy(bytes) && !is_mat(bytes))
     return {parse_columns(bytes, name, {format.column}, format.unseen, elements)[0], {}};

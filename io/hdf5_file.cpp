@@ -246,6 +246,32 @@ Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name
   fail(name, error);
 }
 
+// The child sends the content as an image of ours, or a message, after a byte that tells which.
+Hdf5Content foreign_hdf5_content(std::span<const std::byte> image, std::string_view name) {
+  if (auto content = parsed_image(image)) return std::move(*content);
+  constexpr std::byte kImage{'i'}, kMessage{'m'};
+  const auto send_as = [](const Send& send, std::byte kind, std::span<const std::byte> bytes) {
+    send({&kind, 1});
+    send(bytes);
+  };
+  const auto [sent, failure] = run_in_child(
+      kLimits,
+      [&](const Send& send) {
+        try {
+          send_as(send, kImage, hdf5_image(content_by_library(image)));
+        } catch (const std::runtime_error& error) {
+          send_as(send, kMessage, std::as_bytes(std::span(std::string_view(error.what()))));
+        }
+      },
+      fork_beside_hdf5);
+  if (!failure.empty() || sent.empty())
+    throw InputError(
+        fmt::format("{}: damaged: the HDF5 library that reads it {}; write the file again", name, failure));
+  const auto bytes = std::as_bytes(std::span(sent));
+  if (bytes[0] == kMessage) fail(name, std::runtime_error(sent.substr(1)));
+  return hdf5_content(bytes.subspan(1), name);
+}
+
 // --- a foreign file, one data set at a time ---------------------------------------------------------------
 
 struct Hdf5File::Open {

@@ -35,6 +35,10 @@ Bytes hdf5_image(const Hdf5Content& content);
 // image is not such a file.
 Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name);
 
+// The same of an image that anybody may have written: what the program's own reader does not take, the
+// library reads in a child process, whole. Throws InputError.
+Hdf5Content foreign_hdf5_content(std::span<const std::byte> image, std::string_view name);
+
 LibraryVersion hdf5_version();
 
 // fork() at a moment when no thread is inside the library, so that the child may call all of the above.

@@ -15,16 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One item of a split, and where that is written.
-struct Entry {
-  std::string item, split, where;
-};
-
-std::vector<Entry> entries_of_table(const fs::path& file, const DataSplits& splits) {
+std::vector<SplitEntry> entries_of_table(const fs::path& file, const DataSplits& splits) {
   const Table table = read_csv(file);
   const std::vector<std::string> items = text_column(table, splits.item),
                                  names = text_column(table, splits.split);
-  std::vector<Entry> entries;
+  std::vector<SplitEntry> entries;
   for (std::size_t i = 0; i < items.size(); ++i)
     if (!names[i].empty())
       entries.push_back({items[i], names[i], fmt::format("{}:{}", file.string(), table.lines[i])});
@@ -40,10 +35,11 @@ std::string last_name(std::string_view line) {
   return std::string(line.substr(line.find_last_of("/\\") + 1));
 }
 
-std::vector<Entry> entries_of_list(const fs::path& file, const DataSplits& splits, const IsItem& is_item) {
+std::vector<SplitEntry> entries_of_list(const fs::path& file, const DataSplits& splits,
+                                        const IsItem& is_item) {
   const std::string text = read_file(file);
   TextScanner in(text, file.string());
-  std::vector<Entry> entries;
+  std::vector<SplitEntry> entries;
   for (std::size_t line = 1; in.next_line(); ++line) {
     const std::string name = last_name(in.line());
     if (name.empty()) continue;
@@ -63,8 +59,8 @@ std::vector<Entry> entries_of_list(const fs::path& file, const DataSplits& split
   return entries;
 }
 
-std::vector<Entry> entries_named(const DataSplits& splits) {
-  std::vector<Entry> entries;
+std::vector<SplitEntry> entries_named(const DataSplits& splits) {
+  std::vector<SplitEntry> entries;
   for (const NamedSplit& split : splits.named)
     for (const std::string& item : split.items) entries.push_back({item, split.name, split.where});
   return entries;
@@ -79,16 +75,13 @@ FoundSplits read_splits(const fs::path& root, const DataSplits& splits, const Is
     found.missing = fmt::format("{}: is missing ({})", file.string(), splits.where);
     return found;
   }
-  const std::vector<Entry> entries = !splits.named.empty()   ? entries_named(splits)
-                                     : !splits.table.empty() ? entries_of_table(file, splits)
-                                                             : entries_of_list(file, splits, is_item);
-  std::map<std::string_view, const Entry*> first;
-  std::set<std::string_view> unknown;
-  const Entry* first_unknown = nullptr;
-  for (const Entry& entry : entries) {
+  const std::vector<SplitEntry> entries = !splits.named.empty()   ? entries_named(splits)
+                                          : !splits.table.empty() ? entries_of_table(file, splits)
+                                                                  : entries_of_list(file, splits, is_item);
+  std::map<std::string_view, const SplitEntry*> first;
+  for (const SplitEntry& entry : entries) {
     if (!is_item(entry.item)) {
-      if (first_unknown == nullptr) first_unknown = &entry;
-      unknown.insert(entry.item);
+      found.unknown.push_back(entry);
       continue;
     }
     const auto [known, is_new] = first.emplace(entry.item, &entry);
@@ -102,13 +95,18 @@ FoundSplits read_splits(const fs::path& root, const DataSplits& splits, const Is
                       entry.item, entry.split, known->second->where, known->second->split));
     }
   }
-  if (first_unknown != nullptr)
-    found.notes.push_back(
-        fmt::format("{}: the split '{}' names '{}', which is no item of the data set{}: correct the name, or "
-                    "add its files",
-                    first_unknown->where, first_unknown->split, first_unknown->item,
-                    unknown.size() == 1 ? "" : fmt::format(" ({} such names)", unknown.size())));
   return found;
+}
+
+std::string text_of_unknown(const std::vector<SplitEntry>& unknown) {
+  std::set<std::string_view> names;
+  for (const SplitEntry& entry : unknown) names.insert(entry.item);
+  const SplitEntry& first = unknown.front();
+  return fmt::format(
+      "{}: the split '{}' names '{}', which is no item of the data set{}: correct the name, or "
+      "add its files",
+      first.where, first.split, first.item,
+      names.size() == 1 ? "" : fmt::format(" ({} such names)", names.size()));
 }
 
 }  // namespace salbench

@@ -30,16 +30,24 @@ struct DataSplits {
   bool empty() const { return table.empty() && list.empty() && named.empty(); }
 };
 
+// One item of a split, and where that is written.
+struct SplitEntry {
+  std::string item, split, where;
+};
+
 struct FoundSplits {
   std::map<std::string, std::string, std::less<>> of_item;   // those that are in one split
   std::map<std::string, std::string, std::less<>> problems;  // item -> why its split is not known
-  std::vector<std::string> notes;                            // one line each
+  std::vector<SplitEntry> unknown = {};                      // names that are no items
   std::string missing = {};                                  // the file that is not there: one line
 };
 
+// Where the first of these names is, and what to do: one line.
+std::string text_of_unknown(const std::vector<SplitEntry>& unknown);
+
 // Reads the file of the splits, if there is one. A line of a list names an item by its last name, with or
-// without extension, up to the first comma, semicolon or tab. A name that is no item is noted. Throws
-// InputError for a table without these columns.
+// without extension, up to the first comma, semicolon or tab. Throws InputError for a table without these
+// columns.
 FoundSplits read_splits(const std::filesystem::path& root, const DataSplits& splits, const IsItem& is_item);
 
 }  // namespace salbench

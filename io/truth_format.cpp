@@ -2,6 +2,7 @@
 #include "io/truth_format.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "io/number_table.h"
 #include "io/text_scanner.h"
@@ -16,6 +17,23 @@ void check(const ValuesFormat& format) {
   if (format.points.size() != 3) throw OptionError("points", "must be three columns, of x, y and z");
   if (!format.unseen.empty() && !is_number(format.unseen))
     throw OptionError("unseen", "is '" + format.unseen + "', not a number or nan");
+  positive_rule(format);
+}
+
+PositiveRule positive_rule(const ValuesFormat& format) {
+  constexpr std::string_view kTop = "top ", kAboveMean = "above mean";
+  const std::string_view text = format.positives;
+  if (text == kPositivesArePicks) return {};
+  if (text == kAboveMean) return {PositiveRule::By::mean};
+  if (text.starts_with(kTop) && text.ends_with('%')) {
+    const std::string_view number = text.substr(kTop.size(), text.size() - kTop.size() - 1);
+    double percent = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), percent);
+    if (error == std::errc() && end == number.data() + number.size() && percent > 0 && percent < 100)
+      return {PositiveRule::By::top, percent};
+  }
+  throw OptionError("positives",
+                    "is '" + format.positives + "', not picks, above mean, or a share such as top 20%");
 }
 
 void check(const ColumnsFormat& format) {

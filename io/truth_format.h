@@ -22,6 +22,7 @@ struct EnumNames<ValuePer> {
 };
 
 inline constexpr std::string_view kEmpty = "\"\"";  // an empty text as options are written
+inline constexpr std::string_view kPositivesArePicks = "picks";
 
 struct ValuesFormat {
   ValuePer per = ValuePer::vertex;
@@ -30,6 +31,8 @@ struct ValuesFormat {
   double max_distance = 0.02;
   std::string unseen;
   std::string variable;
+  double scale = 1;
+  std::string positives{kPositivesArePicks};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -42,10 +45,25 @@ struct ValuesFormat {
     visit("unseen", self.unseen,
           {"value in the file of what was not seen, such as -1 or nan", "", {}, kEmpty});
     visit("variable", self.variable, {"name in a MAT file", "", {}, kEmpty});
+    visit("scale", self.scale,
+          {"what the coordinates beside values are multiplied by to be in the shape's unit", "", above(0),
+           "1"});
+    visit("positives", self.positives,
+          {"points that count as picked: picks, above mean, or top 20% of what was seen",
+           "",
+           {},
+           kPositivesArePicks});
   }
 };
 
 void check(const ValuesFormat& format);  // throws OptionError
+
+// Points of a density that count as picked.
+struct PositiveRule {
+  enum class By { picks, mean, top } by = By::picks;
+  double percent = 0;  // of the points seen, at the top
+};
+PositiveRule positive_rule(const ValuesFormat& format);  // throws OptionError
 
 struct IndicesFormat {
   std::int32_t base = 0;

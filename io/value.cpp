@@ -290,6 +290,28 @@ Value cloud_from(const Arrays& arrays) {
   return cloud;
 }
 
+Arrays arrays_of(const CentreDensity& density) {
+  const auto bins = [](const char* name, const auto& values, const char* description) {
+    return column<double>(name, {values.begin(), values.end()}, "1", description);
+  };
+  return {
+      bins("marked", density.marked, "share of the ground truth by the distance from the centroid, R/100"),
+      bins("points", density.points, "share of the points by that distance"),
+      scalar("shapes", density.shapes, "1", "shapes that these are sums over")};
+}
+Value centre_density_from(const Arrays& arrays) {
+  CentreDensity density;
+  for (auto [name, bins] : {std::pair("marked", &density.marked), {"points", &density.points}}) {
+    const auto& values = values_of<double>(arrays, name);
+    if (values.size() != bins->size())
+      throw InputError(
+          fmt::format("data set '{}': expected {} bins, found {}", name, bins->size(), values.size()));
+    std::copy(values.begin(), values.end(), bins->begin());
+  }
+  density.shapes = scalar_of<std::int64_t>(arrays, "shapes");
+  return density;
+}
+
 struct Kind {
   std::string_view name;
   Value (*read)(const Arrays&);
@@ -310,6 +332,7 @@ constexpr std::array<Kind, std::variant_size_v<Value>> kKinds = {{
     {"picture", picture_from},
     {"point_cloud", cloud_from},
     {"score_table", score_table_from},
+    {"centre_density", centre_density_from},
 }};
 
 }  // namespace

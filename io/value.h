@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/arrays.h"
+#include "stages/core/centre.h"
 #include "stages/core/picture.h"
 #include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
@@ -20,7 +21,7 @@ struct ScoreTable {
 };
 
 using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                           Scores, HumanCurve, Picture, PointCloud, ScoreTable>;
+                           Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity>;
 
 Arrays arrays_from(const Value& value);
 

@@ -36,7 +36,8 @@ struct Loaded {
   std::optional<GroundTruth> truth;
 };
 
-// The partial mesh, which picks are smoothed over, with the options that a configuration has by itself.
+// The partial mesh, which picks are smoothed over and which hides points from a camera, with the options that
+// a configuration has by itself.
 Faces surface_of(const PointCloud& cloud) {
   const Config defaults = read_config(Section::from_text("{}", "defaults"), "python");
   return partial_mesh(cloud.points, cloud_normals(cloud, defaults.scan_normals), defaults.surface);
@@ -51,9 +52,11 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
 
   auto loaded = std::make_shared<Loaded>();
   std::string remark;
-  if (has_columns(item) || is_point_cloud(of_shape[0].text(), item.mesh)) {
+  if (holds_cloud(item, of_shape[0].text())) {
     const auto& cloud = loaded->shape.emplace<PointCloud>(load_cloud(shape_file, Remark{remark}));
-    const bool needs_surface = item.saliency.empty() && !of_truth.empty();
+    const bool needs_surface =
+        !of_truth.empty() &&
+        (!item.cameras.empty() || measured_cloud_truth(cloud, {}, truth_files).saliency.empty());
     const Faces surface = needs_surface ? surface_of(cloud) : Faces();
     if (!of_truth.empty()) loaded->truth = given_cloud_truth(cloud, surface, truth_files);
   } else {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 #include "stages/core/field.h"
 #include "stages/core/seen.h"
 #include "stages/matching/matching.h"
+#include "stages/metrics/surface_graph.h"
 
 namespace salbench::python {
 namespace {
@@ -103,19 +105,36 @@ Stream stream_from(py::handle seed) {
   return {whole_number({py::object(parts[0]), "seed"}, 0, UINT64_MAX), py::str(parts[1]), py::str(parts[2])};
 }
 
+struct ShapeArrays {
+  View<double> areas, negatives;
+  View<Vec3> points;
+  std::vector<Triangle> faces;
+};
+
+// What is not given is not known, and no error: metrics that need it are undefined.
+Measures measures_from(std::span<const Metric> metrics, std::size_t n, const ShapeArrays& shape) {
+  const Points points = shape.points.values;
+  Measures measures(
+      n, shape.areas.values,
+      any_of_positions(metrics) && !points.empty() ? distances_from_centroid(points) : ScalarField{});
+  measures.negatives.assign(shape.negatives.values.begin(), shape.negatives.values.end());
+  if (!points.empty() && !shape.faces.empty())
+    measures.surface = std::make_shared<const SurfaceGraph>(surface_graph(points, shape.faces));
+  return measures;
+}
+
 // Scores of one prediction after the other: [metric] each.
 std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const Truth& truth,
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
-                           const Stream& stream, std::span<const double> areas, Points points) {
+                           const Stream& stream, const ShapeArrays& shape) {
   const MetricsByMatching metrics(options);
   Draws draws(RandomSource{stream.seed, stream.item}.rng("scores." + stream.model));
-  const ScalarField centre =
-      any_of_positions(metrics.all()) && !points.empty() ? distances_from_centroid(points) : ScalarField{};
   const auto at_seen = [&](std::span<const double> values) {
     return truth.seen && !values.empty() ? values_at(values, *truth.seen)
                                          : ScalarField(values.begin(), values.end());
   };
-  const Measures measures(truth.seen ? truth.seen->size() : n, at_seen(areas), at_seen(centre));
+  const Measures of_shape = measures_from(metrics.all(), n, shape);
+  const Measures measures = truth.seen ? of_shape.at(*truth.seen) : of_shape;
   std::vector<Scores> all;
   for (std::size_t first = 0; first < predictions.size(); first += n) {
     const auto map = predictions.values.subspan(first, n);
@@ -129,9 +148,17 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
   return all;
 }
 
+// n weights >= 0.
+View<double> weights(const Argument& argument, std::size_t n) {
+  const auto values = argument.given() ? field(argument, n) : View<double>{};
+  if (!std::ranges::all_of(values.values, [](double weight) { return weight >= 0 && weight < HUGE_VAL; }))
+    argument.fail("must be finite and >= 0");
+  return values;
+}
+
 py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle picked, py::handle areas,
-                      py::handle points_of, py::handle masked, py::handle metrics, py::handle reference,
-                      py::handle seed, const py::dict& keywords) {
+                      py::handle points_of, py::handle faces_of, py::handle negatives, py::handle masked,
+                      py::handle metrics, py::handle reference, py::handle seed, const py::dict& keywords) {
   MetricsOptions options = options_from<ScoreOptions>(keywords, "score");
   options.names = names_from(metrics);
   const View<double> predictions = rows({prediction, "prediction"});
@@ -139,15 +166,13 @@ py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle
   const auto n = static_cast<std::size_t>(predictions.array.shape(several ? 1 : 0));
   if (n == 0) throw py::value_error("prediction must have at least one point");
   const Truth truth = truth_from({ground_truth, "ground_truth"}, {picked, "picks"}, {masked, "mask"}, n);
-  const Argument weights{areas, "areas"}, places{points_of, "points"};
-  const auto weight = weights.given() ? field(weights, n) : View<double>{};
-  if (!std::ranges::all_of(weight.values, [](double area) { return area >= 0 && area < HUGE_VAL; }))
-    weights.fail("must be finite and >= 0");
-  const auto place = places.given() ? points(places, n) : View<Vec3>{};
+  const Argument places{points_of, "points"};
+  const ShapeArrays shape{weights({areas, "areas"}, n), weights({negatives, "negatives"}, n),
+                          places.given() ? points(places, n) : View<Vec3>{}, faces({faces_of, "faces"}, n)};
   const auto histogram = reference_from({reference, "reference"});
   const Stream stream = stream_from(seed);
-  const std::vector<Scores> all = computed(
-      [&] { return scored(predictions, n, truth, histogram, options, stream, weight.values, place.values); });
+  const std::vector<Scores> all =
+      computed([&] { return scored(predictions, n, truth, histogram, options, stream, shape); });
   py::dict result;
   const auto chosen = chosen_metrics(options);
   for (std::size_t m = 0; m < chosen.size(); ++m) {

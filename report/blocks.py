@@ -65,6 +65,7 @@ class Gallery:
     caption: str
     rows: list           # (label, [Tile])
     files: list = field(default_factory=list)
+    differences: bool = False  # the maps are differences from the ground truth
     kind: str = "gallery"
 
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy
-from scipy import stats
 
 from report import paper, statistics
 from report.results import Missing
@@ -283,6 +282,8 @@ def near_normal(results, claim):
     middles, weights = (ends[1:] + ends[:-1]) / 2, numpy.diff(shares)
     mean = (middles * weights).sum()
     deviation = numpy.sqrt(((middles - mean) ** 2 * weights).sum())
+    from scipy import stats  # takes a while to load
+
     return distance(f"{claim['a']} and a normal distribution", shares, stats.norm.cdf(ends, mean, deviation))
 
 

@@ -31,7 +31,13 @@ def arguments(argv):
                         help="meshes to show as examples, such as 52,125 (default: chosen by score)")
     parser.add_argument("--program", metavar="FILE", default=str(PROGRAM),
                         help="the built program, asked for the configuration of both protocols (default: %(default)s)")
+    parser.add_argument("--processes", metavar="N", type=int, default=cores(),
+                        help="that draw at the same time; the report does not depend on it (default: one per core)")
     return parser.parse_args(argv)
+
+
+def cores():
+    return len(os.sched_getaffinity(0))
 
 
 def protocols(program):

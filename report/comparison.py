@@ -3,7 +3,6 @@
 
 import numpy
 import pandas
-from scipy import stats
 
 from report import statistics
 from report.blocks import Cell, Note, Table, attempt, cell, interval
@@ -104,6 +103,8 @@ def pairs_of_scores(results, other):
 def paired(difference):
     """Mean of the differences and its 95 % interval (Student); no interval for fewer than two."""
     n = len(difference)
+    from scipy import stats  # takes a while to load
+
     half = stats.t.ppf(0.975, n - 1) * numpy.std(difference, ddof=1) / n ** 0.5 if n > 1 else float("nan")
     mean = float(numpy.mean(difference))
     return mean, mean - half, mean + half

@@ -5,8 +5,10 @@ from PIL import Image
 
 from report import statistics, style
 from report.blocks import Gallery, Tile
+from report.drawing import Later
 from report.gallery import Painter, describe
 from report.names import natural, spoken
+from report.painting import palette
 from report.results import Missing
 from report.shape_pages import Scores, models_of
 from report.viewer import label_of
@@ -20,7 +22,7 @@ def scored_pictures(shop, dataset):
     """Painters of the shapes that have a picture and a mean score by the first metric, best first."""
     if shop.painters is None:
         made = [Painter(shop, shape) for shape in shop.shapes.shapes.values()]
-        shop.painters = [painter for painter in made if painter.picture is not None and painter.has("ground truth")]
+        shop.painters = [painter for painter in made if painter.has("ground truth")]
     try:
         first = next(iter(shop.results.leading))
         place = {key: at for at, key in enumerate(statistics.mean_per_shape(shop.results, dataset, first).index)}
@@ -38,32 +40,24 @@ def scores_of(shop):
     return shop.scores
 
 
-def thumbnails(shop):
-    """(item, path of its painted ground truth) of the meshes and point clouds that have both, in the order of their names."""
-    found = scored_pictures(shop, "meshes") + scored_pictures(shop, "clouds")
-    painters = sorted(found, key=lambda painter: natural(painter.shape.name))
-    return [(painter.shape.item, painter.paint("ground truth")) for painter in painters if painter.shape.item in shop.items]
-
-
 def leading_labels(shop):
     return ", ".join(of.label for of in shop.results.leading.values())
 
 
-def map_tile(shop, painter, what, when, title, scored=True, small=False):
+def map_tile(shop, painter, what, when, title, scored=True):
     shape = painter.shape
-    picture = painter.paint(what, when, small)
-    dots = "; dots: what participants picked" if what == "ground truth" and len(shape.picks) else ""
-    return Tile(picture, title, f"{label_of(what, when)}: {describe(shape)}{dots}" if picture else "Not in the export.",
+    picture = painter.paint(what, when)
+    return Tile(picture, title, painter.alt(what, when, label_of(what, when)) if picture else "Not in the export.",
                 scores_of(shop).pieces(shape, what) if scored and what != "ground truth" else [], shop.page_of(shape.item))
 
 
-def rows_of_maps(shop, painters, small=False):
+def rows_of_maps(shop, painters):
     """Per shape the ground truth and every model's map before matching, scores below."""
     rows = []
     for painter in painters:
         models = [model for model in models_of(shop, painter.maps) if model != CHANCE and painter.has(model)]
-        tiles = [map_tile(shop, painter, "ground truth", "before", "Ground truth", small=small)]
-        tiles += [map_tile(shop, painter, model, "before", model, small=small) for model in models]
+        tiles = [map_tile(shop, painter, "ground truth", "before", "Ground truth")]
+        tiles += [map_tile(shop, painter, model, "before", model) for model in models]
         rows.append((describe(painter.shape).capitalize(), tiles))
     return rows
 
@@ -92,7 +86,7 @@ def meshes(shop):
 
 def scans(shop):
     gallery = Gallery(f"Saliency maps before histogram matching on simulated range scans, with ({leading_labels(shop)}) of the "
-                      "matched map; best in bold.", rows_of_maps(shop, chosen(shop, "scans", 4), small=True))
+                      "matched map; best in bold.", rows_of_maps(shop, chosen(shop, "scans", 4)))
     return printed(shop, "examples-scans", gallery)
 
 
@@ -147,6 +141,18 @@ def difficult(shop, dataset, metric, count=3):
     return printed(shop, f"difficult-{dataset}-{shop.metric_files[metric]}", gallery)
 
 
+def pixels(path):
+    return Image.open(path).convert("RGB")
+
+
+def scale():
+    """What the colour bar of maps is drawn from."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+
+    return ScalarMappable(Normalize(0, 1), ListedColormap(palette() / 255))
+
+
 def printed(shop, name, gallery):
     """The gallery, with the same pictures as one figure for print."""
     columns = max(len(tiles) for _, tiles in gallery.rows)
@@ -162,11 +168,11 @@ def printed(shop, name, gallery):
         for axes, tile in zip(line, tiles):
             axes.set_title(tile.title, fontsize=9)
             if tile.picture:
-                axes.imshow(Image.open(shop.folder.path / tile.picture).convert("RGB"))
+                axes.imshow(Later(pixels, path := shop.folder.path / tile.picture, content=path.read_bytes()))
                 axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in tile.pieces),
                           transform=axes.transAxes, ha="center", va="top", fontsize=9)
     bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
-    figure.colorbar(style.scale(), cax=bar)
+    figure.colorbar(Later(scale, content=palette().tobytes()), cax=bar)
     bar.grid(visible=False)
     shop.draw(name, figure)
     gallery.files = [("SVG", f"figures/{name}.svg"), ("PDF", f"figures/{name}.pdf")]

@@ -121,11 +121,11 @@ class Shape:
         eye = self._coordinates(self.places.eye)
         return eye.reshape(-1) if eye is not None and eye.size == 3 else None
 
-    def shade(self):
-        """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from the camera of the
-        picture; None if that or normals are not in the export."""
+    def shade(self, eye):
+        """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from `eye`; None if that or
+        normals are not in the export."""
         points, normals, camera = self.points, self._coordinates(self.places.normals), self.seen_from()
-        camera = self.eye()[0] if camera is None else camera
+        camera = eye if camera is None else camera
         if points is None or normals is None or camera is None or len(normals) != len(points):
             return None
         towards = camera - points
@@ -133,10 +133,9 @@ class Shape:
         towards /= numpy.where(lengths > 0, lengths, 1)
         return numpy.clip(numpy.abs((normals * towards).sum(axis=1)), 0, 1)
 
-    def eye(self):
-        """From where the shape is looked at first, or None, and its upward axis: as in its picture, else from where it was
-        scanned."""
-        picture = self.picture()
+    def eye(self, picture):
+        """From where the shape is looked at first, or None, and its upward axis: as in its picture, which may be None, else from
+        where it was scanned."""
         if picture is not None and picture.view_projection is not None:
             return picture.camera()
         return self.seen_from(), "y"
@@ -148,8 +147,8 @@ class Shape:
         if primitive is None or shade is None or weights is None or weights.shape[:2] != primitive.shape:
             return None
         if weights.dtype.kind == "u":  # share of the type's range
-            weights = weights.astype(numpy.float32) / numpy.iinfo(weights.dtype).max
-        if not usable(weights):
+            weights = weights * numpy.float32(1 / numpy.iinfo(weights.dtype).max)
+        elif not usable(weights):
             return None
         return Picture(primitive, weights, shade, self._coordinates("picture/view_projection"), self._array("picture/depth"),
                        self._array("picture/coverage"))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder that a report stands in: what an earlier call wrote there goes, everything else is left alone."""
+"""The folder that a report stands in: what an earlier call wrote there goes, but for drawings that still show the same
+(kept.py); everything else is left alone."""
 
 import shutil
-from pathlib import PurePosixPath
 
+from report.kept import LEDGER, Kept, within, write
 from report.results import Unusable
 
 MARK = "salbench report"  # <meta name="generator"> of every page: a folder whose index.html has it may be written again
@@ -12,7 +13,7 @@ LIST = "files.txt"  # of the files of the report, one per line
 
 
 class Folder:
-    """Empties the folder of a report, or makes one. Unusable if it holds something else than a report."""
+    """Opens the folder of a report, or makes one. Unusable if it holds something else than a report. `finish` ends the call."""
 
     def __init__(self, path):
         self.path = path
@@ -23,10 +24,14 @@ class Folder:
             if path.is_dir() and any(path.iterdir()):
                 if not is_ours(path / "index.html"):
                     raise Unusable(f"{path}: holds something else than a report; choose another folder with --to")
-                remove_report(path)
+                if not (path / LIST).is_file():
+                    remove_older(path)
             for folder in FOLDERS:
                 (path / folder).mkdir(parents=True, exist_ok=True)
-            (path / LIST).write_text("")
+            self.kept = Kept(path)
+            listed = set(read_list(path))
+            remove(path, listed - self.kept.names)
+            write(path / LIST, "".join(f"{name}\n" for name in sorted((listed & self.kept.names) | {LEDGER})).encode())
             self.file("index.html").write_text(f'<meta name="generator" content="{MARK}"><title>Unfinished</title>')
         except OSError as error:
             raise Unusable(f"{path}: cannot be written: {error.strerror}; choose another folder with --to") from None
@@ -37,10 +42,31 @@ class Folder:
         if name not in self.names:
             self.names.add(name)
             with open(self.path / LIST, "a", encoding="utf-8") as names:
-                print(name, file=names)
+                names.write(f"{name}\n")
         path = self.path / name
         path.parent.mkdir(exist_ok=True)
         return path
+
+    def find(self, key):
+        """The set of files with this key that an earlier call left whole, now part of this report; or None."""
+        found = self.kept.find(key)
+        if found:
+            self.names.update(found.names)
+        return found
+
+    def add(self, key, names, facts):
+        """Notes a set of files that were written now, in whichever process."""
+        self.names.update(names)
+        return self.kept.add(key, names, facts)
+
+    def finish(self):
+        """Removes what is not part of the report any more, and halves that an ended call left of what is."""
+        self.names.add(LEDGER)
+        for name in self.names:
+            (self.path / f"{name}.part").unlink(missing_ok=True)
+        self.kept.finish()
+        remove(self.path, (set(read_list(self.path)) | self.kept.names) - self.names)
+        write(self.path / LIST, "".join(f"{name}\n" for name in sorted(self.names)).encode())
 
 
 def is_ours(page):
@@ -50,20 +76,29 @@ def is_ours(page):
         return False
 
 
-def remove_report(path):
-    """Removes the files on the list, but for index.html, and the folders that are then empty."""
-    if not (path / LIST).is_file():  # an older version wrote the report: all of these folders was its own
-        for folder in FOLDERS:
-            shutil.rmtree(path / folder, ignore_errors=True)
-        for page in path.glob("*.html"):
-            if page.name != "index.html" and is_ours(page):
-                page.unlink()
-        return
-    names = (path / LIST).read_text(encoding="utf-8", errors="replace").splitlines()
-    for name in map(PurePosixPath, names):
-        within = not name.is_absolute() and ".." not in name.parts
-        if within and (path / name).is_file() and name.name != "index.html":
-            (path / name).unlink()
+def read_list(path):
+    try:
+        return [name for name in (path / LIST).read_text(encoding="utf-8", errors="replace").splitlines() if within(name)]
+    except FileNotFoundError:
+        return []
+
+
+def remove(path, names):
+    """Removes files of the report, but for index.html and the ledger, and folders that are then empty."""
+    for name in names:
+        if name not in ("index.html", LEDGER):
+            for file in (path / name, path / f"{name}.part"):
+                if file.is_file():
+                    file.unlink()
     for folder in sorted((entry for name in FOLDERS for entry in (path / name).glob("**/")), reverse=True):
-        if not any(folder.iterdir()):
+        if folder not in [path / name for name in FOLDERS] and not any(folder.iterdir()):
             folder.rmdir()
+
+
+def remove_older(path):
+    """An older version wrote the report, without a list: all of these folders was its own."""
+    for folder in FOLDERS:
+        shutil.rmtree(path / folder, ignore_errors=True)
+    for page in path.glob("*.html"):
+        if page.name != "index.html" and is_ours(page):
+            page.unlink()

@@ -10,9 +10,11 @@ LEADING = 3  # metrics that every page shows; the others stand behind a menu
 
 _LABELS = {**PAPER, "auc_exact": "AUC (exact)", "auc_judd": "AUC (Judd)", "auc_borji": "AUC (Borji)", "cc": "CC",
            "ig": "Information gain", "ig_centre": "Information gain (centre bias)", "spearman": "Spearman", "kl": "KL", "kl_smoothed": "KL (smoothed)", "sim": "SIM",
-           "sim_minmax": "SIM (min-max)", "mse": "MSE", "mae": "MAE"}
+           "sim_minmax": "SIM (min-max)", "mse": "MSE", "mae": "MAE", "cosine": "Cosine", "kl_keras": "KL (Keras)", "kl_caffe": "KL (Caffe)",
+           "kl_pysaliency": "KL (pysaliency)", "kl_shifted": "KL (shifted)", "sauc": "AUC (shuffled)", "fne": "FNE", "fpe": "FPE",
+           "wme": "WME", "precision": "Precision", "recall": "Recall"}
 _ENDINGS = {"_multiplicity": "with multiplicity", "_area": "by area"}
-_DISTANCES = ("kl", "kl_smoothed", "mse", "mae")  # for results of a run.yaml that does not say what is better
+_DISTANCES = ("kl", "kl_smoothed", "mse", "mae", "kl_keras", "kl_caffe", "kl_pysaliency", "kl_shifted", "fne", "fpe", "wme")  # for results of a run.yaml that does not say what is better
 _FAMILIES = {"auc": "AUC", "nss": "NSS", "lcc": "Correlation", "kl": "KL", "sim": "SIM", "mse": "Error",
              "ig": "Information gain"}
 _FAMILY_OF = {"cc": "lcc", "spearman": "lcc", "mae": "mse"}

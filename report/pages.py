@@ -29,6 +29,7 @@ def copy_static(folder):
     for file in sorted((HERE / "static").iterdir()):
         shutil.copyfile(file, folder.file(f"static/{file.name}"))
     colour_bar().save(folder.file("static/colourbar.png"))
+    colour_bar("diverging").save(folder.file("static/colourbar-difference.png"))
     for file in THREE:
         if file.is_file():
             shutil.copyfile(file, folder.file(f"static/{file.name}"))

@@ -1,43 +1,59 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Paints saliency maps on pictures: a look-up per pixel, with no rendering."""
 
+import re
+from functools import cache
+from pathlib import Path
+
 import numpy
-from matplotlib import colormaps
-from PIL import Image, ImageDraw
+from PIL import Image
 
-from report.style import MAP
-
-PICK = (213, 94, 0)  # vermillion, with a white rim: seen on all of viridis
-SUPERSAMPLING = 3    # of the dots
+COLOURS = Path(__file__).resolve().parent / "static/palette.js"  # the tables stand there, once for pages and pictures
 DEPTH_MARGIN = 0.004  # share of the depth by which a pick may lie behind what its pixels show
+LIGHTEST = 0.25  # how much of its shade a picture loses: the lightness of a colour tells the map, and less of it the shape
 
 
-def palette(name=MAP):
+@cache
+def colours(name):
+    """n x 3 uint8 of a table of palette.js: "palette" of the values 0 to 1, "diverging" of -1 to 1, or the one "pick"."""
+    digits = re.search(rf'salbench\.{name} = "([0-9a-f]+)";', COLOURS.read_text(encoding="utf-8"))[1]
+    return numpy.frombuffer(bytes.fromhex(digits), numpy.uint8).reshape(-1, 3)
+
+
+def palette():
     """256 x 3 uint8: the colours of the values 0 to 1."""
-    return (colormaps[name](numpy.arange(256))[:, :3] * 255).round().astype(numpy.uint8)
+    return colours("palette")
 
 
-def pixel_values(picture, values, faces):
-    """H x W: the map where something is seen, NaN elsewhere. values: n in [0, 1]; faces: f x 3, None for separate points."""
-    seen = picture.primitive >= 0
-    primitive = picture.primitive[seen]
-    shown = numpy.full(picture.primitive.shape, numpy.nan)
-    if faces is None:
-        shown[seen] = values[primitive]
-    else:
-        shown[seen] = (values[faces[primitive]] * picture.weights[seen]).sum(axis=1)
-    return shown
+class Canvas:
+    """A picture of a shape with all that its maps have in common. faces: f x 3, None for separate points."""
 
+    def __init__(self, picture, faces):
+        self.size = picture.primitive.shape
+        self.seen = numpy.flatnonzero(picture.primitive >= 0)
+        primitive = picture.primitive.reshape(-1)[self.seen]
+        self.corners = primitive[:, None] if faces is None else faces[primitive]
+        self.weights = None if faces is None else picture.weights.reshape(-1, 3)[self.seen].astype(numpy.float32)
+        shade = picture.shade.reshape(-1)[self.seen].astype(numpy.float32) / 255
+        covered = numpy.ones_like(shade) if picture.coverage is None else picture.coverage.reshape(-1)[self.seen] / numpy.float32(255)
+        self.shade = ((LIGHTEST + (1 - LIGHTEST) * shade) * covered)[:, None]
+        self.ground = (255 * (1 - covered) + 0.5)[:, None]  # white; the half rounds
 
-def paint(picture, values, faces):
-    """An RGB image of the map on the shape: its colours times the shade, on white."""
-    shown = pixel_values(picture, values, faces)
-    seen = ~numpy.isnan(shown)
-    image = numpy.full((*shown.shape, 3), 255, dtype=numpy.uint8)
-    colours = palette()[numpy.clip(shown[seen] * 255, 0, 255).round().astype(int)] * (picture.shade[seen, None] / 255.0)
-    covered = 1.0 if picture.coverage is None else picture.coverage[seen, None] / 255.0
-    image[seen] = (255 + (colours - 255) * covered).round()
-    return Image.fromarray(image)
+    def values(self, values):
+        """Of n values, those of the pixels that show something."""
+        of_corners = numpy.asarray(values, numpy.float32)[self.corners]
+        return of_corners[:, 0] if self.weights is None else numpy.einsum("kc,kc->k", of_corners, self.weights)
+
+    def paint(self, values, name="palette"):
+        """An RGB image of the map on the shape: its colours times the shade, on white. values: n in [0, 1], or in [-1, 1] under
+        "diverging"."""
+        shown = self.values(values)
+        if name == "diverging":
+            shown = (shown + 1) / 2
+        level = numpy.clip(shown * 255 + 0.5, 0, 255).astype(numpy.uint8)
+        image = numpy.full((self.size[0] * self.size[1], 3), 255, numpy.uint8)
+        image[self.seen] = colours(name).astype(numpy.float32)[level] * self.shade + self.ground
+        return Image.fromarray(image.reshape(*self.size, 3))
 
 
 def project(points, view_projection, size):
@@ -71,16 +87,19 @@ def with_dots(image, dots):
     """The image with a dot per row of m x 2 pixel coordinates, smooth at the rim."""
     if len(dots) == 0:
         return image
-    k = SUPERSAMPLING
+    pixels = numpy.asarray(image).astype(numpy.float32)
     radius = max(2, image.width / 100)
-    large = image.resize((image.width * k, image.height * k), Image.Resampling.NEAREST)
-    draw = ImageDraw.Draw(large)
-    for x, y in dots * k:
-        for r, colour in ((radius * k, (255, 255, 255)), (radius * k * 0.72, PICK)):
-            draw.ellipse((x - r, y - r, x + r, y + r), fill=colour)
-    return large.reduce(k)
+    for x, y in dots:
+        left, top = max(int(x - radius - 1), 0), max(int(y - radius - 1), 0)
+        part = pixels[top:int(y + radius + 2), left:int(x + radius + 2)]
+        rows, columns = numpy.ogrid[top:top + part.shape[0], left:left + part.shape[1]]
+        distance = numpy.hypot(columns + 0.5 - x, rows + 0.5 - y)
+        for r, colour in ((radius, 255), (radius * 0.72, colours("pick")[0])):
+            covered = numpy.clip(r + 0.5 - distance, 0, 1)[:, :, None]
+            part += (colour - part) * covered
+    return Image.fromarray((pixels + 0.5).astype(numpy.uint8))
 
 
-def colour_bar(width=256, height=16):
-    """An RGB image of the palette from 0 on the left to 1 on the right."""
-    return Image.fromarray(numpy.broadcast_to(palette(), (height, 256, 3)).copy()).resize((width, height))
+def colour_bar(name="palette", width=256, height=16):
+    """An RGB image of a table from its first colour on the left to its last on the right."""
+    return Image.fromarray(numpy.broadcast_to(colours(name), (height, 256, 3)).copy()).resize((width, height))

@@ -4,7 +4,6 @@
 from dataclasses import dataclass
 
 import pandas
-from scipy import stats
 
 from report import statistics
 from report.blocks import Cell, Note, Table, attempt, cell, interval
@@ -104,6 +103,8 @@ def others_conventions(shop, dataset, family, first, names):
         of = shop.results.metric(name)
         ranks = ranks_of(means["theirs"].mean(), of)
         against = ranks_of(means["ours"].mean(), first.metric)
+        from scipy import stats  # takes a while to load
+
         tau = stats.kendalltau(against, ranks)[0] if len(models) > 1 else float("nan")
         found.append(Convention(family, shop.other.folder.resolve().name, of, len(means), len(both), means["theirs"].mean(), ranks,
                                 against, tau))

@@ -6,9 +6,10 @@ from markupsafe import Markup
 from report import run_page, statistics
 from report.blocks import Cell, Gallery, Note, Table, Tile, attempt, cell
 from report.gallery import Painter, describe
+from report.shape_files import DIFFERENCE
 from report.names import KIND_NAMES, natural, spoken
 from report.results import DATASETS, Missing
-from report.viewer import label_of, write_scripts
+from report.viewer import entries, label_of
 from report.viewer_parts import section
 
 
@@ -110,26 +111,32 @@ def scan_table(shop, scores, item):
                  ["Scan", "Model"] + heads, rows, [True, False] + [True] * len(heads), filters=[0, 1])
 
 
-def tile(painter, scores, what, when, small=False):
+def tile(painter, scores, what, when):
     """One painted map with the scores of the matched map below."""
-    shape = painter.shape
     title = label_of(what, when)
     if not painter.has(what, when):
         return Tile("", title, "Not in the export.")
-    picture = painter.paint(what, when, small)
+    picture = painter.paint(what, when)
     if not picture:
         return Tile("", title, "The picture does not fit the shape: damaged export.")
-    dots = "; dots: what participants picked" if what == "ground truth" and len(shape.picks) else ""
-    return Tile(picture, title, f"{title}: {describe(shape)}{dots}", scores.pieces(shape, what) if when == "after" else [])
+    return Tile(picture, title, painter.alt(what, when, title), scores.pieces(painter.shape, what) if when == "after" else [])
 
 
-def gallery(painter, scores, models, caption, small=False):
-    shown = [model for model in models if painter.has(model, "before") or painter.has(model, "after")]
-    truth = [tile(painter, scores, "ground truth", "before", small)] if painter.has("ground truth") else []
-    rows = [(label, (truth if when == "before" else []) + [tile(painter, scores, model, when, small)
-             for model in shown if painter.has(model, when)])
-            for when, label in (("before", "Before histogram matching"), ("after", "After histogram matching"))]
+def gallery(painter, scores, models, caption):
+    rows = []
+    for when, label in (("before", "Before histogram matching"), ("after", "After histogram matching")):
+        tiles = [tile(painter, scores, model, when) for model in models if painter.has(model, when)]
+        if when == "before" and painter.has("ground truth"):
+            tiles.insert(0, tile(painter, scores, "ground truth", "before"))
+        rows.append((label, tiles))
     return Gallery(caption, [row for row in rows if row[1]])
+
+
+def difference_gallery(painter, scores, models):
+    """Where each model is wrong; none where no map can be compared."""
+    tiles = [tile(painter, scores, model, DIFFERENCE) for model in models if painter.has(model, DIFFERENCE)]
+    return [Gallery(f"Errors on {describe(painter.shape)}: ranks of the points on each model's map less those on the ground truth; "
+                    "a point's rank is the share of points with lower values.", [("Difference to the ground truth", tiles)], differences=True)] if tiles else []
 
 
 def models_of(shop, maps):
@@ -139,12 +146,13 @@ def models_of(shop, maps):
 
 
 def pictures(shop, shape, painter, scores):
-    if painter.picture is None:
+    if not painter.has_picture:
         raise Missing(f"The export holds no picture of {describe(shape)}: salbench pictures makes it, salbench export "
                       "then contains it.")
     score_text = f"Below: {', '.join(of.label for of in scores.metrics.values())}; best in bold."
-    return gallery(painter, scores, models_of(shop, painter.maps), f"Saliency on {describe(shape)}. {score_text}",
-                   small=bool(shape.view))
+    models = models_of(shop, painter.maps)
+    return [gallery(painter, scores, models, f"Saliency on {describe(shape)}. {score_text}"),
+            *difference_gallery(painter, scores, models)]
 
 
 def notes(shop, item, exported):
@@ -167,17 +175,16 @@ def write_page(shop, pages, scores, item, category):
     shapes = ([itself] if itself else []) + views
     painters = {shape.name: Painter(shop, shape) for shape in shapes}
     titles = {shape.name: f"Scan {shape.view}" if shape.view else kind.capitalize() for shape in shapes}
-    entries = write_scripts(shop, shapes, titles, {name: painter.maps for name, painter in painters.items()})
+    shown = entries(shapes, titles, shop.drawn)
     own_blocks = attempt(score_table, shop, scores, dataset, item)
     if itself:
         own_blocks += attempt(pictures, shop, itself, painters[itself.name], scores)
     scans = [(f"Scan {shape.view}", attempt(pictures, shop, shape, painters[shape.name], scores)) for shape in views
-             if painters[shape.name].picture is not None]
+             if painters[shape.name].has_picture]
     scan_blocks = attempt(scan_table, shop, scores, item) if dataset == "meshes" else []
     if views and not scans:
         scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
     pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
-                viewer=Markup(section(entries, label_of(first[0], "after") if first else "")) if entries else "",
-                own_blocks=own_blocks,
-                scan_blocks=scan_blocks, scans=scans, notes=notes(shop, item, bool(shapes)))
+                viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
+                own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans, notes=notes(shop, item, bool(shapes)))

@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes every time."""
 
-import matplotlib
-from matplotlib.backends.backend_pdf import FigureCanvasPdf
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
+from report.drawing import Drawing
 
 INK = "#1a1a1a"
 GRID = "#dddddd"
@@ -37,23 +32,28 @@ _SETTINGS = {
 
 
 def apply():
-    """No window system, and the settings above."""
+    """No window system, and the settings above. Matplotlib is loaded here, where there is something to draw."""
+    import matplotlib
+
     matplotlib.use("Agg")
     matplotlib.rcParams.update(_SETTINGS)
 
 
 def new_figure(width, height, layout="constrained"):
-    """An empty figure; inches."""
-    return Figure(figsize=(width, height), layout=layout)
+    """An empty figure; inches. What is drawn on it is recorded, and drawn when it is saved (drawing.py)."""
+    def make():
+        from matplotlib.figure import Figure
 
-
-def scale():
-    """What a colour bar of a map in [0, 1] is drawn from."""
-    return ScalarMappable(Normalize(0, 1), MAP)
+        apply()
+        return Figure(figsize=(width, height), layout=layout)
+    return Drawing(make, (width, height), layout)
 
 
 def save(figure, svg, pdf):
     """Writes both files, without dates. Laid out once; savefig would draw each file twice."""
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     dpi = figure.dpi

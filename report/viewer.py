@@ -3,18 +3,19 @@
 from disk may load."""
 
 import numpy
-from scipy.spatial import cKDTree
 
 from report.viewer_parts import call, spacing
 
 
 def spacing_in_any_order(points):
     """Median distance to the fourth nearest other point: what a grid of the same density has as its step, or little more."""
+    from scipy.spatial import cKDTree
+
     at = min(5, len(points))
     return float(numpy.median(cKDTree(points).query(points, k=[at])[0])) if len(points) > 1 else 0.0
 
 
-def script(shape, maps, title):
+def script(shape, maps, title, picture):
     """The script of one shape (viewer_parts.call). None for a shape without points."""
     points = shape.points
     if points is None or len(points) == 0:
@@ -22,27 +23,19 @@ def script(shape, maps, title):
     on_surface = shape.dataset == "meshes"
     faces = shape.faces if shape.faces is not None else numpy.zeros((0, 3), numpy.int32)
     known = {label: values for label, values in maps.items() if values is not None and len(values) == len(points)}
-    eye, up = shape.eye()
+    eye, up = shape.eye(picture)
     step = spacing_in_any_order(points) if shape.dataset == "clouds" else spacing(points)
-    return call(shape.name, title, points, faces, known, picks=shape.picks, shade=None if on_surface else shape.shade(),
+    return call(shape.name, title, points, faces, known, picks=shape.picks, shade=None if on_surface else shape.shade(eye),
                 on_surface=on_surface, step=step, eye=eye, up=up)
 
 
 def label_of(model, when):
     if model == "ground truth":
         return "Ground truth"
-    return f"{model}, {'before' if when == 'before' else 'after'} matching"
+    return f"{model}, {'difference to the ground truth' if when == 'difference' else f'{when} matching'}"
 
 
-def write_scripts(shop, shapes, titles, maps):
-    """Writes shapes/NAME.js for each shape; entries (name, title, path relative to the page, labels of maps)."""
-    entries = []
-    for shape in shapes:
-        labelled = {label_of(*key): values for key, values in maps[shape.name].items() if values is not None}
-        text = script(shape, labelled, titles[shape.name])
-        if text is None:
-            continue
-        path = f"{shop.shape_files[shape.name]}.js"
-        shop.file(f"shapes/{path}").write_text(text, encoding="utf-8")
-        entries.append({"name": shape.name, "title": titles[shape.name], "path": path})
-    return entries
+def entries(shapes, titles, drawn):
+    """Of the shapes that have a script: name, title, path relative to the page."""
+    return [{"name": shape.name, "title": titles[shape.name], "path": drawn[shape.name]["script"]} for shape in shapes
+            if drawn[shape.name]["script"]]

@@ -55,7 +55,7 @@ def call(name, title, points, faces, maps, *, picks, shade, on_surface, step, ey
         "levels": levels, "shaded": shade is not None, "maps": list(maps), "picks": picks.tolist(),
         "spacing": step, "camera": None if eye is None else eye.tolist(), "up": up,
     }
-    data = base64.b64encode(zlib.compress(b"".join(parts), 9)).decode()
+    data = base64.b64encode(zlib.compress(b"".join(parts), 6)).decode()
     return f"salbench.give({json.dumps(name)}, {json.dumps(description)}, {json.dumps(data)});\n"
 
 
@@ -65,6 +65,8 @@ VIEW = """<div class="view" role="group" aria-label="{side}">
 <label>Map <select data-part="map" aria-label="{side}: map"></select></label>
 </div>
 <div class="canvas"><canvas tabindex="0" role="img" aria-label="{side} of the shape; arrow keys turn it"></canvas></div>
+<p class="colourbar"><span data-part="end"></span>\
+<span data-part="legend" aria-hidden="true" style="flex: 0 0 6rem; height: .75rem"></span><span data-part="end"></span></p>
 <p class="turns">
 <button type="button" data-turn="-1,0" aria-label="{side}: turn left">&#8592;</button>
 <button type="button" data-turn="1,0" aria-label="{side}: turn right">&#8594;</button>
@@ -87,6 +89,9 @@ data-second="{html.escape(second)}" hidden>
 <h2 id="viewer-title">Viewer</h2>
 <p class="note" data-part="message">Drag to turn, scroll to come nearer; with the keyboard, arrow keys or the buttons.</p>
 <div class="filters">
+<label>Colours show <select data-part="scale">
+<option value="value">value</option><option value="rank">rank</option><option value="percentile">percentile</option>
+</select></label>
 {coupled}
 <label><input type="checkbox" data-part="picks" checked> show what participants picked</label>
 <button type="button" data-part="home">First view</button>

@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every element is built from and writes to: results, exports, the paper's figures, and the folder of the report."""
 
+import os
 from dataclasses import dataclass, field
+from importlib.metadata import version
 
-from report import names, statistics, style
+import numpy
+
+from report import crew, drawing, kept, names, statistics, style
 from report.blocks import Plot
+from report.drawing import Drawing
 from report.folder import Folder
 from report.results import Results, write_csv
+
+# Of what draws figures: those that something else drew are drawn again.
+LOOKS = kept.digest(kept.digest_of_code(drawing, style), version("matplotlib"), numpy.__version__)
 
 
 @dataclass
@@ -17,11 +25,12 @@ class Workshop:
     protocols: dict = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
     items: dict = field(default_factory=dict)      # item -> class of every shape that has a page
     examples: tuple = ()                          # meshes that the user wants to see
-    painted: set = field(default_factory=set)     # pictures that were written
     painters: list = None                         # of the shapes with pictures; made when first needed
     scores: object = None                         # shape_pages.Scores; made when first needed
-
     other: Results = None                         # of the run to compare with
+    processes: int = 1                            # that draw
+    drawn: dict = field(default_factory=dict)     # shape name -> facts of its files (shape_files.draw_all)
+    waiting: list = field(default_factory=list)   # figures that are yet to be drawn: (name, (drawing, key))
 
     def __post_init__(self):
         self.models = statistics.models(self.results)
@@ -39,8 +48,33 @@ class Workshop:
         return Plot(name, alt, round(figure.get_figwidth() * 96), caption)
 
     def draw(self, name, figure):
-        """Writes a figure as SVG and PDF."""
-        style.save(figure, self.file(f"figures/{name}.svg"), self.file(f"figures/{name}.pdf"))
+        """Has a figure drawn as SVG and PDF, by draw_figures; nothing is to be done where it shows the same as before."""
+        if not isinstance(figure, Drawing):
+            self._save((name, figure))
+            return
+        content = figure.key()
+        key = content and kept.digest(name, content, LOOKS)
+        if key is None or self.folder.find(key) is None:
+            self.waiting.append((name, (name, figure, key)))
+
+    def draw_figures(self):
+        """Draws what `draw` left waiting, on all processes."""
+        if self.waiting:
+            style.apply()  # once for all processes
+        for (_, (_, _, key)), written in zip(self.waiting, crew.each(self._save, self.waiting, self.processes)):
+            self.folder.names.update(written)
+            if key:
+                self.folder.add(key, written, None)
+        self.waiting.clear()
+
+    def _save(self, task):
+        name, figure = task[:2]
+        written = [f"figures/{name}.svg", f"figures/{name}.pdf"]
+        parts = [path.with_name(f"{path.name}.part") for path in map(self.file, written)]
+        style.save(figure.real() if isinstance(figure, Drawing) else figure, *parts)
+        for part in parts:
+            os.replace(part, part.with_suffix(""))
+        return written
 
     def file(self, name):
         """The path of a file of the report, to be written now."""

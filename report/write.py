@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from report import comparison, examples, metric_page, run_page, score_pages, shape_pages, style
+from report import comparison, gallery_page, metric_page, run_page, score_pages, shape_files, shape_pages
 from report.blocks import attempt
 from report.elements import elements_of
 from report.exports import Shapes
@@ -21,26 +21,28 @@ def write_report(options, protocols):
     other = read_results(options.compare) if options.compare else None
     shapes = Shapes(exports(options, results))
     folder = Folder(out)
-    style.apply()
     copy_static(folder)
     shop = Workshop(results, folder, shapes, protocols, shape_pages.items(results, shapes),
-                    tuple(options.examples.split(",")) if options.examples else (), other=other)
+                    tuple(options.examples.split(",")) if options.examples else (), other=other, processes=options.processes)
+    shop.drawn = shape_files.draw_all(shop)
     comparing = [("comparison.html", "Comparison")] if other else []
     metrics = [("metrics.html", "Other metrics")] if metric_page.others(shop) else []
-    pages = Pages(shop, [("index.html", "Results"), ("scores.html", "Scores and shapes"), *metrics, ("run.html", "Run"),
+    gallery = [("gallery.html", "Gallery")] if gallery_page.pictured(shop) else []
+    pages = Pages(shop, [("index.html", "Results"), *gallery, ("scores.html", "Scores and shapes"), *metrics, ("run.html", "Run"),
                          *comparing])
     scores = shop.scores = shape_pages.Scores(results)
+    gallery_page.write_page(shop, pages)
     for item, category in shop.items.items():
         shape_pages.write_page(shop, pages, scores, item, category)
     score_pages.write_page(
         shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores", heading="Scores of every shape",
         caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.",
-        shapes={item: shop.page_of(item) for item in shop.items}, thumbnails=examples.thumbnails(shop))
+        shapes={item: shop.page_of(item) for item in shop.items})
     if other:
         first, second = comparison.names(results, other)
         score_pages.write_page(
             shop, pages, "comparison.html", lambda: comparison.differences(shop, other), comparison.blocks(shop, other),
-            title="Comparison", heading="Two runs side by side", shapes={}, thumbnails=[],
+            title="Comparison", heading="Two runs side by side", shapes={},
             caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
     if metrics:
         pages.write("metrics.html", "metrics.html", title="Other metrics", sections=metric_page.blocks(shop),
@@ -48,7 +50,9 @@ def write_report(options, protocols):
                     labels=[results.metric(name).label for name in metric_page.others(shop)])
     sections = [(element, attempt(element.build, shop)) for element in elements_of(results)]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
+    shop.draw_figures()
     pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))
+    folder.finish()
     return out / "index.html"
 
 

@@ -44,6 +44,7 @@ Json item_json(const ItemFacts& item) {
           {"diagonal", number_text(item.diagonal)},
           {"has_truth", item.has_truth},
           {"seen", item.seen},
+          {"of_camera", item.of_camera},
           {"low", number_text(item.low)},
           {"high", number_text(item.high)},
           {"participants", item.participants},
@@ -62,6 +63,8 @@ Json json_of(const DataInspection& found) {
   const std::vector<std::string> problems = found.problems();
   return {{"layout", found.layout},
           {"shapes", found.n_shapes()},
+          {"positives", found.positives},
+          {"scale", number_text(found.scale)},
           {"items", list_of(found.items, item_json)},
           {"splits", counts_json(counts_of(found, &ItemFacts::split))},
           {"views", counts_json(counts_of(found, &ItemFacts::view))},
@@ -86,11 +89,24 @@ std::string lines_text(const std::string& head, const std::vector<std::string>& 
   return text;
 }
 
+// Lines on what few descriptions say.
+std::string particulars(const DataInspection& found) {
+  std::string text;
+  const auto add = [&](const char* topic, const std::string& line) {
+    text += fmt::format("{:<8} {}\n", topic, line);
+  };
+  if (found.positives != kPositivesArePicks) add("picks", found.positives);
+  if (const auto n = std::ranges::count(found.items, true, &ItemFacts::of_camera); n > 0)
+    add("seen", fmt::format("{} items as a camera sees them", n));
+  if (found.scale != 1) add("scale", fmt::format("{}, of diagonals", found.scale));
+  return text;
+}
+
 std::string text_of(const DataInspection& found) {
   std::string text = fmt::format("{:<8} {}\n{:<8} {} of {} shapes\n", "layout", found.layout, "items",
                                  found.items.size(), found.n_shapes());
   text += counts_line("splits", counts_of(found, &ItemFacts::split));
-  text += counts_line("views", counts_of(found, &ItemFacts::view));
+  text += counts_line("views", counts_of(found, &ItemFacts::view)) + particulars(found);
   Table table{.columns = {"item", "split", "points", "faces", "diagonal", "seen", "low", "high",
                           "participants", "picks"},
               .rows = {}};
@@ -108,10 +124,7 @@ std::string text_of(const DataInspection& found) {
 }
 
 ExitStatus print_inspection(const Arguments& arguments, const std::string& layout, ReportFormat format) {
-  if (!is_layout(layout))
-    throw ConfigError(fmt::format(
-        "inspect: there is no layout '{}'; {}", layout,
-        did_you_mean(layout, layout_names(), "name one of docs/data_sets.md, or a file NAME.yaml")));
+  require_layout("inspect", layout);
   if (arguments.data.empty()) throw ConfigError("inspect: names no data set: give --data DIR");
   const DataInspection found = inspect_data(arguments.data, layouts_of(layout));
   print_report(format, "inspect", json_of(found), text_of(found));
@@ -128,9 +141,7 @@ Subcommand inspect_subcommand(Arguments& arguments) {
   return {
       "inspect",
       "read all files of a data set and print what its description finds: items, splits, ranges, problems",
-      {{"LAYOUT", layout.get(),
-        "description of the data set: automatic, a name in configs/datasets, or a file of your own (.yaml)",
-        true},
+      {layout_parameter(layout.get()),
        {"--data", &arguments.data, "folder of the data set"},
        format_parameter(format)},
       [&arguments, layout, format](const std::atomic<bool>&) {

@@ -32,6 +32,7 @@ constexpr const char* kFooter =
   salbench status configs/shrec07.yaml --data SchellingData         what is there already
   salbench doctor configs/shrec07.yaml --data SchellingData         whether machine and disk are fit for it
   salbench inspect 3dva --data 3DVA                                 what a description finds in a folder
+  salbench convert 3dva --data 3DVA --to 3DVA-hdf5                  the same set in one form, an HDF5 file per shape
   salbench config                                                   every option, its default, unit and range
 
 Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
@@ -39,10 +40,10 @@ Exit status: 0 all done; 1 some items failed, each was named; 2 unusable argumen
 130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
-    run_subcommand,    maps_subcommand,        evaluate_subcommand, pictures_subcommand,
-    export_subcommand, conclusions_subcommand, power_subcommand,    plan_subcommand,
-    graph_subcommand,  explain_subcommand,     status_subcommand,   doctor_subcommand,
-    config_subcommand, verify_subcommand,      gc_subcommand,       inspect_subcommand,
+    run_subcommand,         maps_subcommand,    evaluate_subcommand, pictures_subcommand, export_subcommand,
+    conclusions_subcommand, power_subcommand,   plan_subcommand,     graph_subcommand,    explain_subcommand,
+    status_subcommand,      doctor_subcommand,  config_subcommand,   verify_subcommand,   gc_subcommand,
+    inspect_subcommand,     convert_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {

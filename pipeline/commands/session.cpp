@@ -122,9 +122,11 @@ ExitStatus interrupted_status(const Arguments& arguments) {
 
 ExitStatus finished_status(const Session& session) {
   const std::vector<Failure> failures = session.resolver.failures();
-  if (failures.empty()) return kAllDone;
+  const std::vector<std::string>& errors = session.setup.inputs.errors;
+  if (failures.empty() && errors.empty()) return kAllDone;
   const Project& project = session.setup.project;
-  std::string text = fmt::format("\n{} failed:\n", failures.size());
+  std::string text = fmt::format("\n{} failed:\n", failures.size() + errors.size());
+  for (const std::string& error : errors) text += fmt::format("  data set: {}\n", error);
   for (const Failure& failure : failures)
     text += fmt::format("  {}: {}: {}\n", project.name(failure.job), project.rule(failure.job).stage,
                         failure.cause);

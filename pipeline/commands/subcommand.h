@@ -59,6 +59,9 @@ std::string shell_word(const std::string& word);  // as a shell reads it back as
 // Parameters that several subcommands share.
 Parameter config_parameter(Arguments& arguments);
 Parameter shard_parameter(Arguments& arguments);
+Parameter layout_parameter(std::string* layout);
+// Throws ConfigError, with the nearest name, unless the text may be a layout.
+void require_layout(const std::string& subcommand, const std::string& layout);
 Parameters run_parameters(Arguments& arguments, const Parameters& further = {});  // of what plans a run
 Parameters cache_parameters(Arguments& arguments,
                             const Parameters& further = {});  // of what maintains a cache

@@ -30,8 +30,46 @@ FilePattern read_pattern(const Section& section, std::string_view key, const Wro
   return {*text, section.where(key)};
 }
 
+Vec3 read_camera(const Section& section, std::string_view key, const Words& words, bool at_infinity) {
+  Vec3 place;
+  bool numbers = words.size() == 3;
+  for (int axis = 0; numbers && axis < 3; ++axis)
+    numbers = parse_option(words[static_cast<std::size_t>(axis)], place[axis]);
+  if (!numbers)
+    section.fail(key, "is not three finite numbers [x, y, z], a mapping of views to such, or a CSV file");
+  if (const std::string_view wrong = wrong_with_camera(place, at_infinity); !wrong.empty())
+    section.fail(key, fmt::format("is no place to look from: {}", wrong));
+  return place;
+}
+
+// [x, y, z], or these by view, or a file.
+Cameras read_cameras(const Section& section, std::string_view key, bool at_infinity) {
+  Cameras cameras{.at_infinity = at_infinity, .where = section.where(key)};
+  if (section.has_mapping(key)) {
+    const Section views = section.child(key);
+    for (const std::string& view : views.keys())
+      cameras.by_view.emplace(view, read_camera(views, view, views.words(view), at_infinity));
+    if (cameras.empty()) section.fail(key, "names no view");
+    return cameras;
+  }
+  const Words words = section.words(key);
+  if (words.size() == 1)
+    cameras.file = words[0];
+  else
+    cameras.by_view.emplace("", read_camera(section, key, words, at_infinity));
+  return cameras;
+}
+
+Cameras read_cameras(const Section& section) {
+  constexpr std::string_view kPlace = "visible_from", kDirection = "visible_from_direction";
+  if (section.has(kPlace) && section.has(kDirection))
+    section.fail(kDirection, "is there beside visible_from: expected one of them");
+  if (section.has(kPlace)) return read_cameras(section, kPlace, false);
+  return section.has(kDirection) ? read_cameras(section, kDirection, true) : Cameras{};
+}
+
 TruthPlace read_truth(const Section& section) {
-  section.reject_unknown({"saliency", "picks", "mask"});
+  section.reject_unknown({"saliency", "picks", "mask", "visible_from", "visible_from_direction"});
   TruthPlace truth;
   truth.saliency = read_pattern(section, "saliency", [](std::string_view text) {
     return wrong_with_truth_pattern(text, {"{view}", "{viewer}"});
@@ -48,7 +86,41 @@ TruthPlace read_truth(const Section& section) {
   });
   if (!truth.mask.empty() && truth.saliency.empty())
     section.fail("mask", "is there without saliency: expected a pattern of the files that it masks");
+  truth.cameras = read_cameras(section);
   return truth;
+}
+
+// `units: mm`, or `scale: 0.001`: lengths are shown in metres, or in whatever the scale makes of them.
+LengthUnit read_unit(const Section& root) {
+  static const std::map<std::string, double, std::less<>> kMetres = {
+      {"m", 1}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
+  if (root.has("units") && root.has("scale"))
+    root.fail("scale", "is there beside units: expected one of them");
+  LengthUnit unit;
+  if (const auto name = root.text("units")) {
+    const auto found = kMetres.find(*name);
+    if (found == kMetres.end())
+      root.fail("units",
+                fmt::format("is '{}', expected one of m, dm, cm, mm, um, in, ft; or use scale", *name));
+    unit = {root.where("units"), found->second};
+  } else if (root.has("scale")) {
+    unit.where = root.where("scale");
+    root.read_value("scale", unit.scale);
+    if (!(unit.scale > 0)) root.fail("scale", fmt::format("must be a number above 0, not {}", unit.scale));
+  }
+  return unit;
+}
+
+// Picks, or a rule in place of them.
+void check_positives(const Section& root, const Layout& layout) {
+  if (positive_rule(layout.format.values).by == PositiveRule::By::picks) return;
+  const bool picked =
+      !layout.format.columns.flag.empty() || std::ranges::any_of(layout.places, [](const Place& place) {
+        return std::ranges::any_of(place.truth, [](const TruthPlace& truth) { return !truth.picks.empty(); });
+      });
+  if (picked)
+    root.child("values").fail("positives", fmt::format("is '{}', but there are picks: leave one of them out",
+                                                       layout.format.values.positives));
 }
 
 Place read_place(const Section& section) {
@@ -148,8 +220,8 @@ std::vector<Layout> layouts_of(const std::string& layout) {
 }
 
 Layout read_layout(const Section& root, const std::string& name) {
-  root.reject_unknown(
-      {"automatic", "domain", "classes", "ground_truth", "places", "values", "indices", "columns", "splits"});
+  root.reject_unknown({"automatic", "domain", "classes", "ground_truth", "places", "values", "indices",
+                       "columns", "splits", "units", "scale", "index", "licence"});
   Layout layout;
   layout.name = name;
   root.read_value("domain", layout.domain);
@@ -162,7 +234,14 @@ Layout read_layout(const Section& root, const std::string& name) {
   root.child("columns").read(layout.format.columns);
   layout.splits = read_splits(root);
   for (const Section& place : root.list("places")) layout.places.push_back(read_place(place));
-  if (layout.places.empty()) root.fail("places", "is missing; expected a list of places with meshes");
+  root.read_value("licence", layout.licence);
+  root.read_value("index", layout.index);
+  if (!layout.index.empty() && !layout.places.empty())
+    root.fail("index", "is there beside `places`: a set is in the one form or in files of its own");
+  if (layout.places.empty() && layout.index.empty())
+    root.fail("places", "is missing; expected a list of places with meshes");
+  layout.unit = read_unit(root);
+  check_positives(root, layout);
   return layout;
 }
 

@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
+#include "pipeline/inputs/sizes.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 #include "stages/scan/scan.h"
@@ -77,6 +78,17 @@ void select_split(Dataset& dataset, const std::string& split) {
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
 }
 
+// Of the names in splits that are no items: those of the split asked for are an error, others a note.
+std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& split) {
+  std::vector<SplitEntry> of_split, of_others;
+  for (const SplitEntry& entry : dataset.unknown)
+    (entry.split == split ? of_split : of_others).push_back(entry);
+  if (split.empty() || of_split.empty()) return {};
+  std::erase(dataset.notes, text_of_unknown(dataset.unknown));
+  if (!of_others.empty()) dataset.notes.push_back(text_of_unknown(of_others));
+  return {text_of_unknown(of_split)};
+}
+
 // The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
 // a name that says so.
 std::pair<Level, File> shape_file_of(const DatasetItem& item) {
@@ -88,7 +100,7 @@ std::pair<Level, File> shape_file_of(const DatasetItem& item) {
   const std::string extension = lower_case_extension(item.mesh);
   FileData data;
   if (extension == ".ply") look(file, &data);
-  const bool is_cloud = is_point_cloud(data.text(), item.mesh);
+  const bool is_cloud = holds_cloud(item, data.text());
   if (is_cloud) file.name = "point cloud file " + extension;
   return {is_cloud ? kClouds : kMeshes, std::move(file)};
 }
@@ -102,6 +114,11 @@ const std::vector<LevelInfo>& levels() {
       {.unit = "scan", .units = shapes_name(kScans), .parent = kMeshes, .parts = kViews, .place = "view"},
       {.unit = "cloud", .units = shapes_name(kClouds)}};
   return levels;
+}
+
+bool holds_cloud(const DatasetItem& item, std::string_view bytes) {
+  if (item.indexed) return item.indexed->is_cloud;
+  return has_columns(item) || is_point_cloud(bytes, item.mesh);
 }
 
 const DatasetItem& item_of(const std::any& source) { return std::any_cast<const DatasetItem&>(source); }
@@ -166,6 +183,9 @@ void select_items(Dataset& dataset, const std::string& selection, const std::str
 
 Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard,
                    const std::string& split) {
+  std::vector<std::string> errors;
+  if (selection.empty()) errors = errors_of_split(dataset, split);
+  if (!dataset.unit.where.empty()) fail_mixed_units(dataset);
   select_items(dataset, selection, split);
   std::vector<DatasetItem> items = std::move(dataset.items);
   if (shard) items = share_of(items, *shard);
@@ -179,6 +199,7 @@ Inputs read_inputs(Dataset dataset, const std::string& selection, const std::opt
   });
   return {dataset.layout,
           dataset.notes,
+          std::move(errors),
           Units(levels(), std::move(families)),
           std::make_shared<FileColumn>(std::move(shapes)),
           std::make_shared<FileColumn>(std::move(truths)),

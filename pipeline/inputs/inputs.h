@@ -25,12 +25,13 @@ constexpr std::string_view shapes_name(Level level) { return kShapeNames.at(leve
 const std::vector<LevelInfo>& levels();
 
 struct Inputs {
-  std::string layout = {};              // of the data set
-  std::vector<std::string> notes = {};  // on the data set, for the user
-  Units units = {};                     // a family is a mesh with its scans, or a point cloud
-  FileColumnPtr shape_files = {};       // [family]: one each
-  FileColumnPtr truth_files = {};       // [family]: none where nothing is known about the shape
-  std::optional<Shard> shard = {};      // the units are this share of the data set
+  std::string layout = {};               // of the data set
+  std::vector<std::string> notes = {};   // on the data set, for the user
+  std::vector<std::string> errors = {};  // likewise, of what should be there and is not: the others go on
+  Units units = {};                      // a family is a mesh with its scans, or a point cloud
+  FileColumnPtr shape_files = {};        // [family]: one each
+  FileColumnPtr truth_files = {};        // [family]: none where nothing is known about the shape
+  std::optional<Shard> shard = {};       // the units are this share of the data set
 
   // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;
@@ -39,6 +40,10 @@ struct Inputs {
 };
 
 const DatasetItem& item_of(const std::any& source);  // the source of a family
+
+// True of a point cloud: `bytes` may be the beginning of the file's, and are looked at of .ply alone.
+bool holds_cloud(const DatasetItem& item, std::string_view bytes);
+
 inline const DatasetItem& item_of(const Units& units, Unit unit) {
   return item_of(units.source_of(unit).source);
 }
@@ -49,7 +54,8 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
 void select_items(Dataset& dataset, const std::string& selection, const std::string& split = {});
 
 // The selected items, or one share of them. Reads no file but those whose name does not say which kind of
-// shape they hold. Throws ConfigError as above.
+// shape they hold, unless the description has a unit of length: then shapes of another are told by all sizes.
+// Throws ConfigError as above.
 Inputs read_inputs(Dataset dataset, const std::string& selection = {}, const std::optional<Shard>& shard = {},
                    const std::string& split = {});
 

@@ -12,6 +12,7 @@
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
+#include "pipeline/inputs/sizes.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 
@@ -19,15 +20,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-double diagonal_of(Points points) {
-  Vec3 low = points[0], high = points[0];
-  for (const Vec3& point : points) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  return (high - low).norm();
-}
 
 void add_points(ItemFacts& facts, Points points) {
   facts.points = points.size();
@@ -56,7 +48,7 @@ void read_item(const Family& family, const FilesOfUnit& shape_files, const Files
     add_points(facts, cloud.points);
     if (truth_files.empty()) return;
     const std::vector<FileData> truth = read_all(truth_files);
-    add_truth(facts, measured_cloud_truth(cloud, {family.source, family.name, truth}));
+    add_truth(facts, measured_cloud_truth(cloud, {}, {family.source, family.name, truth}));
   } else {
     const Mesh mesh = load_mesh(in_shape, Remark{facts.remark});
     add_points(facts, mesh.vertices);
@@ -92,6 +84,19 @@ std::vector<std::string> unused_files(const fs::path& root, const Dataset& datas
   return files;
 }
 
+// A unit that no description names may be mixed all the same. Of the views of a shape the first tells.
+void note_odd_sizes(DataInspection& found) {
+  std::vector<double> diagonals;
+  for (const ItemFacts& item : found.items) diagonals.push_back(item.diagonal);
+  const std::vector<std::string> odd = odd_sizes(diagonals);
+  std::set<std::string_view> named;
+  for (std::size_t i = 0; i < odd.size(); ++i)
+    if (!odd[i].empty() && named.insert(found.items[i].shape).second)
+      found.notes.push_back(
+          fmt::format("{}: {}: if it is in another unit, scale it; `units:` in a description makes it fail",
+                      found.items[i].shape, odd[i]));
+}
+
 }  // namespace
 
 std::size_t DataInspection::n_shapes() const {
@@ -112,7 +117,13 @@ DataInspection inspect_data(const fs::path& root, std::span<const Layout> layout
   fs::path folder = root.lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   Dataset dataset = find_dataset(folder, layouts);
-  DataInspection found{dataset.layout, {}, dataset.notes, unused_files(folder, dataset)};
+  DataInspection found{.layout = dataset.layout,
+                       .positives = format_of(dataset.items[0]).values.positives,
+                       .scale = dataset.unit.scale,
+                       .items = {},
+                       .notes = dataset.notes,
+                       .unused = unused_files(folder, dataset)};
+  const bool has_unit = !dataset.unit.where.empty();
   if (!dataset.no_splits.empty()) found.notes.push_back(dataset.no_splits);
   const Inputs inputs = read_inputs(std::move(dataset));
   const std::vector<Family>& families = inputs.units.families();
@@ -125,6 +136,7 @@ DataInspection inspect_data(const fs::path& root, std::span<const Layout> layout
     facts.view = item.view;
     facts.split = item.split;
     facts.category = item.category;
+    facts.of_camera = !item.cameras.empty();
     facts.is_cloud = families[i].level == kClouds;
     try {
       read_item(families[i], inputs.shape_files->files[i], inputs.truth_files->files[i], facts);
@@ -132,6 +144,8 @@ DataInspection inspect_data(const fs::path& root, std::span<const Layout> layout
       facts.problem = error.what();
     }
   });
+  if (!has_unit) note_odd_sizes(found);
+  for (ItemFacts& item : found.items) item.diagonal *= found.scale;
   return found;
 }
 

@@ -9,6 +9,7 @@
 
 #include "io/cloud_file.h"
 #include "io/mesh_file.h"
+#include "io/one_form.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "stages/core/mesh_check.h"
@@ -29,21 +30,32 @@ void make(const Remark& remark, const std::string& name, const std::string& poly
   if (!remark.text.empty()) spdlog::warn("{}: {}", name, remark.text);
 }
 
+PointCloud parsed_cloud(const Files& file) {
+  const DatasetItem& item = item_of(file.source);
+  const std::string& bytes = file.data[0].text();
+  return item.indexed        ? cloud_in_form(bytes, item.mesh)
+         : has_columns(item) ? parse_column_cloud(bytes, item.mesh, item.format->columns)
+                             : parse_cloud(bytes, item.mesh);
+}
+
 }  // namespace
+
+Mesh parsed_mesh(const Files& file, PolygonCounts* polygons) {
+  const DatasetItem& item = item_of(file.source);
+  return item.indexed ? mesh_in_form(file.data[0].text(), item.mesh, polygons)
+                      : parse_mesh(file.data[0].text(), item.mesh, polygons);
+}
 
 Mesh load_mesh(const Files& file, const Remark& remark) {
   PolygonCounts polygons;
-  CheckedMesh checked = check_mesh(parse_mesh(file.data[0].text(), item_of(file.source).mesh, &polygons));
+  CheckedMesh checked = check_mesh(parsed_mesh(file, &polygons));
   for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", file.name, warning);
   make(remark, file.name, polygons_text(polygons), odd_scale(checked.mesh.vertices));
   return std::move(checked.mesh);
 }
 
 PointCloud load_cloud(const Files& file, const Remark& remark) {
-  const DatasetItem& item = item_of(file.source);
-  CheckedCloud checked =
-      check_cloud(has_columns(item) ? parse_column_cloud(file.data[0].text(), item.mesh, item.format->columns)
-                                    : parse_cloud(file.data[0].text(), item.mesh));
+  CheckedCloud checked = check_cloud(parsed_cloud(file));
   for (const std::string& warning : checked.warnings) spdlog::warn("{}: {}", file.name, warning);
   make(remark, file.name, {}, odd_scale(checked.cloud.points));
   return std::move(checked.cloud);

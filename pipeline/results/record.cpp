@@ -162,7 +162,9 @@ std::string run_yaml(const RunRecord& record) {
   yaml += cache_lines(record);
   yaml += remark_lines(record);
   const std::vector<Failure> failures = resolver.failures();
-  yaml += failures.empty() ? "failed: []\n" : "failed:\n";
+  yaml += failures.empty() && inputs.errors.empty() ? "failed: []\n" : "failed:\n";
+  for (const std::string& error : inputs.errors)
+    yaml += fmt::format("  - {{item: \"\", stage: data set, cause: {}}}\n", yaml_quoted(error));
   for (const Failure& failure : failures)
     yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n",
                         yaml_quoted(resolver.project().name(failure.job)),

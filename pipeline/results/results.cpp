@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "pipeline/results/conclusions.h"
 #include "pipeline/results/human_curves.h"
+#include "pipeline/results/smoothing.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/core/check.h"
 
@@ -25,27 +26,35 @@ std::string view_of(const Units& units, Unit unit) {
   return fmt::format("{}{}{}", view, view.empty() ? "" : "_", units.place(unit));
 }
 
-std::vector<ResultRow> collect(const RunState& run, bool of_constant) {
+// Tables of one kind, with as many rows for each shape, of which one is taken.
+struct Taken {
+  Role role = Role::score_table;
+  bool of_constant = false;
+  std::size_t rows_per_shape = 1, row = 0;
+};
+
+std::vector<ResultRow> collect(const RunState& run, const Taken& taken_rows) {
   struct Scored {
     std::size_t scores;  // the rule that the table is made of
     ValuePtr table;
-    std::size_t taken = 0;  // rows of the table
+    std::size_t shapes = 0;  // taken so far
   };
   const Rules& rules = run.project().rules;
   std::vector<Scored> scored;
   for (std::size_t r = 0; r < rules.size(); ++r)
-    if (has_role(rules[r], Role::score_table) && (rules[r].subject == kConstantMap) == of_constant)
+    if (has_role(rules[r], taken_rows.role) && (rules[r].subject == kConstantMap) == taken_rows.of_constant)
       scored.push_back({rules[r].inputs[0], run.resolver.value_so_far({r, Unit{}})});
 
   std::vector<ResultRow> rows;
   for (const Unit unit : run.shapes())
-    for (auto& [rule, table, taken] : scored) {
+    for (auto& [rule, table, shapes] : scored) {
       const Job job{rule, unit};
       if (rules[rule].over != unit.level || !run.decision(job).known()) continue;
       const DatasetItem& item = item_of(run.units(), unit);
+      const std::size_t row = shapes++ * taken_rows.rows_per_shape + taken_rows.row;
       rows.push_back({std::string(shapes_name(unit.level)), item.shape_name(), item.category,
                       view_of(run.units(), unit), rules[rule].subject,
-                      value_as<ScoreTable>(*table).rows.at(taken++), job, item.split});
+                      value_as<ScoreTable>(*table).rows.at(row), job, item.split});
     }
   return rows;
 }
@@ -81,9 +90,14 @@ std::vector<Unit> RunState::shapes() const {
   return shapes;
 }
 
-std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, false); }
+std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, {}); }
 
-std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, true); }
+std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k) {
+  return collect(
+      run, {.role = Role::smoothed_table, .rows_per_shape = run.config.metrics.smoothing.size(), .row = k});
+}
+
+std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, {.of_constant = true}); }
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
   const bool in_splits = std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); });
@@ -126,6 +140,11 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
     else
       write(name, mean_histogram_table(run, level));
   }
+  const std::vector<SmoothedRows> smoothed = smoothed_rows(run, metrics);
+  if (smoothed.empty())
+    remove_file(folder / "smoothing.csv");
+  else
+    write("smoothing.csv", smoothing_table(smoothed, metrics, conclusions.unit));
   write_human_curves(folder, collect_human_curves(run), rows, conclusions, head);
 }
 

@@ -49,6 +49,9 @@ struct RunState {
 // Read from the tables of scores, or for those that are still open from the scores that there are.
 std::vector<ResultRow> collect_results(const RunState& run);
 
+// Likewise of the maps after the k-th number of smoothing steps that the metrics have.
+std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k);
+
 // Likewise of a constant map, by the metrics that score it otherwise on each shape.
 std::vector<ResultRow> collect_constant(const RunState& run);
 
@@ -61,8 +64,9 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics =
 void prepare_output(const std::filesystem::path& folder);
 
 // results.csv, the tables of write_conclusions, mean_histograms_{meshes,scans}.csv,
-// mean_histograms_clouds.csv where there are point clouds and, where HS was computed, those of
-// write_human_curves. Each begins with the remarks, as comments. Throws StorageError.
+// mean_histograms_clouds.csv where there are point clouds, smoothing.csv where maps were smoothed and, where
+// HS was computed, those of write_human_curves. Each begins with the remarks, as comments. Throws
+// StorageError.
 void write_tables(const std::filesystem::path& folder, const RunState& run,
                   const std::vector<ResultRow>& rows, const Conclusions& conclusions,
                   const std::vector<std::string>& remarks);

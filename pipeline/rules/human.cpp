@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "pipeline/inputs/given_truth.h"
-#include "stages/core/centre.h"
 #include "stages/core/field.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
 #include "stages/matching/matching.h"
 
@@ -30,14 +28,12 @@ ScalarField where_seen(const ScalarField& map, const Normalised& normalised) {
 // For metrics that read matched maps, a group's map is matched like a model's, and so is the map of the
 // others, which stands for the ground truth; for others both are as people marked them. What either group has
 // not seen is not compared.
-GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, const MetricsOptions& options,
-                         const Rng& rng) {
+GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarField negatives,
+                         const MetricsOptions& options, const Rng& rng) {
   const auto metrics = std::make_shared<const MetricsByMatching>(options);
   // The same for every pair of groups.
   const auto measures = std::make_shared<const Measures>(
-      mesh.vertices.size(),
-      any_by_area(metrics->all()) ? barycentric_areas(mesh.vertices, mesh.faces) : ScalarField{},
-      any_of_positions(metrics->all()) ? distances_from_centroid(mesh.vertices) : ScalarField{});
+      measures_of(metrics->all(), mesh.vertices.size(), mesh.vertices, mesh.faces, std::move(negatives)));
   const auto draws = std::make_shared<Draws>(rng);
   return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
             return metrics->score([&](std::span<const Metric> of_part, Matching matching) {
@@ -72,20 +68,27 @@ void add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const O
   table.add(
       kMeshes, scores,
       [name = scores.stage](const Mesh& shape, const GroundTruth& truth, const Histogram& reference,
-                            const MetricsOptions& options, const RandomSource& random) {
-        return leave_one_out(shape, truth, group_scorer(shape, reference, options, random.rng(name)));
+                            const CentreDensity* own, const CentreDensity* set, const MetricsOptions& options,
+                            const RandomSource& random) {
+        return leave_one_out(shape, truth,
+                             group_scorer(shape, reference, density_if_known(shape.vertices, own, set),
+                                          options, random.rng(name)));
       },
-      mesh, meshes.ground_truth, meshes.reference, section("metrics", config.metrics), kRandom);
+      mesh, meshes.ground_truth, meshes.reference, meshes.centre_density, meshes.centre_densities,
+      section("metrics", config.metrics), kRandom);
   table.add(
       kMeshes, curve,
       [scores = scores.stage, name = curve.stage](const Mesh& shape, const GroundTruth& truth,
-                                                  const Histogram& reference, const HsOptions& options,
+                                                  const Histogram& reference, const CentreDensity* own,
+                                                  const CentreDensity* set, const HsOptions& options,
                                                   const MetricsOptions& metrics, const RandomSource& random) {
-        return human_curve(shape, truth, options, group_scorer(shape, reference, metrics, random.rng(scores)),
+        return human_curve(shape, truth, options,
+                           group_scorer(shape, reference, density_if_known(shape.vertices, own, set), metrics,
+                                        random.rng(scores)),
                            random.rng(name));
       },
-      mesh, meshes.ground_truth, meshes.reference, section("models." + model.name, *model.human),
-      section("metrics", config.metrics), kRandom);
+      mesh, meshes.ground_truth, meshes.reference, meshes.centre_density, meshes.centre_densities,
+      section("models." + model.name, *model.human), section("metrics", config.metrics), kRandom);
 }
 
 }  // namespace salbench

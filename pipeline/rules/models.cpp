@@ -14,8 +14,10 @@
 #include "stages/models/lvj.h"
 #include "stages/models/mc.h"
 #include "stages/models/ms.h"
+#include "stages/models/nv.h"
 #include "stages/models/ps.h"
 #include "stages/models/rs.h"
+#include "stages/models/vd.h"
 #include "stages/models/vis.h"
 
 namespace salbench {
@@ -64,6 +66,8 @@ std::span<const ModelRow> model_rows() {
       only_if_named(model_row("LCE", 1, lce_saliency)),
       only_if_named(model_row("CB", 1, cb_saliency)),
       only_if_named(model_row("VIS", 1, vis_saliency)),
+      only_if_named(model_row("NV", 1, nv_saliency)),
+      only_if_named(model_row("VD", 1, vd_saliency)),
   };
   return rows;
 }

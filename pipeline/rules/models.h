@@ -36,6 +36,9 @@ struct ShapeOutputs {
   Output<Descriptors> fpfh = {};
   Output<GroundTruth> ground_truth = {};
   Output<Reference> reference = {};
+  // Where a metric compares a shape with the others.
+  Output<CentreDensity> centre_density = {};
+  Output<CentreDensities> centre_densities = {};
   FileColumnPtr map_files = {};  // of a model that takes its maps from outside
 };
 

@@ -19,6 +19,7 @@
 #include "stages/ground_truth/scan_truth.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/matching/matching.h"
+#include "stages/metrics/laplacian.h"
 #include "stages/picture/picture.h"
 
 namespace salbench {
@@ -61,16 +62,36 @@ Histogram mean_over(const Members<T>& members) {
   return mean_histogram(histograms);
 }
 
+CentreDensity sum_of_densities(const Members<CentreDensity>& members) {
+  CentreDensity sum;
+  for (std::size_t i = 0; i < members.size; ++i) add(sum, *members[i]);
+  return sum;
+}
+
 ScoreTable score_table(const Members<Scores>& members) {
   ScoreTable table;
   for (std::size_t i = 0; i < members.size; ++i) table.rows.push_back(*members[i]);
   return table;
 }
 
+ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
+  ScoreTable table;
+  for (std::size_t i = 0; i < members.size; ++i) {
+    const auto member = members[i];
+    table.rows.insert(table.rows.end(), member->rows.begin(), member->rows.end());
+  }
+  return table;
+}
+
 // --- groups of rules ---------------------------------------------------------------------------------------
 
-ScalarField centre_bias_if(bool needed, Points points) {
-  return needed ? distances_from_centroid(points) : ScalarField{};
+// Only where a metric asks for it: of other configurations no job, and no key, knows of it.
+void add_centre_densities(RuleTable& table, ShapeOutputs& shape, const Config& config) {
+  if (!any_of_others(chosen_metrics(config.metrics))) return;
+  shape.centre_density = table.add(shape.level, stage(Role::centre_density, 1), centre_density, shape.points,
+                                   shape.ground_truth);
+  shape.centre_densities = table.add<CentreDensities>(shape.level, stage(Role::centre_densities, 1),
+                                                      sum_of_densities, shape.centre_density);
 }
 
 // Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
@@ -78,16 +99,16 @@ ScalarField centre_bias_if(bool needed, Points points) {
 void add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config, const Model& model,
                 const Output<FieldView>& map, const Output<Matched>& matched_map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
-  const bool by_area = any_by_area(metrics->all()), of_positions = any_of_positions(metrics->all());
   RuleHead head = stage_of(model.name, Role::scores, scores_version(metrics->all()));
   table.add(
       shape.level, head,
-      [name = head.stage, metrics, of_positions](FieldView matched_values, FieldView values,
-                                                 const GroundTruth& truth, Points points, Surface surface,
-                                                 const MetricsOptions& options, const RandomSource& random) {
+      [name = head.stage, metrics](FieldView matched_values, FieldView values, const GroundTruth& truth,
+                                   Points points, Surface surface, const CentreDensity* own,
+                                   const CentreDensity* set, const MetricsOptions& options,
+                                   const RandomSource& random) {
         Draws draws(random.rng(name));
-        const Measures measures(std::max(matched_values.size(), values.size()),
-                                barycentric_areas(points, surface), centre_bias_if(of_positions, points));
+        const Measures measures = measures_of(metrics->all(), std::max(matched_values.size(), values.size()),
+                                              points, surface, density_if_known(points, own, set));
         return metrics->score([&](std::span<const Metric> of_part, Matching read) {
           return read == Matching::histogram
                      ? score(of_part, matched_values, truth, options, draws, measures)
@@ -96,7 +117,8 @@ void add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& confi
       },
       only_if<FieldView>(metrics->any(Matching::histogram), matched_map),
       only_if(metrics->any(Matching::none), map), shape.ground_truth,
-      only_if(by_area || of_positions, shape.points), only_if(by_area, shape.surface),
+      only_if(any_of_points(metrics->all()), shape.points),
+      only_if(any_of_faces(metrics->all()), shape.surface), shape.centre_density, shape.centre_densities,
       section("metrics", config.metrics), kRandom);
 }
 
@@ -112,20 +134,59 @@ void add_constant_scores(RuleTable& table, const ShapeOutputs& shape, const Conf
   const std::vector<Metric> metrics = chosen_metrics(varying);
   table.add(
       shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(metrics)),
-      [metrics, of_positions = any_of_positions(metrics)](const GroundTruth& truth, Points points,
-                                                          Surface surface, const MetricsOptions& options) {
-        return score(metrics, ScalarField(points.size(), 0.5), truth, options, Rng(0, "", ""),
-                     barycentric_areas(points, surface), centre_bias_if(of_positions, points));
+      [metrics](const GroundTruth& truth, Points points, Surface surface, const MetricsOptions& options) {
+        Draws draws(Rng(0, "", ""));
+        return score(metrics, ScalarField(points.size(), 0.5), truth, options, draws,
+                     measures_of(metrics, points.size(), points, surface));
       },
-      shape.ground_truth, shape.points, only_if(any_by_area(metrics), shape.surface),
+      shape.ground_truth, shape.points, only_if(any_of_faces(metrics), shape.surface),
       section("metrics", varying));
 }
 
-void add_model(RuleTable& table, const ShapeOutputs& shape, const Config& config, const Model& model) {
+// The scores of a map after each number of smoothing steps, with the draws of the plain scores. They stand
+// beside all else, and nothing reads them.
+void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const MetricsOptions& chosen,
+                         const Model& model, const Output<FieldView>& map) {
+  const auto metrics = std::make_shared<const MetricsByMatching>(chosen);
+  const bool match = metrics->any(Matching::histogram) && !(model.given && model.given->matched);
+  const auto scored = table.add(
+      shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(metrics->all())),
+      [name = stage_of(model.name, Role::scores, 1).stage, metrics](
+          FieldView plain, const GroundTruth& truth, Points points, Surface surface,
+          const Histogram* reference, const CentreDensity* own, const CentreDensity* set,
+          const MetricsOptions& options, const RandomSource& random) {
+        const Measures measures =
+            measures_of(metrics->all(), points.size(), points, surface, density_if_known(points, own, set));
+        const Adjacency adjacency = edge_adjacency(points.size(), surface);
+        ScalarField values(plain.begin(), plain.end());
+        for (double& value : values)
+          if (std::isnan(value)) value = 0;  // as matching and normalisation have it
+        ScoreTable by_steps;
+        std::int32_t done = 0;
+        for (const std::int32_t steps : smoothing_steps(options)) {
+          values = smoothed_by_steps(std::move(values), adjacency, steps - std::exchange(done, steps));
+          Draws draws(random.rng(name));
+          by_steps.rows.push_back(metrics->score([&](std::span<const Metric> of_part, Matching read) {
+            const bool to_match = read == Matching::histogram && reference != nullptr;
+            return score(of_part, to_match ? matched(values, *reference) : min_max_normalised(values), truth,
+                         options, draws, measures);
+          }));
+        }
+        return by_steps;
+      },
+      map, shape.ground_truth, shape.points, shape.surface,
+      only_if(match, Output<Histogram>(shape.reference.rule)), shape.centre_density, shape.centre_densities,
+      section("metrics", chosen), kRandom);
+  table.add(shape.level, stage_of(model.name, Role::smoothed_table, 1), one_after_the_other, scored);
+}
+
+void add_model(RuleTable& table, const ShapeOutputs& shape, const Config& config,
+               const MetricsOptions& smoothing, const Model& model) {
   const auto match = [](const ScalarField& values, const Histogram& reference) {
     return matched(values, reference);
   };
   const Output<Map> map = model.add_map(table, shape);
+  if (!smoothing.smoothing.empty()) add_smoothed_scores(table, shape, smoothing, model, map);
   if (model.given && model.given->matched)
     return add_scores(table, shape, config, model, map, Output<Matched>(map.rule));
   add_scores(
@@ -216,8 +277,10 @@ void add_score_tables(RuleTable& table) {
 
 }  // namespace
 
-Rules make_rules(const Config& config, const Inputs& inputs,
+Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
                  const std::optional<Histogram>& given_reference) {
+  Config config = with_smoothing;  // plain scores are the same with it and without
+  config.metrics.smoothing.clear();
   RuleTable table;
   ShapeOutputs meshes{.level = kMeshes}, scans{.level = kScans}, clouds{.level = kClouds};
   const bool any_mesh = inputs.has(kMeshes), any_cloud = inputs.has(kClouds);
@@ -260,11 +323,12 @@ Rules make_rules(const Config& config, const Inputs& inputs,
   if (on_meshes) evaluated.push_back(&meshes);
   if (on_scans) evaluated.push_back(&scans);
   if (any_cloud) evaluated.push_back(&clouds);
+  for (ShapeOutputs* shape : evaluated) add_centre_densities(table, *shape, config);
   for (const Model& model : config.models) {
     if (model.human && on_meshes) add_human_performance(table, meshes, mesh, config, model);
     if (model.given) give_map_files(evaluated, inputs.units, model.given);
     for (const ShapeOutputs* shape : evaluated)
-      if (!model.human) add_model(table, *shape, config, model);
+      if (!model.human) add_model(table, *shape, config, with_smoothing.metrics, model);
   }
   for (const ShapeOutputs* shape : evaluated) add_constant_scores(table, *shape, config);
   if (config.pictures != Pictures::none) {

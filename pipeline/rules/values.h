@@ -31,12 +31,17 @@ enum class Role {
   score_table,
   curve,  // of human performance over the number of participants
   picture,
+  centre_density,    // of the ground truth of a shape
+  centre_densities,  // their sum over a set
+  smoothed_scores,   // of the map after each number of smoothing steps
+  smoothed_table,    // [shape][steps], one after the other
 };
 template <>
 struct EnumNames<Role> {
-  static constexpr std::array<std::string_view, 13> names{
-      "shape",   "ground_truth",   "reference", "normals",     "surface", "fpfh",   "map",
-      "matched", "mean_histogram", "scores",    "score_table", "curve",   "picture"};
+  static constexpr std::array<std::string_view, 17> names{
+      "shape",   "ground_truth",   "reference",        "normals",         "surface",       "fpfh",
+      "map",     "matched",        "mean_histogram",   "scores",          "score_table",   "curve",
+      "picture", "centre_density", "centre_densities", "smoothed_scores", "smoothed_table"};
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 
@@ -58,6 +63,10 @@ struct Matched {
 };
 struct Reference {
   using Type = Histogram;
+};
+
+struct CentreDensities {
+  using Type = CentreDensity;
 };
 
 // --- types -------------------------------------------------------------------------------------------------

@@ -22,7 +22,7 @@ class Dataset:
     Parameters
     ----------
     layout : str or path
-        How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder" or "sal3d", or a
+        How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder", "sal3d" or "hdf5", or a
         description of your own (.yaml). docs/data_sets.md has them all.
     root : path
         The folder.

@@ -21,6 +21,8 @@ def score(
     *,
     areas: ArrayLike | None = None,
     points: ArrayLike | None = None,
+    faces: ArrayLike | None = None,
+    negatives: ArrayLike | None = None,
     mask: ArrayLike | None = None,
     metrics: str | Iterable[str] = ("auc", "nss", "cc"),
     reference: ArrayLike | None = None,
@@ -31,7 +33,7 @@ def score(
 
     The map is min-max-normalised; with a `reference` it is histogram-matched first for the metrics that the
     tables read so. A metric for which something is not given is NaN: those of picks without picks, those of
-    saliency without ground truth, those by area without areas.
+    saliency without ground truth, those by area without areas, those of interest points without faces.
 
     Parameters
     ----------
@@ -44,7 +46,11 @@ def score(
     areas : (n,) array, optional
         Weight of each point, for the metrics by area: `vertex_areas` of a mesh.
     points : (n, 3) array, optional
-        Positions, for the metrics that measure against the centre bias.
+        Positions, for the metrics that measure against the centre bias, and those of interest points.
+    faces : (m, 3) array of int, optional
+        Faces between the points, for the metrics of interest points.
+    negatives : (n,) array, optional
+        Weight of each point as a negative of `sauc`: how much people mark other shapes at such a place.
     mask : (n,) array of bool, optional
         Points that count; the others are left out after the map was normalised.
     metrics : str or sequence of str
@@ -78,7 +84,9 @@ def score(
     >>> scores["auc_exact"], round(scores["cc"], 6)
     (1.0, 0.978232)
     """
-    return _core.score(prediction, ground_truth, picks, areas, points, mask, metrics, reference, seed, options)
+    return _core.score(
+        prediction, ground_truth, picks, areas, points, faces, negatives, mask, metrics, reference, seed, options
+    )
 
 
 def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:

@@ -83,6 +83,8 @@ _ABOUT = {
     "LCE": ("Local curvature entropy, in bits.", "limper2016"),
     "CB": ("Centre bias: the distance from the centroid, in R.", "tatler2007"),
     "VIS": ("Visibility: the fraction of directions above a point from which nothing hides it.", ""),
+    "NV": ("Normal variation: one minus the mean dot product of a point's normal with those around it; 0 to 2.", ""),
+    "VD": ("Vertex degree: the number of edges at a point; it knows the meshing alone.", ""),
 }
 
 _ARGUMENTS = ("points", "faces", "normals", "fpfh", "scan", "seed", "item", "threads")

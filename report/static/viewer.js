@@ -54,12 +54,75 @@ salbench.unpack = async function ({description, data}) {
 // Size of a PointsMaterial whose points are `width` wide: three.js 111 leaves the field of view out.
 salbench.spread = (width) => width / Math.tan(Math.PI / 12);
 
+salbench.TRUTH = "Ground truth";
+salbench.DIFFERENCE = ", difference to the ground truth";
+
+// Scales: what of a map its colours show. `below`: the share of the points whose value is lower.
+salbench.BANDS = [[0, 0], [0.5, 0.2], [0.75, 0.4], [0.9, 0.6], [0.95, 0.8], [0.99, 1]]; // [from this share on, place on the palette]
+salbench.scales = {
+  value: {ends: ["lowest value", "highest value"], of: (value) => value},
+  rank: {ends: ["lowest rank", "highest rank"], of: (value, below, most) => below / most},
+  percentile: {ends: ["lower half", "upper half, then top 25, 10, 5 and 1 %"],
+    of: (value, below) => salbench.BANDS.filter(([from]) => below >= from).pop()[1]},
+};
+
+// A map under a scale, 0 to 1 for each point.
+salbench.scaled = function (levels, most, scale) {
+  const counts = new Float64Array(256), table = new Float32Array(256);
+  for (const level of levels) ++counts[level];
+  let last = 255;
+  while (last > 0 && !counts[last]) --last;
+  const range = Math.max(levels.length - counts[last], 1);
+  for (let level = 0, lower = 0; level <= last; lower += counts[level++]) {
+    table[level] = scale.of(level / most, lower / levels.length, range / levels.length);
+  }
+  return Float32Array.from(levels, (level) => table[level]);
+};
+
+// What a label of the menu shows: numbers of the points, and the table of palette.js that they are looked up in.
+salbench.shown = function (shape, label, scale) {
+  const map = (name) => salbench.scaled(shape.maps.get(name), shape.levels, salbench.scales[scale]);
+  if (shape.maps.has(label)) return {numbers: map(label), palette: "palette"};
+  const model = label.slice(0, -salbench.DIFFERENCE.length), truth = map(salbench.TRUTH);
+  const own = map(shape.maps.has(model + ", after matching") ? model + ", after matching" : model + ", before matching");
+  return {numbers: own.map((value, i) => (value - truth[i] + 1) / 2), palette: "diverging"};
+};
+
+// Labels of the menu by the group that they stand in: maps of models, and their differences to the ground truth.
+salbench.labels = function (maps) {
+  const groups = new Map([["", []], ["Before matching", []], ["After matching", []], ["Where a model is wrong", []]]);
+  for (const label of maps.keys()) {
+    const [, model, when] = label.match(/^(.*), (before|after) matching$/) || [];
+    groups.get(when ? when[0].toUpperCase() + when.slice(1) + " matching" : "").push(label);
+    const wrong = groups.get("Where a model is wrong");
+    const difference = model + salbench.DIFFERENCE;
+    if (when && maps.has(salbench.TRUTH) && !wrong.includes(difference)) wrong.push(difference);
+  }
+  return groups;
+};
+
+// A table of palette.js, three numbers a colour.
+salbench.colours = function (name) {
+  return Uint8Array.from(salbench[name].match(/../g), (digits) => parseInt(digits, 16));
+};
+
+// The colours of a scale from its lowest on the left, as a background.
+salbench.legend = function (palette, scale) {
+  const colours = salbench.colours(palette), banded = palette === "palette" && scale === "percentile";
+  const places = banded ? salbench.BANDS.map((band) => band[1]) : Array.from({length: 33}, (_, i) => i / 32);
+  const stops = places.map((place, i) => {
+    const at = 3 * Math.round(255 * place), colour = "rgb(" + colours.slice(at, at + 3).join(",") + ")";
+    return banded ? `${colour} ${100 * i / places.length}% ${100 * (i + 1) / places.length}%` : colour;
+  });
+  return "linear-gradient(to right, " + stops.join(", ") + ")";
+};
+
 // A round dot with a white rim.
 salbench.dot = function () {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 64;
   const context = canvas.getContext("2d");
-  for (const [radius, colour] of [[31, "#ffffff"], [22, "#d55e00"]]) {
+  for (const [radius, colour] of [[31, "#ffffff"], [22, "#" + salbench.pick]]) {
     context.fillStyle = colour;
     context.beginPath();
     context.arc(32, 32, radius, 0, 2 * Math.PI);
@@ -111,11 +174,22 @@ salbench.View = class {
       return;
     }
     const wanted = map || this.mapMenu.value;
-    this.mapMenu.replaceChildren(...Array.from(this.shape.maps.keys(), (label) => new Option(label, label)));
-    this.mapMenu.value = this.shape.maps.has(wanted) ? wanted : this.mapMenu.options[0] ? this.mapMenu.options[0].value : "";
+    this.fillMenu();
+    const known = Array.from(this.mapMenu.options, (option) => option.value);
+    this.mapMenu.value = known.includes(wanted) ? wanted : known[0] || "";
     this.build();
     this.paint();
     this.resize();
+  }
+
+  fillMenu() {
+    this.mapMenu.replaceChildren();
+    for (const [name, labels] of salbench.labels(this.shape.maps)) {
+      const group = name ? document.createElement("optgroup") : this.mapMenu;
+      if (name) group.label = name;
+      for (const label of labels) group.append(new Option(label, label));
+      if (name && labels.length) this.mapMenu.append(group);
+    }
   }
 
   build() {
@@ -152,19 +226,19 @@ salbench.View = class {
   }
 
   paint() {
-    const values = this.shape.maps.get(this.mapMenu.value);
-    const colours = this.object.geometry.getAttribute("color");
+    const label = this.mapMenu.value, scale = salbench.scale;
+    const {numbers, palette} = label ? salbench.shown(this.shape, label, scale) : {palette: "palette"};
+    const table = salbench.colours(palette), colours = this.object.geometry.getAttribute("color");
     for (let i = 0; i < this.shape.points; ++i) {
-      const value = values ? Math.round(values[i] / this.shape.levels * 255) : 0;
+      const start = 3 * Math.round(255 * (numbers ? numbers[i] : 0));
       const shade = this.shape.shade ? 0.45 + 0.55 * this.shape.shade[i] / this.shape.levels : 1;
-      for (let c = 0; c < 3; ++c) {
-        const start = 6 * value + 2 * c;
-        colours.array[3 * i + c] = shade * parseInt(salbench.palette.slice(start, start + 2), 16);
-      }
+      for (let c = 0; c < 3; ++c) colours.array[3 * i + c] = shade * table[start + c];
     }
     colours.needsUpdate = true;
-    this.status.textContent = this.shape.title + ": " + (this.mapMenu.value || "no map") + ", "
-      + this.shape.points + " points";
+    this.status.textContent = this.shape.title + ": " + (label || "no map") + ", " + this.shape.points + " points";
+    this.root.querySelector("[data-part=legend]").style.backgroundImage = salbench.legend(palette, scale);
+    const ends = palette === "palette" ? salbench.scales[scale].ends : ["only people look", "only the model looks"];
+    for (const [end, text] of ends.entries()) this.root.querySelectorAll("[data-part=end]")[end].textContent = text;
     this.draw();
   }
 
@@ -205,7 +279,9 @@ salbench.view = async function (root) {
   const entries = JSON.parse(root.dataset.shapes);
   const coupled = root.querySelector("[data-part=coupled]");
   const picks = root.querySelector("[data-part=picks]");
+  const scale = root.querySelector("[data-part=scale]");
   salbench.picks = picks.checked;
+  salbench.scale = scale.value;
   let following = false; // a view that follows the other does not lead it back
   const views = [];
   const follow = (leader) => {
@@ -217,6 +293,10 @@ salbench.view = async function (root) {
   for (const part of root.querySelectorAll(".view")) views.push(new salbench.View(part, entries, follow));
   salbench.views = views;
   coupled.addEventListener("change", () => follow(views[0]));
+  scale.addEventListener("change", () => {
+    salbench.scale = scale.value;
+    for (const view of views) if (view.shape) view.paint();
+  });
   picks.addEventListener("change", () => {
     salbench.picks = picks.checked;
     for (const view of views) if (view.dots) { view.dots.visible = picks.checked; view.draw(); }

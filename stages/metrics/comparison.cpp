@@ -5,11 +5,12 @@
 #include <limits>
 
 #include "stages/core/field.h"
+#include "stages/metrics/shuffled_roc.h"
 
 namespace salbench {
 namespace {
 
-std::size_t index(Weighting weighting) { return static_cast<std::size_t>(weighting); }
+std::size_t slot(Weighting weighting) { return static_cast<std::size_t>(weighting); }
 
 template <class T, class Make>
 const T& once(std::optional<T>& value, const Make& make) {
@@ -22,7 +23,7 @@ const T& once(std::optional<T>& value, const Make& make) {
 const Distribution& Comparison::map_distribution(Weighting weighting) const {
   return once(map_distributions_, [&] {
     return distributions(compared_.map, ascending_order(compared_.map), compared_.measures);
-  })[index(weighting)];
+  })[slot(weighting)];
 }
 
 const Order& Comparison::saliency_order() const {
@@ -32,22 +33,32 @@ const Order& Comparison::saliency_order() const {
 const PairMoments& Comparison::with_saliency(Weighting weighting) const {
   return once(with_saliency_, [&] {
     return pair_moments(alike(compared_.map), alike(compared_.saliency), compared_.measures);
-  })[index(weighting)];
+  })[slot(weighting)];
 }
 
 const Moments& Comparison::map_moments(Weighting weighting) const {
   if (!compared_.saliency.empty()) return with_saliency(weighting).a;
-  return once(map_moments_, [&] { return moments(compared_.map, compared_.measures); })[index(weighting)];
+  return once(map_moments_, [&] { return moments(compared_.map, compared_.measures); })[slot(weighting)];
 }
 
 const ScalarField& Comparison::normalised_map() const {
   return once(normalised_map_, [&] { return min_max_normalised(compared_.map); });
 }
 
+std::span<const double> Comparison::floored(std::span<const double> map,
+                                            std::optional<ScalarField>& kept) const {
+  if (compared_.floor == 0) return map;
+  return once(kept, [&] {
+    ScalarField raised(map.begin(), map.end());
+    for (double& value : raised) value = std::max(value, compared_.floor);
+    return raised;
+  });
+}
+
 Distributed Comparison::map_distributed(Weighting weighting) const {
   const auto& densities =
-      once(map_densities_, [&] { return densities_of_map(compared_.map, compared_.measures); });
-  return {compared_.map, densities[index(weighting)]};
+      once(map_densities_, [&] { return densities_of_map(density_map(), compared_.measures); });
+  return {density_map(), densities[slot(weighting)]};
 }
 
 Distributed Comparison::uniform(Weighting weighting) const {
@@ -58,7 +69,7 @@ Distributed Comparison::centre_bias(Weighting weighting) const {
   const ScalarField& bias = compared_.measures.centre_bias;
   if (bias.empty()) return {};
   const auto& densities = once(centre_densities_, [&] { return densities_of_map(bias, compared_.measures); });
-  return {bias, densities[index(weighting)]};
+  return {bias, densities[slot(weighting)]};
 }
 
 const DensityScores& Comparison::density_scores(Weighting weighting) const {
@@ -66,19 +77,20 @@ const DensityScores& Comparison::density_scores(Weighting weighting) const {
     const Densities densities = {map_distributed(Weighting::vertex).density,
                                  map_distributed(Weighting::area).density};
     return salbench::density_scores(
-        {compared_.map, compared_.raw_saliency, normalised_map(), compared_.saliency, densities},
+        {density_map(), compared_.raw_saliency, floored(normalised_map(), floored_normalised_map_),
+         compared_.saliency, densities},
         compared_.measures);
-  })[index(weighting)];
+  })[slot(weighting)];
 }
 
 const Errors& Comparison::errors(Weighting weighting) const {
   return once(errors_, [&] {
     return salbench::errors(normalised_map(), compared_.saliency, compared_.measures);
-  })[index(weighting)];
+  })[slot(weighting)];
 }
 
 const TopScores& Comparison::top_scores(Weighting weighting) const {
-  return once(top_scores_[index(weighting)], [&] {
+  return once(top_scores_[slot(weighting)], [&] {
     return salbench::top_scores({compared_.map, map_distribution(weighting), map_moments(weighting),
                                  compared_.saliency, saliency_order()},
                                 measure(weighting));
@@ -96,7 +108,33 @@ double Comparison::spearman(Weighting weighting) const {
                            ? pair_moments(alike(map_vertex), alike(vertex), compared_.measures)
                            : pair_moments({map_vertex, map_area}, {vertex, area}, compared_.measures);
     return std::array{correlation(pairs[0]), correlation(pairs[1])};
-  })[index(weighting)];
+  })[slot(weighting)];
+}
+
+double Comparison::cosine(Weighting weighting) const {
+  return salbench::cosine(compared_.map, compared_.raw_saliency, measure(weighting));
+}
+
+double Comparison::divergence(Weighting weighting, const DivergenceFloors& floors) const {
+  return salbench::divergence(density_map(), compared_.raw_saliency, floors, weighting, compared_.measures);
+}
+
+double Comparison::shuffled_auc(std::span<const std::int32_t> picked, Weighting weighting) const {
+  return salbench::shuffled_auc(compared_.map, picked, compared_.measures.negatives, measure(weighting));
+}
+
+bool Comparison::has_surface() const {
+  return compared_.measures.surface && !compared_.measures.surface->edges.neighbours.empty();
+}
+
+const InterestPointScores& Comparison::interest_points(std::span<const std::int32_t> picked,
+                                                       const LocalMaximaOptions& options,
+                                                       double tolerance) const {
+  return once(of(picked).interest_points, [&] {
+    const SurfaceGraph& surface = *compared_.measures.surface;
+    const auto& detected = once(detected_, [&] { return local_maxima(normalised_map(), surface, options); });
+    return interest_point_scores(detected, picked, surface, tolerance);
+  });
 }
 
 // Picks that are all distinct are the same with multiplicity.
@@ -108,7 +146,7 @@ Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked) const 
 
 Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked, const Splits& splits) const {
   OfPicks& known = of(picked);
-  if (known.splits != splits) known = {std::move(known.picked), splits, {}, {}, std::move(known.groups)};
+  if (known.splits != splits) known.splits = splits, known.quantile_areas = {}, known.sampled_auc = {};
   return known;
 }
 

@@ -13,6 +13,8 @@
 #include "stages/metrics/density.h"
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/draws.h"
+#include "stages/metrics/interest_points.h"
+#include "stages/metrics/local_maxima.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
 #include "stages/metrics/picks.h"
@@ -28,6 +30,7 @@ struct Compared {
   std::span<const double> saliency = {};      // n, the ground truth, min-max-normalised; may be empty
   std::span<const double> raw_saliency = {};  // the same as people marked it
   const Measures& measures;                   // of the shape
+  double floor = 0;                           // least value of the map where it is read as a density
 };
 
 // Not for several threads.
@@ -48,6 +51,8 @@ class Comparison {
   const TopScores& top_scores(Weighting weighting) const;
   double cc(Weighting weighting) const;
   double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
+  double cosine(Weighting weighting) const;    // of the ground truth as people marked it
+  double divergence(Weighting weighting, const DivergenceFloors& floors) const;
   // Areas under the curves of some picks whose negatives are quantiles, all of them at once.
   struct QuantileAreas {
     double even_by_area;
@@ -56,11 +61,18 @@ class Comparison {
   const QuantileAreas& quantile_areas(std::span<const std::int32_t> picked, const Splits& splits) const;
   double sampled_auc(std::span<const std::int32_t> picked, const Splits& splits) const;
   const std::vector<PickGroup>& pick_groups(std::span<const std::int32_t> picked) const;
+  double shuffled_auc(std::span<const std::int32_t> picked, Weighting weighting) const;
+  // These need a surface, and the same options each time. `picked`: with multiplicity.
+  bool has_surface() const;
+  const InterestPointScores& interest_points(std::span<const std::int32_t> picked,
+                                             const LocalMaximaOptions& options, double tolerance) const;
 
  private:
   const PairMoments& with_saliency(Weighting weighting) const;
   const Order& saliency_order() const;
   const ScalarField& normalised_map() const;  // min-max
+  std::span<const double> floored(std::span<const double> map, std::optional<ScalarField>& kept) const;
+  std::span<const double> density_map() const { return floored(compared_.map, floored_map_); }
 
   template <class T>
   using Both = std::optional<std::array<T, 2>>;  // [weighting]
@@ -72,6 +84,7 @@ class Comparison {
     std::optional<QuantileAreas> quantile_areas = {};
     std::optional<double> sampled_auc = {};
     std::optional<std::vector<PickGroup>> groups = {};
+    std::optional<InterestPointScores> interest_points = {};
   };
   OfPicks& of(std::span<const std::int32_t> picked) const;
   OfPicks& of(std::span<const std::int32_t> picked, const Splits& splits) const;
@@ -79,7 +92,8 @@ class Comparison {
   Compared compared_;
   Draws& draws_;
   mutable std::optional<Order> saliency_order_;
-  mutable std::optional<ScalarField> normalised_map_;
+  mutable std::optional<ScalarField> normalised_map_, floored_map_, floored_normalised_map_;
+  mutable std::optional<std::vector<std::int32_t>> detected_;  // interest points of the map
   mutable Both<Distribution> map_distributions_;
   mutable Both<Moments> map_moments_;        // without saliency
   mutable Both<PairMoments> with_saliency_;  // of map and saliency

@@ -187,13 +187,36 @@ class ScoreSums {
   std::array<PerWeighting, kBlock> log_ratios_, smoothed_log_ratios_;  // of the block
 };
 
+WeighedSum weighed_sum(std::span<const double> field, const Measures& measures, double added) {
+  CHECK_EQ(field.size(), measures.size());
+  WeighedSum weighed{added};
+  for (std::size_t i = 0; i < field.size(); ++i) weighed.add(measures.weight(i), field[i]);
+  return weighed;
+}
+
 }  // namespace
 
-Densities densities_of_map(std::span<const double> map, const Measures& measures) {
-  CHECK_EQ(map.size(), measures.size());
-  WeighedSum weighed;
-  for (std::size_t i = 0; i < map.size(); ++i) weighed.add(measures.weight(i), map[i]);
-  return both<of_map>(map, weighed, measures);
+Densities densities_of_map(std::span<const double> map, const Measures& measures, double added) {
+  return both<of_map>(map, weighed_sum(map, measures, added), measures);
+}
+
+Densities densities_of_truth(std::span<const double> saliency, const Measures& measures, double added) {
+  return both<of_truth>(saliency, weighed_sum(saliency, measures, added), measures);
+}
+
+double divergence(std::span<const double> map, std::span<const double> saliency,
+                  const DivergenceFloors& floors, Weighting weighting, const Measures& measures) {
+  const auto k = static_cast<std::size_t>(weighting);
+  const Density of_map = densities_of_map(map, measures, floors.values)[k];
+  const Density of_truth = densities_of_truth(saliency, measures, floors.values)[k];
+  if (!of_map.defined() || !of_truth.defined()) return kUndefined;
+  const Measure& measure = measures[weighting];
+  double sum = 0;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const double p = of_map.of(map[i]) + floors.densities, g = of_truth.of(saliency[i]) + floors.densities;
+    sum += measure.weight[i] * g * std::log(floors.quotient + g / (p + floors.quotient));
+  }
+  return sum / measure.unit;
 }
 
 std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measures& measures) {

@@ -33,7 +33,8 @@ struct Density {
   double of(double value) const { return scale * value + offset; }
 };
 using Densities = std::array<Density, 2>;  // [weighting]
-Densities densities_of_map(std::span<const double> map, const Measures& measures);
+Densities densities_of_map(std::span<const double> map, const Measures& measures, double added = 0);
+Densities densities_of_truth(std::span<const double> saliency, const Measures& measures, double added = 0);
 
 struct DensityInput {
   std::span<const double> map, saliency;                        // n; the ground truth as people marked it
@@ -53,6 +54,21 @@ struct DensityScores {
   double sim, sim_of_normalised;
 };
 std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measures& measures);  // [weighting]
+
+// What a convention adds, and where, so that the divergence is finite: to the values of both fields, to the
+// quotient of the densities and its denominator, or to both densities.
+struct DivergenceFloors {
+  double values = 0, quotient = 0, densities = 0;
+};
+inline constexpr DivergenceFloors kKerasFloors = {.quotient = 1e-7};  // [cornia2018], [kroner2020]
+inline constexpr DivergenceFloors kCaffeFloors = {.quotient = 1e-6};  // [liu2018]
+inline constexpr DivergenceFloors kPysaliencyFloors = {.values = 1e-20};
+inline constexpr DivergenceFloors kShiftedFloors = {.densities = 1e-12};
+
+// Kullback-Leibler divergence of the map from the ground truth by any of these, in nats:
+// sum (w/u) (g + d) ln(q + (g + d) / (p + d + q)), p and g the densities of the values + v.
+double divergence(std::span<const double> map, std::span<const double> saliency,
+                  const DivergenceFloors& floors, Weighting weighting, const Measures& measures);
 
 // Mean of the squared, or the absolute, difference of the normalised values, which may be of negative ones.
 // NaN for a constant ground truth, which has no normalised values, unless it is zero.

@@ -7,6 +7,8 @@
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/metrics/surface_graph.h"
 
 namespace salbench {
 
@@ -34,6 +36,14 @@ Measures::Measures(std::size_t n, std::span<const double> areas, std::span<const
       centre_bias(centre.begin(), centre.end()) {
   CHECK_EQ(area.size(), n);
   if (!centre.empty()) CHECK_EQ(centre.size(), n);
+}
+
+Measures Measures::at(std::span<const std::int32_t> points) const {
+  const auto of = [&](const ScalarField& field) { return field.empty() ? field : values_at(field, points); };
+  Measures some(points.size(), values_at(area.weight, points), of(centre_bias));
+  some.negatives = of(negatives);
+  if (surface) some.surface = std::make_shared<const SurfaceGraph>(surface->at(points));
+  return some;
 }
 
 bool is_constant(std::span<const double> field, const Measure& measure) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -40,7 +41,9 @@ Measure area_measure(std::span<const double> areas);
 // two of a PerWeighting wait together.
 using PerWeighting = Eigen::Array2d;
 
-// Both measures of a shape, and its centre bias.
+struct SurfaceGraph;
+
+// What metrics read of a shape beside map and ground truth: both measures, and what some of them need.
 struct Measures {
   // areas: n, or none, and nothing is weighed by them; centre: n values >= 0, or none.
   Measures(std::size_t n, std::span<const double> areas, std::span<const double> centre = {});
@@ -50,9 +53,12 @@ struct Measures {
   }
   PerWeighting weight(std::size_t i) const { return {vertex.weight[i], area.weight[i]}; }
   std::size_t size() const { return vertex.size(); }
+  Measures at(std::span<const std::int32_t> points) const;  // of these points alone
 
   Measure vertex, area;
   ScalarField centre_bias;  // not a density yet: relative to each other
+  ScalarField negatives;    // n weights >= 0 of the points as negatives of sauc; empty if not known
+  std::shared_ptr<const SurfaceGraph> surface;  // none if not known
 };
 
 // A field that may have other values by area, as ranks have. Both are n long.

@@ -3,6 +3,7 @@
 // follow from them. The paper's come first: stored scores and tables have them in this order.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "stages/core/field.h"
@@ -78,9 +79,28 @@ double top_nss(const MetricInput& in) {
   return in.options.constant_nss;
 }
 
+template <const DivergenceFloors& floors>
+double of_divergence(const MetricInput& in) {
+  return in.comparison.divergence(in.weighting, floors);
+}
+
+double cosine_of_fields(const MetricInput& in) { return in.comparison.cosine(in.weighting); }
+
+double shuffled(const MetricInput& in) { return in.comparison.shuffled_auc(in.picked, in.weighting); }
+
+template <double InterestPointScores::*value>
+double of_interest_points(const MetricInput& in) {
+  if (!in.comparison.has_surface()) return kUndefined;
+  const MetricsOptions& options = in.options;
+  return in.comparison.interest_points(in.picked, {options.peak_radius, options.peak_height},
+                                       options.tolerance).*
+         value;
+}
+
 struct BaseMetric {
   Metric metric;
-  bool of_picks = false;  // picks have a multiplicity
+  bool of_picks = false;   // picks have a multiplicity
+  bool of_measure = true;  // points have a weight
 };
 
 // Its literature scores maps as models make them.
@@ -95,7 +115,59 @@ BaseMetric varying(BaseMetric row) {
   return row;
 }
 
+// Points are found or not: how many vertices there are, and of which area, does not count.
+BaseMetric of_points(Metric metric, bool higher_is_better) {
+  metric.higher_is_better = higher_is_better;
+  metric.picks = PickCount::multiplicity;
+  metric.matching = Matching::none;
+  metric.reads_surface = true;
+  return {std::move(metric), false, false};
+}
+
 constexpr const char* kDeviations = "standard deviations";
+
+BaseMetric divergence_row(const char* name, const char* what, double (*value)(const MetricInput&)) {
+  return varying(
+      unmatched({{name, "nats", std::string("Kullback-Leibler divergence from the ground truth, ") + what,
+                  value, 1, false}}));
+}
+
+// What came after the first release.
+std::vector<BaseMetric> later_metrics() {
+  using Points = InterestPointScores;
+  BaseMetric against_others = unmatched(
+      {{"sauc", "1",
+        "as auc_exact, negatives where the other shapes of the set are marked, by the distance from "
+        "the centroid",
+        shuffled},
+       true});
+  against_others.metric.reads_others = true;
+  return {
+      varying(unmatched({{"cosine", "1", "cosine of the angle between map and ground truth as they are",
+                          of_saliency<cosine_of_fields>}})),
+      divergence_row("kl_keras", "1e-7 added to densities", of_saliency<of_divergence<kKerasFloors>>),
+      divergence_row("kl_caffe", "1e-6 added to densities", of_saliency<of_divergence<kCaffeFloors>>),
+      divergence_row("kl_pysaliency", "1e-20 added to values", of_saliency<of_divergence<kPysaliencyFloors>>),
+      divergence_row("kl_shifted", "1e-12 added to both densities",
+                     of_saliency<of_divergence<kShiftedFloors>>),
+      against_others,
+      of_points({"fne", "1", "share of the marked points that no local maximum of the map is at",
+                 of_interest_points<&Points::fne>},
+                false),
+      of_points({"fpe", "1", "share of the local maxima of the map that are at no marked point",
+                 of_interest_points<&Points::fpe>},
+                false),
+      of_points(
+          {"wme", "1", "fne, a marked point as often as it was marked", of_interest_points<&Points::wme>},
+          false),
+      of_points({"precision", "1", "share of the local maxima of the map with a marked point nearby",
+                 of_interest_points<&Points::precision>},
+                true),
+      of_points({"recall", "1", "share of the marked points with a local maximum of the map nearby",
+                 of_interest_points<&Points::recall>},
+                true),
+  };
+}
 
 std::vector<BaseMetric> base_metrics() {
   std::vector<BaseMetric> rows = {
@@ -148,6 +220,7 @@ std::vector<BaseMetric> base_metrics() {
                  true}));
   over_centre_bias.metric.reads_positions = true;
   rows.push_back(over_centre_bias);
+  std::ranges::move(later_metrics(), std::back_inserter(rows));
   return rows;
 }
 
@@ -163,6 +236,7 @@ std::vector<Metric> all_metrics() {
     twin.picks = PickCount::multiplicity;
   }
   for (std::size_t row = 0, per_vertex = table.size(); row < per_vertex; ++row) {
+    if (row < base.size() && !base[row].of_measure) continue;
     Metric twin = table[row];
     twin.help = twin.name + ", points weighed by their area";
     twin.name += "_area";

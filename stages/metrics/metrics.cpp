@@ -2,17 +2,21 @@
 #include "stages/metrics/metrics.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "stages/core/centre.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
+#include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
 #include "stages/metrics/roc.h"
 #include "stages/metrics/sampled_roc.h"
+#include "stages/metrics/surface_graph.h"
 
 namespace salbench {
 namespace {
@@ -51,6 +55,27 @@ GroundTruth scaled(GroundTruth truth, double scale) {
 }
 
 }  // namespace
+
+void check(const MetricsOptions& options) {
+  check_ranges(options);
+  smoothing_steps(options);
+}
+
+std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options) {
+  constexpr std::int32_t kMostSteps = 100000;
+  std::vector<std::int32_t> steps;
+  for (const std::string& word : options.smoothing) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), steps.emplace_back());
+    if (error != std::errc() || end != word.data() + word.size() || steps.back() < 0 ||
+        steps.back() > kMostSteps)
+      throw OptionError("smoothing",
+                        "has '" + word + "', not a number of steps from 0 to " + std::to_string(kMostSteps));
+    if (steps.size() > 1 && steps.back() <= steps.end()[-2])
+      throw OptionError("smoothing", "has " + word + " after " + std::to_string(steps.end()[-2]) +
+                                         ": expected ascending numbers of steps");
+  }
+  return steps;
+}
 
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {
@@ -114,6 +139,28 @@ bool any_of_positions(std::span<const Metric> metrics) {
   return std::ranges::any_of(metrics, &Metric::reads_positions);
 }
 
+bool any_of_others(std::span<const Metric> metrics) {
+  return std::ranges::any_of(metrics, &Metric::reads_others);
+}
+
+bool any_of_points(std::span<const Metric> metrics) {
+  return any_of_positions(metrics) || any_of_others(metrics) || any_of_faces(metrics);
+}
+
+bool any_of_faces(std::span<const Metric> metrics) {
+  return any_by_area(metrics) || std::ranges::any_of(metrics, &Metric::reads_surface);
+}
+
+Measures measures_of(std::span<const Metric> metrics, std::size_t n, Points points, Surface surface,
+                     ScalarField negatives) {
+  Measures measures(n, any_by_area(metrics) ? barycentric_areas(points, surface) : ScalarField{},
+                    any_of_positions(metrics) ? distances_from_centroid(points) : ScalarField{});
+  if (std::ranges::any_of(metrics, &Metric::reads_surface))
+    measures.surface = std::make_shared<const SurfaceGraph>(surface_graph(points, surface));
+  measures.negatives = std::move(negatives);
+  return measures;
+}
+
 Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
              const MetricsOptions& options, Draws& draws, const Measures& measures) {
   check(options);
@@ -122,10 +169,7 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
   CHECK_EQ(measures.size(), map.size());
   if (const auto seen = seen_points(truth.saliency)) {
     if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
-    const ScalarField& centre = measures.centre_bias;
-    const Measures of_seen(seen->size(), values_at(measures.area.weight, *seen),
-                           centre.empty() ? centre : values_at(centre, *seen));
-    return score(metrics, values_at(map, *seen), truth_at(truth, *seen), options, draws, of_seen);
+    return score(metrics, values_at(map, *seen), truth_at(truth, *seen), options, draws, measures.at(*seen));
   }
   require_finite(map, "the map");
   require_finite(truth.saliency, "the ground truth");
@@ -134,7 +178,7 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
   if (const double scale = scale_against_overflow(truth.saliency); scale != 1)
     return score(metrics, map, scaled(truth, scale), options, draws, measures);
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
-  const Comparison comparison({map, saliency, truth.saliency, measures}, draws);
+  const Comparison comparison({map, saliency, truth.saliency, measures, options.floor}, draws);
   Scores scores;
   for (const Metric& metric : metrics) {
     const bool without_areas = metric.weighting == Weighting::area && measures.area.empty();
@@ -163,8 +207,12 @@ Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOpti
 std::optional<double> score_of_constant(const Metric& metric, const MetricsOptions& options) {
   if (metric.constant_varies) return {};
   const GroundTruth truth{{0, 0.5, 1}, {{1}}};  // of any shape: three points
-  const ScalarField areas(3, 1.0);
-  return score({&metric, 1}, ScalarField(3, kMiddle), truth, options, Rng(0, "", ""), areas).values[0];
+  Measures measures(3, ScalarField(3, 1.0));
+  measures.negatives = ScalarField(3, 1.0);
+  measures.surface = std::make_shared<const SurfaceGraph>(
+      surface_graph(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Faces{{0, 1, 2}}));
+  Draws draws = no_draws();
+  return score({&metric, 1}, ScalarField(3, kMiddle), truth, options, draws, measures).values[0];
 }
 
 MetricsByMatching::MetricsByMatching(const MetricsOptions& options) : all_(chosen_metrics(options)) {

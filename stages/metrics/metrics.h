@@ -33,6 +33,11 @@ struct MetricsOptions {
   double constant_nss = 0;
   std::vector<std::string> names = {"auc", "auc_exact", "nss", "cc", "lcc"};
   ByName<Matching> matching = {};
+  double floor = 0;
+  double peak_radius = 0;
+  double peak_height = 1;
+  double tolerance = 0.03;
+  std::vector<std::string> smoothing = {};
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -48,8 +53,26 @@ struct MetricsOptions {
            "",
            {},
            "{}"});
+    visit("floor", self.floor,
+          {"least value of maps in [0, 1] that are read as densities", "", between(0, 1), "0"});
+    visit("peak_radius", self.peak_radius,
+          {"neighbourhood of interest points, the local maxima of a map; 0: the points next to them", "R",
+           at_least(0), "0"});
+    visit("peak_height", self.peak_height,
+          {"least height of interest points", "mean height of the local maxima", at_least(0), "1"});
+    visit("tolerance", self.tolerance,
+          {"distance at which an interest point is found", "diameter", above(0), "0.03"});
+    visit("smoothing", self.smoothing,
+          {"scores of smoothed maps beside the others: numbers of steps, such as [0, 10, 40, 120]",
+           "",
+           {},
+           "[]"});
   }
 };
+
+void check(const MetricsOptions& options);  // throws OptionError
+
+std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options);  // throws OptionError
 
 // Area under the ROC curve by the paper's protocol: as many negatives as there are picks are drawn with
 // replacement from all points but the first, once per split. NaN without picks or with a single point.
@@ -97,6 +120,8 @@ struct Metric {
   PickCount picks = PickCount::once;
   Matching matching = Matching::histogram;  // unless the options say otherwise
   bool reads_positions = false;             // of the points
+  bool reads_surface = false;               // distances along it
+  bool reads_others = false;                // ground truth of the other shapes of the set
   bool constant_varies = false;             // the score of a constant map differs from shape to shape
 };
 
@@ -115,10 +140,18 @@ std::int32_t scores_version(std::span<const Metric> metrics);
 
 bool any_by_area(std::span<const Metric> metrics);  // they read the areas of the points
 bool any_of_positions(std::span<const Metric> metrics);
+bool any_of_others(std::span<const Metric> metrics);
+bool any_of_points(std::span<const Metric> metrics);  // they read where the points are
+bool any_of_faces(std::span<const Metric> metrics);
+
+// What these metrics read of a shape of n points. None of it is needed if they read none: `points` and
+// `surface` may be empty then. `negatives` are the weights of the points as negatives of sauc.
+Measures measures_of(std::span<const Metric> metrics, std::size_t n, Points points, Surface surface,
+                     ScalarField negatives = {});
 
 // The metrics of one map, in their order. What the ground truth has nothing for is NaN: metrics of picks
 // without picks, metrics of saliency without saliency values, metrics by area without areas, and those of the
-// centre bias where it is not known. Points
+// centre bias, of the surface or of other shapes where it is not known. Points
 // whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. A constant map
 // counts as 0.5 everywhere, whichever constant it is. Throws InputError where the ground truth is not of this
 // shape: picks out of range, or another number of points; and for other values that are not finite.

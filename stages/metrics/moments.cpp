@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/moments.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -50,6 +51,24 @@ double correlation(const PairMoments& pair) {
   if (!(pair.total > 0)) return std::numeric_limits<double>::quiet_NaN();
   if (pair.a.constant || pair.b.constant) return 0;
   return pair.products / (std::sqrt(pair.a.squares) * std::sqrt(pair.b.squares));
+}
+
+double cosine(std::span<const double> a, std::span<const double> b, const Measure& measure) {
+  // In units of the largest magnitude, so that no square overflows or vanishes.
+  const auto unit = [&](std::span<const double> field) {
+    double largest = 0;
+    for (const double value : field) largest = std::max(largest, std::abs(value));
+    return largest;
+  };
+  const double unit_a = unit(a), unit_b = unit(b);
+  double products = 0, squares_a = 0, squares_b = 0;
+  for (std::size_t i = 0; i < measure.size(); ++i) {
+    const double of_a = a[i] / unit_a, of_b = b[i] / unit_b;
+    products += measure.weight[i] * of_a * of_b;
+    squares_a += measure.weight[i] * of_a * of_a;
+    squares_b += measure.weight[i] * of_b * of_b;
+  }
+  return products / (std::sqrt(squares_a) * std::sqrt(squares_b));
 }
 
 }  // namespace salbench

@@ -31,4 +31,7 @@ std::array<Moments, 2> moments(std::span<const double> field, const Measures& me
 // Pearson correlation; 0 where one of the two is constant, NaN over nothing.
 double correlation(const PairMoments& pair);
 
+// Cosine of the angle between two fields, weighed; NaN where one of the two is zero or the measure is empty.
+double cosine(std::span<const double> a, std::span<const double> b, const Measure& measure);
+
 }  // namespace salbench

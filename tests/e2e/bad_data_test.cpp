@@ -255,6 +255,49 @@ TEST(BadData, AMeshThatNoRayMeetsKeepsItsOwnScores) {
                                         JobCounts(kMeshesOnly, 1).of_kind("scores")));
 }
 
+// A described archive in which one item is wrong and a split names one that is not there.
+TEST(BadArchive, EndsWithStatus1AndTheOthersAreScored) {
+  const Workspace toy;
+  for (const char* item : {"ant", "bee"}) {
+    toy.write(fmt::format("data set/off/{}.off", item), off_text(shapes::bumpy_sphere(1)));
+    std::string values;
+    for (int i = 0; i < 42; ++i) values += fmt::format("{}\n", i);
+    toy.write(fmt::format("data set/maps/{}.txt", item), values);
+  }
+  const fs::path own = toy.write("own.yaml",
+                                 "units: mm\nplaces:\n  - meshes: off/*\n    truth: {saliency: "
+                                 "'maps/{item}.txt', visible_from: [0, 0, 9]}\n"
+                                 "values: {positives: top 20%}\nsplits: {items: {test: [ant, bee, eel]}}\n");
+  const auto run = [&](const std::string& split) {
+    toy.configure(fmt::format("dataset: {{layout: '{}', scans: false, split: {}}}\nmodels: {{RS: }}\n",
+                              own.string(), split));
+    return toy.salbench("run");
+  };
+  const std::string unknown =
+      own.string() + ":6: the split 'test' names 'eel', which is no item of the data set: ";
+  Outcome outcome = run("test");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("\n1 failed:\n  data set: " + unknown));
+  EXPECT_THAT(scored_items(toy), ElementsAre("ant", "bee"));
+  EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("stage: data set, cause: \"" + unknown));
+  outcome = run("''");
+  EXPECT_EQ(outcome.status, 0) << "a warning where no split is asked for";
+  EXPECT_THAT(outcome.err, HasSubstr("warning: " + unknown));
+  toy.write("data set/maps/bee.txt", "1\n2\n");
+  outcome = run("test");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("\n2 failed:\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("bee.txt:2: the file has 2 values, but the mesh has 42 vertices"));
+  EXPECT_THAT(scored_items(toy), ElementsAre("ant"));
+  const Outcome found =
+      run_process({SALBENCH_PROGRAM, "inspect", own.string(), "--data", toy.data().string()});
+  EXPECT_EQ(found.status, 1);
+  EXPECT_THAT(
+      found.out,
+      HasSubstr(
+          "\npicks    top 20%\nseen     2 items as a camera sees them\nscale    0.001, of diagonals\n"));
+}
+
 // On a single triangle every point looks alike: the map of PS is constant, which no metric may choke on.
 TEST(OddData, AConstantMapScoresAsDocumented) {
   const Workspace toy(kMeshesOnly);

@@ -115,6 +115,20 @@ TEST(Value, ATableOfScoresHasOneRowPerShape) {
   EXPECT_TRUE(round_trip(ScoreTable{}).rows.empty());
 }
 
+TEST(Value, CentreDensityRoundTripsAndNeedsAllItsBins) {
+  CentreDensity density;
+  density.marked[3] = 0.25;
+  density.points[99] = 1.0 / 3;
+  density.shapes = 7;
+  const CentreDensity read = round_trip(density);
+  EXPECT_EQ(read.marked, density.marked);
+  EXPECT_EQ(read.points, density.points);
+  EXPECT_EQ(read.shapes, 7);
+  Arrays arrays = arrays_from(density);
+  arrays[1].values = std::vector<double>(99);
+  EXPECT_THROW(value_from("centre_density", arrays), InputError);
+}
+
 TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
   EXPECT_EQ(round_trip(ScalarField{1, 2, 3}), (ScalarField{1, 2, 3}));
   EXPECT_EQ(round_trip(Normals{{0, 0, 1}}), (Normals{{0, 0, 1}}));

@@ -76,6 +76,8 @@ TEST(DataLayout, WhatAFileSaysIsRead) {
 TEST(DataLayout, NamesFileLineAndWhatWasExpected) {
   EXPECT_EQ(error_of("classes: none\n"),
             "own.yaml:1: places is missing; expected a list of places with meshes");
+  EXPECT_EQ(error_of("index: index.csv\nplaces: [{meshes: 'off/*'}]\n"),
+            "own.yaml:1: index is there beside `places`: a set is in the one form or in files of its own");
   EXPECT_EQ(error_of("place: []\n"), "own.yaml:1: place is not a known key; did you mean 'places'?");
   EXPECT_EQ(error_of("\nplaces: off\n"), "own.yaml:2: places must be a list of mappings");
   EXPECT_EQ(error_of_place("off"), "own.yaml:2: places[0] must be a mapping of keys to values");

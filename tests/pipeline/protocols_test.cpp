@@ -188,6 +188,11 @@ TEST_F(Protocols, Dutagaci) {
   EXPECT_THAT(scored_items(), ElementsAre("ant"));
   EXPECT_THAT(inspection_.unused, ElementsAre((data_ / "GROUND_TRUTH_B/readme.txt").string()));
   EXPECT_EQ(inspection_.items[0].picks, 3U);
+  for (const ResultRow& row : toy_->results()) {
+    const double thirds = 3 * score(row, "fne");
+    EXPECT_NEAR(thirds, std::round(thirds), 1e-12) << row.model;
+    EXPECT_EQ(score(row, "wme"), score(row, "fne")) << row.model;
+  }
 }
 
 // --- what is wrong ----------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ public archive in its published names. Of the program only the maps are taken.""
 
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -14,6 +15,9 @@ from scipy import io, stats
 from sklearn import metrics
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/stages/metrics"))
+import interest_reference  # noqa: E402
+
 PROGRAM = os.environ["SALBENCH_PROGRAM"]
 EPS = 2.2204e-16  # as code_forMetrics/KLdiv.m has MATLAB's eps
 
@@ -64,8 +68,41 @@ def auc_of_upper_fifth(map_, truth):
     return metrics.roc_auc_score(positives, map_)
 
 
+def distances(points):
+    """From the centroid, as a fraction of the largest."""
+    lengths = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    return lengths / lengths.max()
+
+
+def auc_against(others, map_, picks, points, weights):
+    """Negatives are all points, by the mean density of the others' ground truth over a hundredth of the radius."""
+    marked, shares = np.zeros(100), np.zeros(100)
+    for their_points, looked in others:
+        bins = np.minimum((100 * distances(their_points)).astype(int), 99)
+        marked += np.bincount(bins, looked / looked.sum(), 100)
+        shares += np.bincount(bins, minlength=100) / len(bins)
+    density = np.where(shares > 0, marked / np.maximum(shares, 1e-300), 0)
+    weights = weights * density[np.minimum((100 * distances(points)).astype(int), 99)]
+    labels = np.r_[np.ones(len(picks)), np.zeros(len(map_))]
+    return metrics.roc_auc_score(labels, np.r_[map_[picks], map_], sample_weight=np.r_[np.ones(len(picks)), weights])
+
+
+def vertex_areas(points, faces):
+    corners = points[faces]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    return np.bincount(faces.ravel(), np.repeat(areas / 3, 3), len(points))
+
+
 def correlation(map_, truth):
     return stats.pearsonr(map_, truth)[0]
+
+
+def smoother(n, faces, steps):
+    """The matrix by which a point takes, in each step, the mean over itself and its neighbours along edges."""
+    ring = np.eye(n)
+    for corner in range(3):
+        ring[faces[:, corner], faces[:, corner - 1]] = ring[faces[:, corner - 1], faces[:, corner]] = 1
+    return np.linalg.matrix_power(ring / ring.sum(1, keepdims=True), steps)
 
 
 def matched(map_, reference):
@@ -120,9 +157,14 @@ class Protocols(unittest.TestCase):
         self.write(name, "".join(f"{value}\n" for value in np.asarray(values).tolist()))
 
     def scored(self, protocol):
-        """The table of scores, and maps by model and item."""
+        """The table of scores, and maps by model and item, of a protocol or of a configuration."""
+        if ":" in protocol:
+            config = self.folder / "config.yaml"
+            config.write_text(protocol)
+        else:
+            config = ROOT / f"configs/protocols/{protocol}.yaml"
         for subcommand, further in (("run", []), ("maps", ["--to", self.folder / "maps"])):
-            subprocess.run([PROGRAM, subcommand, ROOT / f"configs/protocols/{protocol}.yaml", "--data", self.data, "--cache",
+            subprocess.run([PROGRAM, subcommand, config, "--data", self.data, "--cache",
                             self.folder / "cache", "--out", self.folder / "out", "--quiet", *further], check=True)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
         return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
@@ -132,9 +174,10 @@ class Protocols(unittest.TestCase):
             self.assertAlmostEqual(row[metric], value, delta=1e-9, msg=f"{row['model']} {row['item']} {metric}")
 
     def test_3dva(self):
-        truth = {}
-        for k, mesh in enumerate(("bunny", "dragon")):
+        truth, faces_of = {}, {}
+        for k, mesh in enumerate(("bunny", "dragon", "horse")):
             points, faces = bumpy_sphere(k)
+            faces_of[mesh] = faces
             self.write_mesh(f"3DModels-Simplif/{mesh}.obj", points, faces)
             for view in (300, 413, 599):
                 seen = points @ self.rng.normal(size=3) > -0.2
@@ -143,12 +186,37 @@ class Protocols(unittest.TestCase):
                 self.write_lines(f"FixationMaps/{mesh}_{view}norm.txt", looked)
                 self.write_lines(f"CentricityAndVisibilityMaps/{mesh}_{view}_visibility.txt", seen.astype(int))
         table, maps = self.scored("3dva")
-        self.assertEqual(len(table), 8 * 6)
+        self.assertEqual(len(table), 10 * 9)
         for _, row in table.iterrows():
             looked, seen = truth[row["item"], row["view"]]
             map_ = maps[row["model"], f"{row['item']}_{row['view']}"]
             self.assertEqual(row["n_points"], seen.sum())
             self.agree(row, cc=correlation(map_[seen], looked[seen]), auc_top20=auc_of_upper_fifth(map_[seen], looked[seen]))
+        self.check_smoothing(table[["model", "item", "view"]], truth, maps, faces_of)
+
+    def check_smoothing(self, shapes, truth, maps, faces_of):
+        scores = []
+        smoothers = {(mesh, steps): smoother(faces.max() + 1, faces, steps) for mesh, faces in faces_of.items() for steps in (0, 10, 40, 120)}
+        for shape in shapes.itertuples():
+            looked, seen = truth[shape.item, shape.view]
+            of_shape = {}
+            for steps in (0, 10, 40, 120):
+                map_ = (smoothers[shape.item, steps] @ maps[shape.model, f"{shape.item}_{shape.view}"])[seen]
+                of_shape[str(steps)] = {"cc": correlation(map_, looked[seen]), "auc_top20": auc_of_upper_fifth(map_, looked[seen])}
+            of_shape["best"] = {metric: max(values[metric] for values in of_shape.values()) for metric in ("cc", "auc_top20")}
+            scores += [(shape.model, shape.item, metric, steps, value) for steps, values in of_shape.items() for metric, value in values.items()]
+        scores = pd.DataFrame(scores, columns=["model", "item", "metric", "steps", "value"])
+        by_mesh = scores.groupby(["model", "metric", "steps", "item"])["value"].mean()
+        table = pd.read_csv(self.folder / "out/smoothing.csv", dtype={"steps": str})
+        self.assertEqual(len(table), 10 * 2 * 5)
+        for row in table.itertuples():
+            if (row.model, row.metric) == ("VD", "auc_top20"):
+                continue  # degrees are whole numbers: which of their means are equal is a matter of rounding
+            values = by_mesh[row.model, row.metric, row.steps]
+            half = stats.t.ppf(0.975, 2) * values.std() / 3**0.5
+            self.assertEqual((row.n, row.n_shapes, row.upper_bound), (3, 9, int(row.steps == "best")))
+            for ours, expected in ((row.mean, values.mean()), (row.ci95_low, values.mean() - half), (row.ci95_high, values.mean() + half)):
+                self.assertAlmostEqual(ours, expected, delta=1e-9, msg=f"{row}")
 
     def test_sal3d(self):
         truth = {}
@@ -179,7 +247,7 @@ class Protocols(unittest.TestCase):
         reference = np.mean([np.histogram(min_max(values), bins=100, density=True)[0] for values, _ in truth.values()], axis=0)
         table, maps = self.scored("schelling")
         table = table[table["model"] != "HS"]  # people, not maps
-        self.assertEqual(len(table), 5 * 3)
+        self.assertEqual(len(table), 9 * 3)
         for _, row in table.iterrows():
             values, picks = truth[row["item"]]
             map_ = matched(maps[row["model"], row["item"]], reference)
@@ -235,7 +303,53 @@ class Protocols(unittest.TestCase):
         self.assertGreater(len(table), 0)
         for _, row in table.iterrows():
             map_ = maps[row["model"], row["item"]]
-            self.agree(row, auc_exact=auc_of_picks(map_, picks), nss=nss(map_, picks))
+            edges = interest_reference.edges_of(faces)
+            along = interest_reference.along_edges(points, edges)
+            radius, diameter = interest_reference.extent(points)
+            detected = interest_reference.local_maxima(min_max(map_), edges, along, 0, 1)
+            expected = interest_reference.errors(detected, picks, along, 0.03 * diameter)
+            self.agree(row, **{name: expected[name] for name in ("fne", "fpe", "wme")})
+        self.assertGreater(table["fne"].nunique(), 1)
+
+    def write_marked(self, count):
+        """Meshes of different extents, with densities and picks of two people."""
+        shapes = {}
+        for k in range(count):
+            points, faces = bumpy_sphere(k)
+            points = points * [1, 1 + k, 1]
+            looked = self.rng.random(len(points)) * distances(points) ** k
+            picks = [np.sort(self.rng.choice(len(points), 20, replace=False)) for _ in range(2)]
+            self.write_mesh(f"Meshes/m{k}.off", points, faces)
+            self.write_lines(f"Distributions/m{k}.val", looked)
+            for person, picked in enumerate(picks):
+                self.write_lines(f"RawData/m{k}_{person}.pid", picked)
+            shapes[f"m{k}"] = points, faces, looked, np.sort(np.concatenate(picks))
+        return shapes
+
+    SHUFFLED = """
+dataset: {layout: zaragoza, scans: false}
+metrics: {names: [sauc, sauc_multiplicity, sauc_area], matching: none}
+models: {CB: {}, MC: {}, RS: {}, HS: {}}
+"""
+
+    def test_shuffled_auc(self):
+        shapes = self.write_marked(4)
+        table, maps = self.scored(self.SHUFFLED)
+        models = table[table["model"] != "HS"]
+        self.assertEqual(len(models), 3 * 4)
+        for _, row in models.iterrows():
+            points, faces, _, picks = shapes[row["item"]]
+            others = [(shape[0], shape[2]) for name, shape in shapes.items() if name != row["item"]]
+            map_, ones = maps[row["model"], row["item"]], np.ones(len(points))
+            self.agree(row, sauc=auc_against(others, map_, np.unique(picks), points, ones),
+                       sauc_multiplicity=auc_against(others, map_, picks, points, ones),
+                       sauc_area=auc_against(others, map_, np.unique(picks), points, vertex_areas(points, faces)))
+        self.assertTrue(table[table["model"] == "HS"]["sauc"].between(0, 1).all())
+
+    def test_alone_in_its_set_a_shape_has_no_shuffled_auc(self):
+        self.write_marked(1)
+        table, _ = self.scored(self.SHUFFLED)
+        self.assertTrue(table["sauc"].isna().all())
 
 
 if __name__ == "__main__":

@@ -99,6 +99,7 @@ TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
       {"LS", "foci_sigma: 0.08"}, {"CS", "clusters: 40"}, {"PS", "absolute: true"},
       {"MS", "window: 5"},        {"HS", "draws: 3"},     {"MC", "curvature: taubin"},
       {"LVJ", "epsilon: 0.01"},   {"LCE", "radius: 0.5"}, {"VIS", "directions: 16"},
+      {"NV", "radius: 0.1"},
   };
   run(every_model());
   EXPECT_THAT(failures_, IsEmpty());

@@ -176,6 +176,7 @@ def shape(rng):
     return {
         "points": points, "faces": faces, "normals": normals, "fpfh": (rng.random((n, 33)) * 50).astype("f4"),
         "viewpoint": rng.normal(size=3) * 9, "ground_truth": rng.random(n), "picks": rng.integers(0, n, 5), "areas": rng.random(n),
+        "negatives": rng.random(n),
         "mask": rng.random(n) < 0.8, "prediction": rng.random(n), "reference": rng.random(100), "scan_points": points[::2] + 0.01,
         "samples": points[::2] + 0.01, "values": rng.random(n), "threads": 1, "seed": 3, "item": "a", "scan": bool(rng.integers(2)),
         "view": int(rng.integers(12)), "target_faces": int(rng.integers(n)), "k": 3, "max_distance": 1.0, "metrics": "all", **CHEAP,

@@ -224,7 +224,7 @@ class Layouts(Folder):
 
     def test_every_description_of_the_program_has_a_test_here(self):
         tested = {"automatic", "schelling", "gs", "princeton", "folder", "dutagaci", "3dva", "sal3d", "sal3d_meshes",
-                  "meshmamba", "meshmamba_textured", "zaragoza"}
+                  "meshmamba", "meshmamba_textured", "zaragoza", "hdf5"}
         self.assertEqual(set(salbench._core.layouts()), tested)
 
 
@@ -515,6 +515,50 @@ class Artefacts(Folder):
                 if path.stem.partition("_")[0] in ("52", "125"):
                     (self.root / folder / path.name).symlink_to(path)
         self.compare("schelling", 2)
+
+
+class OneForm(Folder):
+    """What `salbench convert` writes is the same data set."""
+
+    def compare(self, layout):
+        before = salbench.Dataset(layout, self.root)
+        with tempfile.TemporaryDirectory() as to:
+            subprocess.run([toy.PROGRAM, "convert", layout, "--data", self.root, "--to", to, "--quiet"], check=True)
+            after = salbench.Dataset("hdf5", to)
+            self.assertEqual((after.ids, after.categories, after.splits), (before.ids, before.categories, before.splits))
+            for shape, expected in zip(after, before, strict=True):
+                for name in ("points", "faces", "normals", "ground_truth"):
+                    np.testing.assert_array_equal(getattr(shape, name), getattr(expected, name), err_msg=name)
+                for name in ("participants", "viewers"):
+                    for own, theirs in zip(getattr(shape, name), getattr(expected, name), strict=True):
+                        np.testing.assert_array_equal(own, theirs)
+                self.assertEqual((shape.category, shape.split), (expected.category, expected.split))
+        return before
+
+    def test_meshes_with_picks_and_classes(self):
+        self.write("Meshes/21.off", off())
+        self.write("Meshes/41.off", off(POINTS * 2))
+        self.write("Distributions/41.val", column(range(8)))
+        for item in (21, 41):
+            self.write(f"RawData/{item}_0.pid", "1\n2\n")
+            self.write(f"RawData/{item}_1.pid", "5\n")
+        found = self.compare("schelling")
+        self.assertEqual([len(shape.participants) for shape in found], [2, 2])
+
+    def test_viewers(self):
+        self.write("off/a.off", off())
+        self.write("maps/a_anna.csv", column(range(8)))
+        self.write("maps/a_ben.csv", column([3, -1, 4, 1, 5, -1, 2, 6]))
+        own = self.write("own.yaml", "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}_{viewer}.csv'}}]\nvalues: {unseen: -1}\n")
+        (shape,) = self.compare(str(own))
+        self.assertEqual((len(shape.viewers), np.isnan(shape.viewers[1]).sum()), (2, 2))
+
+    def test_a_cloud_whose_picks_make_its_saliency(self):
+        rows = [" ".join(map(repr, map(float, point))) + f" {int(k % 7 == 0)}" for k, point in enumerate(CLOUD)]
+        self.write("clouds/a.txt", "\n".join([rows[0], *rows]) + "\n")
+        own = self.write("own.yaml", "places: [{meshes: 'clouds/*.txt'}]\ncolumns: {position: [1, 2, 3], flag: 4, duplicates: dropped}\n")
+        (shape,) = self.compare(str(own))
+        self.assertEqual((len(shape.points), shape.participants[0].tolist()), (20, [0, 7, 14]))
 
 
 if __name__ == "__main__":

@@ -15,10 +15,19 @@ import salbench
 import toy
 
 sys.path.insert(0, str(toy.ROOT / "tests/stages/metrics"))
+import interest_reference  # noqa: E402
 import metrics_reference  # noqa: E402
 
 NAMES = [row.name for row in salbench.metrics.table()]
 SEED = 2016
+
+
+def density_of_others(points, own, of_set):
+    """Of the other shapes' ground truth, at the distance of each point from the centroid."""
+    marked, of_points = (np.asarray(of_set[name]) - own[name] for name in ("marked", "points"))
+    density = np.divide(marked, of_points, out=np.zeros(100), where=of_points > 0)
+    distance = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    return density[np.minimum((distance / distance.max() * 100).astype(int), 99)]
 
 
 def same(a, b):
@@ -54,10 +63,14 @@ class Tables(unittest.TestCase):
             faces = file[shape]["surface"]["faces"][:] if view else file[item]["mesh"]["faces"][:]
             found = salbench.score(
                 file[shape][f"map.{model}"]["saliency"][:], saliency, self.picks(truth), metrics="all",
-                areas=salbench.vertex_areas(points, faces), points=points,
+                areas=salbench.vertex_areas(points, faces), points=points, faces=faces,
+                negatives=density_of_others(points, file[shape]["centre_density"], file["means/centre_densities"][level]),
                 reference=file["means/reference"][level]["density"][:], seed=(SEED, model, shape))
             for name in NAMES:
-                self.assertTrue(same(found[name], row[name]), f"{shape} {model} {name}: {found[name]!r}, {row[name]!r}")
+                if name.startswith("sauc"):  # its negatives were worked out here
+                    self.assertAlmostEqual(found[name], row[name], delta=1e-12)
+                else:
+                    self.assertTrue(same(found[name], row[name]), f"{shape} {model} {name}: {found[name]!r}, {row[name]!r}")
                 compared += 1
         return compared
 
@@ -92,7 +105,11 @@ class RandomCases(unittest.TestCase):
             "areas": rng.random(n) * (rng.random(n) < 0.9),
             "points": rng.normal(size=(n, 3)),
             "picks": np.sort(rng.integers(0, n, rng.integers(1, n))),
+            "faces": rng.integers(0, n, (int(rng.integers(1, 2 * n)), 3)),
+            "negatives": rng.random(n) * (rng.random(n) < 0.7),
             "splits": 3, "thresholds": 5, "constant_nss": float(rng.integers(0, 2)),
+            "floor": rng.choice([0, 0.01, 0.3]), "peak_radius": rng.choice([0, 0.7]), "peak_height": rng.choice([0, 0.5, 1]),
+            "tolerance": rng.choice([0.03, 0.4]),
         }
         if number % 10 == 0:
             case["map"] = np.full(n, rng.random())
@@ -115,8 +132,11 @@ class RandomCases(unittest.TestCase):
         distance = np.linalg.norm(case["points"] - case["points"].mean(axis=0), axis=1)
         seen["centre_bias"] = (distance / distance.max())[mask]
         seen["picks"] = numbers[case["picks"][mask[case["picks"]]]]
-        for name in ("saliency", "areas"):
+        for name in ("saliency", "areas", "negatives", "points"):
             seen[name] = case[name][mask]
+        edges = interest_reference.edges_of(case["faces"])
+        seen["edges"] = numbers[edges[mask[edges].all(axis=1)]]
+        seen["radius"], seen["diameter"] = interest_reference.extent(case["points"])
         values = metrics_reference.reference(seen, False)
         if seen["areas"].sum() > 0:
             values.update({f"{name}_area": value for name, value in metrics_reference.reference(seen, True).items()})
@@ -134,8 +154,9 @@ class RandomCases(unittest.TestCase):
                 case, mask = self.case(rng, number)
                 found = salbench.score(
                     case["map"], case["saliency"], case["picks"], areas=case["areas"], points=case["points"],
-                    mask=mask, metrics="all", seed=(1, "", case["item"]), splits=3, thresholds=5,
-                    constant_nss=case["constant_nss"])
+                    faces=case["faces"], negatives=case["negatives"], mask=mask, metrics="all", seed=(1, "", case["item"]),
+                    **{name: case[name] for name in ("splits", "thresholds", "constant_nss", "floor", "peak_radius",
+                                                     "peak_height", "tolerance")})
                 for name, value in self.expected(case, mask).items():
                     off = metrics_reference.difference(found[name], value)
                     largest = max(largest, off)
@@ -192,6 +213,11 @@ class Arguments(unittest.TestCase):
             (r"splits must be at least 1", ValueError, lambda: salbench.score(self.map, splits=0)),
             (r"reference must have shape \(100,\)", ValueError, lambda: salbench.score(self.map, reference=[1, 2])),
             (r"areas must be finite", ValueError, lambda: salbench.score(self.map, areas=-self.map)),
+            (r"negatives must be finite", ValueError, lambda: salbench.score(self.map, negatives=-self.map)),
+            (r"negatives must have shape \(40,\), not \(39,\)", ValueError, lambda: salbench.score(self.map, negatives=self.map[1:])),
+            (r"faces must have numbers of points, 0 to 39, not 40", ValueError, lambda: salbench.score(self.map, faces=[[0, 1, 40]])),
+            (r"tolerance must be a number above 0, not 0", ValueError, lambda: salbench.score(self.map, tolerance=0)),
+            (r"floor must be", ValueError, lambda: salbench.score(self.map, floor=1.5)),
             (r"finite", ValueError, lambda: salbench.score(np.r_[self.map, np.nan], np.r_[self.truth, 1])),
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):

@@ -35,7 +35,7 @@ class Accessibility(support.BrowserTest):
                 for finding in found["violations"] if finding["impact"] in GRAVE]
 
     def test_no_serious_finding_on_any_kind_of_page(self):
-        for path in ("index.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
+        for path in ("index.html", "gallery.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
             with self.subTest(path):
                 self.assertEqual(self.findings(path), [])
 

@@ -132,6 +132,63 @@ class Browser(support.BrowserTest):
         self.assertIn("PS, after matching", left.find_element(By.CSS_SELECTOR, "[data-part=status]").text)
         self.assertGreater(len(self.canvas(0).getcolors(1 << 20)), 20)
 
+    def choose(self, place, name, text, within=None):
+        Select((within or self.browser).find_elements(By.CSS_SELECTOR, f"[data-part={name}]")[place]).select_by_visible_text(text)
+
+    def test_the_viewer_begins_with_unmatched_maps_and_switches_scale(self):
+        self.viewer("shapes/1.html")
+        maps = [Select(menu).first_selected_option.text for menu in self.browser.find_elements(By.CSS_SELECTOR, "[data-part=map]")]
+        self.assertEqual(maps, ["Ground truth", "LS, before matching"])
+        seen = [self.canvas(1).tobytes()]
+        for scale in ("rank", "percentile", "value"):
+            self.choose(0, "scale", scale)
+            seen.append(self.canvas(1).tobytes())
+        self.assertEqual(seen[0], seen[3])
+        self.assertEqual(len(set(seen)), 3)
+
+    def test_scales_of_a_map(self):
+        """Four points: shares that lie lower are 0, 1/4, 1/2 and 3/4."""
+        self.viewer("shapes/1.html")
+        scaled = {scale: self.browser.execute_script(
+            "return Array.from(salbench.scaled(Uint8Array.of(0, 51, 102, 255), 255, salbench.scales[arguments[0]]), x => +x.toFixed(4))", scale)
+            for scale in ("value", "rank", "percentile")}
+        self.assertEqual(scaled, {"value": [0, 0.2, 0.4, 1], "rank": [0, 0.3333, 0.6667, 1], "percentile": [0, 0, 0.2, 0.4]})
+
+    def test_the_viewer_shows_where_a_model_is_wrong(self):
+        self.viewer("shapes/1.html")
+        self.choose(0, "scale", "rank")
+        self.choose(1, "map", "LS, difference to the ground truth")
+        ends = [end.text for end in self.browser.find_elements(By.CSS_SELECTOR, "[data-part=end]")]
+        self.assertEqual(ends, ["lowest rank", "highest rank", "only people look", "only the model looks"])
+        colours = [colour for _, colour in self.canvas(1).getcolors(1 << 20)]
+        self.assertTrue(any(blue > red + 60 for red, _, blue in colours) and any(red > blue + 60 for red, _, blue in colours))
+        picks = self.browser.find_element(By.CSS_SELECTOR, "[data-part=picks]")
+        picks.click()  # which are blue
+        self.assertFalse(any(blue > red + 60 for red, _, blue in (colour for _, colour in self.canvas(0).getcolors(1 << 20))))
+
+    def tiles(self):
+        return self.browser.execute_script("return Array.from(document.querySelectorAll('#gallery li:not([hidden])'), "
+                                           "tile => [tile.querySelector('a').textContent, tile.querySelector('.scores').textContent])")
+
+    def test_the_gallery_sorts_filters_and_changes_its_maps(self):
+        self.open("gallery.html")
+        self.assertEqual([name for name, _ in self.tiles()], ["1", "2"])
+        self.choose(0, "metric", "NSS")
+        self.choose(0, "model", "CS")
+        for order, descending in (("score, worst first", False), ("score, best first", True)):
+            self.choose(0, "order", order)
+            shown = [float(text.replace("−", "-").split("NSS ")[1].split(",")[0]) for _, text in self.tiles()]
+            self.assertEqual(shown, sorted(shown, reverse=descending))
+            self.assertEqual(len(set(shown)), 2)
+        self.choose(0, "order", "disagreement, largest first")
+        shown = [float(text.split("disagreement ")[1]) for _, text in self.tiles()]
+        self.assertEqual(shown, sorted(shown, reverse=True))
+        self.choose(0, "map", "LS, difference to the ground truth")
+        sources = self.browser.execute_script("return Array.from(document.querySelectorAll('#gallery li img'), i => i.getAttribute('src'))")
+        self.assertEqual(sorted(sources), ["pictures/1/mesh-LS-difference.webp", "pictures/2/mesh-LS-difference.webp"])
+        self.assertEqual(self.browser.find_element(By.CSS_SELECTOR, "#gallery output").text, "2 of 2 shapes")
+        self.assertTrue(self.browser.find_element(By.CSS_SELECTOR, "[data-bar=diverging]").is_displayed())
+
     def test_every_page_opens_and_prints(self):
         for path in sorted(self.to.rglob("*.html")):
             self.open(path.relative_to(self.to))
@@ -143,7 +200,7 @@ class Browser(support.BrowserTest):
 
     def test_nothing_is_wider_than_a_phone(self):
         self.browser.set_window_size(500, 900)  # Chromium's narrowest window
-        for path in ("index.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
+        for path in ("index.html", "gallery.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
             self.open(path)
             time.sleep(0.2)
             wider = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")

@@ -107,7 +107,7 @@ class ShadeTest(support.ReportTest):
         shapes = exports.Shapes([with_clouds(self.folder, viewpoint=False) / "shapes.h5"])
         shape = shapes.itself("oni")
         self.assertIsNone(shape.seen_from())
-        self.assertEqual(len(shape.shade()), len(shape.points))
+        self.assertEqual(len(shape.shade(shape.eye(shape.picture())[0])), len(shape.points))
 
 
 if __name__ == "__main__":

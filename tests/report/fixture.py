@@ -12,11 +12,13 @@ import twin
 
 MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
 METRICS = ("auc", "auc_exact", "nss", "cc", "lcc")
-_PICKED = ("auc", "auc_exact", "nss", "auc_judd", "auc_borji", "ig", "ig_centre")
+_PICKED = ("auc", "auc_exact", "nss", "auc_judd", "auc_borji", "ig", "ig_centre", "sauc")
 _PER_VERTEX = (*METRICS, "auc_judd", "auc_borji", "ig", "spearman", "kl", "kl_smoothed", "sim", "sim_minmax", "mse", "mae",
                *(f"{kind}_top{share}" for kind in ("auc", "nss") for share in (20, 10, 5, 1)), "ig_centre",
+               "cosine", "kl_keras", "kl_caffe", "kl_pysaliency", "kl_shifted", "sauc",
                *(f"{name}_multiplicity" for name in _PICKED))
-ALL_METRICS = (*_PER_VERTEX, *(f"{name}_area" for name in _PER_VERTEX))  # what `metrics: all` chooses
+_OF_POINTS = ("fne", "fpe", "wme", "precision", "recall")
+ALL_METRICS = (*_PER_VERTEX, *_OF_POINTS, *(f"{name}_area" for name in _PER_VERTEX))  # what `metrics: all` chooses
 CLASSES = ("human", "teddy", "glasses", "spring")
 LEVELS = {"LS": 0.64, "CS": 0.61, "PS": 0.60, "MS": 0.55, "HS": 0.58, "RS": 0.5}  # mean AUC of a model
 
@@ -42,7 +44,7 @@ def scores(random, level, n):
 
 
 def is_distance(metric):
-    return metric.startswith(("kl", "mse", "mae"))
+    return metric.startswith(("kl", "mse", "mae", "fne", "fpe", "wme"))
 
 
 def with_metrics(results, metrics, seed=7):
@@ -56,7 +58,7 @@ def with_metrics(results, metrics, seed=7):
 
 
 def matching_of(metric):
-    return "none" if metric.split("_")[0] in ("kl", "sim", "ig") else "histogram"
+    return "none" if metric.split("_")[0] in ("kl", "sim", "ig", "cosine", "sauc", *_OF_POINTS) else "histogram"
 
 
 def metric_lines(metrics):

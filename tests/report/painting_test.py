@@ -15,8 +15,8 @@ import fixture
 import pinhole
 import support
 from report.exports import Picture, Shapes, unit_range, usable
-from report.pages import HERE
-from report.painting import paint, palette, pixel_values, project, visible, with_dots
+from report.painting import LIGHTEST, Canvas, palette, project, visible, with_dots
+from report.shape_files import TRUTH, differences
 
 
 def picture_of(points, faces, size=64):
@@ -33,21 +33,23 @@ class Painting(support.ReportTest):
         values = numpy.linspace(0, 1, len(self.points))
         corners = self.faces[picture.primitive[row, column]]
         expected = (values[corners] * picture.weights[row, column]).sum()
-        self.assertAlmostEqual(pixel_values(picture, values, self.faces)[row, column], expected, places=6)
+        canvas = Canvas(picture, self.faces)
+        at = numpy.searchsorted(canvas.seen, row * 64 + column)
+        self.assertAlmostEqual(canvas.values(values)[at], expected, places=6)
 
     def test_nothing_is_white_and_shade_darkens(self):
         picture = picture_of(self.points, self.faces)
         picture.shade[:] = 128
-        image = numpy.asarray(paint(picture, numpy.ones(len(self.points)), self.faces))
+        image = numpy.asarray(Canvas(picture, self.faces).paint(numpy.ones(len(self.points))))
         self.assertTrue((image[picture.primitive < 0] == 255).all())
-        self.assertTrue((image[picture.primitive >= 0] == (palette()[255] * (128 / 255)).round()).all())
+        shade = LIGHTEST + (1 - LIGHTEST) * 128 / 255
+        self.assertTrue((image[picture.primitive >= 0] == (palette()[255] * shade).round()).all())
 
     def test_a_scan_takes_the_values_of_its_points(self):
         picture = Picture(**pinhole.picture_of_points(self.points, (1, 0, 0), size=64))
         values = numpy.linspace(0, 1, len(self.points))
-        shown = pixel_values(picture, values, None)
         seen = picture.primitive >= 0
-        self.assertTrue((shown[seen] == values[picture.primitive[seen]]).all())
+        self.assertTrue((Canvas(picture, None).values(values) == values[picture.primitive[seen]].astype(numpy.float32)).all())
 
     def test_projected_points_fall_on_faces_that_have_them(self):
         picture = picture_of(self.points, self.faces, size=200)
@@ -68,7 +70,7 @@ class Painting(support.ReportTest):
         picture = picture_of(self.points, self.faces)
         picture.coverage = numpy.full(picture.primitive.shape, 51, numpy.uint8)
         picture.shade[:] = 255
-        image = numpy.asarray(paint(picture, numpy.zeros(len(self.points)), self.faces))
+        image = numpy.asarray(Canvas(picture, self.faces).paint(numpy.zeros(len(self.points))))
         expected = (255 + (palette()[0].astype(float) - 255) * 0.2).round()
         self.assertTrue((image[picture.primitive >= 0] == expected).all())
 
@@ -95,10 +97,20 @@ class Painting(support.ReportTest):
                 self.assertFalse(usable(numpy.array([0, -numpy.inf], kind)))
                 self.assertFalse(usable(numpy.array([0, numpy.nan], kind)))
 
-    def test_the_viewer_has_the_same_colours(self):
-        script = (HERE / "static/palette.js").read_text()
-        colours = re.search(r'salbench\.palette = "([0-9a-f]+)";', script)[1]
-        self.assertEqual(bytes.fromhex(colours), palette().tobytes())
+    def test_differences_are_of_ranks_with_signs(self):
+        truth, values = numpy.array([0.0, 0.0, 0.0, 1.0]), numpy.array([0.9, 0.1, 0.0, 0.2])
+        found = differences({TRUTH: truth, ("LS", "before"): values, ("LS", "after"): values, ("CS", "before"): values[:3]})
+        self.assertEqual({key: numpy.round(of, 6).tolist() for key, of in found.items()},
+                         {("LS", "difference"): [1, 0.333333, 0, -0.333333]})
+
+    def test_a_difference_is_blue_where_only_people_look(self):
+        picture = picture_of(self.points, self.faces)
+        picture.shade[:] = 255
+        colours = [numpy.asarray(Canvas(picture, self.faces).paint(numpy.full(len(self.points), value), "diverging"))[32, 32].tolist()
+                   for value in (-1, 0, 1)]
+        self.assertGreater(colours[0][2], colours[0][0] + 50)
+        self.assertLess(numpy.ptp(colours[1]), 4)
+        self.assertGreater(colours[2][0], colours[2][2] + 50)
 
     def test_viewer_data_undo_to_the_shape(self):
         """The steps of viewer.js's unpack() give back points, faces and maps."""

@@ -21,7 +21,9 @@
 #include "stages/models/lvj.h"
 #include "stages/models/mc.h"
 #include "stages/models/ms.h"
+#include "stages/models/nv.h"
 #include "stages/models/ps.h"
+#include "stages/models/vd.h"
 #include "stages/models/vis.h"
 #include "stages/normals/normals.h"
 
@@ -57,6 +59,8 @@ inline constexpr std::array kMeshModels = {
     MeshModel{"CB", [](const DescribedMesh& m) { return cb_saliency(m.points(), {}); }},
     MeshModel{"VIS",
               [](const DescribedMesh& m) { return vis_saliency(m.points(), m.normals, m.mesh.faces, {}); }},
+    MeshModel{"NV", [](const DescribedMesh& m) { return nv_saliency(m.points(), m.normals, {}); }},
+    MeshModel{"VD", [](const DescribedMesh& m) { return vd_saliency(m.points(), m.mesh.faces, {}); }},
 };
 
 // A mesh elsewhere.

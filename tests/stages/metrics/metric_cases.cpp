@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "stages/metrics/metrics.h"
+#include "stages/metrics/surface_graph.h"
 
 namespace salbench {
 namespace {
@@ -23,7 +25,21 @@ std::string list(const Numbers& numbers) {
 struct Case {
   ScalarField map, areas, centre_bias;
   GroundTruth truth;
+  ScalarField negatives = {};
+  Mesh mesh = {};
 };
+
+// Positions anywhere, a strip of faces over most points, and some faces between any.
+Mesh random_mesh(std::size_t n, Rng& rng) {
+  Mesh mesh;
+  for (std::size_t i = 0; i < n; ++i) mesh.vertices.push_back({rng.uniform(), rng.uniform(), rng.uniform()});
+  const auto point = [](std::size_t i) { return static_cast<std::int32_t>(i); };
+  for (std::size_t i = 0; i + 2 < n; ++i)
+    if (rng.below(5) > 0) mesh.faces.push_back({point(i), point(i + 1), point(i + 2)});
+  for (std::uint64_t k = rng.below(4); k > 0; --k)
+    mesh.faces.push_back({point(rng.below(n)), point(rng.below(n)), point(rng.below(n))});
+  return mesh;
+}
 
 // Maps and ground truths of few levels, so that values tie, of zeros, and constant ones; areas of zero; no
 // pick, one, and up to a pick of everything.
@@ -51,12 +67,22 @@ Case random_case(Rng& rng) {
     for (std::size_t i = 0; i < n; ++i) random.truth.picks[0].push_back(static_cast<std::int32_t>(i));
   }
   for (std::size_t i = 0; i < n; ++i) random.centre_bias.push_back(rng.below(10) == 0 ? 0 : rng.uniform());
+  for (std::size_t i = 0; i < n; ++i) random.negatives.push_back(rng.below(3) == 0 ? 0 : rng.uniform());
+  random.mesh = random_mesh(n, rng);
   return random;
 }
 
 void print_case(const Case& random, const std::string& item, const MetricsOptions& options) {
-  const Scores scores = score(metric_table(), random.map, random.truth, options, Rng(1, "scores", item),
-                              random.areas, random.centre_bias);
+  Draws draws(Rng(1, "scores", item));
+  Measures measures(random.map.size(), random.areas, random.centre_bias);
+  measures.negatives = random.negatives;
+  measures.surface =
+      std::make_shared<const SurfaceGraph>(surface_graph(random.mesh.vertices, random.mesh.faces));
+  const Scores scores = score(metric_table(), random.map, random.truth, options, draws, measures);
+  ScalarField points;
+  for (const Vec3& p : random.mesh.vertices) points.insert(points.end(), p.begin(), p.end());
+  std::vector<std::int32_t> faces;
+  for (const Triangle& face : random.mesh.faces) faces.insert(faces.end(), face.begin(), face.end());
   std::vector<std::int32_t> picks;
   for (const auto& participant : random.truth.picks)
     picks.insert(picks.end(), participant.begin(), participant.end());
@@ -65,10 +91,14 @@ void print_case(const Case& random, const std::string& item, const MetricsOption
     values += fmt::format("{}\"{}\": {}", m == 0 ? "" : ", ", metric_table()[m].name,
                           std::isnan(scores.values[m]) ? "NaN" : fmt::format("{}", scores.values[m]));
   fmt::print(
-      "{{\"item\": \"{}\", \"splits\": {}, \"thresholds\": {}, \"constant_nss\": {}, \"map\": {}, "
+      "{{\"item\": \"{}\", \"splits\": {}, \"thresholds\": {}, \"constant_nss\": {}, \"floor\": {}, "
+      "\"peak_radius\": {}, \"peak_height\": {}, \"tolerance\": {}, \"map\": {}, \"negatives\": {}, "
+      "\"points\": {}, \"faces\": {}, "
       "\"saliency\": {}, \"areas\": {}, \"centre_bias\": {}, \"picks\": {}, \"values\": {{{}}}}}\n",
-      item, options.splits, options.thresholds, options.constant_nss, list(random.map),
-      list(random.truth.saliency), list(random.areas), list(random.centre_bias), list(picks), values);
+      item, options.splits, options.thresholds, options.constant_nss, options.floor, options.peak_radius,
+      options.peak_height, options.tolerance, list(random.map), list(random.negatives), list(points),
+      list(faces), list(random.truth.saliency), list(random.areas), list(random.centre_bias), list(picks),
+      values);
 }
 
 }  // namespace
@@ -84,6 +114,11 @@ int main(int argc, char** argv) {
   options.constant_nss = -0.25;
   for (int k = 0; k < std::atoi(argv[2]); ++k) {
     salbench::Rng rng(std::strtoull(argv[1], nullptr, 10), "metric cases", std::to_string(k));
-    salbench::print_case(salbench::random_case(rng), std::to_string(k), options);
+    const salbench::Case random = salbench::random_case(rng);
+    options.floor = rng.below(2) == 0 ? 0 : rng.uniform() / 10;
+    options.peak_radius = rng.below(2) == 0 ? 0 : rng.uniform();
+    options.peak_height = rng.below(2) == 0 ? 1 : 1.5 * rng.uniform();
+    options.tolerance = rng.below(4) == 0 ? 0.03 : 0.7 * rng.uniform();
+    salbench::print_case(random, std::to_string(k), options);
   }
 }

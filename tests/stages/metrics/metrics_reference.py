@@ -16,6 +16,8 @@ import numpy as np
 from scipy import stats
 from sklearn import metrics as sk
 
+import interest_reference
+
 EPS = 2.2204e-16
 MASK = (1 << 64) - 1
 TOLERANCE = 1e-9  # times the value where that is larger than 1
@@ -129,6 +131,22 @@ def smoothed_divergence(map_, truth, weights, unit):
     return stats.entropy((weights * g)[seen], (weights * p)[seen])
 
 
+def general_divergence(map_, truth, weights, unit, values=0.0, quotient=0.0, densities=0.0):
+    """sum (g + d) ln(q + (g + d) / (p + d + q)): loss.py of alexanderkroner/saliency (q = 1e-7), the loss layer of
+    nian-liu/DSCLRCN (q = 1e-6), image_based_kl_divergence of pysaliency (1e-20 added to values), and the evaluators of
+    Danchik757/Mesh-Saliency-Projection (d = 1e-12)."""
+    p, g = density(map_, weights, unit, True, values), density(truth, weights, unit, False, values)
+    if g is None:
+        return math.nan
+    p, g = p + densities, g + densities
+    return np.sum(weights / unit * g * np.log(quotient + g / (p + quotient)))
+
+
+def cosine(map_, truth, weights):
+    norms = math.sqrt(np.sum(weights * map_**2) * np.sum(weights * truth**2))
+    return np.sum(weights * map_ * truth) / norms if norms else math.nan
+
+
 def similarity(map_, truth, weights):
     """Judd, Durand, Torralba 2012: sum min(p, g)."""
     p, g = density(map_, weights, 1, True), density(truth, weights, 1, False)
@@ -161,6 +179,14 @@ def exact(case, picks, weights, by_area):
     if not weights[keep].sum():
         return math.nan
     return roc_auc(case["map"][picks], case["map"][keep], np.ones(len(picks)), weights[keep])
+
+
+def shuffled(case, picks, weights):
+    """Tatler, Baddeley, Gilchrist 2005: negatives where other shapes are marked, here all points by that density."""
+    weights = weights * case["negatives"]
+    if not weights.sum():
+        return math.nan
+    return roc_auc(case["map"][picks], case["map"], np.ones(len(picks)), weights)
 
 
 def area_below(thresholds, positives, negatives, negative_weights):
@@ -235,16 +261,22 @@ def reference(case, by_area):
     map_, truth = case["map"], case["saliency"]
     normalised_map = np.full_like(map_, 0.5) if len(np.unique(map_)) == 1 else min_max(map_)
     normalised_truth = min_max(truth)
+    as_density, normalised_density = np.maximum(map_, case["floor"]), np.maximum(normalised_map, case["floor"])
     levels = len(np.unique(truth)) > 1 or not truth.any()
     cc = pearson(map_, normalised_truth, weights)
     values = {
         "cc": cc,
         "lcc": abs(cc),
         "spearman": spearman(map_, truth, weights),
-        "kl": divergence(map_, truth, weights, unit),
-        "kl_smoothed": smoothed_divergence(map_, truth, weights, unit),
-        "sim": similarity(map_, truth, weights),
-        "sim_minmax": similarity(normalised_map, normalised_truth, weights),
+        "kl": divergence(as_density, truth, weights, unit),
+        "kl_smoothed": smoothed_divergence(as_density, truth, weights, unit),
+        "sim": similarity(as_density, truth, weights),
+        "sim_minmax": similarity(normalised_density, normalised_truth, weights),
+        "cosine": cosine(np.full_like(map_, 0.5) if len(np.unique(map_)) == 1 else map_, truth, weights),
+        "kl_keras": general_divergence(as_density, truth, weights, unit, quotient=1e-7),
+        "kl_caffe": general_divergence(as_density, truth, weights, unit, quotient=1e-6),
+        "kl_pysaliency": general_divergence(as_density, truth, weights, unit, values=1e-20),
+        "kl_shifted": general_divergence(as_density, truth, weights, unit, densities=1e-12),
         "mse": sk.mean_squared_error(normalised_truth, normalised_map, sample_weight=weights) if levels else math.nan,
         "mae": sk.mean_absolute_error(normalised_truth, normalised_map, sample_weight=weights) if levels else math.nan,
     }
@@ -256,7 +288,7 @@ def reference(case, by_area):
             roc_auc(map_[top], map_[~top], weights[top], weights[~top]) if defined else math.nan
         )
     for suffix, picks in (("", np.unique(case["picks"])), ("_multiplicity", np.sort(case["picks"]))):
-        names = ("auc", "auc_exact", "auc_judd", "auc_borji", "nss", "ig", "ig_centre")
+        names = ("auc", "auc_exact", "auc_judd", "auc_borji", "nss", "ig", "ig_centre", "sauc")
         if not len(picks):
             values.update({name + suffix: math.nan for name in names})
             continue
@@ -265,8 +297,11 @@ def reference(case, by_area):
         values["auc_judd" + suffix] = judd(case, picks, weights, by_area)
         values["auc_borji" + suffix] = borji(case, picks, weights)
         values["nss" + suffix] = height(map_, picks, weights, np.ones(len(picks)), case["constant_nss"])
-        values["ig" + suffix] = information_gain(map_, np.ones_like(map_), picks, weights, unit)
-        values["ig_centre" + suffix] = information_gain(map_, case["centre_bias"], picks, weights, unit)
+        values["ig" + suffix] = information_gain(as_density, np.ones_like(map_), picks, weights, unit)
+        values["ig_centre" + suffix] = information_gain(as_density, case["centre_bias"], picks, weights, unit)
+        values["sauc" + suffix] = shuffled(case, picks, weights)
+    if not by_area:
+        values.update(interest_reference.interest_points({**case, "map": normalised_map}))
     return values
 
 
@@ -283,9 +318,12 @@ def main():
     lines = subprocess.run([program, "7", count], check=True, capture_output=True, text=True).stdout.splitlines()
     for line in lines:
         case = json.loads(line)
-        for name in ("map", "saliency", "areas", "centre_bias"):
+        for name in ("map", "saliency", "areas", "centre_bias", "negatives", "points"):
             case[name] = np.array(case[name], float)
         case["picks"] = np.array(case["picks"], int)
+        case["points"] = case["points"].reshape(-1, 3)
+        case["edges"] = interest_reference.edges_of(case["faces"])
+        case["radius"], case["diameter"] = interest_reference.extent(case["points"])
         expected = reference(case, False)
         if case["areas"].sum() > 0:
             expected.update({f"{name}_area": value for name, value in reference(case, True).items()})

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/field.h"
-#include "stages/metrics/metrics.h"
+#include "tests/stages/metrics/complete.h"
 
 namespace salbench {
 namespace {
@@ -58,11 +58,12 @@ TEST(UnseenPoints, TakeNoPartInAnyMetric) {
     }
   }
   seen.truth.picks = {{2}, {2}, {}};  // point 4 is the third of those left; 3, 50 and 99 were not seen
-  const Rng rng(1, "scores", "x");
   // Areas stand for the centre bias as well.
-  const Scores of_masked =
-      score(metric_table(), masked.map, masked.truth, {}, rng, masked.areas, masked.areas);
-  const Scores of_seen = score(metric_table(), seen.map, seen.truth, {}, rng, seen.areas, seen.areas);
+  const Measures of_all = complete_measures(100, whole.areas, whole.areas);
+  Draws draws(Rng(1, "scores", "x"));
+  const Scores of_masked = score(metric_table(), masked.map, masked.truth, {}, draws, of_all);
+  const Scores of_seen =
+      score(metric_table(), seen.map, seen.truth, {}, draws, of_all.at(*seen_points(masked.truth.saliency)));
   EXPECT_EQ(of_masked.values, of_seen.values);
   for (const double value : of_masked.values) EXPECT_TRUE(std::isfinite(value));
   EXPECT_EQ(of_masked.n_points, static_cast<std::int64_t>(seen.map.size()));

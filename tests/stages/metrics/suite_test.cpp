@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/metrics/metrics.h"
+#include "tests/stages/metrics/complete.h"
 
 namespace salbench {
 namespace {
@@ -23,7 +23,7 @@ Values values_of(std::span<const Metric> metrics, const ScalarField& map, const 
   options.constant_nss = -0.5;
   ScalarField centre_bias;
   for (std::size_t i = 0; i < map.size(); ++i) centre_bias.push_back(static_cast<double>(i + 1));
-  const Scores scores = score(metrics, map, truth, options, Rng(1, "scores", "x"), areas, centre_bias);
+  const Scores scores = complete_score(metrics, map, truth, options, areas, centre_bias);
   Values values;
   for (std::size_t m = 0; m < metrics.size(); ++m) values[metrics[m].name] = scores.values[m];
   return values;
@@ -43,8 +43,8 @@ TEST(Suite, APerfectMapHasTheBestValues) {
   for (std::size_t i = 0; i < 200; ++i)
     if (truth.saliency[i] > 0.9) truth.picks[0].push_back(static_cast<std::int32_t>(i));
   const Values values = all_values(truth.saliency, truth);
-  for (const char* name : {"cc", "lcc", "spearman", "sim", "sim_minmax", "auc_exact", "auc_judd", "auc_top10",
-                           "cc_area", "spearman_area", "sim_area", "auc_top10_area"})
+  for (const char* name : {"cc", "lcc", "spearman", "cosine", "sim", "sim_minmax", "auc_exact", "auc_judd",
+                           "auc_top10", "cc_area", "spearman_area", "sim_area", "auc_top10_area"})
     EXPECT_NEAR(values.at(name), 1, 0.01) << name;
   for (const char* name : {"kl", "kl_smoothed", "mse", "mae"}) EXPECT_NEAR(values.at(name), 0, 1e-12) << name;
   for (const Metric& metric : metric_table()) {
@@ -167,6 +167,10 @@ TEST(Suite, AConstantMapScoresAlikeOnAllShapesUnlessItVaries) {
   }
 }
 
+bool reads_more(const Metric& metric) {
+  return metric.reads_positions || metric.reads_others || metric.reads_surface;
+}
+
 TEST(InformationGain, OverTheCentreBiasIsTheGainLessThatOfTheBias) {
   const Field field = random_field();
   ScalarField bias;
@@ -181,7 +185,7 @@ TEST(InformationGain, OverTheCentreBiasIsTheGainLessThatOfTheBias) {
   }
   const Scores without = score(metric_table(), map, truth, {}, Rng(1, "scores", "x"));
   for (std::size_t m = 0; m < without.values.size(); ++m)
-    EXPECT_TRUE(!metric_table()[m].reads_positions || std::isnan(without.values[m])) << "there is no bias";
+    EXPECT_TRUE(!reads_more(metric_table()[m]) || std::isnan(without.values[m])) << metric_table()[m].name;
 }
 
 TEST(Suite, OfTheAreasAnyMultipleCounts) {
@@ -220,7 +224,8 @@ TEST(Suite, WithoutPicksMetricsOfPicksAreUndefined) {
   const Values v = all_values({1, 2, 3, 0}, {{0, 1, 2, 3}, {{}, {}}});
   for (const Metric& metric : metric_table()) {
     const bool of_saliency = metric.name.find("top") != std::string::npos || metric.name.starts_with("cc") ||
-                             metric.name.starts_with("lcc") || metric.name.starts_with("s") ||
+                             metric.name.starts_with("lcc") || metric.name.starts_with("sp") ||
+                             metric.name.starts_with("sim") || metric.name.starts_with("cosine") ||
                              metric.name.starts_with("kl") || metric.name.starts_with("m");
     EXPECT_EQ(std::isnan(v.at(metric.name)), !of_saliency) << metric.name;
   }
@@ -231,7 +236,8 @@ TEST(Suite, WithoutSaliencyMetricsOfItAreUndefined) {
   for (const Metric& metric : metric_table()) {
     const std::string name = metric.name.substr(0, metric.name.find("_top"));
     const bool of_picks =
-        name == metric.name && (name.starts_with("auc") || name.starts_with("nss") || name.starts_with("ig"));
+        name == metric.name && (name.starts_with("auc") || name.starts_with("nss") ||
+                                name.starts_with("ig") || metric.reads_others || metric.reads_surface);
     EXPECT_EQ(std::isnan(v.at(metric.name)), !of_picks) << metric.name;
   }
 }

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A shape with its ground truth in the one HDF5 form that `salbench convert` writes; docs/hdf5_form.md has
+// it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/file.h"
+#include "io/polygons.h"
+#include "stages/core/point_cloud.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// One file of saliency, where what is scored is not what it holds.
+struct ValuesAsRead {
+  std::string file;               // its name, without folders
+  std::string_view per;           // "vertex", "face", "point"
+  ScalarField values;             // one per element, before the mask; NaN: not seen
+  std::vector<Vec3> points = {};  // of values per point: theirs
+  ScalarField mask = {};          // 0 hidden, 1 seen; empty: there is none
+};
+
+struct TruthInForm {
+  std::string view = {};  // that is scored by itself; empty: the shape
+  GroundTruth truth = {};
+  std::vector<ValuesAsRead> as_read = {};
+};
+
+using TextAttributes = std::vector<std::pair<std::string, std::string>>;
+
+struct ShapeInForm {
+  Mesh mesh = {};            // as the file has it, polygons split; without vertices: a point cloud
+  PointCloud cloud = {};     // as it is scored
+  PolygonCounts polygons{};  // that were split
+  std::vector<TruthInForm> truths = {};
+  TextAttributes about = {};  // item, source, licence and the like
+};
+
+Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal bytes
+
+// The parts of it. All throw InputError, one line that begins with `name`, for what is no such file: damaged,
+// or with arrays that are missing, of another type or size, or refer to points that there are not. Bytes that
+// no program of ours wrote are read in a child process.
+Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts = nullptr);
+PointCloud cloud_in_form(std::string_view image, std::string_view name);
+GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view);
+
+}  // namespace salbench

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Agreement of detected interest points with those that people marked. [dutagaci2012]
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "stages/metrics/surface_graph.h"
+
+namespace salbench {
+
+// All NaN without marked points. Without detected ones each has its worst value. A marked point is detected
+// correctly if a detected point lies within the tolerance and is not closer to another marked one: each
+// detected point counts for the marked point nearest to it, of several at equal distance the first.
+struct InterestPointScores {
+  double fne = std::numeric_limits<double>::quiet_NaN();  // share of the marked points not detected correctly
+  double fpe = fne;        // 1 - (marked points detected correctly) / (detected points)
+  double wme = fne;        // as fne, a marked point as often as it was marked
+  double precision = fne;  // share of the detected points within the tolerance of a marked one
+  double recall = fne;     // share of the marked points within the tolerance of a detected one
+};
+
+// `marked` ascends, and has a point as often as it was marked; `detected` ascends. Distances are shortest
+// paths along edges; the tolerance is a fraction of the shape's diameter.
+InterestPointScores interest_point_scores(std::span<const std::int32_t> detected,
+                                          std::span<const std::int32_t> marked, const SurfaceGraph& graph,
+                                          double tolerance);
+
+}  // namespace salbench

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/one_form.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/hdf5_file.h"
+#include "io/one_form_index.h"
+#include "stages/core/errors.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::string text_of_image(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+ShapeInForm toy_shape() {
+  ShapeInForm shape{.mesh = shapes::tetrahedron(), .polygons = {.split = 3, .concave = 1}};
+  GroundTruth truth;
+  truth.saliency = {1.5, kNan, 3, 0.1};
+  truth.viewers = {{1, 2, 3, 4}, {2, kNan, 3, -1}};
+  truth.picks = {{3, 1}, {}, {0}};
+  shape.truths.push_back({.truth = truth});
+  shape.truths.push_back(
+      {.view = "300",
+       .truth = {.saliency = {1, 2, kNan, kNan}, .picks = {}},
+       .as_read = {{.file = "a_300.txt", .per = "vertex", .values = {1, 2, 7, 8}, .mask = {1, 1, 0, 0}}}});
+  shape.about = {{"item", "a"}, {"licence", ""}};
+  return shape;
+}
+
+std::string error_of(const std::string& image) {
+  try {
+    mesh_in_form(image, "a.h5");
+    truth_in_form(image, "a.h5", "");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool same_values(const ScalarField& a, const ScalarField& b) {
+  return std::ranges::equal(a, b,
+                            [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+TEST(OneForm, HasAMeshAndItsGroundTruthAsTheyWere) {
+  const ShapeInForm shape = toy_shape();
+  const std::string image = text_of_image(one_form_image(shape));
+  PolygonCounts counts;
+  const Mesh mesh = mesh_in_form(image, "a.h5", &counts);
+  EXPECT_EQ(mesh.vertices, shape.mesh.vertices);
+  EXPECT_EQ(mesh.faces, shape.mesh.faces);
+  EXPECT_EQ(std::pair(counts.split, counts.concave), std::pair(std::int64_t{3}, std::int64_t{1}));
+  const GroundTruth truth = truth_in_form(image, "a.h5", ""), &expected = shape.truths[0].truth;
+  EXPECT_TRUE(same_values(truth.saliency, expected.saliency));
+  EXPECT_EQ(truth.picks, expected.picks);
+  ASSERT_EQ(truth.viewers.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_TRUE(same_values(truth.viewers[k], expected.viewers[k]));
+  EXPECT_TRUE(same_values(truth_in_form(image, "a.h5", "300").saliency, {1, 2, kNan, kNan}));
+  EXPECT_THROW(truth_in_form(image, "a.h5", "413"), InputError);
+  EXPECT_EQ(text_of_image(one_form_image(toy_shape())), image) << "equal shapes, equal bytes";
+}
+
+TEST(OneForm, HasACloudAsItWas) {
+  PointCloud cloud{.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}},
+                   .normals = Normals(3, Vec3::UnitX()),
+                   .viewpoint = Vec3(1, 2, 3),
+                   .dropped = {1, 4}};
+  const std::string image = text_of_image(one_form_image({.cloud = cloud}));
+  const PointCloud found = cloud_in_form(image, "c.h5");
+  EXPECT_EQ(found.points, cloud.points);
+  EXPECT_EQ(found.normals, cloud.normals);
+  EXPECT_EQ(found.viewpoint, cloud.viewpoint);
+  EXPECT_EQ(found.dropped, cloud.dropped);
+  EXPECT_THAT(error_of(image), HasSubstr("has no data set \"shape/faces\""));
+  cloud.dropped = {4, 1};
+  EXPECT_THROW(cloud_in_form(text_of_image(one_form_image({.cloud = cloud})), "c.h5"), InputError);
+}
+
+TEST(OneForm, CutShortItIsAnErrorThatNamesTheFile) {
+  const std::string image = text_of_image(one_form_image(toy_shape()));
+  for (std::size_t length = 0; length < image.size(); length += 97)
+    EXPECT_THAT(error_of(image.substr(0, length)), testing::StartsWith("a.h5: ")) << length;
+}
+
+// Whatever a flipped byte does, it is the shape or one error.
+TEST(OneForm, DamagedItIsAnErrorOrAShape) {
+  const std::string image = text_of_image(one_form_image(toy_shape()));
+  for (std::size_t i = 0; i < image.size(); i += 61) {
+    std::string damaged = image;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x55);
+    const std::string error = error_of(damaged);
+    EXPECT_TRUE(error == "no error" || error.starts_with("a.h5: ")) << i << ": " << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << i;
+  }
+}
+
+TEST(OneForm, RefusesWhatRefersToPointsThatThereAreNot) {
+  ShapeInForm shape = toy_shape();
+  shape.mesh.faces[2][1] = 4;
+  EXPECT_THAT(error_of(text_of_image(one_form_image(shape))),
+              HasSubstr("data set \"shape/faces\": 4 is out of range: there are 4 points, numbered from 0"));
+  shape = toy_shape();
+  shape.truths[0].truth.picks[0][0] = -1;
+  EXPECT_THAT(error_of(text_of_image(one_form_image(shape))),
+              HasSubstr("\"truth/picks\": -1 is out of range"));
+}
+
+TEST(OneFormIndex, ReadsWhatItWrote) {
+  const std::vector<IndexRow> rows = {
+      {.shape = "a, b", .view = "300", .category = "cups", .split = "test", .source = "own"},
+      {.shape = "c",
+       .facts = {.is_cloud = true, .has_truth = true, .participants = 3, .viewers = 2},
+       .source = "own"}};
+  const TemporaryFolder folder;
+  const std::vector<IndexRow> found = read_index(folder.write("index.csv", index_text(rows)));
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(index_text(found), index_text(rows));
+  EXPECT_EQ(found[0].name(), "a, b_300");
+  EXPECT_TRUE(found[1].facts.is_cloud && found[1].facts.has_truth);
+  EXPECT_EQ(file_of_shape(found[1].shape), "items/c.h5");
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Maps are predicted on the whole shape and scored where the ground truth was seen: by every metric, of
+// meshes, views, scans and point clouds, of models and of people.
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/centre.h"
+#include "stages/core/field.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/seen.h"
+#include "tests/pipeline/data_sets.h"
+
+namespace salbench {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class MaskedScores : public DataSets {
+ protected:
+  void run_all_metrics(const std::string& layout, const std::string& matching, bool scans = false) {
+    toy_.reset();
+    toy_ = std::make_unique<ToyRun>(data_.path(), store_,
+                                    fmt::format("dataset: {{layout: {}, scans: {}}}\nscan: {{step_degrees: "
+                                                "2}}\nmodels: {{MC: , CB: , RS: , HS: {{draws: 2}}}}\n"
+                                                "metrics: {{names: all, splits: 5{}}}\n",
+                                                layout, scans, matching));
+    toy_->run();
+    EXPECT_THAT(failures(), IsEmpty());
+  }
+  bool is_seen(std::size_t i) const { return mesh_.vertices[i].x() > -0.3; }
+  std::string mask() const {
+    std::string lines;
+    for (std::size_t i = 0; i < n_; ++i) lines += is_seen(i) ? "1\n" : "0\n";
+    return lines;
+  }
+  // Values that differ by `which`, and where nothing was seen by `hidden`.
+  std::string values(double hidden, std::size_t which = 0) const {
+    std::string lines;
+    for (std::size_t i = 0; i < n_; ++i)
+      lines += fmt::format("{}\n", is_seen(i) ? static_cast<double>((i * 37 + 11 * which) % 53)
+                                              : hidden * static_cast<double>(i));
+    return lines;
+  }
+  // Scores of a shape that has only the points seen.
+  void expect_scores_of_seen(const ResultRow& row, Level level) const {
+    const auto value_of_unit = [&](std::string_view stage, Unit unit) {
+      return toy_->resolver->value({toy_->index(stage, level), unit});
+    };
+    const auto value = [&](std::string_view stage) { return value_of_unit(stage, row.job.unit); };
+    const bool is_cloud = level == kClouds;
+    const char *const of_shape = is_cloud ? "cloud" : "mesh", *const of_truth = is_cloud
+                                                                                    ? "cloud_ground_truth"
+                                                                                    : "ground_truth";
+    const ValuePtr shape = value(of_shape), surface = is_cloud ? value("surface") : shape;
+    const Points points = Part<Points>::of(*shape);
+    const GroundTruth truth = value_as<GroundTruth>(*value(of_truth));
+    const ScalarField map = value_as<ScalarField>(*value("map." + row.model)),
+                      matched = value_as<ScalarField>(*value("matched." + row.model));
+    const std::vector<std::int32_t> seen = *seen_points(truth.saliency);
+    ASSERT_EQ(map.size(), n_) << "the map is of the whole shape";
+    ASSERT_LT(seen.size(), n_);
+    const ScalarField areas = values_at(barycentric_areas(points, Part<Surface>::of(*surface)), seen),
+                      centre = values_at(distances_from_centroid(points), seen);
+    CentreDensity set;
+    for (const Unit unit : toy_->project.units.of(level))
+      add(set, centre_density(Part<Points>::of(*value_of_unit(of_shape, unit)),
+                              value_as<GroundTruth>(*value_of_unit(of_truth, unit))));
+    const auto& options = toy_->config.metrics;
+    Measures measures(seen.size(), areas, centre);
+    measures.surface =
+        measures_of(chosen_metrics(options), n_, points, Part<Surface>::of(*surface)).at(seen).surface;
+    if (const ScalarField others = density_of_others(points, centre_density(points, truth), set);
+        !others.empty())
+      measures.negatives = values_at(others, seen);
+    const Scores expected = MetricsByMatching(options).score([&](std::span<const Metric> metrics,
+                                                                 Matching read) {
+      Draws draws(Rng(toy_->config.seed, "scores." + row.model, toy_->project.units.name(row.job.unit)));
+      return score(metrics, values_at(read == Matching::histogram ? matched : min_max_normalised(map), seen),
+                   truth_at(truth, seen), options, draws, measures);
+    });
+    EXPECT_THAT(row.scores.values, testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.values))
+        << row.model;
+    EXPECT_EQ(row.scores.n_points, static_cast<std::int64_t>(seen.size()));
+  }
+  void expect_all_of_seen(Level level, std::size_t rows) {
+    std::size_t checked = 0;
+    for (const ResultRow& row : toy_->results())
+      if (row.model != "HS") {
+        expect_scores_of_seen(row, level);
+        ++checked;
+      }
+    EXPECT_EQ(checked, rows);
+  }
+  // What tables have, as text: NaN is NaN.
+  std::string scores_text() const {
+    return to_csv(results_table(toy_->results(), chosen_metrics(toy_->config.metrics)));
+  }
+  std::string masked(const std::string& truth) {
+    return description("places:\n  - meshes: shapes/*\n    truth: {" + truth +
+                       ", mask: 'masks/{item}.txt'}\n");
+  }
+
+  const Mesh mesh_ = shapes::bumpy_sphere(2);
+  const std::size_t n_ = mesh_.vertices.size();
+};
+
+const std::vector<std::string> kMatchings = {"", ", matching: none", ", matching: histogram"};
+
+TEST_F(MaskedScores, OfMeshesAreThoseOfThePartThatWasSeen) {
+  data_.write("shapes/cat.off", off_text(mesh_));
+  data_.write("maps/cat.txt", values(1));
+  data_.write("masks/cat.txt", mask());
+  data_.write("clicks/cat_0.pid", "3\n8\n40\n77\n");
+  data_.write("clicks/cat_1.pid", "3\n5\n100\n150\n");
+  const std::string own = masked("saliency: 'maps/{item}.txt', picks: 'clicks/{item}_{participant}.pid'");
+  for (const std::string& matching : kMatchings) {
+    run_all_metrics(own, matching);
+    expect_all_of_seen(kMeshes, 3);
+    const std::vector<double> scores = toy_->results()[0].scores.values;
+    const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
+    for (std::size_t m = 0; m < metrics.size(); ++m)  // alone in its set, a shape has none of others
+      EXPECT_EQ(std::isfinite(scores[m]), !metrics[m].reads_others) << metrics[m].name;
+  }
+}
+
+TEST_F(MaskedScores, OfViewsAreThoseOfThePartThatWasSeen) {
+  data_.write("shapes/cat.off", off_text(mesh_));
+  for (const std::size_t view : {1U, 2U}) data_.write(fmt::format("maps/cat_{}.txt", view), values(5, view));
+  data_.write("masks/cat.txt", mask());
+  const std::string own = masked("saliency: 'maps/{item}_{view}.txt'") + "";
+  for (const std::string& matching : kMatchings) {
+    run_all_metrics(
+        description("places:\n  - meshes: shapes/*\n    views: scored\n    truth: {saliency: "
+                    "'maps/{item}_{view}.txt', mask: 'masks/{item}.txt'}\nvalues: {positives: top 20%}\n"),
+        matching);
+    expect_all_of_seen(kMeshes, 6);
+  }
+}
+
+TEST_F(MaskedScores, OfCloudsAreThoseOfThePartThatWasSeen) {
+  std::string points;
+  for (const Vec3& v : mesh_.vertices) points += fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
+  data_.write("shapes/cat.xyz", points);
+  data_.write("maps/cat.txt", values(5));
+  data_.write("masks/cat.txt", mask());
+  for (const std::string& matching : kMatchings) {
+    run_all_metrics(masked("saliency: 'maps/{item}.txt'"), matching);
+    expect_all_of_seen(kClouds, 3);
+  }
+}
+
+TEST_F(MaskedScores, DoNotDependOnWhatIsHidden) {
+  data_.write("shapes/cat.off", off_text(mesh_));
+  data_.write("masks/cat.txt", mask());
+  std::string hidden_picks;
+  for (std::size_t i = 0; i < n_; ++i)
+    if (!is_seen(i)) hidden_picks += fmt::format("{}\n", i);
+  ASSERT_FALSE(hidden_picks.empty());
+  const std::string own = masked("saliency: 'maps/{item}.txt', picks: 'clicks/{item}_{participant}.pid'");
+  const auto scores = [&](double hidden, const std::string& more_picks, const std::string& matching) {
+    data_.write("maps/cat.txt", values(hidden));
+    for (const auto& [k, picks] : {std::pair(0, "3\n8\n40\n"), {1, "3\n5\n"}, {2, "8\n40\n77\n"}})
+      data_.write(fmt::format("clicks/cat_{}.pid", k), picks + more_picks);
+    run_all_metrics(own, matching, true);
+    return scores_text();
+  };
+  for (const std::string& matching : kMatchings) {
+    const std::string plain = scores(0, "", matching);
+    EXPECT_THAT(plain, testing::HasSubstr(",HS,"));
+    EXPECT_EQ(scores(1e6, hidden_picks, matching), plain) << "models, people, and scans";
+  }
+}
+
+TEST_F(MaskedScores, OfViewersDoNotDependOnWhatIsHidden) {
+  data_.write("shapes/cat.off", off_text(mesh_));
+  data_.write("masks/cat.txt", mask());
+  const auto scores = [&](double hidden, const std::string& matching) {
+    for (const std::size_t viewer : {1U, 2U, 3U})
+      data_.write(fmt::format("maps/cat_{}.txt", viewer),
+                  values(hidden * static_cast<double>(viewer), viewer));
+    run_all_metrics(masked("saliency: 'maps/{item}_{viewer}.txt'"), matching);
+    return scores_text();
+  };
+  for (const std::string& matching : kMatchings) {
+    const std::string plain = scores(0, matching);
+    EXPECT_THAT(plain, testing::HasSubstr(",HS,"));
+    EXPECT_EQ(scores(-1e6, matching), plain);
+  }
+}
+
+TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricsThatHaveTheRule) {
+  data_.write("shapes/cat.off", off_text(mesh_));
+  data_.write("maps/cat.txt", values(1e6));
+  data_.write("masks/cat.txt", mask());
+  const auto run_rule = [&](const std::string& rule) {
+    run_all_metrics(
+        description("places:\n  - meshes: shapes/*\n    truth: {saliency: 'maps/{item}.txt', mask: "
+                    "'masks/{item}.txt'}\nvalues: {positives: " +
+                    rule + "}\n"),
+        ", matching: none");
+    const GroundTruth made = truth();
+    EXPECT_THAT(made.picks, SizeIs(1));
+    for (const std::int32_t pick : made.picks.at(0)) EXPECT_TRUE(is_seen(index(pick)));
+  };
+  const auto value = [&](const ResultRow& row, std::string_view metric) {
+    return value_of(row.scores, metric, toy_->config.metrics);
+  };
+  for (const int percent : {20, 10, 5}) {
+    run_rule(fmt::format("top {}%", percent));
+    for (const ResultRow& row : toy_->results()) {
+      EXPECT_NEAR(value(row, "auc_exact"), value(row, fmt::format("auc_top{}", percent)), 1e-12) << row.model;
+      EXPECT_NEAR(value(row, "nss"), value(row, fmt::format("nss_top{}", percent)), 1e-12) << row.model;
+    }
+  }
+  const std::size_t top = truth().picks.at(0).size();
+  run_rule("above mean");
+  EXPECT_GT(truth().picks.at(0).size(), top);
+}
+
+TEST_F(MaskedScores, OfPositivesByRuleTakeThePlaceOfPicks) {
+  data_.write("shapes/cat.off", off_text(mesh_));
+  data_.write("maps/cat.txt", values(1));
+  const auto refused = [&](const std::string& truth, const std::string& rule, const std::string& why) {
+    EXPECT_THAT(
+        [&] {
+          run(description("places:\n  - meshes: shapes/*\n    truth: {saliency: 'maps/{item}.txt'" + truth +
+                          "}\nvalues: {positives: " + rule + "}\n"));
+        },
+        testing::ThrowsMessage<ConfigError>(
+            testing::AllOf(testing::HasSubstr("own.yaml:4: values.positives is"), testing::HasSubstr(why))));
+  };
+  refused(", picks: 'clicks/{item}.pid'", "top 20%", "but there are picks");
+  for (const char* rule : {"top 0%", "top 100%", "top 20", "top x%", "top -5%", "below mean", "'top nan%'"})
+    refused("", rule, "not picks, above mean, or a share such as top 20%");
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scores of smoothed maps stand beside all others, and change none of them.
+#include "pipeline/results/smoothing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/results/conclusions.h"
+#include "stages/core/field.h"
+#include "stages/matching/matching.h"
+#include "stages/metrics/laplacian.h"
+#include "tests/pipeline/runner_fixture.h"
+
+namespace salbench {
+namespace {
+
+using testing::AnyOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+const std::string kSmoothing =
+    std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, kl_area], smoothing: [0, 3, 10]}\n";
+
+TEST_F(RunnerTest, SmoothedMapsAreScoredBesideTheOthers) {
+  const std::string plain = std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, kl_area]}\n";
+  run(plain);
+  const std::string results = results_;
+  const auto computed = run(kSmoothing);
+  EXPECT_EQ(results_, results);
+  EXPECT_THAT(computed, Each(AnyOf(HasSubstr("smoothed_scores."), HasSubstr("smoothed_table."))));
+  EXPECT_THAT(computed, SizeIs(JobCounts(kSmoothing).where([](const Rule& rule) {
+                return has_role(rule, Role::smoothed_scores) || has_role(rule, Role::smoothed_table);
+              })));
+  EXPECT_THAT(run(kSmoothing), IsEmpty());
+  EXPECT_THAT(run(plain), IsEmpty());
+}
+
+class Smoothing : public testing::Test {
+ protected:
+  Smoothing() {
+    for (const int k : {1, 2, 3})
+      write_toy_item(data_.path(), std::to_string(k), shapes::bumpy_sphere(2, 0.1 * k));
+  }
+  ToyRun& run(const std::string& yaml) {
+    toy_ = std::make_unique<ToyRun>(data_.path(), store_, yaml);
+    toy_->run();
+    return *toy_;
+  }
+  TemporaryFolder data_;
+  MemoryStore store_;
+  std::unique_ptr<ToyRun> toy_;
+};
+
+TEST_F(Smoothing, ScoresAreThoseOfTheSmoothedMaps) {
+  ToyRun& toy = run(kSmoothing);
+  const std::vector<Metric> metrics = chosen_metrics(toy.config.metrics);
+  const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), metrics);
+  ASSERT_THAT(smoothed, SizeIs(4));
+  const std::vector<ResultRow> rows = toy.results();
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    EXPECT_EQ(smoothed[0].rows.at(row).scores.values, rows[row].scores.values)
+        << "no steps: the plain scores";
+    EXPECT_EQ(smoothed[1].rows.at(row).item, rows[row].item);
+  }
+  const auto value = [&](std::string_view stage) {
+    return toy.resolver->value({toy.index(stage), mesh_unit(0)});
+  };
+  const Mesh mesh = value_as<Mesh>(*value("mesh"));
+  const GroundTruth truth = value_as<GroundTruth>(*value("ground_truth"));
+  const ScalarField map = smoothed_by_steps(value_as<ScalarField>(*value("map.PS")),
+                                            edge_adjacency(mesh.vertices.size(), mesh.faces), 10);
+  const Histogram reference = value_as<Histogram>(*toy.resolver->value({toy.index("reference"), Unit{}}));
+  const Scores expected =
+      MetricsByMatching(toy.config.metrics).score([&](std::span<const Metric> part, Matching read) {
+        return score(part, read == Matching::histogram ? matched(map, reference) : min_max_normalised(map),
+                     truth, toy.config.metrics, Rng(toy.config.seed, "scores.PS", "1"),
+                     barycentric_areas(mesh.vertices, mesh.faces));
+      });
+  EXPECT_EQ(smoothed[2].rows.at(0).model, "PS");
+  EXPECT_EQ(smoothed[2].rows.at(0).scores.values, expected.values);
+}
+
+TEST_F(Smoothing, OfCloudsIsOverTheirPartialMesh) {
+  const Mesh sphere = shapes::bumpy_sphere(2);
+  const TemporaryFolder folder;
+  std::string points, values;
+  for (const Vec3& v : sphere.vertices) {
+    points += fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
+    values += fmt::format("{}\n", v.z());
+  }
+  folder.write("data/clouds/cat.xyz", points);
+  folder.write("data/maps/cat.txt", values);
+  const auto own =
+      folder.write("own.yaml", "places: [{meshes: 'clouds/*', truth: {saliency: 'maps/{item}.txt'}}]\n");
+  ToyRun toy(folder / "data", store_,
+             fmt::format("dataset: {{layout: {}}}\nmodels: {{RS: }}\nmetrics: {{names: [cc], matching: none, "
+                         "smoothing: [0, 2]}}\n",
+                         own.string()));
+  toy.run();
+  const auto value = [&](std::string_view stage) {
+    return toy.resolver->value({toy.index(stage, kClouds), Unit{kClouds, 0}});
+  };
+  const Faces surface = value_as<Faces>(*value("surface"));
+  const ScalarField map = smoothed_by_steps(value_as<ScalarField>(*value("map.RS")),
+                                            edge_adjacency(sphere.vertices.size(), surface), 2);
+  const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), chosen_metrics(toy.config.metrics));
+  ASSERT_THAT(smoothed.at(1).rows, SizeIs(1));
+  EXPECT_EQ(smoothed[1].rows[0].dataset, "clouds");
+  EXPECT_NEAR(smoothed[1].rows[0].value(0),
+              cc(map, value_as<GroundTruth>(*value("cloud_ground_truth")).saliency), 1e-12);
+}
+
+TEST_F(Smoothing, TheBestIsMarkedAsABound) {
+  ToyRun& toy = run(kSmoothing);
+  const std::vector<Metric> metrics = chosen_metrics(toy.config.metrics);
+  const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), metrics);
+  const Table table = smoothing_table(smoothed, metrics, Observation::mesh);
+  EXPECT_THAT(table.columns, ElementsAre("dataset", "model", "metric", "steps", "n", "n_shapes", "mean",
+                                         "ci95_low", "ci95_high", "upper_bound"));
+  EXPECT_THAT(table.rows, SizeIs(2 * 2 * 4 * 4)) << "meshes and scans, models, metrics, steps";
+  for (std::size_t first = 0; first < table.rows.size(); first += 4) {
+    const bool higher = std::get<std::string>(table.rows[first][2]).starts_with("kl") == false;
+    const auto mean = [&](std::size_t k) { return std::get<double>(table.rows[first + k][6]); };
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(std::get<std::string>(table.rows[first + k][3]), toy.config.metrics.smoothing[k]);
+      EXPECT_EQ(table.rows[first + k][9], Cell(std::int64_t{0}));
+      EXPECT_TRUE(higher ? mean(3) >= mean(k) : mean(3) <= mean(k));
+      EXPECT_EQ(table.rows[first + k][4], Cell(std::int64_t{3})) << "meshes are the unit, of scans too";
+    }
+    EXPECT_EQ(std::get<std::string>(table.rows[first + 3][3]), "best");
+    EXPECT_EQ(table.rows[first + 3][9], Cell(std::int64_t{1}));
+  }
+  // Without steps, the table's mean and interval are those of the summary.
+  const std::vector<ResultRow> rows = toy.results();
+  const Table summary = summary_table(conclude(rows, metrics, {}, 1));
+  EXPECT_EQ(summary.rows[0][1], table.rows[0][1]);
+  EXPECT_EQ(summary.rows[0][4], table.rows[0][6]);
+  EXPECT_EQ(summary.rows[0][6], table.rows[0][7]);
+}
+
+TEST_F(Smoothing, WritesItsTableWhereItIsAskedFor) {
+  TemporaryFolder out;
+  const auto write = [&](const std::string& yaml) {
+    ToyRun& toy = run(yaml);
+    const std::vector<ResultRow> rows = toy.results();
+    const Conclusions conclusions = conclude(rows, chosen_metrics(toy.config.metrics), {}, 1);
+    write_tables(out.path(), toy.state(), rows, conclusions, {});
+    return std::filesystem::exists(out / "smoothing.csv");
+  };
+  EXPECT_TRUE(write(kSmoothing));
+  EXPECT_FALSE(write(kToyConfig)) << "that of an earlier run is gone";
+}
+
+TEST_F(Smoothing, WrongStepsAreNamedWithTheirLine) {
+  EXPECT_THAT([&] { toy_config("metrics: {smoothing: [10, 0]}\n"); },
+              testing::ThrowsMessage<ConfigError>(HasSubstr("toy.yaml:1: metrics.smoothing has 0 after 10")));
+  EXPECT_THAT(toy_config("metrics: {smoothing: 5}\n").metrics.smoothing, ElementsAre("5"));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/data_set_figures: which models it calls better than the floors, which rows it prints, and what it finds in two sets of one
+measurement."""
+
+import importlib.machinery
+import importlib.util
+import os
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
+
+
+def script():
+    path = str(ROOT / "scripts/data_set_figures")
+    os.environ.setdefault("SALBENCH_PACKAGE", str(Path(os.environ["SALBENCH_PROGRAM"]).parent / "python"))
+    spec = importlib.util.spec_from_loader("data_set_figures", importlib.machinery.SourceFileLoader("data_set_figures", path))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+class Figures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        try:
+            cls.figures = script()
+        except ModuleNotFoundError as error:
+            raise unittest.SkipTest(f"the package is not built: {error}") from None
+
+    def pairs(self, metric, intervals):
+        """Rows of significance.csv: (a, b) -> interval of a - b."""
+        return pd.DataFrame([{"metric": metric, "model_a": a, "model_b": b, "ci95_low": low, "ci95_high": high}
+                             for (a, b), (low, high) in intervals.items()])
+
+    def test_better_is_better_than_every_floor_by_the_whole_interval(self):
+        floors = self.figures.FLOORS
+        wins = {("A", floor): (0.1, 0.2) for floor in floors} | {("B", floor): (0.1, 0.2) for floor in floors}
+        self.assertIn("cc: A, B.", self.figures.above_floors(self.pairs("cc", wins)))
+        self.assertIn("kl: none.", self.figures.above_floors(self.pairs("kl", wins)), "less is better")
+        turned = {(floor, model): (low, high) for (model, floor), (low, high) in wins.items()}
+        self.assertIn("kl: A, B.", self.figures.above_floors(self.pairs("kl", turned)))
+        self.assertIn("cc: A.", self.figures.above_floors(self.pairs("cc", wins | {("B", floors[-1]): (-0.01, 0.3)})))
+        del wins["A", floors[0]], wins["B", floors[0]]
+        self.assertIn("cc: none.", self.figures.above_floors(self.pairs("cc", wins)), "a floor without scores")
+
+    def test_models_stand_before_floors_and_those_without_scores_are_left_out(self):
+        rows = [{"model": model, "metric": "cc", "n": n, "mean": 0.5, "ci95_low": 0.25, "ci95_high": 0.75}
+                for model, n in (("RS", 3), ("LS", 3), ("HS", 0))]
+        self.assertEqual(self.figures.table_of_means(pd.DataFrame(rows)).splitlines()[2:],
+                         ["| LS |  | 0.500 (0.250 to 0.750) |", "| RS | floor | 0.500 (0.250 to 0.750) |"])
+
+    def test_rows_of_single_splits_are_left_out_where_there_are_several(self):
+        table = pd.DataFrame({"split": [np.nan, "test", "train"], "n": [3, 1, 2]})
+        self.assertEqual(self.figures.of_all(table)["n"].tolist(), [3])
+        self.assertEqual(self.figures.of_all(table[1:2])["n"].tolist(), [1])
+
+    def written(self, root, noise):
+        """Two meshes, and clouds with the same points in another order, whose densities differ by so much."""
+        rng = np.random.default_rng(1)
+        for folder in ("eyetracking/Meshes", "eyetracking/Distributions", "eyetracking/RawData", "sal3d/Gaze"):
+            (root / folder).mkdir(parents=True)
+        for name in ("cow", "horse"):
+            points, density, order = rng.normal(size=(30, 3)), rng.random(30), rng.permutation(30)
+            faces = "".join(f"3 {i} {i + 1} {i + 2}\n" for i in range(28))
+            vertices = "".join(" ".join(map(repr, row)) + "\n" for row in points.tolist())
+            (root / f"eyetracking/Meshes/{name}.off").write_text(f"OFF\n30 28 0\n{vertices}{faces}")
+            (root / f"eyetracking/Distributions/{name}.val").write_text("".join(f"{value!r}\n" for value in density.tolist()))
+            (root / f"eyetracking/RawData/{name}_0.pid").write_text("1\n")
+            rows = np.column_stack([points, points, density + noise * rng.random(30), np.zeros(30)])[order]
+            (root / f"sal3d/Gaze/{name}.txt").write_text("".join(" ".join(map(repr, row)) + "\n" for row in rows.tolist()))
+
+    def test_one_measurement_in_two_files_is_told_from_two(self):
+        for noise, same in ((0, True), (0.5, False)):
+            with self.subTest(noise), tempfile.TemporaryDirectory() as folder:
+                self.written(Path(folder), noise)
+                text = self.figures.overlap(Path(folder))
+                self.assertEqual("one measurement in two files" in text, same)
+                self.assertIn(f"the densities differ at {0 if same else 60} of 60 vertices", text)
+                self.assertEqual("| cc | 1.000000 | 1.000000 |" in text, same)
+
+
+if __name__ == "__main__":
+    unittest.main()
