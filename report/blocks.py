@@ -33,6 +33,7 @@ class Cell:
     below: str = ""      # second line, smaller
     bold: bool = False
     style: str = ""      # name of a CSS class
+    after: str = ""      # follows the text, lighter
 
 
 @dataclass
@@ -46,6 +47,7 @@ class Table:
     filters: list = field(default_factory=list)  # indices of columns that get a menu
     files: list = field(default_factory=list)    # (label, path) of the same table in other forms
     folded: str = ""     # what a reader opens it with; empty: it stands open
+    better: list = field(default_factory=list)  # per column "higher", "lower" or empty, for an arrow in its head
     kind: str = "table"
 
 

@@ -4,7 +4,7 @@
 import numpy
 import pandas
 
-from report import statistics, style
+from report import names, statistics, style
 from report.metrics import family_of
 from report.names import DATASETS, spoken
 from report.results import Missing
@@ -27,13 +27,19 @@ def cumulative(shop, dataset):
     data = cumulative_data(shop.results, dataset)
     figure = style.new_figure(7, 4.4)
     axes = figure.subplots()
-    for column in data.columns[1:]:
-        ground_truth = column == "GS"
-        axes.plot(data["value"], data[column], label="Ground truth" if ground_truth else column,
-                  color="black" if ground_truth else shop.colours.get(column), lw=2.4 if ground_truth else 1.8,
-                  ls=shop.dashes.get(column, "-"))
+    columns = list(data.columns[1:])
+    looks = [names.colours(columns), names.dashes(columns), names.markers(columns)]
+    for at, column in enumerate(columns):
+        colour, dash, marker = (look[column] for look in looks)
+        axes.plot(data["value"], data[column], color=colour, ls=dash, lw=2.4 if column == "GS" else 1.8, marker=marker, ms=5,
+                  markevery=(3 + 2 * at, 16))
     axes.set(xlim=(0, 1), ylim=(0, 1.01), xlabel="Saliency", ylabel="Share of points at or below")
-    axes.legend(loc="lower right")
+    # All curves end at 1, 1: each is named where it reaches its part of the way there, highest first.
+    order = sorted(columns, key=lambda column: -data[column].sum())
+    for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
+        axes.annotate("Ground truth" if column == "GS" else column, (numpy.interp(part, data[column], data["value"]), part),
+                      xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks[0][column],
+                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85})
     medians = ", ".join(f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:])
     return shop.plot(f"distributions-{dataset}", figure, data,
                      f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below: {medians}.",
@@ -42,29 +48,45 @@ def cumulative(shop, dataset):
 
 
 def ranking_data(results, dataset, metric):
-    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first."""
-    return statistics.summary(results, dataset, metric)[["model", "n", "mean", "ci95_low", "ci95_high"]]
+    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first; where compact.csv cut an interval at the
+    range of the metric, the cut one."""
+    data = statistics.summary(results, dataset, metric)[["model", "n", "mean", "ci95_low", "ci95_high"]].copy()
+    try:
+        cut = statistics.compact(results, dataset, metric).set_index("model")
+    except Missing:
+        return data
+    for column, of in (("ci95_low", "low"), ("ci95_high", "high")):
+        data[column] = data["model"].map(cut[of]).fillna(data[column])
+    return data
+
+
+REFERENCES = {"RS": ("chance", (0, (2, 2))), "HS": ("people", (0, (7, 3)))}
 
 
 def draw_ranking(axes, data, shop, metric):
-    """Bars of the mean, best on top, with 95 % intervals."""
-    data = data.dropna(subset=["mean"])
-    at = numpy.arange(len(data))
-    axes.barh(at, data["mean"], color=[shop.colours.get(model) for model in data["model"]], height=0.62)
-    known = data["ci95_low"].notna().to_numpy()
-    spread = (data[["ci95_low", "ci95_high"]].sub(data["mean"], axis=0).abs().to_numpy().T)[:, known]
-    axes.errorbar(data["mean"][known], at[known], xerr=spread, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=4)
-    right = data["ci95_high"].fillna(data["mean"]).clip(lower=0)
-    span = max(right.max(), 0.02) if len(data) else 1
-    for y, x, mean in zip(at, right, data["mean"]):
-        axes.annotate(f"{mean:.3f}", (x, y), xytext=(6, 0), textcoords="offset points", va="center")
-    axes.set_yticks(at, data["model"])
-    axes.invert_yaxis()
-    axes.set_xlim(min(0, data["mean"].min() * 1.2) if len(data) else 0, span * 1.22)
+    """A dot per model at its mean with its 95 % interval, best on top, and references as named lines. That of an AUC begins at .5
+    unless something lies below."""
+    data = data.dropna(subset=["mean"]).reset_index(drop=True)
+    low, high = data["ci95_low"].fillna(data["mean"]), data["ci95_high"].fillna(data["mean"])
+    least, most = (low.min(), high.max()) if len(data) else (0, 1)
+    margin = 0.06 * (most - least) or 0.05
+    markers = names.markers(shop.models)
+    for y, row in enumerate(data.itertuples()):
+        axes.plot([low[y], high[y]], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
+        axes.plot([row.mean], [y], color=shop.colours.get(row.model), marker=markers.get(row.model, "o"), ms=8, ls="none", zorder=3)
+        axes.annotate(f"{row.mean:.3f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
+                      annotation_clip=False)
+        if row.model in REFERENCES:
+            name, dash = REFERENCES[row.model]
+            axes.axvline(row.mean, color="#555555", lw=1.1, ls=dash, zorder=1)
+            axes.annotate(name, (row.mean, 1.005), xycoords=("data", "axes fraction"), fontsize=8, color="#555555", ha="center",
+                          va="bottom", annotation_clip=False)
+    axes.set_yticks(range(len(data)), data["model"])
+    axes.set_ylim(max(len(data), 1) - 0.5, -0.5)
+    begin = 0.5 if family_of(metric.name) == "auc" and least >= 0.5 else least - margin
+    axes.set_xlim(begin, most + margin)
     axes.grid(axis="y", visible=False)
     axes.set_xlabel(f"Mean {metric.label}" + (", lower is better" if metric.lower else ""))
-    if family_of(metric.name) == "auc":
-        axes.axvline(0.5, color="#555555", lw=1, ls=":")
 
 
 def sentence(data):
@@ -129,7 +151,7 @@ def rankings(shop, dataset):
     for axes, (metric, table) in zip(figure.subplots(1, len(data), squeeze=False)[0], data.items()):
         of = shop.results.metric(metric)
         draw_ranking(axes, table, shop, of)
-        axes.set_title(of.label)
+        axes.set_title(of.label, pad=16)
     text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
     return shop.plot(f"ranking-{dataset}", figure, plotted, f"Models on {spoken(dataset)}, best first. {text}.",
@@ -146,24 +168,42 @@ def human_data(results, metric):
     return rows
 
 
+def model_means(shop, metric):
+    """model -> mean on meshes, without references."""
+    if not shop.results.has("summary.csv"):
+        return {}
+    rows = statistics.summary(shop.results, "meshes", metric).dropna(subset=["mean"])
+    return {row.model: row.mean for row in rows.itertuples() if row.model not in REFERENCES}
+
+
+def draw_curve(axes, table, means, shop):
+    """The curve of participants and a line per model, each named at its right end."""
+    axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
+    axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4)
+    last = table["n"].max()
+    for model, mean in means.items():
+        axes.plot([table["n"].min(), last], [mean, mean], color=shop.colours.get(model), lw=1.4, ls=shop.dashes.get(model, "-"))
+    values = [*table["mean"], *table["ci95_low"].dropna(), *table["ci95_high"].dropna(), *means.values()]
+    margin = 0.05 * (max(values) - min(values)) or 0.05
+    limits = (min(values) - margin, max(values) + margin)
+    axes.set_ylim(*limits)
+    axes.set_xlim(table["n"].min(), last)
+    axes.set_xticks(range(1, int(last) + 1, 2))
+    style.label_ends(axes, [(mean, model, shop.colours.get(model)) for model, mean in means.items()]
+                     + [(table["mean"].iloc[-1], "people", style.INK)], limits, 3.2)
+
+
 def human_curves(shop):
     """n participants against n others, one panel per metric, with each model's mean as a line across."""
     data = {metric: human_data(shop.results, metric) for metric in shop.results.leading}
     figure = style.new_figure(11, 4.1)
     for axes, (metric, table) in zip(figure.subplots(1, len(data)), data.items()):
-        if shop.results.has("summary.csv"):
-            for row in statistics.summary(shop.results, "meshes", metric).itertuples():
-                if row.model not in ("HS", "RS"):
-                    axes.axhline(row.mean, color=shop.colours.get(row.model), lw=1.2, ls="--", label=row.model)
-        axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
-        axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4, label="participants")
+        draw_curve(axes, table, model_means(shop, metric), shop)
         label = shop.results.metric(metric).label
         axes.set(title=label, xlabel="Participants n", ylabel=f"Mean {label}")
-        axes.set_xticks(range(1, int(table["n"].max()) + 1, 2))
-    axes.legend(loc="lower right", ncol=2, fontsize=9, handlelength=1.4, columnspacing=1)
     ends = "; ".join(f"{shop.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
                      for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
     return shop.plot("human-curves", figure, plotted,
                      f"n participants against n others, n = 1 to {int(table['n'].max())}: {ends}.",
-                     "How well n participants predict n others, with the 95 % interval; dashed: each model's mean, against all participants.")
+                     "How well n participants predict n others, with the 95 % interval; lines across: each model's mean, against all participants.")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of classes as a LaTeX file for \\input, with the package booktabs."""
+"""Tables as LaTeX files for \\input, with the package booktabs."""
 
 from jinja2 import Environment
 
@@ -17,6 +17,26 @@ Class{% for model in models %} & {{ model|tex }}{% endfor %} & Avg-{{ label }} \
 \\midrule
 {% for name, cells in rows %}
 \\emph{ {{- (name or "(no class)")|tex -}} }{% for cell in cells %} & {{ cell }}{% endfor %} \\\\
+{% endfor %}
+\\bottomrule
+\\end{tabular}
+"""
+
+
+_COMPACT = """\
+% {{ dataset }}, {{ over }}: mean and half of the 95 % interval, or its ends; best in bold; models without a letter in common differ;
+% needs \\usepackage{booktabs}
+{% if simulated %}% SIMULATED participants: these scores say nothing about people.
+{% endif %}
+{% for model, n in failed.items() %}
+% \\dag: {{ model|tex }} has no score on {{ n }} shapes; all models are compared on those that every one has
+{% endfor %}
+\\begin{tabular}{l{{ "c" * heads|length }}}
+\\toprule
+Model{% for label, arrow in heads %} & {{ label|tex }} $\\{{ arrow }}${% endfor %} \\\\
+\\midrule
+{% for model, cells in rows %}
+{{ model|tex }}{% if model in failed %}\\textsuperscript{\\dag}{% endif %}{% for cell in cells %} & {{ cell }}{% endfor %} \\\\
 {% endfor %}
 \\bottomrule
 \\end{tabular}
@@ -41,8 +61,30 @@ def write_per_class(path, classes, models, by_cell, best, metric, dataset, simul
     for name in classes:
         cells = [number(by_cell.get((name, model)), model in best[name]) for model in models]
         rows.append((name, cells + [number(by_cell.get((name, "Avg")), False)]))
+    write(path, _TEMPLATE, rows=rows, models=models, label=escape(metric.label), dataset=dataset, simulated=simulated)
+
+
+def write_compact(path, models, metrics, by_cell, failed, dataset, over, simulated):
+    """by_cell: (model, metric) -> a row of compact.csv. failed: model -> number of shapes without a score."""
+    rows = [(model, [compact_number(by_cell.get((model, metric.name))) for metric in metrics]) for model in models]
+    heads = [(metric.label, "downarrow" if metric.lower else "uparrow") for metric in metrics]
+    write(path, _COMPACT, rows=rows, heads=heads, failed=failed, dataset=dataset, over=over, simulated=simulated)
+
+
+def compact_number(row):
+    if row is None or row["mean"] != row["mean"]:
+        return "--"
+    spread = ""
+    if row["half"] == row["half"]:
+        spread = rf" \pm {row['half']:.3f}"
+    elif row["low"] == row["low"]:
+        spread = rf"\,({row['low']:.3f},\,{row['high']:.3f})"
+    value = f"{row['mean']:.3f}{spread}"
+    group = rf"^{{\mathrm{{{row['group']}}}}}" if row["group"] else ""
+    return rf"$\mathbf{{{value}}}{group}$" if row["best"] == 1 else f"${value}{group}$"
+
+
+def write(path, template, **values):
     environment = Environment(trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, autoescape=False)
     environment.filters["tex"] = escape
-    text = environment.from_string(_TEMPLATE).render(rows=rows, models=models, label=escape(metric.label), dataset=dataset,
-                                                     simulated=simulated)
-    path.write_text(text, encoding="utf-8")
+    path.write_text(environment.from_string(template).render(**values), encoding="utf-8")

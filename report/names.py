@@ -17,21 +17,37 @@ MODELS = {
     "RS": "Chance",
 }
 
-# Okabe and Ito's colours, which colour-blind readers tell apart. Ground truth is black.
-_COLOURS = {"GS": "#000000", "LS": "#0072B2", "CS": "#D55E00", "PS": "#009E73", "MS": "#CC79A7", "HS": "#E69F00",
+# Okabe and Ito's colours, which colour-blind readers tell apart, darkened where they have less than 3:1 beside white. Ground truth
+# is black.
+_COLOURS = {"GS": "#000000", "LS": "#0072B2", "CS": "#D55E00", "PS": "#009E73", "MS": "#BF5F96", "HS": "#A87400",
             "RS": "#767676"}
-_OWN = ("#56B4E9", "#8B4513", "#F0E442", "#5E3C99", "#B2DF8A")
+_OWN = ("#00828C", "#8B4513", "#5B8A1F", "#5E3C99", "#6B6BD6", "#B03060", "#8A7A00")
+_MARKERS = {"GS": "*", "LS": "o", "CS": "s", "PS": "^", "MS": "D", "HS": "P", "RS": "X"}
+_OWN_MARKERS = ("v", "h", "<", "p", ">", "d", "8", "H", "o")
+_DASHES = {"GS": "-", "LS": "-", "CS": (0, (6, 2)), "PS": (0, (2, 1.5)), "MS": (0, (6, 2, 1, 2)), "HS": (0, (1, 1.5)),
+           "RS": (0, (8, 2, 1, 2, 1, 2))}
+_OWN_DASHES = ((0, (4, 1)), (0, (3, 2, 1, 2)), (0, (1, 1)), (0, (5, 2, 1, 2, 1, 2)), (0, (9, 3)))
 
 
 def colours(models):
     """model -> colour. Built-in models keep theirs in every figure; others take the remaining ones in order."""
-    own = [model for model in models if model not in _COLOURS]
-    return {model: _COLOURS.get(model) or _OWN[own.index(model) % len(_OWN)] for model in models}
+    return _each(models, _COLOURS, _OWN)
 
 
 def dashes(models):
-    """model -> line style: models of one's own are dashed, so that a repeated colour still differs."""
-    return {model: "-" if model in _COLOURS else "--" for model in models}
+    """model -> line style, and below its marker: they tell models apart where colours do not, in print and in grey. Those of one's
+    own differ in number from the colours, so that 300 models differ in one of the three."""
+    return _each(models, _DASHES, _OWN_DASHES)
+
+
+def markers(models):
+    return _each(models, _MARKERS, _OWN_MARKERS)
+
+
+def _each(models, built_in, own):
+    """model -> what a built-in model has, or for others the next of their own, in turns."""
+    others = [model for model in models if model not in built_in]
+    return {model: built_in[model] if model in built_in else own[others.index(model) % len(own)] for model in models}
 
 
 def spoken(dataset):

@@ -14,7 +14,8 @@ from report import metrics
 
 NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
 TEXT_COLUMNS = ("dataset", "split", "item", "class", "view", "model", "metric", "model_a", "model_b", "metric_a", "metric_b", "group",
-                "node", "remark", "k_bound", "low_bound", "high_bound")
+                "node", "remark", "k_bound", "low_bound", "high_bound", "better", "kind", "verdict", "leaders", "second",
+                "sentence")
 DATASETS = ("meshes", "scans", "clouds")
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
@@ -65,7 +66,7 @@ class Results:
         except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
             return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
         self.remarks += [remark for remark in remarks if remark not in self.remarks]
-        if name != "results.csv" and "split" in table and not table.empty:  # all splits together come first
+        if name not in ("results.csv", "leaders.csv") and "split" in table and not table.empty:  # all splits together come first
             table = table[table["split"] == table["split"].iloc[0]].reset_index(drop=True)
         if unusable:
             self.unusable.append(f"{name} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "

@@ -134,7 +134,9 @@ def timeline(shop):
     palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#767676"]
     ends = numpy.append(shown.index, len(starts)) * width  # the last interval is drawn to its end
     heights = numpy.vstack([shown.to_numpy(), shown.to_numpy()[-1:]])
-    axes.stackplot(ends, heights.T, labels=shown.columns, colors=palette, step="post", lw=0)
+    areas = axes.stackplot(ends, heights.T, labels=shown.columns, colors=palette, step="post", lw=0.4, edgecolor="#333333")
+    for at, hatch in zip(range(len(shown.columns)), ("", "////", "....", "\\\\\\\\", "xxx", "---", "|||", "++")):  # in grey, too
+        areas[at].set_hatch(hatch)
     axes.set(xlabel="Seconds since the start", ylabel="Cores at work", xlim=(0, table["end"].max()))
     axes.set_ylim(0, max(number_of(shop.results.record.get("threads"), 1), shown.sum(axis=1).max()) * 1.02)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)

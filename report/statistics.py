@@ -13,6 +13,8 @@ RANKING = (*OF_METRIC, "model", "n", "n_shapes", "mean", "rank", "rank_low", "ra
 DIFFERENCES = ("from_participants", "to_participants", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low",
                "ci90_high")
 SHARES = (*OF_METRIC, "model", "share", "ci95_low", "ci95_high", "remark")
+COMPACT = (*OF_METRIC, "better", "model", "kind", "n", "n_shapes", "n_missing", "mean", "low", "high", "half", "rank", "group", "best")
+LEADERS = (*OF_METRIC, "verdict", "leaders", *MEAN, "second", "lead", "lead_low", "lead_high", "n", "n_shapes", "sentence")
 SUMMARY = (*OF_METRIC, "model", "n", "sd", *MEAN, "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean")
 
 def datasets(results):
@@ -92,6 +94,19 @@ def mean_per_shape(results, dataset, metric):
 def ranks(wide, metric):
     """Rank of each shape within its data set per model, 1 for the best score; NaN where there is no score."""
     return wide.rank(ascending=metric.lower, method="min")
+
+
+def compact(results, dataset, metric):
+    """Rows of compact.csv of one metric, in its order: competitors by rank, then references."""
+    rows = of_metric(results.table("compact.csv", *COMPACT), dataset, metric)
+    if rows.empty:
+        raise Missing(f"compact.csv has no {metric} of {dataset}.")
+    return rows.reset_index(drop=True)
+
+
+def leaders(results, dataset, metric=""):
+    """Rows of leaders.csv: of one metric, or the sentences of the data set. All splits together come first, then each."""
+    return of_metric(results.table("leaders.csv", *LEADERS), dataset, metric).reset_index(drop=True)
 
 
 def summary(results, dataset, metric):

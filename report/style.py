@@ -32,8 +32,12 @@ _SETTINGS = {
 
 
 def apply():
-    """No window system, and the settings above. Matplotlib is loaded here, where there is something to draw."""
+    """No window system, and the settings above. Matplotlib is loaded here, where there is something to draw, with all that processes
+    which are forked later need of it."""
     import matplotlib
+    import matplotlib.backends.backend_pdf
+    import matplotlib.backends.backend_svg
+    import matplotlib.figure  # noqa: F401
 
     matplotlib.use("Agg")
     matplotlib.rcParams.update(_SETTINGS)
@@ -47,6 +51,31 @@ def new_figure(width, height, layout="constrained"):
         apply()
         return Figure(figsize=(width, height), layout=layout)
     return Drawing(make, (width, height), layout)
+
+
+def label_ends(axes, ends, limits, height):
+    """A name at the right end of every line: ends are (y, text, colour), limits those of y, height of the axes about in inches.
+    Names that would touch are moved apart, with a thin line to their own."""
+    low, high = limits
+    ends = sorted(((y - low) / (high - low) if high > low else 0.5, text, colour) for y, text, colour in ends)
+    gap = 0.17 / height
+    places = spread([at for at, _, _ in ends], gap)
+    for (at, text, colour), place in zip(ends, places):
+        axes.annotate(text, (1, at), (1.06, place), xycoords="axes fraction", textcoords="axes fraction", fontsize=9, color=colour,
+                      va="center", annotation_clip=False, arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.7, "shrinkA": 0,
+                                                                      "shrinkB": 0})
+
+
+def spread(places, gap):
+    """Ascending places, moved apart to at least a gap, about where they were and within 0 to 1 if there is room."""
+    moved = []
+    for at, place in enumerate(places):
+        moved.append(max(place, moved[-1] + gap) if at else place)
+    over = max(0.0, moved[-1] - 1) if moved else 0
+    for at in range(len(moved) - 1, -1, -1):
+        room = 1.0 if at == len(moved) - 1 else moved[at + 1] - gap
+        moved[at] = min(moved[at], room) if over else moved[at]
+    return moved
 
 
 def save(figure, svg, pdf):

@@ -3,14 +3,12 @@
 
 from pathlib import Path
 
-from report import comparison, gallery_page, metric_page, run_page, score_pages, shape_files, shape_pages
-from report.blocks import attempt
-from report.elements import elements_of
+from report import comparison, front, gallery_page, metric_page, run_page, score_pages, shape_files, shape_pages
+from report.elements import numbered, pages_of, sections
 from report.exports import Shapes
 from report.folder import Folder
-from report.names import spoken
 from report.pages import Pages, copy_static
-from report.results import DATASETS, Missing, read_results
+from report.results import read_results
 from report.workshop import Workshop
 
 
@@ -25,11 +23,10 @@ def write_report(options, protocols):
     shop = Workshop(results, folder, shapes, protocols, shape_pages.items(results, shapes),
                     tuple(options.examples.split(",")) if options.examples else (), other=other, processes=options.processes)
     shop.drawn = shape_files.draw_all(shop)
-    comparing = [("comparison.html", "Comparison")] if other else []
-    metrics = [("metrics.html", "Other metrics")] if metric_page.others(shop) else []
-    gallery = [("gallery.html", "Gallery")] if gallery_page.pictured(shop) else []
-    pages = Pages(shop, [("index.html", "Results"), *gallery, ("scores.html", "Scores and shapes"), *metrics, ("run.html", "Run"),
-                         *comparing])
+    metrics = bool(metric_page.others(shop))
+    present = pages_of(shop, {"index.html", "scores.html", "run.html", "metrics.html" if metrics else "",
+                              "gallery.html" if gallery_page.pictured(shop) else "", "comparison.html" if other else ""})
+    pages = Pages(shop, [(page.path, page.label) for page in present])
     scores = shop.scores = shape_pages.Scores(results)
     gallery_page.write_page(shop, pages)
     for item, category in shop.items.items():
@@ -48,10 +45,14 @@ def write_report(options, protocols):
         pages.write("metrics.html", "metrics.html", title="Other metrics", sections=metric_page.blocks(shop),
                     leading=", ".join(of.label for of in results.leading.values()),
                     labels=[results.metric(name).label for name in metric_page.others(shop)])
-    sections = [(element, attempt(element.build, shop)) for element in elements_of(results)]
     pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
+    for page in present:
+        if found := sections(shop, page.path):
+            contents = numbered(shop) if page.path == "paper.html" else []
+            contents += [element for element, _ in found if element not in contents]
+            pages.write(page.path, "page.html", title=page.label, page=page, sections=found, contents=contents)
+    pages.write("index.html", "index.html", title="Results", front=front.front(shop), marks=front.MARKS, doors=present[1:])
     shop.draw_figures()
-    pages.write("index.html", "index.html", title="Results", sections=sections, lead=lead(shop))
     folder.finish()
     return out / "index.html"
 
@@ -60,16 +61,3 @@ def exports(options, results):
     """The exports named, or OUT/shapes.h5 where there is one."""
     default = results.folder / "shapes.h5"
     return options.export or ([default] if default.is_file() else [])
-
-
-def lead(shop):
-    """One sentence: how many shapes and models, by which protocol."""
-    try:
-        rows = shop.results.table("results.csv", "dataset", "item", "view")
-    except Missing as reason:
-        return str(reason)
-    shapes = rows.drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
-    counted = " and ".join(f"{shapes[dataset]} {spoken(dataset)}" for dataset in DATASETS if dataset in shapes) or "no shape"
-    protocol = shop.results.option("protocol")
-    return (f"Scores of {counted} with ground truth, under {len(shop.models)} models: {', '.join(shop.models) or 'none'}."
-            + (f" Protocol: {protocol}." if protocol else ""))

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
+#include "pipeline/commands/leading.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/results/pairs.h"
 #include "pipeline/results/score_file.h"
@@ -55,7 +56,7 @@ Conclusions conclusions_of(const ScoreFile& file, Observation unit) {
   return conclude(file.rows, file.metrics, {.unit = unit}, kDefaultSeed);
 }
 
-ExitStatus write_all(const Arguments& arguments, const Options& options) {
+ExitStatus write_all(const Arguments& arguments, const Options& options, ReportFormat format) {
   std::vector<Statement> statements;
   if (!options.statements.empty()) statements = read_statements(options.statements);
   const Observation unit = unit_of(options);
@@ -68,9 +69,13 @@ ExitStatus write_all(const Arguments& arguments, const Options& options) {
   write_conclusions(folder, file.rows, conclusions, "");
   if (!options.statements.empty())
     write_file(folder / "statements.csv", to_csv(statements_table(conclusions, statements)));
-  if (!arguments.quiet)
-    fmt::print("{}\none observation per {}; tables in {}\n", aligned(overview_table(conclusions)),
-               name_of(unit), folder.string());
+  const std::vector<LevelLeaders> leaders = find_leaders(conclusions);
+  const std::string text =
+      fmt::format("{}\n{}one observation per {}; tables in {}\n", aligned(overview_table(conclusions)),
+                  leading_text(leaders), name_of(unit), folder.string());
+  print_report(format, "conclusions",
+               {{"results", folder}, {"unit", std::string(name_of(unit))}, {"leaders", json_of(leaders)}},
+               arguments.quiet ? "" : text);
   return kAllDone;
 }
 
@@ -106,6 +111,7 @@ ExitStatus print_power(const Arguments& arguments, Options options) {
 
 Subcommand conclusions_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
+  const FormatWord format = default_format();
   return {
       "conclusions",
       "means, intervals, tests and ranks of a table of scores per shape, of a run or of anybody's",
@@ -116,8 +122,11 @@ Subcommand conclusions_subcommand(Arguments& arguments) {
             "CSV file of what a text says of pairs of models, like configs/paper/claims.csv: each beside "
             "what the scores say, in statements.csv"},
            {"--out", &arguments.output, "folder of the tables (default: salbench-out/NAME)"},
-           {"--quiet", &arguments.quiet, "no table; warnings and errors only"}}),
-      [&arguments, options](const std::atomic<bool>&) { return write_all(arguments, *options); }};
+           {"--quiet", &arguments.quiet, "no table; warnings and errors only"},
+           format_parameter(format)}),
+      [&arguments, options, format](const std::atomic<bool>&) {
+        return write_all(arguments, *options, format_of(format));
+      }};
 }
 
 Subcommand power_subcommand(Arguments& arguments) {

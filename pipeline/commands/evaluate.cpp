@@ -12,6 +12,7 @@ Subcommand evaluate_subcommand(Arguments& arguments) {
     bool matched = false;
   };
   const auto options = std::make_shared<Options>();
+  const FormatWord format = default_format();
   return {"evaluate", "a run that also scores saliency maps of your own, made by any program",
           run_parameters(
               arguments,
@@ -21,11 +22,13 @@ Subcommand evaluate_subcommand(Arguments& arguments) {
                 true},
                {"--name", &options->name, "what to call them in the tables", true},
                {"--models", &arguments.models, "beside these models only, such as LS,PS"},
-               {"--matched", &options->matched, "the values are histogram-matched already"}}),
-          [&arguments, options](const std::atomic<bool>& stop) {
+               {"--matched", &options->matched, "the values are histogram-matched already"},
+               format_parameter(format)}),
+          [&arguments, options, format](const std::atomic<bool>& stop) {
+            const ReportFormat chosen = format_of(format);
             Session session(arguments, stop,
                             given_model(options->name, find_given_maps(options->maps, options->matched)));
-            return run_session(session, arguments);
+            return run_session(session, arguments, chosen, "evaluate");
           }};
 }
 

@@ -10,6 +10,7 @@
 #include "io/table.h"
 #include "pipeline/commands/installed.h"
 #include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/leading.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/commands/why.h"
 #include "pipeline/engine/run.h"
@@ -24,20 +25,34 @@ constexpr const char* kPartialNote =
     "PARTIAL: the run was interrupted; these are the scores of what it finished and they are final.";
 
 // No tables: what they compare is in the other shares.
-void print_shard(const Session& session) {
-  fmt::print(
+std::string shard_text(const Session& session) {
+  return fmt::format(
       "shard {}: {}, {} artefacts computed; when all shards are done, the same line without "
       "--shard writes the tables\n",
       session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
 }
 
-void print_summary(const Session& session, const Conclusions& conclusions) {
+// The last lines say who leads, and where the tables are.
+std::string summary_text(const Session& session, const Conclusions& conclusions,
+                         const std::vector<LevelLeaders>& leaders) {
   const Setup& setup = session.setup;
-  if (setup.config.simulated()) fmt::print("{}\n", kSimulatedNote);
-  fmt::print("{}", aligned(overview_table(conclusions)));
-  fmt::print("\nprotocol {}; {} artefacts computed, results in {}\n", name_of(setup.config.protocol),
-             session.resolver.computed(), setup.output.string());
-  fmt::print("to make a report of them: {} {}\n", report_command(), shell_word(setup.output.string()));
+  return fmt::format(
+      "{}\n{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: {} {}\n",
+      aligned(overview_table(conclusions)),
+      setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "", leading_text(leaders),
+      name_of(setup.config.protocol), session.resolver.computed(), setup.output.string(), report_command(),
+      shell_word(setup.output.string()));
+}
+
+// Members of the document; a shard has no leaders yet.
+Json json_of(const Session& session, const std::vector<LevelLeaders>& leaders) {
+  const Setup& setup = session.setup;
+  return {{"results", setup.output},
+          {"shard", setup.inputs.shard ? std::optional(setup.inputs.shard->text()) : std::nullopt},
+          {"protocol", std::string(name_of(setup.config.protocol))},
+          {"simulated", setup.config.simulated()},
+          {"computed", session.resolver.computed()},
+          {"leaders", json_of(leaders)}};
 }
 
 std::vector<ChanceRemark> remarks_on_chance(const RunState& run, std::vector<ResultRow> rows) {
@@ -90,12 +105,17 @@ void carry_out(Session& session, int threads, const Show& show) {
   shard ? write_shard_record(setup.output, record) : write_results(session, record, show);
 }
 
-ExitStatus run_session(Session& session, const Arguments& arguments) {
+ExitStatus run_session(Session& session, const Arguments& arguments, ReportFormat format,
+                       const std::string& subcommand) {
+  const auto print = [&](const std::vector<LevelLeaders>& leaders, const std::string& text) {
+    print_report(format, subcommand, json_of(session, leaders), arguments.quiet ? "" : text);
+  };
   carry_out(session, thread_count(arguments), [&](const Conclusions& conclusions) {
-    if (!arguments.quiet) print_summary(session, conclusions);
+    const std::vector<LevelLeaders> leaders = find_leaders(conclusions);
+    print(leaders, summary_text(session, conclusions, leaders));
   });
   const Setup& setup = session.setup;
-  if (setup.inputs.shard && !session.stop && !arguments.quiet) print_shard(session);
+  if (setup.inputs.shard && !session.stop) print({}, shard_text(session));
   if (!session.stop) return finished_status(session);
   if (!setup.inputs.shard)
     std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(),
@@ -104,11 +124,13 @@ ExitStatus run_session(Session& session, const Arguments& arguments) {
 }
 
 Subcommand run_subcommand(Arguments& arguments) {
+  const FormatWord format = default_format();
   return {"run", "compute what is missing and write the tables",
-          run_parameters(arguments, {shard_parameter(arguments)}),
-          [&arguments](const std::atomic<bool>& stop) {
+          run_parameters(arguments, {shard_parameter(arguments), format_parameter(format)}),
+          [&arguments, format](const std::atomic<bool>& stop) {
+            const ReportFormat chosen = format_of(format);
             Session session(arguments, stop);
-            return run_session(session, arguments);
+            return run_session(session, arguments, chosen, "run");
           }};
 }
 

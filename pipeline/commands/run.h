@@ -3,7 +3,9 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
+#include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
 
 namespace salbench {
@@ -15,6 +17,7 @@ using Show = std::function<void(const Conclusions&)>;
 void carry_out(Session& session, int threads, const Show& show = {});
 
 // The same as a command, with what it prints.
-ExitStatus run_session(Session& session, const Arguments& arguments);
+ExitStatus run_session(Session& session, const Arguments& arguments, ReportFormat format,
+                       const std::string& subcommand);
 
 }  // namespace salbench

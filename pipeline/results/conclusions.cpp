@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "io/file.h"
+#include "pipeline/results/compact.h"
+#include "pipeline/results/leaders.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 
@@ -140,6 +142,8 @@ void write_conclusions(const std::filesystem::path& folder, const std::vector<Re
   write("significance.csv", significance_table(conclusions));
   write("per_class.csv", per_class_table(rows, conclusions.metrics, conclusions.unit));
   write("human_share.csv", human_share_table(conclusions));
+  write("compact.csv", compact_table(conclusions));
+  write("leaders.csv", leaders_table(conclusions, find_leaders(conclusions)));
 }
 
 }  // namespace salbench

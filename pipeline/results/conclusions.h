@@ -61,8 +61,8 @@ Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics
 // dataset, model, metric, n, mean, ci95_low, ci95_high, rank, group: what a terminal shows of a run.
 Table overview_table(const Conclusions& conclusions);
 
-// summary.csv, ranking.csv, ranking_agreement.csv, significance.csv, per_class.csv and human_share.csv, each
-// below `head`. Throws StorageError.
+// summary.csv, ranking.csv, ranking_agreement.csv, significance.csv, per_class.csv, human_share.csv,
+// compact.csv and leaders.csv, each below `head`. Throws StorageError.
 void write_conclusions(const std::filesystem::path& folder, const std::vector<ResultRow>& rows,
                        const Conclusions& conclusions, const std::string& head);
 

@@ -31,7 +31,7 @@ salbench.sortable = function (table) {
   };
   for (const header of head.cells) {
     header.querySelector("button").addEventListener("click", () => {
-      const direction = salbench.turn(header, head);
+      const direction = salbench.turn(header, head, header.dataset.better === "lower");
       const rows = Array.from(body.rows);
       rows.sort((a, b) => salbench.compare(key(a, header.cellIndex), key(b, header.cellIndex), direction));
       body.append(...rows);

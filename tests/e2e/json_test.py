@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["SALBENCH_PROGRAM"]
 CONFIG = "dataset: {layout: folder, participants: simulated, scans: false}\nmodels: {PS: , RS: }\n"
 ODD = 'q"uo\\te é'  # a mesh
-TYPES = {str: "text", int: "number", bool: "true or false", list: "list", type(None): "null"}
+TYPES = {str: "text", int: "number", float: "fraction", bool: "true or false", list: "list", type(None): "null"}
 
 
 def documented():
@@ -78,6 +78,32 @@ class JsonTest(unittest.TestCase):
 
     def run_to(self, status=0, preload=None):
         self.salbench("run", "--quiet", status=status, preload=preload)
+
+    def check_results(self):
+        """run, which has nothing to do any more, and conclusions from what it wrote."""
+        out = self.folder / "out"
+        document, text = self.document("run")
+        shard, _ = self.document("run", "--shard", "1/2")
+        self.assertEqual((document["results"], document["computed"], document["simulated"]), (str(out), 0, True))
+        self.assertEqual((shard["shard"], shard["leaders"]), ("1/2", []))
+        (level,) = document["leaders"]
+        self.assertIn(f"\n{level['sentence']}\n", text)
+        seen = self.seen["run"]
+        self.assertLessEqual({key for key in seen if key.startswith("leaders[]")}, set(documented()["conclusions"]))
+        self.seen["run"] = {key: kinds for key, kinds in seen.items() if not key.startswith("leaders[]")}
+        self.conclude(out / "results.csv", document["leaders"])
+        table = self.folder / "scores.csv"
+        table.write_text("item,model,auc,nss\n1,A,0.5,1\n2,A,0.75,\n1,B,0.25,\n2,B,0.375,1\n")
+        self.conclude(table)
+
+    def conclude(self, table, leaders=None):
+        said = subprocess.run([PROGRAM, "conclusions", table, "--out", self.folder / "concluded", "--format", "json"], check=True,
+                              capture_output=True, text=True).stdout
+        document = json.loads(said)
+        for key, kind in keys_of(document):
+            self.seen.setdefault("conclusions", {}).setdefault(key, set()).add(kind)
+        if leaders is not None:
+            self.assertEqual(document["leaders"], leaders)
 
     def check_counts(self):
         """status and plan, by each other, by the text and by the files. Returns the open jobs."""
@@ -224,6 +250,7 @@ class JsonTest(unittest.TestCase):
             self.assertGreater(collected["waiting"], 0)
         with self.subTest("finished"):
             self.run_to()
+            self.check_results()
             self.assertEqual(self.check_counts(), (0, "finished"))
             self.assertLessEqual({"cached"}, set(self.check_explanation(ODD).values()))
             self.assertEqual(set(self.check_graph()), {0})

@@ -35,6 +35,9 @@ TEST(Results, TheTablesHaveTheDocumentedColumnsAndARowForEverythingScored) {
                           "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean"));
   EXPECT_THAT(summary.rows, SizeIs(2 * toy_config().models.size() * chosen_metrics({}).size()));
   EXPECT_THAT(run.out, HasSubstr("protocol published"));
+  for (const std::string& sentence : text_column(read_csv(toy.out() / "leaders.csv"), "sentence"))
+    if (sentence.find("AUC") != std::string::npos && sentence.find("LCC") != std::string::npos)
+      EXPECT_THAT(run.out, HasSubstr("\n" + sentence + "\n"));
 }
 
 TEST(Results, TheSummaryIsTheMeanOfTheRows) {
@@ -58,7 +61,7 @@ TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
   ASSERT_EQ(concluded.status, 0) << concluded.err;
   for (const char* table :
        {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv", "per_class.csv",
-        "human_share.csv"})
+        "human_share.csv", "compact.csv", "leaders.csv"})
     EXPECT_EQ(read_file(toy / "concluded" / table), read_file(toy.out() / table)) << table;
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "timeline.csv"}).status, 2);
   EXPECT_EQ(

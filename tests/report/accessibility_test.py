@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import unittest
 
+import browser
 import support
 
 AXE = "axe-core@4.10.2"
@@ -35,9 +36,14 @@ class Accessibility(support.BrowserTest):
                 for finding in found["violations"] if finding["impact"] in GRAVE]
 
     def test_no_serious_finding_on_any_kind_of_page(self):
-        for path in ("index.html", "gallery.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
-            with self.subTest(path):
-                self.assertEqual(self.findings(path), [])
+        pages = browser.kinds_of_pages(self.to)
+        self.assertGreaterEqual(len(pages), 10)
+        for scheme in ("light", "dark"):
+            self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                         {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+            for path in pages:
+                with self.subTest(path, scheme=scheme):
+                    self.assertEqual(self.findings(path), [])
 
 
 if __name__ == "__main__":

@@ -28,6 +28,11 @@ def start(width=1280, height=1000):
     return browser
 
 
+def kinds_of_pages(report):
+    """One page of each kind, within the report."""
+    return [path.name for path in sorted(report.glob("*.html"))] + [f"shapes/{path.name}" for path in sorted(report.glob("shapes/*.html"))[:1]]
+
+
 def console_errors(browser):
     """Warnings of the graphics driver say nothing about the pages."""
     return [entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]

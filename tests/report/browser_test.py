@@ -6,6 +6,7 @@ import time
 import unittest
 from io import BytesIO
 
+import pandas
 from PIL import Image
 
 import browser as chromium
@@ -48,7 +49,7 @@ class Browser(support.BrowserTest):
         self.assertEqual(broken, [])
 
     def test_a_table_sorts_by_number_and_back(self):
-        self.open("index.html")
+        self.open("statistics.html")
         head = self.browser.find_element(By.XPATH, "//table[@id='table-means']//th[button='Mean']")
         head.find_element(By.TAG_NAME, "button").click()
         self.assertEqual(head.get_attribute("aria-sort"), "descending")
@@ -58,7 +59,7 @@ class Browser(support.BrowserTest):
         self.assertEqual(head.get_attribute("aria-sort"), "ascending")
 
     def test_a_table_filters_by_model(self):
-        self.open("index.html")
+        self.open("statistics.html")
         Select(self.browser.find_element(By.CSS_SELECTOR, "form[data-for=table-means] select[data-column='1']")).select_by_visible_text("LS")
         shown = [text for text in self.texts("#table-means tbody tr td:nth-child(2)") if text]
         self.assertEqual(set(shown), {"LS"})
@@ -193,19 +194,62 @@ class Browser(support.BrowserTest):
         for path in sorted(self.to.rglob("*.html")):
             self.open(path.relative_to(self.to))
             self.assertTrue(self.browser.find_element(By.TAG_NAME, "h1").text)
-        self.open("index.html")
+        self.open("paper.html")
         printed = base64.b64decode(self.browser.print_page())
         self.assertTrue(printed.startswith(b"%PDF"))
         self.assertGreater(len(printed), 50_000)
 
     def test_nothing_is_wider_than_a_phone(self):
-        self.browser.set_window_size(500, 900)  # Chromium's narrowest window
-        for path in ("index.html", "gallery.html", "scores.html", "metrics.html", "run.html", "shapes/1.html"):
+        self.size(400, 800)
+        for path in chromium.kinds_of_pages(self.to):
             self.open(path)
             time.sleep(0.2)
             wider = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
             self.assertLessEqual(wider, 0, path)
-        self.browser.set_window_size(1280, 1000)
+
+    def size(self, width, height):
+        """Of the page itself: Chromium's narrowest window is wider than a phone."""
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+
+    def bottom(self, selector):
+        """Of the last of the elements that are shown, which has to be one at least."""
+        found = self.browser.execute_script(
+            "return Array.from(document.querySelectorAll(arguments[0])).map(e => e.getBoundingClientRect()).filter(r => r.width && r.height)"
+            ".map(r => [r.left, r.right, r.bottom])", selector)
+        self.assertTrue(found, selector)
+        for left, right, _ in found:
+            self.assertTrue(left >= 0 and right <= self.browser.execute_script("return innerWidth"), selector)
+        return max(entry[2] for entry in found)
+
+    def test_the_first_screen_says_who_leads_how_sure_and_of_what_data(self):
+        leaders = pandas.read_csv(self.folder / "full/leaders.csv").fillna({"metric": ""})
+        ranked = pandas.read_csv(self.folder / "full/ranking.csv").query("dataset == 'meshes' and metric == 'auc'")
+        first = ".level:first-of-type .dots:nth-of-type(1)"
+        shown = {1280: (".said p", ".facts dd", ".three img", ".level", ".doors li"), 400: (".said p", ".facts dd", ".three img", first)}
+        for width, selectors in shown.items():
+            with self.subTest(width):
+                self.size(width, 800)
+                self.open("index.html")
+                for selector in selectors:
+                    self.assertLessEqual(self.bottom(selector), 800, selector)
+                self.assertEqual(self.texts(".said p"), list(leaders.loc[leaders["metric"] == "", "sentence"]))
+                row = self.browser.find_element(By.CSS_SELECTOR, ".dots tbody tr")
+                cells = [row.find_element(By.CSS_SELECTOR, part).get_attribute("textContent") for part in ("th", ".track span", ".mean", ".group")]
+                best = leaders.query("dataset == 'meshes' and metric == 'auc'").iloc[0]
+                self.assertEqual(cells, [best["leaders"].split(", ")[0], f"{best['ci95_low']:.3f} to {best['ci95_high']:.3f}",
+                                         f"{best['mean']:.3f}", ranked["group"].iloc[0]])
+                self.assertIn("8 meshes, 96 scans", " ".join(self.texts(".facts dd")))
+
+    def test_the_compact_table_sorts_and_its_arrow_has_words(self):
+        self.open("ranking.html")
+        head = self.browser.find_element(By.CSS_SELECTOR, "#table-compact-meshes th:nth-child(2)")
+        self.assertIn("higher is better", head.get_attribute("textContent"))
+        head.find_element(By.TAG_NAME, "button").click()
+        numbers = [float(text.split()[0].replace("−", "-")) for text in self.texts("#table-compact-meshes tbody td:nth-child(2)")]
+        self.assertEqual(numbers, sorted(numbers, reverse=True))
+        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "#table-compact-meshes tbody td:nth-child(2) strong")), 1)
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ class CloudsTest(support.ReportTest):
     def test_index_has_a_part_of_their_own(self):
         self.assertEqual(self.status, 0, self.errors)
         index = support.page(self.to)
-        self.assertIn("8 meshes and 96 scans and 3 point clouds", index)
+        self.assertIn("8 meshes, 96 scans, 3 point clouds with ground truth", index)
         part = support.section(index, "clouds")
         self.assertNotIn("Missing.", part)
         for text in ("figures/ranking-clouds.svg", "figures/performance-clouds-auc.svg", "figures/examples-clouds.pdf",

@@ -148,6 +148,7 @@ def write_results(folder, items, models=MODELS, simulated=False, results=None, *
               "mean_histograms_scans": histograms([model for model in models if model != "HS"], 3),
               "human_curve": human_curve(), "human_curve_by_mesh": curves, "human_curve_differences": twin.human_differences(curves),
               "human_equivalents": twin.human_equivalents(curves, results, is_distance),
+              "compact": twin.compact(results, is_distance), "leaders": twin.leaders(results, is_distance),
               "human_share": twin.human_shares(results, is_distance), "human_reliability": twin.human_reliability(curves)}
     for name, table in tables.items():
         (folder / f"{name}.csv").write_text(head + table.to_csv(index=False), encoding="utf-8")

@@ -9,6 +9,7 @@ import urllib.parse
 
 import fixture
 import support
+from report import names
 from report.names import file_name, file_names, natural
 
 ALIKE = ["case", "Case", "CASE"]
@@ -80,6 +81,26 @@ class Files(support.ReportTest):
         for folder in pictures:
             ours, theirs = (to / "pictures" / folder / f"mesh-{model}-after.webp" for model in ("+4c++53+", "ls"))
             self.assertNotEqual(ours.read_bytes(), theirs.read_bytes())
+
+
+class Looks(unittest.TestCase):
+    MODELS = [*names.MODELS, *(f"own {number}" for number in range(20))]
+
+    @staticmethod
+    def luminance(colour):
+        parts = [int(colour[at:at + 2], 16) / 255 for at in (1, 3, 5)]
+        linear = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    def test_every_colour_has_a_contrast_of_3_to_1_on_white(self):
+        for model, colour in names.colours(["GS", *self.MODELS]).items():
+            self.assertGreaterEqual(1.05 / (self.luminance(colour) + 0.05), 3, model)
+
+    def test_no_two_models_look_alike_and_built_in_ones_differ_without_colour(self):
+        colours, dashes, markers = (look(self.MODELS) for look in (names.colours, names.dashes, names.markers))
+        self.assertEqual(len({(colours[model], str(dashes[model]), markers[model]) for model in self.MODELS}), len(self.MODELS))
+        self.assertEqual(len({markers[model] for model in names.MODELS}), len(names.MODELS))
+        self.assertEqual(len({str(dashes[model]) for model in names.MODELS}), len(names.MODELS))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The whole benchmark, 400 meshes and 4800 scans with made-up scores: time and size without pictures."""
 
+import os
+import subprocess
 import time
 import unittest
 
@@ -10,6 +12,9 @@ import support
 
 CLASSES = ("human cup glasses airplane ant chair octopus table teddy hand plier fish bird spring armadillo buste mechanic bearing "
            "vase four-legged").split()
+
+
+PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
 
 
 class Size(support.ReportTest):
@@ -29,6 +34,30 @@ class Size(support.ReportTest):
         if chromium.AVAILABLE:
             for path in ("index.html", "scores.html"):
                 self.assert_usable_soon(to / path)
+
+    @unittest.skipUnless(os.access(PROGRAM, os.X_OK), "SALBENCH_PROGRAM does not name the built program")
+    def test_20_models_8_metrics_and_400_shapes(self):
+        out = self.folder / "leaderboard"
+        models = [f"model {number}" for number in range(18)] + ["HS", "RS"]
+        metrics = (*fixture.METRICS, "spearman", "sim", "mse")
+        items = [(str(index + 1), CLASSES[index // 20]) for index in range(400)]
+        table = fixture.results_table(items, models, datasets=("meshes",))
+        table["auc"] += table["model"].map({model: 0.002 * at for at, model in enumerate(models[:18])}).fillna(0)
+        out.mkdir()
+        fixture.with_metrics(table, metrics).to_csv(out / "results.csv", index=False)
+        (out / "run.yaml").write_text(fixture.run_yaml(models, False, extra=fixture.metric_lines(metrics)), encoding="utf-8")
+        subprocess.run([PROGRAM, "conclusions", out / "results.csv", "--out", out, "--quiet"], check=True)
+        before = os.times()
+        to = self.report("leaderboard")
+        after = os.times()
+        cpu = sum(after[:4]) - sum(before[:4])
+        index = (to / "index.html").stat().st_size
+        print(f"{len(models)} models, {len(metrics)} metrics, {len(items)} shapes: {after.elapsed - before.elapsed:.0f} s, of processors "
+              f"{cpu:.0f} s; index {index / 1e6:.2f} MB, ranking {(to / 'ranking.html').stat().st_size / 1e6:.2f} MB")
+        self.assertLess(cpu, 180)
+        self.assertLess(index, 1.5e6)
+        self.assertIn("+ 12", support.page(to, "index.html"))  # six of 18 models are shown
+        self.assertEqual(len(support.rows(support.page(to, "ranking.html"), "compact-meshes")), 20)
 
     def assert_usable_soon(self, path):
         browser = chromium.start()

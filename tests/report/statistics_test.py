@@ -82,6 +82,22 @@ class Statistics(support.ReportTest):
         pairs = self.matched("significance.csv", twin.significance(self.scores), ["dataset", "metric", "model_a", "model_b"])
         self.assert_equal_columns(pairs, [column for column in self.results.table("significance.csv").columns[4:]], **exact)
 
+    def test_the_compact_table_and_the_leaders_equal_numpys(self):
+        lower, exact = fixture.is_distance, {"rtol": 1e-9, "atol": 1e-9}
+        compact = self.matched("compact.csv", twin.compact(self.scores, lower, resamples=10_000), ["dataset", "metric", "model"])
+        self.assert_equal_columns(compact, ["n", "n_shapes", "n_missing", "mean", "low", "high", "half", "rank", "best"], **exact)
+        for column in ("better", "kind"):
+            self.assertEqual(list(compact[column]), list(compact[f"{column}_twin"]))
+        leaders = self.matched("leaders.csv", twin.leaders(self.scores, lower, resamples=10_000), ["dataset", "metric"])
+        self.assert_equal_columns(leaders, ["n", "n_shapes", "mean", "ci95_low", "ci95_high", "lead"], **exact)
+        width = leaders["lead_high"] - leaders["lead_low"]
+        numpy.testing.assert_allclose(width, leaders["lead_high_twin"] - leaders["lead_low_twin"], rtol=0.1)  # by other draws
+        for row in leaders[leaders["metric"] != ""].to_dict("records"):
+            if abs(row["lead_low"]) > 0.05 * (row["lead_high"] - row["lead_low"]):  # no tie that the draws decide
+                self.assertEqual((row["verdict"], row["leaders"]), (row["verdict_twin"], row["leaders_twin"]), row)
+        for sentence in leaders.loc[leaders["metric"] == "", "sentence"]:
+            self.assertIn(sentence, support.page(self.to, "index.html"))
+
     def test_resampled_figures_equal_numpys(self):
         lower, resamples = fixture.is_distance, 10_000
         for row in self.results.table("summary.csv").itertuples():

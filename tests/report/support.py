@@ -12,7 +12,7 @@ from pathlib import Path
 
 import browser
 import fixture
-from report import cli
+from report import cli, elements
 
 
 def make(out, to, *arguments):
@@ -60,8 +60,12 @@ def without_figures():
         yield
 
 
-def page(folder, path="index.html"):
-    return (Path(folder) / path).read_text(encoding="utf-8")
+def page(folder, path=None):
+    """The text of a page; of the first one and all with figures and tables, one after the other, if none is named."""
+    if path is not None:
+        return (Path(folder) / path).read_text(encoding="utf-8")
+    paths = dict.fromkeys(["index.html", *(element.page for element in elements.ELEMENTS)])
+    return "".join(page(folder, path) for path in paths)
 
 
 def section(text, identifier):

@@ -3,7 +3,7 @@
 and statistics_test compares the program's with them. The mesh is the unit: a mesh's score is the mean over its scans."""
 
 from functools import cache, cached_property
-from itertools import combinations
+from itertools import combinations, groupby
 
 import numpy
 import pandas
@@ -371,3 +371,68 @@ def agreement(results, lower, **options):
             ends = numpy.quantile(resampled, [LEVEL / 2, 1 - LEVEL / 2]) if len(resampled) else (NAN, NAN)
             rows.append((dataset, first, second, len(items), len(models), taus[0], *ends))
     return pandas.DataFrame(rows, columns=["dataset", "metric_a", "metric_b", "n", "n_models", "tau", "ci95_low", "ci95_high"])
+
+
+RANGES = {"auc": (0, 1), "cc": (-1, 1), "lcc": (0, 1), "spearman": (-1, 1), "kl": (0, numpy.inf), "sim": (0, 1), "mse": (0, 1), "mae": (0, 1)}
+
+
+def within_range(values, metric):
+    """Student's interval, cut at what the metric can be."""
+    least, most = RANGES.get(metric.split("_")[0], (-numpy.inf, numpy.inf))
+    low, high = student(values) if len(values) and numpy.ptp(values) > 0 else (NAN, NAN)
+    return low, high, max(low, min(least, numpy.mean(values))) if low == low else NAN, min(high, max(most, numpy.mean(values))) if low == low else NAN
+
+
+def compact(results, lower, **options):
+    """compact.csv"""
+    rows = []
+    for dataset, metric, scores in each(results, lower, **options):
+        units = scores.compared(scores.competitors)[0] if scores.competitors else pandas.DataFrame()
+        ranks = {model: (place, group) for model, _, place, _, _, _, group in rank(units, scores.lower, scores.resamples)} if len(units) else {}
+        known = scores.wide.notna()
+        missing = known.any(axis=1).sum() - known.sum()
+        order = sorted(scores.scored, key=lambda model: (model in REFERENCES, ranks.get(model, (0,))[0]))
+        for model in order:
+            own, n_shapes = scores.compared([model])
+            values = own[model].to_numpy()
+            low, high, kept_low, kept_high = within_range(values, metric) if len(values) else (NAN,) * 4
+            half = (high - low) / 2 if (low, high) == (kept_low, kept_high) else NAN
+            place, group = ranks.get(model, (NAN, ""))
+            rows.append((dataset, metric, "lower" if scores.lower else "higher", model, "reference" if model in REFERENCES else "model",
+                         len(values), n_shapes, missing[model], values.mean() if len(values) else NAN, kept_low, kept_high, half, place,
+                         group, int(place == 1)))
+    return pandas.DataFrame(rows, columns=["dataset", "metric", "better", "model", "kind", "n", "n_shapes", "n_missing", "mean", "low",
+                                           "high", "half", "rank", "group", "best"])
+
+
+def leaders(results, lower, **options):
+    """leaders.csv, with sentences of another wording."""
+    rows = []
+    for dataset, of_dataset in groupby(each(results, lower, **options), key=lambda entry: entry[0]):
+        found = []
+        for _, metric, scores in of_dataset:
+            if scores.competitors:
+                units, n_shapes = scores.compared(scores.competitors)
+                found.append((dataset, metric, *leader(units, metric, scores), len(units), n_shapes))
+        said = [f"{row[3]}: {row[2]} by {row[1]}, {row[4]:.3f} ({row[5]:.3f} to {row[6]:.3f}), n = {row[11]}" for row in found]
+        rows.append((dataset, "", "", "", *(NAN,) * 3, "", *(NAN,) * 5, f"On {dataset}, {'; '.join(said[:3])}."))
+        rows += [(*row, f"On {dataset}, {text}.") for row, text in zip(found, said)]
+    return pandas.DataFrame(rows, columns=["dataset", "metric", "verdict", "leaders", "mean", "ci95_low", "ci95_high", "second", "lead",
+                                           "lead_low", "lead_high", "n", "n_shapes", "sentence"])
+
+
+def leader(units, metric, scores):
+    """verdict, leaders, mean, ci95, second, lead and its joint interval."""
+    if not len(units):
+        return "no common shape", ", ".join(units), *(NAN,) * 3, "", *(NAN,) * 3
+    ranked = rank(units, scores.lower, scores.resamples)
+    best = ranked[0][0]
+    first = [model for model, _, _, low, *_ in ranked if not low > 1]
+    of_best = (ranked[0][1], *within_range(units[best].to_numpy(), metric)[2:])
+    if len(units) < 2 or len(ranked) < 2:
+        return "one unit" if len(units) < 2 else "only model", ", ".join(first), *of_best, "", *(NAN,) * 3
+    second = ranked[1][0]
+    ahead = (units[best] - units[second]).to_numpy() * (-1 if scores.lower else 1)
+    half = joint_bound(units, scores.resamples) * stats.sem(ahead) if numpy.ptp(ahead) > 0 else 0
+    verdict = "not told apart" if len(first) > 1 else "leads" if ranked[0][4] == 1 else "not behind"
+    return verdict, ", ".join(first), *of_best, second, ahead.mean(), ahead.mean() - half, ahead.mean() + half

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One table of models and metrics: as HTML, LaTeX and CSV it is that of compact.csv."""
+
+import unittest
+
+import numpy
+import pandas
+
+import fixture
+import support
+
+METRICS = (*fixture.METRICS, "mse")
+
+
+class Compact(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        """Of one model that failed on two meshes, and scores so near 1 that intervals are cut."""
+        super().setUpClass()
+        items = fixture.eight_meshes()
+        models = ("LS", "CS", "A_B&C", "HS", "RS")
+        results = fixture.with_metrics(fixture.results_table(items, models, views=2), METRICS)
+        failed = (results["model"] == "A_B&C") & (results["dataset"] == "meshes") & results["item"].isin(["1", "2"])
+        results.loc[failed, list(METRICS)] = numpy.nan
+        sure = (results["model"] == "LS") & (results["dataset"] == "meshes")
+        results.loc[sure, "auc"] = [1, 1, 1, 1, 1, 1, 1, 0.9]
+        fixture.write_results(cls.folder / "run", items, models, results=results, extra=fixture.metric_lines(METRICS))
+        with support.without_figures():
+            status, errors = support.make(cls.folder / "run", cls.folder / "report")
+        assert status == 0, errors
+        cls.to = cls.folder / "report"
+        cls.page = support.page(cls.to, "ranking.html")
+        table = pandas.read_csv(cls.folder / "run/compact.csv", keep_default_na=False)
+        cls.expected = {(row["model"], row["metric"]): row for row in table[table["dataset"] == "meshes"].to_dict("records")}
+
+    def test_cells_are_those_of_the_file(self):
+        rows = {row[0]: row[1:] for row in support.rows(self.page, "compact-meshes")}
+        self.assertEqual(set(rows), {"LS", "CS", "A_B&C †", "HS", "RS"})
+        order = ["auc", "nss", "lcc", "auc_exact", "cc", "mse"]  # the paper's come first
+        for model, cells in rows.items():
+            for metric, text in zip(order, cells, strict=True):
+                row = self.expected[model.removesuffix(" †"), metric]
+                spread = f"± {float(row['half']):.3f}" if row["half"] != "" else f"({float(row['low']):.3f} to {float(row['high']):.3f})"
+                expected = f"{float(row['mean']):.3f} {spread} {row['group']}".replace("-", "−").split()
+                self.assertEqual(text.split(), expected, (model, metric))
+        cut = self.expected["LS", "auc"]
+        self.assertEqual((cut["high"], cut["half"]), (1.0, ""))
+
+    def test_best_is_bold_and_heads_say_which_way(self):
+        for (cells, bold) in support.bold(self.page, "compact-meshes"):
+            model = cells[0].removesuffix(" †")
+            self.assertEqual(bold[1:], [self.expected[model, metric]["best"] == 1 for metric in ("auc", "nss", "lcc", "auc_exact", "cc", "mse")])
+        head = self.page[self.page.index('id="table-compact-meshes"'):].partition("</thead>")[0]
+        self.assertEqual((head.count("higher is better"), head.count("lower is better")), (5, 1))
+        self.assertEqual(head.count('data-better="lower"'), 1)
+
+    def test_a_model_that_failed_is_marked_with_its_number_of_shapes(self):
+        self.assertIn("† has no score on some shapes (A_B&amp;C 2 meshes)", self.page)
+
+    def test_latex_has_arrows_groups_and_marks(self):
+        text = (self.to / "data/compact-meshes.tex").read_text(encoding="utf-8")
+        lines = text.splitlines()
+        self.assertIn(r"Model & AUC $\uparrow$ & NSS $\uparrow$ & LCC $\uparrow$ & AUC (exact) $\uparrow$ & CC $\uparrow$ & MSE $\downarrow$ \\", lines)
+        self.assertTrue(any(line.startswith(r"A\_B\&C\textsuperscript{\dag} & $") for line in lines))
+        best = self.expected["LS", "auc"]
+        self.assertIn(rf"$\mathbf{{{best['mean']:.3f}\,({best['low']:.3f},\,{best['high']:.3f})}}^{{\mathrm{{{best['group']}}}}}$", text)
+        self.assertEqual(text.count("{"), text.count("}"))
+        body = [line for line in lines if line.endswith(r"\\")]
+        self.assertEqual({line.count(" & ") for line in body}, {6})
+
+    def test_csv_is_the_programs(self):
+        ours = pandas.read_csv(self.to / "data/compact-meshes.csv")
+        theirs = pandas.read_csv(self.folder / "run/compact.csv").query("dataset == 'meshes'").reset_index(drop=True)
+        pandas.testing.assert_frame_equal(ours, theirs, check_dtype=False, rtol=0, atol=0)
+
+
+if __name__ == "__main__":
+    unittest.main()
