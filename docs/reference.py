@@ -95,7 +95,7 @@ def data_sets():
     found = []
     for path in sorted((DOCS.parent / "configs/datasets").glob("*.yaml")):
         description = yaml.safe_load(path.read_text(encoding="utf-8"))
-        found.append((f"`{path.stem}`", description.get("licence", "not known; ask the authors")))
+        found.append((f"`{path.stem}`", description["licence"]))
     return ("# Terms of data sets\n\nNone of the data is part of salbench; [Data sets](../data_sets.md) says whose it is. On which terms its\n"
             "authors give it, as far as that is known (`licence:` in `configs/datasets/NAME.yaml`):\n\n" + table(("layout", "terms"), found))
 

@@ -23,7 +23,7 @@ import yaml
 import pages
 
 # Keys of a description of a data set (docs/data_sets.md); every other block of YAML is a configuration.
-DESCRIPTION = {"domain", "classes", "ground_truth", "places", "values", "indices", "splits", "columns"}
+DESCRIPTION = {"domain", "classes", "licence", "ground_truth", "places", "values", "indices", "splits", "columns"}
 
 
 class Runner:
