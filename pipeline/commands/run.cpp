@@ -11,6 +11,7 @@
 #include "pipeline/commands/installed.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/summary.h"
 #include "pipeline/commands/why.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/results/conclusions.h"
@@ -90,12 +91,22 @@ void carry_out(Session& session, int threads, const Show& show) {
   shard ? write_shard_record(setup.output, record) : write_results(session, record, show);
 }
 
-ExitStatus run_session(Session& session, const Arguments& arguments) {
-  carry_out(session, thread_count(arguments), [&](const Conclusions& conclusions) {
-    if (!arguments.quiet) print_summary(session, conclusions);
-  });
+ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,
+                       ReportFormat format) {
   const Setup& setup = session.setup;
-  if (setup.inputs.shard && !session.stop && !arguments.quiet) print_shard(session);
+  const bool for_people = format == ReportFormat::text && !arguments.quiet;
+  Json document = {{"results", setup.output},
+                   {"protocol", name_of(setup.config.protocol)},
+                   {"simulated", setup.config.simulated()},
+                   {"shard", setup.inputs.shard ? Json(setup.inputs.shard->text()) : Json()},
+                   {"scores", Json::array()}};
+  carry_out(session, thread_count(arguments), [&](const Conclusions& conclusions) {
+    if (for_people) print_summary(session, conclusions);
+    document["scores"] = rows_json(overview_table(conclusions));
+  });
+  if (setup.inputs.shard && !session.stop && for_people) print_shard(session);
+  document.update(summary_of(session));
+  print_report(format, name, document, "");
   if (!session.stop) return finished_status(session);
   if (!setup.inputs.shard)
     std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(),
@@ -104,11 +115,13 @@ ExitStatus run_session(Session& session, const Arguments& arguments) {
 }
 
 Subcommand run_subcommand(Arguments& arguments) {
+  const FormatWord word = default_format();
   return {"run", "compute what is missing and write the tables",
-          run_parameters(arguments, {shard_parameter(arguments)}),
-          [&arguments](const std::atomic<bool>& stop) {
+          run_parameters(arguments, {shard_parameter(arguments), format_parameter(word)}),
+          [&arguments, word](const std::atomic<bool>& stop) {
+            const ReportFormat format = format_of(word);
             Session session(arguments, stop);
-            return run_session(session, arguments);
+            return run_session(session, "run", arguments, format);
           }};
 }
 

@@ -56,9 +56,8 @@ TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
   const Outcome concluded =
       run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv", "--out", toy / "concluded"});
   ASSERT_EQ(concluded.status, 0) << concluded.err;
-  for (const char* table :
-       {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv", "per_class.csv",
-        "human_share.csv"})
+  for (const char* table : {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv",
+                            "per_class.csv", "human_share.csv"})
     EXPECT_EQ(read_file(toy / "concluded" / table), read_file(toy.out() / table)) << table;
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "timeline.csv"}).status, 2);
   EXPECT_EQ(
@@ -111,10 +110,9 @@ TEST(Results, TablesOfPeopleHaveTheDocumentedColumnsAndRows) {
               (value[n_metrics] - value[0] + value[3 * n_metrics] - value[2 * n_metrics]) / 2, 1e-12);
 
   const Table equivalents = table("human_equivalents.csv");
-  EXPECT_THAT(equivalents.columns,
-              ElementsAre("dataset", "metric", "model", "n", "n_shapes", "largest_group", "mean", "k",
-                          "ci95_low", "ci95_high", "k_bound", "low_bound", "high_bound", "crossings",
-                          "remark"));
+  EXPECT_THAT(equivalents.columns, ElementsAre("dataset", "metric", "model", "n", "n_shapes", "largest_group",
+                                               "mean", "k", "ci95_low", "ci95_high", "k_bound", "low_bound",
+                                               "high_bound", "crossings", "remark"));
   EXPECT_THAT(equivalents.rows, SizeIs(3 * n_metrics));
   EXPECT_THAT(text_column(equivalents, "remark"), Each("no interval: fewer than 6 units"));
   const auto k = number_column(equivalents, "k");
@@ -129,8 +127,8 @@ TEST(Results, TablesOfPeopleHaveTheDocumentedColumnsAndRows) {
   EXPECT_THAT(text_column(shares, "remark"), Each(Not("")));
   const Table reliability = table("human_reliability.csv");
   EXPECT_THAT(reliability.columns,
-              ElementsAre("metric", "n", "n_shapes", "fewest_participants", "most_participants",
-                          "split_half", "mean", "sd", "ci95_low", "ci95_high"));
+              ElementsAre("metric", "n", "n_shapes", "fewest_participants", "most_participants", "split_half",
+                          "mean", "sd", "ci95_low", "ci95_high"));
   EXPECT_THAT(text_column(reliability, "most_participants"), ElementsAre("4"));
 }
 
