@@ -42,6 +42,8 @@ constexpr Example kExamples[] = {
      "scores of your maps: mine/52.val"},
     {"evaluate configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
      "beside chance alone"},
+    {"submit mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"},
+    {"leaderboard submissions --to site --data SchellingData", "site/index.html ranks those that pass"},
     {"pictures configs/shrec07.yaml --data SchellingData --items 52", "for a report that shows shapes"},
     {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
      "all that is known of one shape"},
@@ -71,7 +73,7 @@ constexpr std::array kSubcommands = {
     run_subcommand,    maps_subcommand,        evaluate_subcommand, pictures_subcommand,
     export_subcommand, conclusions_subcommand, power_subcommand,    plan_subcommand,
     graph_subcommand,  explain_subcommand,     status_subcommand,   doctor_subcommand,
-    config_subcommand,   verify_subcommand,
+    submit_subcommand, leaderboard_subcommand, config_subcommand,   verify_subcommand,
     gc_subcommand,     inspect_subcommand,
 };
 
