@@ -7,7 +7,7 @@ _salbench() {
   ((COMP_CWORD == 1)) || subcommand=("${COMP_WORDS[1]}")
   help=$("${COMP_WORDS[0]}" "${subcommand[@]}" --help 2> /dev/null)
   if ((COMP_CWORD == 1)) || [[ $word == -* ]]; then
-    words=$(sed -n '/^Examples:/q; s/^  -h,/  /; s/^  \(-*[a-z][a-z-]*\) .*/\1/p' <<< "$help")
+    words=$(sed -n '/^Examples:/q; s/^  -[a-z],/  /; s/^  \(-*[a-z][a-z-]*\) .*/\1/p' <<< "$help")
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
     return
   fi

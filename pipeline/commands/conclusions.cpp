@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "pipeline/commands/leading.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/summary.h"
 #include "pipeline/results/pairs.h"
 #include "pipeline/results/score_file.h"
 #include "pipeline/results/statements.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string scores, classes, unit, higher, lower, statements;
+  FormatWord format = default_format();
 };
 
 Parameters score_parameters(Options& options, Parameter scores, const Parameters& further) {
@@ -32,7 +34,8 @@ Parameters score_parameters(Options& options, Parameter scores, const Parameters
       {"--classes", &options.classes, "CSV file with columns item and class"},
       {"--unit", &options.unit, "what counts as one observation: mesh (default), class or shape"},
       {"--higher", &options.higher, "further columns of scores of which higher ones are better"},
-      {"--lower", &options.lower, "further columns of scores of which lower ones are better"}};
+      {"--lower", &options.lower, "further columns of scores of which lower ones are better"},
+      format_parameter(options.format)};
   parameters.insert(parameters.end(), further.begin(), further.end());
   return parameters;
 }
@@ -56,7 +59,8 @@ Conclusions conclusions_of(const ScoreFile& file, Observation unit) {
   return conclude(file.rows, file.metrics, {.unit = unit}, kDefaultSeed);
 }
 
-ExitStatus write_all(const Arguments& arguments, const Options& options, ReportFormat format) {
+ExitStatus write_all(const Arguments& arguments, const Options& options) {
+  const ReportFormat format = format_of(options.format);
   std::vector<Statement> statements;
   if (!options.statements.empty()) statements = read_statements(options.statements);
   const Observation unit = unit_of(options);
@@ -69,12 +73,15 @@ ExitStatus write_all(const Arguments& arguments, const Options& options, ReportF
   write_conclusions(folder, file.rows, conclusions, "");
   if (!options.statements.empty())
     write_file(folder / "statements.csv", to_csv(statements_table(conclusions, statements)));
+  const Table overview = overview_table(conclusions);
   const std::vector<LevelLeaders> leaders = find_leaders(conclusions);
-  const std::string text =
-      fmt::format("{}\n{}one observation per {}; tables in {}\n", aligned(overview_table(conclusions)),
-                  leading_text(leaders), name_of(unit), folder.string());
+  const std::string text = fmt::format("{}\n{}one observation per {}; tables in {}\n", aligned(overview),
+                                       leading_text(leaders), name_of(unit), folder.string());
   print_report(format, "conclusions",
-               {{"results", folder}, {"unit", std::string(name_of(unit))}, {"leaders", json_of(leaders)}},
+               {{"results", folder},
+                {"unit", name_of(unit)},
+                {"scores", rows_json(overview)},
+                {"leaders", json_of(leaders)}},
                arguments.quiet ? "" : text);
   return kAllDone;
 }
@@ -92,18 +99,20 @@ std::string only_results() {
 }
 
 ExitStatus print_power(const Arguments& arguments, Options options) {
+  const ReportFormat format = format_of(options.format);
   if (options.scores.empty()) options.scores = only_results();
   if (fs::is_directory(options.scores)) options.scores = (fs::path(options.scores) / "results.csv").string();
   const Observation unit = unit_of(options);
   const ScoreFile file = scores_of(options);
   const Table table = power_table(conclusions_of(file, unit));
   if (!arguments.to.empty()) write_file(arguments.to, to_csv(table));
-  if (!arguments.quiet)
-    fmt::print(
-        "{}\none observation per {}; detectable: the difference of means that n of them show with "
-        "probability {} at 0.05;\nn_to_detect: how many would show a true difference as large as the one "
-        "seen\n",
-        aligned(table), name_of(unit), kPower);
+  const std::string text = fmt::format(
+      "{}\none observation per {}; detectable: the difference of means that n of them show with "
+      "probability {} at 0.05;\nn_to_detect: how many would show a true difference as large as the one "
+      "seen\n",
+      aligned(table), name_of(unit), kPower);
+  print_report(format, "power", {{"unit", name_of(unit)}, {"pairs", rows_json(table)}},
+               arguments.quiet ? "" : text);
   return kAllDone;
 }
 

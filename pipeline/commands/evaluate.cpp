@@ -12,8 +12,9 @@ Subcommand evaluate_subcommand(Arguments& arguments) {
     bool matched = false;
   };
   const auto options = std::make_shared<Options>();
-  const FormatWord format = default_format();
-  return {"evaluate", "a run that also scores saliency maps of your own, made by any program",
+  const FormatWord word = default_format();
+  return {"evaluate",
+          "a run over what has ground truth that also scores maps of your own, made by any program",
           run_parameters(
               arguments,
               {{"--maps", &options->maps,
@@ -23,12 +24,14 @@ Subcommand evaluate_subcommand(Arguments& arguments) {
                {"--name", &options->name, "what to call them in the tables", true},
                {"--models", &arguments.models, "beside these models only, such as LS,PS"},
                {"--matched", &options->matched, "the values are histogram-matched already"},
-               format_parameter(format)}),
-          [&arguments, options, format](const std::atomic<bool>& stop) {
-            const ReportFormat chosen = format_of(format);
-            Session session(arguments, stop,
+               format_parameter(word)}),
+          [&arguments, options, word](const std::atomic<bool>& stop) {
+            const ReportFormat format = format_of(word);
+            Arguments scored = arguments;
+            if (scored.items.empty()) scored.items = kScoredItems;
+            Session session(scored, stop,
                             given_model(options->name, find_given_maps(options->maps, options->matched)));
-            return run_session(session, arguments, chosen, "evaluate");
+            return run_session(session, "evaluate", scored, format);
           }};
 }
 

@@ -11,6 +11,7 @@
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/summary.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/results/export_file.h"
 #include "stages/core/errors.h"
@@ -24,6 +25,7 @@ struct ExportOptions {
   std::string stages;  // "scan,fpfh,map": stages, or what stands before the point in theirs; empty: all
   std::string format = "h5";  // one HDF5 file; or the name of a ShapeFormat: a folder of shapes
   bool link = false;          // h5: refer to the artefacts in the cache, do not copy them
+  FormatWord summary = default_format();
 };
 
 // All but the tables of scores, which are exported with the scores.
@@ -119,6 +121,7 @@ std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames&
 
 ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
                       const std::atomic<bool>& stop) {
+  const ReportFormat summary = format_of(options.summary, false, "--summary");
   ShapeFormat format{};
   const bool shapes = options.format != "h5";
   if (shapes && !parse_option(options.format, format))
@@ -133,15 +136,18 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
   if (stop) return interrupted_status(arguments);
 
   std::string done = fmt::format("exported to {}\n", arguments.to);
+  std::size_t written = session.state().shapes().size();
   if (shapes) {
-    const std::size_t written = write_shapes(session, format, stages, arguments.to, stop);
+    written = write_shapes(session, format, stages, arguments.to, stop);
     if (stop) return interrupted_status(arguments);
     done = fmt::format("{} shapes written to {}\n", written, arguments.to);
   } else if (!export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages,
                           arguments.to, options.link, stop)) {
     return interrupted_status(arguments);
   }
-  if (!arguments.quiet) fmt::print("{}", done);
+  Json document = {{"to", arguments.to}, {"format", options.format}, {"shapes", written}};
+  document.update(summary_of(session));
+  print_report(summary, "export", document, arguments.quiet ? "" : done);
   return finished_status(session);
 }
 
@@ -157,7 +163,9 @@ Subcommand export_subcommand(Arguments& arguments) {
                       {"--models", &arguments.models, "only these, such as LS,PS"},
                       {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes", true},
                       {"--format", &options->format, "h5 (default), or one shape per item: csv, ply, vtp"},
-                      {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"}}),
+                      {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"},
+                      {"--summary", options->summary.get(),
+                       "text (default), or json: what was done, for programs (docs/json.md)"}}),
       [&arguments, options](const std::atomic<bool>& stop) { return run_export(arguments, *options, stop); }};
 }
 

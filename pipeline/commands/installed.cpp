@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/commands/installed.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pipeline/config/section.h"
+#include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
@@ -15,16 +22,60 @@ fs::path share() {
   return fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share/salbench";
 }
 
+// The program of a checkout lies in one of its folders; empty if it is not there.
+fs::path in_checkout(const fs::path& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  for (fs::path folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::path found = folder / name;
+        fs::exists(folder / "scripts/report", error) && fs::exists(found, error))
+      return found;
+  return {};
+}
+
+// Of the installation, or of the checkout.
+fs::path configurations() {
+  std::error_code error;
+  return fs::is_directory(share(), error) ? share() / "configs" : in_checkout("configs");
+}
+
+// Names without ending of the files beside it, and of those that are installed.
+std::vector<std::string> known_configurations(const fs::path& given) {
+  std::vector<std::string> names;
+  const auto add = [&](const fs::path& folder, const std::string& before) {
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
+      if (entry.path().extension() == ".yaml") names.push_back(before + entry.path().stem().string());
+  };
+  const fs::path folder = given.parent_path();
+  add(folder.empty() ? fs::path(".") : folder, "");
+  if (folder.empty()) add(configurations(), "");
+  if (folder.empty() || folder == "protocols") add(configurations() / "protocols", "protocols/");
+  std::ranges::sort(names);
+  return names;
+}
+
 }  // namespace
 
 std::string configuration_path(const std::string& given) {
   std::error_code error;
-  if (fs::exists(given, error) || (fs::path(given).has_parent_path() && !given.starts_with("protocols/")))
-    return given;
-  for (const std::string& name : {given, given + ".yaml"})
-    if (const fs::path path = share() / "configs" / name; fs::is_regular_file(path, error))
-      return path.string();
-  return given;
+  if (fs::exists(given, error)) return given;
+  if (!fs::path(given).has_parent_path() || given.starts_with("protocols/"))
+    for (const std::string& name : {given, given + ".yaml"})
+      if (const fs::path path = configurations() / name; fs::is_regular_file(path, error))
+        return path.string();
+  const std::vector<std::string> known = known_configurations(given);
+  const bool of_protocol = given.starts_with("protocols/");
+  const std::string hint = did_you_mean((of_protocol ? "protocols/" : "") + fs::path(given).stem().string(),
+                                        {known.begin(), known.end()});
+  if (hint.empty()) return given;
+  throw ConfigError(fmt::format("{}: cannot be read: there is no such configuration; {}", given, hint));
+}
+
+fs::path report_program() {
+  std::error_code error;
+  if (!fs::is_directory(share() / "report", error)) return in_checkout("scripts/report");
+  return fs::read_symlink("/proc/self/exe", error).parent_path() / "salbench-report";
 }
 
 std::string report_command() {

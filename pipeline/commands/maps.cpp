@@ -8,6 +8,7 @@
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/summary.h"
 
 namespace salbench {
 namespace {
@@ -44,14 +45,18 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role, cons
   return written;
 }
 
-ExitStatus run_maps(const Arguments& arguments, bool matched, const std::atomic<bool>& stop) {
+ExitStatus run_maps(const Arguments& arguments, bool matched, ReportFormat format,
+                    const std::atomic<bool>& stop) {
   Session session(arguments, stop);
   const OrderlyEnd orderly;
   session.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
   const std::size_t written = write_maps(session, arguments.to, matched ? Role::matched : Role::map, stop);
   if (stop) return interrupted_status(arguments);
-  if (!arguments.quiet) fmt::print("{} maps written to {}\n", written, arguments.to);
+  Json document = {{"to", arguments.to}, {"written", written}};
+  document.update(summary_of(session));
+  print_report(format, "maps", document,
+               arguments.quiet ? "" : fmt::format("{} maps written to {}\n", written, arguments.to));
   return finished_status(session);
 }
 
@@ -59,12 +64,15 @@ ExitStatus run_maps(const Arguments& arguments, bool matched, const std::atomic<
 
 Subcommand maps_subcommand(Arguments& arguments) {
   const auto matched = std::make_shared<bool>(false);
-  return {
-      "maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value per line",
-      run_parameters(arguments, {{"--models", &arguments.models, "only these, such as LS,PS"},
-                                 {"--to", &arguments.to, "folder that the maps are written to", true},
-                                 {"--matched", matched.get(), "after histogram matching"}}),
-      [&arguments, matched](const std::atomic<bool>& stop) { return run_maps(arguments, *matched, stop); }};
+  const FormatWord word = default_format();
+  return {"maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value per line",
+          run_parameters(arguments, {{"--models", &arguments.models, "only these, such as LS,PS"},
+                                     {"--to", &arguments.to, "folder that the maps are written to", true},
+                                     {"--matched", matched.get(), "after histogram matching"},
+                                     format_parameter(word)}),
+          [&arguments, matched, word](const std::atomic<bool>& stop) {
+            return run_maps(arguments, *matched, format_of(word), stop);
+          }};
 }
 
 }  // namespace salbench

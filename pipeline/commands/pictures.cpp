@@ -3,11 +3,12 @@
 
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/summary.h"
 
 namespace salbench {
 namespace {
 
-ExitStatus run_pictures(const Arguments& arguments, const std::atomic<bool>& stop) {
+ExitStatus run_pictures(const Arguments& arguments, ReportFormat format, const std::atomic<bool>& stop) {
   Session session(arguments, stop, {}, Pictures::computed);
   const Project& project = session.setup.project;
   std::vector<std::size_t> pictures;
@@ -21,18 +22,25 @@ ExitStatus run_pictures(const Arguments& arguments, const std::atomic<bool>& sto
     for (const Decision& decision : session.resolver.plan().decisions[rule])
       known += decision.known() ? 1U : 0U;
   }
-  if (!arguments.quiet)
-    fmt::print("{} pictures in {}, {} of them computed now; `salbench export` contains them\n", known,
-               session.setup.cache.string(), computed);
+  Json document = {{"pictures", known}};
+  document.update(summary_of(session));
+  print_report(format, "pictures", document,
+               arguments.quiet ? ""
+                               : fmt::format("{} pictures in {}, {} of them computed now; `salbench export` "
+                                             "contains them\n",
+                                             known, session.setup.cache.string(), computed));
   return finished_status(session);
 }
 
 }  // namespace
 
 Subcommand pictures_subcommand(Arguments& arguments) {
+  const FormatWord word = default_format();
   return {"pictures", "compute pictures of all shapes for reports; export then contains them",
-          run_parameters(arguments),
-          [&arguments](const std::atomic<bool>& stop) { return run_pictures(arguments, stop); }};
+          run_parameters(arguments, {format_parameter(word)}),
+          [&arguments, word](const std::atomic<bool>& stop) {
+            return run_pictures(arguments, format_of(word), stop);
+          }};
 }
 
 }  // namespace salbench

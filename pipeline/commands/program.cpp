@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <iostream>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,42 +16,107 @@
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/standard_streams.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/config/section.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
-constexpr const char* kFooter =
-    R"(Examples:
-  salbench run configs/shrec07.yaml --data SchellingData            the whole benchmark; run it again to resume
-  salbench run configs/shrec07.yaml --data SchellingData --items 1-20,52,125
-  salbench maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps
-  salbench pictures configs/shrec07.yaml --data SchellingData --items 52
-  salbench export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5
-  salbench plan configs/shrec07.yaml --data SchellingData           what a run would compute, and why
-  salbench graph configs/shrec07.yaml --format dot | dot -Tsvg      the flow graph of a run, as a picture
-  salbench explain configs/shrec07.yaml 52_3 --data SchellingData   what differs from what the cache has
-  salbench status configs/shrec07.yaml --data SchellingData         what is there already
-  salbench doctor configs/shrec07.yaml --data SchellingData         whether machine and disk are fit for it
-  salbench inspect 3dva --data 3DVA                                 what a description finds in a folder
-  salbench convert 3dva --data 3DVA --to 3DVA-hdf5                  the same set in one form, an HDF5 file per shape
-  salbench config                                                   every option, its default, unit and range
+struct Example {
+  std::string_view line, remark;  // behind `salbench`, the subcommand first
 
-Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
+  bool is_of(std::string_view subcommand) const {
+    return line.starts_with(subcommand) && line.substr(subcommand.size()).starts_with(' ');
+  }
+};
+
+// Of each subcommand its help shows all, and the help of the program the first.
+constexpr Example kExamples[] = {
+    {"run configs/shrec07.yaml --data SchellingData", "the whole benchmark; run it again to resume"},
+    {"run configs/shrec07.yaml --data SchellingData --items 1-20,52", "these, matched to the mean over all"},
+    {"run configs/shrec07.yaml --data SchellingData --items scored", "all shapes that have ground truth"},
+    {"run configs/shrec07.yaml --data SchellingData --shard 2/4", "the second of four shares"},
+    {"maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps",
+     "maps/LS/52.val and others"},
+    {"evaluate configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE",
+     "scores of your maps: mine/52.val"},
+    {"evaluate configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
+     "beside chance alone"},
+    {"submit mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"},
+    {"leaderboard submissions --to site --data SchellingData", "site/index.html ranks those that pass"},
+    {"pictures configs/shrec07.yaml --data SchellingData --items 52", "for a report that shows shapes"},
+    {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
+     "all that is known of one shape"},
+    {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"},
+    {"conclusions results.csv --unit class --out tables", "with classes as observations"},
+    {"power salbench-out/shrec07", "which differences a run could show"},
+    {"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"},
+    {"graph configs/shrec07.yaml --format dot | dot -Tsvg", "the flow graph of a run, as a picture"},
+    {"explain configs/shrec07.yaml 52_3 --data SchellingData", "what differs from what the cache has"},
+    {"explain configs/shrec07.yaml 52 map.LS --data SchellingData", "one stage, and its artefact"},
+    {"status configs/shrec07.yaml --data SchellingData", "what is there already"},
+    {"doctor configs/shrec07.yaml --data SchellingData", "whether machine and disk are fit for it"},
+    {"config", "every option, its default, unit and range"},
+    {"config shrec07", "a configuration with all that it leaves out"},
+    {"verify configs/shrec07.yaml --data SchellingData --deep", "read all, and compute 20 jobs again"},
+    {"verify --cache salbench-cache", "read every artefact of a cache"},
+    {"gc configs/shrec07.yaml --data SchellingData --dry-run", "what no run of it needs"},
+    {"inspect 3dva --data 3DVA", "what a description finds in a folder"},
+    {"convert 3dva --data 3DVA --to 3DVA-hdf5", "the same set in one form, an HDF5 file per shape"},
+};
+
+constexpr const char* kExitStatus =
+    R"(Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
 3 cache, output folder or standard output unusable; 70 a defect of the program, or memory ran out;
 130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
-    run_subcommand,         maps_subcommand,    evaluate_subcommand, pictures_subcommand, export_subcommand,
-    conclusions_subcommand, power_subcommand,   plan_subcommand,     graph_subcommand,    explain_subcommand,
-    status_subcommand,      doctor_subcommand,  config_subcommand,   verify_subcommand,   gc_subcommand,
-    inspect_subcommand,     convert_subcommand,
+    run_subcommand,    maps_subcommand,        evaluate_subcommand, pictures_subcommand,
+    export_subcommand, conclusions_subcommand, power_subcommand,    plan_subcommand,
+    graph_subcommand,  explain_subcommand,     status_subcommand,   doctor_subcommand,
+    submit_subcommand, leaderboard_subcommand, config_subcommand,   verify_subcommand,
+    gc_subcommand,     inspect_subcommand,     convert_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {
   std::string line;
   for (const char* word : words) line += (line.empty() ? "" : " ") + shell_word(word);
   return line;
+}
+
+// A remark stands behind its line, or below one that is long.
+std::string examples_of(const std::string& subcommand, bool all) {
+  constexpr std::size_t kLine = 66;
+  std::string text;
+  for (const Example& example : kExamples) {
+    if (!example.is_of(subcommand) && example.line != subcommand) continue;
+    text += example.line.size() > kLine
+                ? fmt::format("  salbench {}\n{:{}}{}\n", example.line, "", kLine + 13, example.remark)
+                : fmt::format("  salbench {:<{}}  {}\n", example.line, kLine, example.remark);
+    if (!all) break;
+  }
+  return text;
+}
+
+// What is wrong with a line that names an unknown subcommand or option; empty if nothing of the kind.
+std::string unknown_word(const CLI::App& app, std::span<const char* const> words,
+                         const std::vector<Subcommand>& subcommands) {
+  std::vector<std::string_view> known;
+  for (const Subcommand& subcommand : subcommands) {
+    known.emplace_back(subcommand.name);
+    if (!app.got_subcommand(subcommand.name)) continue;
+    std::vector<std::string_view> options;
+    for (const Parameter& parameter : subcommand.parameters) options.emplace_back(parameter.name);
+    for (const std::string& extra : app.get_subcommand(subcommand.name)->remaining())
+      if (extra.starts_with("--"))
+        return fmt::format("{}: there is no option '{}'; {}", subcommand.name, extra,
+                           did_you_mean(extra.substr(0, extra.find('=')), options,
+                                        fmt::format("salbench {} --help names them", subcommand.name)));
+    return {};
+  }
+  if (words.size() < 2 || std::string_view(words[1]).starts_with("-")) return {};
+  return fmt::format("there is no subcommand '{}'; {}", words[1],
+                     did_you_mean(words[1], known, "salbench --help names them"));
 }
 
 struct Declare {
@@ -73,20 +140,26 @@ struct Declare {
 int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> rows) {
   CLI::App app{"Benchmark of 3D saliency models on meshes, simulated range scans and point clouds."};
   app.set_version_flag("--version", "salbench " SALBENCH_VERSION);
-  app.footer(kFooter);
   app.require_subcommand(1);
   Arguments arguments;
   arguments.command_line = joined(words);
+  std::string examples;
   std::vector<Subcommand> subcommands;
   for (const SubcommandRow row : rows) subcommands.push_back(row(arguments));
   for (const Subcommand& subcommand : subcommands) {
     CLI::App* declared = app.add_subcommand(subcommand.name, subcommand.summary);
+    declared->footer("Examples:\n" + examples_of(subcommand.name, true));
+    examples += examples_of(subcommand.name, false);
     for (const Parameter& parameter : subcommand.parameters)
       std::visit(Declare{*declared, parameter}, parameter.target);
   }
+  app.footer(fmt::format("Examples:\n{}\n{}", examples, kExitStatus));
   try {
     app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
+    if (const std::string wrong = unknown_word(app, words, subcommands);
+        error.get_exit_code() != 0 && !wrong.empty())
+      throw ConfigError(wrong);
     std::ostringstream help;  // printed by what reports an output that cannot be written to
     const int status = app.exit(error, help, std::cerr);
     fmt::print("{}", help.str());

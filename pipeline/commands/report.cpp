@@ -15,11 +15,11 @@ Parameter format_parameter(const FormatWord& word, const std::string& further_he
           "text (default), or json: one document for programs (docs/json.md)" + further_help};
 }
 
-ReportFormat format_of(const FormatWord& word, bool graph) {
+ReportFormat format_of(const FormatWord& word, bool graph, std::string_view option) {
   ReportFormat format{};
   if (parse_option(*word, format) && (graph || format != ReportFormat::dot)) return format;
   throw ConfigError(
-      fmt::format("--format {}: must be {}", *word, graph ? "text, json or dot" : "text or json"));
+      fmt::format("{} {}: must be {}", option, *word, graph ? "text, json or dot" : "text or json"));
 }
 
 void print_report(ReportFormat format, const std::string& subcommand, const Json& members,

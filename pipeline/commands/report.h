@@ -48,7 +48,7 @@ FormatWord default_format();
 Parameter format_parameter(const FormatWord& word, const std::string& further_help = "");
 
 // Throws ConfigError for another word than text and json, and dot for Graphviz if there is a graph.
-ReportFormat format_of(const FormatWord& word, bool graph = false);
+ReportFormat format_of(const FormatWord& word, bool graph = false, std::string_view option = "--format");
 
 // Prints the document of these members, which begins with the schema and the subcommand, or else the text.
 void print_report(ReportFormat format, const std::string& subcommand, const Json& members,

@@ -12,6 +12,7 @@
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/leading.h"
 #include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/summary.h"
 #include "pipeline/commands/why.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/results/conclusions.h"
@@ -42,17 +43,6 @@ std::string summary_text(const Session& session, const Conclusions& conclusions,
       setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "", leading_text(leaders),
       name_of(setup.config.protocol), session.resolver.computed(), setup.output.string(), report_command(),
       shell_word(setup.output.string()));
-}
-
-// Members of the document; a shard has no leaders yet.
-Json json_of(const Session& session, const std::vector<LevelLeaders>& leaders) {
-  const Setup& setup = session.setup;
-  return {{"results", setup.output},
-          {"shard", setup.inputs.shard ? std::optional(setup.inputs.shard->text()) : std::nullopt},
-          {"protocol", std::string(name_of(setup.config.protocol))},
-          {"simulated", setup.config.simulated()},
-          {"computed", session.resolver.computed()},
-          {"leaders", json_of(leaders)}};
 }
 
 std::vector<ChanceRemark> remarks_on_chance(const RunState& run, std::vector<ResultRow> rows) {
@@ -105,17 +95,25 @@ void carry_out(Session& session, int threads, const Show& show) {
   shard ? write_shard_record(setup.output, record) : write_results(session, record, show);
 }
 
-ExitStatus run_session(Session& session, const Arguments& arguments, ReportFormat format,
-                       const std::string& subcommand) {
-  const auto print = [&](const std::vector<LevelLeaders>& leaders, const std::string& text) {
-    print_report(format, subcommand, json_of(session, leaders), arguments.quiet ? "" : text);
-  };
+ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,
+                       ReportFormat format) {
+  const Setup& setup = session.setup;
+  Json document = {{"results", setup.output},
+                   {"protocol", name_of(setup.config.protocol)},
+                   {"simulated", setup.config.simulated()},
+                   {"shard", setup.inputs.shard ? Json(setup.inputs.shard->text()) : Json()},
+                   {"scores", Json::array()},
+                   {"leaders", Json::array()}};
+  std::string text;
   carry_out(session, thread_count(arguments), [&](const Conclusions& conclusions) {
     const std::vector<LevelLeaders> leaders = find_leaders(conclusions);
-    print(leaders, summary_text(session, conclusions, leaders));
+    text = summary_text(session, conclusions, leaders);
+    document["scores"] = rows_json(overview_table(conclusions));
+    document["leaders"] = json_of(leaders);
   });
-  const Setup& setup = session.setup;
-  if (setup.inputs.shard && !session.stop) print({}, shard_text(session));
+  if (setup.inputs.shard && !session.stop) text = shard_text(session);
+  document.update(summary_of(session));
+  print_report(format, name, document, arguments.quiet ? "" : text);
   if (!session.stop) return finished_status(session);
   if (!setup.inputs.shard)
     std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(),
@@ -124,13 +122,13 @@ ExitStatus run_session(Session& session, const Arguments& arguments, ReportForma
 }
 
 Subcommand run_subcommand(Arguments& arguments) {
-  const FormatWord format = default_format();
+  const FormatWord word = default_format();
   return {"run", "compute what is missing and write the tables",
-          run_parameters(arguments, {shard_parameter(arguments), format_parameter(format)}),
-          [&arguments, format](const std::atomic<bool>& stop) {
-            const ReportFormat chosen = format_of(format);
+          run_parameters(arguments, {shard_parameter(arguments), format_parameter(word)}),
+          [&arguments, word](const std::atomic<bool>& stop) {
+            const ReportFormat format = format_of(word);
             Session session(arguments, stop);
-            return run_session(session, arguments, chosen, "run");
+            return run_session(session, "run", arguments, format);
           }};
 }
 

@@ -16,8 +16,8 @@ using Show = std::function<void(const Conclusions&)>;
 // Computes what is missing and writes the tables; when interrupted, those of what was finished.
 void carry_out(Session& session, int threads, const Show& show = {});
 
-// The same as a command, with what it prints.
-ExitStatus run_session(Session& session, const Arguments& arguments, ReportFormat format,
-                       const std::string& subcommand);
+// The same as a command of this name, with what it prints.
+ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,
+                       ReportFormat format);
 
 }  // namespace salbench

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <string_view>
 #include <thread>
 
 #include <fmt/format.h>
@@ -35,15 +37,39 @@ void select_models(Config& config, const std::string& list) {
     });
 }
 
-std::optional<Shard> shard_of(const Arguments& arguments) {
-  return arguments.shard.empty() ? std::nullopt : std::optional(parse_shard(arguments.shard));
+// Ground truth that is made up is there for every item.
+Inputs inputs_of(const Config& config, const Selection& selection) {
+  const bool simulated = config.simulated();
+  const Others others = selection.reference || selection.reference_of_items ? Others::left_out
+                        : simulated                                         ? Others::simulated
+                                                                            : Others::measured;
+  return read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
+                     simulated && selection.items == kScoredItems ? std::string() : selection.items,
+                     selection.shard, config.dataset.split, others);
 }
 
-std::optional<Histogram> reference_of(const Arguments& arguments) {
-  return arguments.reference.empty() ? std::nullopt : std::optional(read_reference(arguments.reference));
+// Jobs for nothing but the mean over all items.
+std::size_t open_of_others(const Resolver& resolver) {
+  const Project& project = resolver.project();
+  std::size_t open = 0;
+  for (std::size_t rule = 0; rule < project.rules.size(); ++rule)
+    for (const Unit unit : project.units_of(rule))
+      open += !project.units.is_chosen(unit) && resolver.plan()[{rule, unit}].open() ? 1U : 0U;
+  return open;
 }
 
-// The configuration as the command line changes it: folders, models. Throws ConfigError.
+}  // namespace
+
+Selection selection_of(const Arguments& arguments) {
+  const bool of_items = arguments.reference == kReferenceOfItems;
+  return {.items = arguments.items,
+          .shard = arguments.shard.empty() ? std::nullopt : std::optional(parse_shard(arguments.shard)),
+          .reference = of_items || arguments.reference.empty()
+                           ? std::nullopt
+                           : std::optional(read_reference(arguments.reference)),
+          .reference_of_items = of_items};
+}
+
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
   const std::string path = configuration_path(arguments.config);
   Config config = read_config(Section::from_file(path), fs::path(path).stem().string());
@@ -68,8 +94,6 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
   return config;
 }
 
-}  // namespace
-
 int thread_count(const Arguments& arguments) {
   if (arguments.threads > 0) return arguments.threads;
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -77,17 +101,16 @@ int thread_count(const Arguments& arguments) {
 
 Setup::Setup(Config the_config, const Selection& selection)
     : config(std::move(the_config)),
-      inputs(read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
-                         selection.items, selection.shard, config.dataset.split)),
+      inputs(inputs_of(config, selection)),
       project(make_project(config, inputs, selection.reference)),
       cache(config.cache),
       output(config.output) {
   for (const std::string& note : inputs.notes) spdlog::warn("{}", note);
+  for (const std::string& error : inputs.errors) spdlog::error("data set: {}", error);
 }
 
 Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
-    : Setup(read_configuration(arguments, given, pictures),
-            {arguments.items, shard_of(arguments), reference_of(arguments)}) {}
+    : Setup(read_configuration(arguments, given, pictures), selection_of(arguments)) {}
 
 Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& the_stop)
     : setup(std::move(the_setup)),
@@ -101,6 +124,12 @@ Session::Session(const Arguments& arguments, const std::atomic<bool>& the_stop,
     : Session(Setup(arguments, given, pictures), progress_of(arguments.quiet), the_stop) {}
 
 void Session::run(int threads, const std::string& what, const std::vector<bool>& rules) {
+  if (const std::size_t open = rules.empty() ? open_of_others(resolver) : 0; open > 0)
+    spdlog::warn(
+        "{} jobs of items that are left out come first, once: maps are matched to the mean over all items, "
+        "as in "
+        "a run over all; --reference items matches to the mean over these alone",
+        open);
   const OrderlyEnd orderly;
   salbench::run(resolver, {threads, what, rules}, *progress, stop);
 }
@@ -122,15 +151,15 @@ ExitStatus interrupted_status(const Arguments& arguments) {
 
 ExitStatus finished_status(const Session& session) {
   const std::vector<Failure> failures = session.resolver.failures();
-  const std::vector<std::string>& errors = session.setup.inputs.errors;
-  if (failures.empty() && errors.empty()) return kAllDone;
-  const Project& project = session.setup.project;
-  std::string text = fmt::format("\n{} failed:\n", failures.size() + errors.size());
-  for (const std::string& error : errors) text += fmt::format("  data set: {}\n", error);
-  for (const Failure& failure : failures)
-    text += fmt::format("  {}: {}: {}\n", project.name(failure.job), project.rule(failure.job).stage,
-                        failure.cause);
-  std::fputs(text.c_str(), stderr);
+  const std::size_t n_errors = session.setup.inputs.errors.size();
+  if (failures.empty() && n_errors == 0) return kAllDone;
+  std::map<std::string_view, std::size_t> stages;
+  if (n_errors > 0) stages["data set"] = n_errors;
+  for (const Failure& failure : failures) ++stages[session.setup.project.rule(failure.job).stage];
+  std::string text;
+  for (const auto& [stage, n] : stages) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, stage);
+  std::fputs(fmt::format("\n{} failed, each named above: {}\n", failures.size() + n_errors, text).c_str(),
+             stderr);
   const bool any_defect =
       std::any_of(failures.begin(), failures.end(), [](const Failure& f) { return f.defect; });
   return any_defect ? kDefect : kSomeFailed;

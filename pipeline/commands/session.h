@@ -20,9 +20,10 @@ int thread_count(const Arguments& arguments);
 
 // The items of a data set that are run, and the histogram that their maps are matched to.
 struct Selection {
-  std::string items = {};  // "1-20,52,125"; empty: all
+  std::string items = {};  // "1-20,52,125", "scored"; empty: all
   std::optional<Shard> shard = {};
   std::optional<Histogram> reference = {};  // nothing: the data set's own mean
+  bool reference_of_items = false;          // the mean over the items selected, not over all
 };
 
 // Everything that stands before the first job. Throws ConfigError or InputError for what makes the command
@@ -38,6 +39,11 @@ struct Setup {
   Project project;
   std::filesystem::path cache, output;
 };
+
+// The configuration as the command line changes it: folders, models, a model more. Throws ConfigError.
+Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {},
+                          Pictures pictures = Pictures::none);
+Selection selection_of(const Arguments& arguments);
 
 // A setup with its cache opened, planned, and ready to run.
 struct Session {

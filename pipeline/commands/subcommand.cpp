@@ -65,10 +65,12 @@ Parameters run_parameters(Arguments& arguments, const Parameters& further) {
         "folder of the results (default: output in CONFIG, or salbench-out/NAME)"},
        {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
         1024},
-       {"--items", &arguments.items, "only these shapes and their scans, such as 1-20,52,125"},
+       {"--items", &arguments.items,
+        "only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth"},
        {"--split", &arguments.split, "only this split of the data set, such as test"},
        {"--reference", &arguments.reference,
-        "match to this histogram (CSV with a column GS of 100 bins), not to the data set's own mean"},
+        "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the data set; "
+        "items: to the mean over --items"},
        {"--quiet", &arguments.quiet, "neither progress nor tables; warnings and errors only"}},
       further);
 }

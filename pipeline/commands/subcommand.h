@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -25,15 +26,17 @@ struct Arguments {
   std::string command_line;  // as typed: the line that resumes
   std::string config;
   std::string data, cache, output;
-  std::string items;      // "1-20,52,125"
+  std::string items;      // "1-20,52,125", "scored"
   std::string split;      // "test"
   std::string shard;      // "2/4"
-  std::string reference;  // CSV file with a reference histogram in column GS
+  std::string reference;  // CSV file with a reference histogram in column GS, or kReferenceOfItems
   std::string models;     // "LS,PS"; empty: all of the configuration
   std::string to;         // what is written to
   int threads = 0;        // 0: all cores
   bool quiet = false;     // no progress, no table
 };
+
+inline constexpr std::string_view kReferenceOfItems = "items";  // in place of a file
 
 struct Parameter {
   std::string name;  // "--items", or "ITEM" for one that is known by its place

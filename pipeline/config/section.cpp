@@ -177,6 +177,8 @@ std::vector<Section> Section::list(std::string_view key) const {
   return sections;
 }
 
+const std::string& Section::file() const { return impl_->file; }
+
 std::string Section::where(std::string_view key) const {
   return fmt::format("{}:{}", impl_->file, impl_->line_of(key));
 }

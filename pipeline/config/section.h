@@ -35,6 +35,7 @@ class Section {
   std::vector<Section> list(std::string_view key) const;        // of mappings, or a single one
   Words words(std::string_view key) const;                      // a list of scalars, or a single one
 
+  const std::string& file() const;                                            // as it was named
   std::string where(std::string_view key) const;                              // "file:line"
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;  // "file:line: path.key what"
   void reject_unknown(const std::vector<std::string_view>& known) const;      // names the nearest known key

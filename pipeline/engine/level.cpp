@@ -27,15 +27,15 @@ Unit Units::above(Unit unit, Level level) const {
   return {level, unit.index / (width_[unit.level] / width_[level])};
 }
 
-std::vector<Unit> Units::of(Level level) const {
+std::vector<Unit> Units::of(Level level, bool all) const {
   std::vector<Unit> units;
   for (Unit unit{level, 0}; unit.index < slots(level); ++unit.index)
-    if (exists(unit)) units.push_back(unit);
+    if (exists(unit) && (all || is_chosen(unit))) units.push_back(unit);
   return units;
 }
 
 std::vector<Unit> Units::below(Unit unit, Level level) const {
-  if (unit.level == kRoot) return of(level);
+  if (unit.level == kRoot) return all_of(level);
   const std::uint32_t each = width_[level] / width_[unit.level];
   std::vector<Unit> units;
   for (std::uint32_t i = 0; i < each; ++i) units.push_back({level, unit.index * each + i});

@@ -33,9 +33,10 @@ struct Unit {
 };
 
 struct Family {
-  Level level;       // directly below the root
-  std::string name;  // for people and in seeds
-  std::any source;   // handed to rules; the engine never asks what it is
+  Level level;         // directly below the root
+  std::string name;    // for people and in seeds
+  std::any source;     // handed to rules; the engine never asks what it is
+  bool chosen = true;  // false: it has only the jobs of rules that are `for_all`
 };
 
 class Units {
@@ -55,14 +56,18 @@ class Units {
   Unit above(Unit unit, Level level) const;  // itself, its ancestor of that level, or the root
   bool is_above(Level ancestor, Level level) const;
 
-  // All in the order of the families.
-  std::vector<Unit> of(Level level) const;
+  // All in the order of the families. Of a level: those of the families that are chosen, or of all.
+  std::vector<Unit> of(Level level) const { return of(level, false); }
+  std::vector<Unit> all_of(Level level) const { return of(level, true); }
+  bool is_chosen(Unit unit) const { return unit.level == kRoot || source_of(unit).chosen; }
   std::vector<Unit> below(Unit unit, Level level) const;
   std::vector<Unit> of_family(std::size_t family) const;  // each before those below it
 
   std::string name(Unit unit) const;  // "52", "52_3"
 
  private:
+  std::vector<Unit> of(Level level, bool all) const;
+
   std::vector<LevelInfo> levels_;
   std::vector<std::uint32_t> width_;  // units of each level in a family that has the level
   std::vector<Family> families_;

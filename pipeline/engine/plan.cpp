@@ -106,7 +106,8 @@ std::string Project::name(const Job& job) const {
 std::vector<Job> Project::jobs_of(Unit unit) const {
   std::vector<Job> jobs;
   for (std::size_t r = 0; r < rules.size(); ++r)
-    if (rules[r].level() == unit.level) jobs.push_back({r, unit});
+    if (rules[r].level() == unit.level && (rules[r].for_all || units.is_chosen(unit)))
+      jobs.push_back({r, unit});
   return jobs;
 }
 

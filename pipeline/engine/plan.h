@@ -28,7 +28,9 @@ struct Project {
   const Rule& rule(const Job& job) const { return rules[job.rule]; }
   std::string name(const Job& job) const;  // of its unit; "scans" where it gathers them
 
-  std::vector<Unit> units_of(std::size_t rule) const { return units.of(rules[rule].level()); }
+  std::vector<Unit> units_of(std::size_t rule) const {
+    return rules[rule].for_all ? units.all_of(rules[rule].level()) : units.of(rules[rule].level());
+  }
   std::vector<Job> jobs_of(Unit unit) const;  // in the order of the rules
   std::vector<Job> jobs() const;              // of each rule for all units
   // The job whose result a job reads through one of its inputs, unless it gathers; those of all units then.

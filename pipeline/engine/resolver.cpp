@@ -95,7 +95,10 @@ void Resolver::compute(const Job& job, std::vector<FileData> files) {
 
 void Resolver::fail(const Job& job, std::string cause, bool defect) {
   plan_[job].verdict = Verdict::failed;
-  spdlog::error("{}: {}: {}", project_.name(job), project_.rule(job).stage, cause);
+  const std::string line = fmt::format("{}: {}: {}", project_.name(job), project_.rule(job).stage, cause);
+  if (!defect && !project_.units.is_chosen(job.unit))
+    return spdlog::warn("{}; what is gathered of all is without it", line);
+  spdlog::error("{}", line);
   const std::lock_guard lock(mutex_);
   failures_.push_back({job, std::move(cause), defect});
 }

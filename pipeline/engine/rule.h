@@ -86,6 +86,7 @@ struct Rule : RuleHead {
   bool prepares = false;  // jobs of a family share a Preparation
   bool remarks = false;   // may make a remark, an artefact of its own
   bool gathers = false;   // one job of the root, over all units of `over`
+  bool for_all = false;   // has jobs of families that are not chosen, too: what is gathered needs them
   ValuePtr given = {};    // in place of a result: known before the run, and not stored
   std::function<ValuePtr(const JobInputs&)> compute = {};
   std::function<ValuePtr(const Arrays&)> read = {};  // the result from its artefact; throws InputError

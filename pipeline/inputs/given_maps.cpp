@@ -109,7 +109,7 @@ std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>&
     for (const Unit unit : all)
       if (any_here) column->files[unit.index].push_back(file_of(name_of_map(unit)));
     for (const Unit unit : all)
-      if (units.family_of(unit) == 0) example = maps->place(name_of_map(unit));
+      if (units.family_of(unit) == units.family_of(all.front())) example = maps->place(name_of_map(unit));
     columns[level] = std::move(column);
     any |= any_here;
   }

@@ -39,12 +39,20 @@ std::optional<Range> as_range(std::string_view text) {
   return Range{*first, *last};
 }
 
+bool has_truth(const DatasetItem& item) { return !truth_files_of(item).empty(); }
+
 // A number range takes the items that exist in it: data sets have gaps. A single name must exist.
-std::set<std::string> selected_names(const std::string& selection, const std::set<std::string>& present) {
+std::set<std::string> selected_names(const std::string& selection, const std::set<std::string>& present,
+                                     const std::set<std::string>& scored) {
   std::set<std::string> names;
   for (const std::string& part : split_list(selection)) {
     if (present.contains(part)) {
       names.insert(part);
+      continue;
+    }
+    if (part == kScoredItems) {
+      if (scored.empty()) throw ConfigError(fmt::format("--items {}: no item has ground truth", selection));
+      names.insert(scored.begin(), scored.end());
       continue;
     }
     const std::optional<Range> range = as_range(part);
@@ -126,8 +134,12 @@ const DatasetItem& item_of(const std::any& source) { return std::any_cast<const 
 bool Inputs::has(Level level) const {
   const auto& families = units.families();
   return families.empty() ? level != kClouds : std::ranges::any_of(families, [&](const Family& family) {
-    return units.is_above(family.level, level);
+    return family.chosen && units.is_above(family.level, level);
   });
+}
+
+bool Inputs::has_others() const {
+  return !std::ranges::all_of(units.families(), [](const Family& family) { return family.chosen; });
 }
 
 std::string Inputs::text() const {
@@ -140,6 +152,7 @@ DataIdentity identity_of(const Inputs& inputs) {
   DataIdentity identity;
   Hasher hasher;
   for (std::size_t family = 0; family < inputs.units.families().size(); ++family) {
+    if (!inputs.units.families()[family].chosen) continue;
     hasher.add(inputs.units.families()[family].name);
     for (const FileColumnPtr& column : {inputs.shape_files, inputs.truth_files})
       for (File& file : column->files[family]) {
@@ -168,9 +181,13 @@ std::vector<std::string> split_list(const std::string& list) {
 }
 
 void select_items(Dataset& dataset, const std::string& selection, const std::string& split) {
-  std::set<std::string> present;
-  for (const DatasetItem& item : dataset.items) present.insert({item.name, item.shape_name()});
-  const std::set<std::string> names = selection.empty() ? present : selected_names(selection, present);
+  std::set<std::string> present, scored;
+  for (const DatasetItem& item : dataset.items) {
+    present.insert({item.name, item.shape_name()});
+    if (has_truth(item)) scored.insert(item.name);
+  }
+  const std::set<std::string> names =
+      selection.empty() ? present : selected_names(selection, present, scored);
   if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
 
   if (!split.empty()) select_split(dataset, split);
@@ -182,20 +199,32 @@ void select_items(Dataset& dataset, const std::string& selection, const std::str
 }
 
 Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard,
-                   const std::string& split) {
+                   const std::string& split, Others others) {
   std::vector<std::string> errors;
   if (selection.empty()) errors = errors_of_split(dataset, split);
   if (!dataset.unit.where.empty()) fail_mixed_units(dataset);
+  Dataset whole = dataset;
   select_items(dataset, selection, split);
+  std::set<std::string> chosen;
+  for (const DatasetItem& item : dataset.items) chosen.insert(item.name);
   std::vector<DatasetItem> items = std::move(dataset.items);
-  if (shard) items = share_of(items, *shard);
+  if (shard) {
+    items = share_of(items, *shard);
+  } else if (others != Others::left_out && !selection.empty()) {
+    if (!split.empty()) select_split(whole, split);
+    items = std::move(whole.items);
+    std::erase_if(items, [&](const DatasetItem& item) {
+      return !chosen.contains(item.name) && others == Others::measured && !has_truth(item);
+    });
+  }
   std::vector<Family> families(items.size());
   FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;
   parallel_ranges(items.size(), 1, [&](std::size_t i, std::size_t) {
     auto [level, file] = shape_file_of(items[i]);
     shapes.files[i] = {std::move(file)};
     truths.files[i] = truth_files_of(items[i]);
-    families[i] = {level, items[i].name, std::move(items[i])};
+    families[i] = {level, items[i].name, {}, chosen.contains(items[i].name)};
+    families[i].source = std::move(items[i]);
   });
   return {dataset.layout,
           dataset.notes,

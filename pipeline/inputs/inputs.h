@@ -35,6 +35,7 @@ struct Inputs {
 
   // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;
+  bool has_others() const;  // families that are not chosen
   std::size_t count(Level level) const { return units.of(level).size(); }
   std::string text() const;  // "3 meshes, 2 point clouds"
 };
@@ -48,16 +49,25 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
   return item_of(units.source_of(unit).source);
 }
 
-// Keeps the items that `selection` names ("1-20,52,125"; empty: all), of one split if that is named. A view
-// that is scored by itself is named like its shape, too. Throws ConfigError for an item or a split that is
-// not there.
+inline constexpr std::string_view kScoredItems = "scored";  // those with ground truth
+
+// Keeps the items that `selection` names ("1-20,52,125", kScoredItems; empty: all), of one split if that is
+// named. A view that is scored by itself is named like its shape, too. Throws ConfigError for an item or a
+// split that is not there.
 void select_items(Dataset& dataset, const std::string& selection, const std::string& split = {});
 
-// The selected items, or one share of them. Reads no file but those whose name does not say which kind of
-// shape they hold, unless the description has a unit of length: then shapes of another are told by all sizes.
-// Throws ConfigError as above.
+// What is done with items that are not selected.
+enum class Others {
+  left_out,
+  measured,  // those with ground truth stay as families that are not chosen, for what all items make together
+  simulated,  // the same of all of them: their ground truth is made up
+};
+
+// The selected items, or one share of them, which has no others. Reads no file but those whose name does not
+// say which kind of shape they hold, unless the description has a unit of length: then shapes of another are
+// told by all sizes. Throws ConfigError as above.
 Inputs read_inputs(Dataset dataset, const std::string& selection = {}, const std::optional<Shard>& shard = {},
-                   const std::string& split = {});
+                   const std::string& split = {}, Others others = Others::left_out);
 
 // Identity of a run's data, wherever they lie.
 struct DataIdentity {

@@ -28,7 +28,9 @@ std::string host_name() {
 
 std::string_view reference_line(const RunState& run) {
   if (reference_is_given(run.project().rules)) return "given by --reference";
-  return run.inputs.shard ? "none, the run was over a share of the items" : "mean over the items of the run";
+  if (run.inputs.shard) return "none, the run was over a share of the items";
+  return run.inputs.has_others() ? "mean over all items of the data set or split"
+                                 : "mean over the items of the run";
 }
 
 // Shapes whose scores are all there, of those that have any to come.
@@ -125,7 +127,8 @@ std::string remark_lines(const RunRecord& record) {
   const RunState& run = record.run;
   std::string yaml;
   for (const Job& job : run.project().jobs()) {
-    if (!run.project().rule(job).remarks || !run.decision(job).known()) continue;
+    if (!run.project().rule(job).remarks || !run.decision(job).known() || !run.units().is_chosen(job.unit))
+      continue;
     if (const std::string remark = run.resolver.remark(job); !remark.empty())
       yaml += fmt::format("  - {{item: {}, remark: {}}}\n", yaml_quoted(run.project().name(job)),
                           yaml_quoted(remark));

@@ -85,7 +85,8 @@ std::vector<Unit> RunState::shapes() const {
   std::vector<Unit> shapes;
   for (std::size_t family = 0; family < units().families().size(); ++family)
     for (const Unit unit : units().of_family(family))
-      if (std::ranges::any_of(project().rules, [&](const Rule& rule) { return rule.level() == unit.level; }))
+      if (units().is_chosen(unit) &&
+          std::ranges::any_of(project().rules, [&](const Rule& rule) { return rule.level() == unit.level; }))
         shapes.push_back(unit);
   return shapes;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The key of a map has the command line, its version, what it reads and the digests of the files it depends
 // on; not the timeout and the limits, which change no value. Paths of the files are those from where salbench
-// is started, like the folder of the data set; a link in the command's own folder leads to each.
+// is started, like the folder of the data set, where the folder of the configuration has none; a link in the
+// command's own folder leads to each.
 #include "pipeline/rules/command_model.h"
 
 #include <algorithm>
@@ -72,9 +73,9 @@ void check_depends(const CommandOptions& options, const Section& written) {
   for (const std::string& file : options.depends) {
     const fs::path path(file);
     if (path.filename().empty() || std::find(path.begin(), path.end(), "..") != path.end())
-      written.fail(
-          "depends",
-          fmt::format("names '{}', expected a file below the present folder, or its whole path", file));
+      written.fail("depends", fmt::format("names '{}', expected a file below the configuration's folder or "
+                                          "the present one, or its whole path",
+                                          file));
     for (const Placeholder& taken : kPlaceholders)
       if (file == taken.file)
         written.fail("depends", fmt::format("names '{}', which salbench writes itself", file));
@@ -83,7 +84,7 @@ void check_depends(const CommandOptions& options, const Section& written) {
   for (std::string word; words >> word;) {
     std::error_code ignored;
     if (!contains(options.depends, word) && !fs::path(word).is_absolute() &&
-        fs::is_regular_file(word, ignored))
+        fs::is_regular_file(place_of_depended(word, written), ignored))
       written.fail("command",
                    fmt::format("names the file '{0}', which is not in the folder where the command runs: add "
                                "depends: [{0}], or give its whole path",
@@ -132,6 +133,22 @@ std::vector<std::string> command_models(const Section& models) {
     if (!built_in && models.has_mapping(name) && models.child(name).has("command")) names.push_back(name);
   }
   return names;
+}
+
+void reject_misspelt_commands(const Section& models, const std::vector<std::string_view>& known) {
+  const auto is_command_line = [](const std::string& text) {
+    const auto has = [&](std::string_view part) { return text.find(part) != std::string::npos; };
+    return has(kListOfMeshes) || has(kListOfShapes) ||
+           std::ranges::any_of(kPlaceholders, [&](const Placeholder& part) { return has(part.text); });
+  };
+  for (const std::string& name : models.keys()) {
+    if (std::ranges::find(known, name) != known.end() || !models.has_mapping(name)) continue;
+    const Section model = models.child(name);
+    for (const std::string& key : model.keys())
+      if (!model.has_mapping(key) && std::ranges::any_of(model.words(key), is_command_line))
+        model.fail(key,
+                   "is not a known key; " + did_you_mean(key, {"command"}, "a command line is 'command'"));
+  }
 }
 
 Model command_model(const std::string& name, const Section& models) {

@@ -32,6 +32,7 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   for (const ModelRow& row : model_rows()) known.push_back(row.name);
   const std::vector<std::string> commands = command_models(section);
   known.insert(known.end(), commands.begin(), commands.end());
+  reject_misspelt_commands(section, known);
   section.reject_unknown(known);
   std::vector<Model> models;
   for (const ModelRow& row : model_rows())

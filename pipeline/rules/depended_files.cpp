@@ -13,13 +13,20 @@ namespace salbench {
 
 namespace fs = std::filesystem;
 
+fs::path place_of_depended(const std::string& name, const Section& written) {
+  std::error_code missing;
+  const fs::path beside = fs::path(written.file()).parent_path() / name;
+  return fs::absolute(fs::exists(beside, missing) ? beside : fs::path(name));
+}
+
 const std::string& DependedFiles::key_lines() {
   const std::lock_guard lock(mutex_);
   if (!files_.empty()) return lines_;
   std::vector<File> files;
   std::string lines;
   for (const std::string& name : names_) try {
-      File& file = files.emplace_back(File{fs::absolute(name), {}, identity_of_file(name)});
+      const fs::path path = place_of_depended(name, written_);
+      File& file = files.emplace_back(File{path, {}, identity_of_file(path)});
       file.digest = file_digest(read_file(file.path));
       lines += fmt::format("{}{}: {}\n", kDependsOption, name, file.digest.hex());
     } catch (const InputError& error) {
@@ -35,7 +42,7 @@ void DependedFiles::link_into(const fs::path& folder) const {
     if (fs::path(name).is_absolute()) continue;
     std::error_code error;
     fs::create_directories((folder / name).parent_path(), error);
-    if (!error) fs::create_symlink(fs::absolute(name), folder / name, error);
+    if (!error) fs::create_symlink(place_of_depended(name, written_), folder / name, error);
     if (error)
       throw StorageError(fmt::format("{}: cannot be written to: {}", folder.string(), error.message()));
   }

@@ -18,9 +18,13 @@ namespace salbench {
 // A key has one option for each such file: this and the file's name, and as its value the file's digest.
 inline constexpr std::string_view kDependsOption = "depends on ";
 
+// Where a file lies that is named in a configuration: below the folder of that, or else below the present
+// one.
+std::filesystem::path place_of_depended(const std::string& name, const Section& written);
+
 class DependedFiles {
  public:
-  // Paths from the present folder, or whole ones; `written` is the section whose key `depends` names them.
+  // Paths as above, or whole ones; `written` is the section whose key `depends` names them.
   DependedFiles(Words names, Section written) : names_(std::move(names)), written_(std::move(written)) {}
 
   // Lines of a key. Reads the files when first called. Throws ConfigError that names an unreadable one.

@@ -345,11 +345,18 @@ Project make_project(const Config& config, const Inputs& inputs,
                      const std::optional<Histogram>& given_reference) {
   Attributes attributes = {{"protocol", std::string(name_of(config.protocol))}};
   if (config.simulated()) attributes.emplace_back("participants", std::string(kSimulatedNote));
-  return {.rules = make_rules(config, inputs, given_reference),
-          .units = inputs.units,
-          .seed = config.seed,
-          .attributes = std::move(attributes),
-          .is_share = inputs.shard.has_value()};
+  Project project{.rules = make_rules(config, inputs, given_reference),
+                  .units = inputs.units,
+                  .seed = config.seed,
+                  .attributes = std::move(attributes),
+                  .is_share = inputs.shard.has_value()};
+  std::vector<std::size_t> references;
+  for (std::size_t rule = 0; rule < project.rules.size(); ++rule)
+    if (has_role(project.rules[rule], Role::reference)) references.push_back(rule);
+  const std::vector<bool> read_by_them = project.ancestors(references);
+  for (std::size_t rule = 0; rule < project.rules.size(); ++rule)
+    project.rules[rule].for_all = read_by_them[rule] && !project.rules[rule].gathers;
+  return project;
 }
 
 bool reference_is_given(const Rules& rules) {

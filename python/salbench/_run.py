@@ -89,7 +89,8 @@ def run(
         By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}. In place of those of
         the configuration.
     items : str or sequence of str, optional
-        Items to be run: "1-20,52", or a list of names. All by default.
+        Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default. Maps are
+        matched to the mean over all items of the data set all the same.
     threads : int, optional
         All cores by default.
     progress : bool

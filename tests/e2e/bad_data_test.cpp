@@ -74,7 +74,7 @@ TEST_P(BadItem, IsNamedInOneLineAndTheOthersAreScored) {
   ASSERT_THAT(errors, SizeIs(1)) << run.err;
   EXPECT_THAT(errors[0], HasSubstr("error: 2: "));
   for (const std::string& part : GetParam().said) EXPECT_THAT(errors[0], HasSubstr(part));
-  EXPECT_THAT(run.err, HasSubstr("\n1 failed:\n"));
+  EXPECT_THAT(run.err, HasSubstr("\n1 failed, each named above: "));
   EXPECT_THAT(scored_items(toy), ElementsAre("1", "1"));
 
   // Mended, the item is taken up again.

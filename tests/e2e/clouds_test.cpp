@@ -199,7 +199,7 @@ TEST(CloudsCommand, EachBadCloudIsOneErrorAndTheOthersGoOn) {
         "huge.pcd: ", "cut.pcd: the file ends after 0 of 20 points", "empty.xyz: the file is empty",
         "nan: cloud: the point cloud has 1 points with a position"})
     EXPECT_THAT(run.err, HasSubstr(why));
-  EXPECT_THAT(run.err, HasSubstr("\n7 failed:\n"));
+  EXPECT_THAT(run.err, HasSubstr("\n7 failed, each named above: 7 cloud\n"));
   EXPECT_THAT(lines_with(toy.results(), "clouds,"), SizeIs(9));
 }
 

@@ -19,15 +19,19 @@ TYPES = {str: "text", int: "number", float: "fraction", bool: "true or false", l
 
 
 def documented():
-    """Of docs/json.md: for each subcommand the types of each key, those of every document among them."""
-    sections = re.split(r"^## (\w+)$", (ROOT / "docs/json.md").read_text(encoding="utf-8"), flags=re.M)
+    """Of docs/json.md: for each subcommand the types of each key, those of every document and of the sections that it names among them."""
+    sections = re.split(r"^## (.+)$", (ROOT / "docs/json.md").read_text(encoding="utf-8"), flags=re.M)
+    texts = {name.lower().replace(" ", "-"): text for name, text in zip(sections[1::2], sections[2::2])}
 
     def keys(text):
         rows = re.findall(r"^\| `([^`]+)` \| ([^|]+) \|", text, flags=re.M)
         assert len(rows) == len(dict(rows)), "a key stands there twice"
-        return {key: {types} if types == "true or false" else set(types.split(" or ")) for key, types in rows}
+        found = {key: {types} if types == "true or false" else set(types.split(" or ")) for key, types in rows}
+        for name in re.findall(r"\]\(#([a-z-]+)\)", text):
+            found.update(keys(texts[name]))
+        return found
     common = keys(sections[0])
-    return {name: {**common, **keys(text)} for name, text in zip(sections[1::2], sections[2::2])}
+    return {name: {**common, **keys(text)} for name, text in texts.items() if "Not a document" not in text}
 
 
 def keys_of(value, path=""):
@@ -88,9 +92,6 @@ class JsonTest(unittest.TestCase):
         self.assertEqual((shard["shard"], shard["leaders"]), ("1/2", []))
         (level,) = document["leaders"]
         self.assertIn(f"\n{level['sentence']}\n", text)
-        seen = self.seen["run"]
-        self.assertLessEqual({key for key in seen if key.startswith("leaders[]")}, set(documented()["conclusions"]))
-        self.seen["run"] = {key: kinds for key, kinds in seen.items() if not key.startswith("leaders[]")}
         self.conclude(out / "results.csv", document["leaders"])
         table = self.folder / "scores.csv"
         table.write_text("item,model,auc,nss\n1,A,0.5,1\n2,A,0.75,\n1,B,0.25,\n2,B,0.375,1\n")
@@ -232,6 +233,55 @@ class JsonTest(unittest.TestCase):
             self.seen.setdefault("convert", {}).setdefault(key, set()).add(kind)
         self.assertRegex(said[0], r"(?m)^dog_1 +test +4 +4 +1.7321 +0.7500 +1.0000 +4.5000 ")
 
+    def summary(self, subcommand, *words, status=0, option="--format"):
+        """The document of a command over two good meshes and one that cannot be read."""
+        done = subprocess.run([PROGRAM, subcommand, *words, option, "json"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout.count("\n")), (status, 1), done.stderr)
+        document = json.loads(done.stdout)
+        self.assertEqual((document["schema"], document["command"]), (1, subcommand))
+        for key, kind in keys_of(document):
+            self.seen.setdefault(subcommand, {}).setdefault(key, set()).add(kind)
+        return document
+
+    def check_summaries(self):
+        folder = self.folder / "summaries"
+        data, mine, out = folder / "data", folder / "maps/PS", folder / "out"
+        shutil.copytree(self.folder / "data", data)
+        (data / f"{ODD}.off").rename(data / "2.off")
+        (data / "3.off").write_text("OFF\n")
+        config = folder / "toy.yaml"
+        config.write_text(CONFIG)
+        over = ["--data", data, "--cache", folder / "cache", "--threads", "1"]
+        run = [config, *over, "--out", out]
+        document = self.summary("run", *run, status=1)
+        self.assertEqual([(failed["item"], failed["stage"]) for failed in document["failed"]], [("3", "mesh")])
+        rows = {(row["model"], row["metric"]): row for row in document["scores"]}
+        text = (out / "summary.csv").read_text()
+        for (model, metric), row in rows.items():
+            self.assertIn(f"\nmeshes,{model},{metric},{row['n']},{row['mean']},", text)
+        self.assertEqual(self.summary("run", *run, "--shard", "1/1", status=1)["shard"], "1/1")
+        self.assertEqual(self.summary("maps", *run, "--to", folder / "maps", status=1)["written"], 4)
+        words = ["--maps", mine, "--name", "OWN"]
+        self.assertIn("OWN", {row["model"] for row in self.summary("evaluate", *run, *words, status=1)["scores"]})
+        self.assertEqual(self.summary("pictures", *run, status=1)["pictures"], 2)
+        self.assertEqual(self.summary("export", *run, "--to", folder / "all.h5", status=1, option="--summary")["shapes"], 3)
+        self.assertEqual(self.summary("conclusions", out / "results.csv", "--out", folder / "conclusions")["unit"], "mesh")
+        self.assertEqual(len(self.summary("power", out / "results.csv")["pairs"]), 3 * len({metric for _, metric in rows}))
+        self.assertIn("\nseed: 2016\n", self.summary("config")["yaml"])
+        (mine / "card.yaml").write_text("name: OWN\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n")
+        archive = folder / "submissions/own.zip"
+        archive.parent.mkdir()
+        submit = [mine, "-c", config, *over, "--to", archive]
+        self.assertIsNone(self.summary("submit", *submit, status=1)["to"])
+        site = [archive.parent, "-c", config, *over, "--to", folder / "site"]
+        archive.write_text("no archive")
+        document = self.summary("leaderboard", *site, status=1)
+        self.assertEqual([row["status"] for row in document["submissions"]], ["refused"])
+        (data / "3.off").unlink()
+        self.assertEqual(self.summary("submit", *submit)["to"], str(archive))
+        document = self.summary("leaderboard", *site)
+        self.assertEqual([row["status"] for row in document["submissions"]], ["ranked"])
+
     def test_documents_agree_with_their_documentation_and_with_the_text(self):
         with self.subTest("no cache"):
             left, state = self.check_counts()
@@ -295,9 +345,13 @@ class JsonTest(unittest.TestCase):
             self.seen["graph"]["nodes[].to_do"].add("null")
         with self.subTest("a description"):
             self.check_inspection()
+        with self.subTest("summaries"):
+            self.check_summaries()
         for subcommand, keys in documented().items():
             with self.subTest(subcommand):
-                self.assertEqual(self.seen[subcommand], keys)
+                seen = self.seen[subcommand]
+                self.assertEqual(seen.keys(), keys.keys())
+                self.assertEqual({key: kinds for key, kinds in seen.items() if not kinds <= keys[key]}, {})
 
     def test_bytes_that_are_not_utf_8_are_replaced(self):
         cache = os.fsencode(self.folder) + b"/caf\xe9"

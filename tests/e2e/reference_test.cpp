@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "io/table.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
@@ -90,6 +91,124 @@ TEST_F(Reference, ATableOfASimulatedRunCanBeRead) {
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_THAT(lines_with(again.err, "simulated.csv"), SizeIs(1));
   EXPECT_THAT(again.err, HasSubstr("simulated.csv: SIMULATED participants"));
+}
+
+// --- of a part of the data set -----------------------------------------------------------------------------
+
+std::vector<std::string> rows_of_item(const Workspace& toy, const std::string& item) {
+  auto rows = lines_with(toy.results(), fmt::format("meshes,{},", item));
+  const auto scans = lines_with(toy.results(), fmt::format("scans,{},", item));
+  rows.insert(rows.end(), scans.begin(), scans.end());
+  return rows;
+}
+
+std::vector<double> reference_of(const Workspace& toy, const char* shapes) {
+  return number_column(read_csv(toy.out() / fmt::format("mean_histograms_{}.csv", shapes)), "GS");
+}
+
+// Meshes and scans of "2", matched to the mean over both meshes as in a run over both.
+TEST(ReferenceOfItems, APartIsMatchedToTheMeanOverAll) {
+  const Workspace toy;
+  const Outcome part = toy.salbench("run", {"--items", "2"});
+  ASSERT_EQ(part.status, 0) << part.err;
+  EXPECT_THAT(lines_with(part.err, "jobs of items that are left out come first"), SizeIs(1)) << part.err;
+  EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("mean over all items of the data set or split"));
+  const std::string results = toy.results();
+  const auto rows = rows_of_item(toy, "2");
+  const auto on_meshes = reference_of(toy, "meshes"), on_scans = reference_of(toy, "scans");
+  EXPECT_THAT(rows_of_item(toy, "1"), IsEmpty());
+  EXPECT_THAT(toy.artefacts("map.PS"), SizeIs(13)) << "of the other mesh its ground truth alone";
+
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(rows_of_item(toy, "2"), rows);
+  EXPECT_EQ(reference_of(toy, "meshes"), on_meshes);
+  EXPECT_EQ(reference_of(toy, "scans"), on_scans);
+  const Outcome again = toy.salbench("run", {"--items", "2"});
+  EXPECT_THAT(lines_with(again.err, "come first"), IsEmpty()) << again.err;
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_THAT(lines_with(toy.salbench("plan", {"--items", "2"}).out, "0 jobs to do"), SizeIs(1));
+}
+
+TEST(ReferenceOfItems, ThatOfTheItemsAloneIsAskedForByName) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const auto of_all = reference_of(toy, "meshes");
+  const auto rows = rows_of_item(toy, "2");
+  ASSERT_EQ(toy.salbench("run", {"--items", "2", "--reference", "items"}).status, 0);
+  EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("mean over the items of the run"));
+  EXPECT_NE(reference_of(toy, "meshes"), of_all);
+  EXPECT_NE(rows_of_item(toy, "2"), rows);
+  // Over all items it is what there is without it.
+  ASSERT_EQ(toy.salbench("run", {"--reference", "items"}).status, 0);
+  EXPECT_EQ(toy.computed(), 0);
+  EXPECT_EQ(reference_of(toy, "meshes"), of_all);
+}
+
+TEST(ReferenceOfItems, ExportHasTheMatchedMapsOfTheWholeRun) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const auto matched = toy.artefacts("matched.PS");
+  ASSERT_EQ(toy.salbench("export", {"--items", "2", "--to", (toy / "2.h5").string()}).status, 0);
+  EXPECT_EQ(toy.artefacts("matched.PS"), matched) << "no other ones";
+  ASSERT_EQ(run_process({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(),
+                         "--cache", toy.cache().string(), "--items", "2"})
+                .status,
+            0);
+  EXPECT_THAT(toy.artefacts("ground_truth"), SizeIs(2)) << "the mean is made of both";
+  EXPECT_THAT(toy.artefacts("matched.PS"), SizeIs(1));
+}
+
+TEST(ReferenceOfItems, AnotherItemThatFailsIsAWarning) {
+  const Workspace toy(kMeshesOnly);
+  toy.write("data set/Meshes/1.off", "OFF\n1 0 0\n0 0 0\n");
+  const Outcome part = toy.salbench("run", {"--items", "2"});
+  EXPECT_EQ(part.status, 0) << part.err;
+  EXPECT_THAT(lines_with(part.err, "warning: 1: mesh: "), SizeIs(1)) << part.err;
+  EXPECT_EQ(toy.salbench("run").status, 1);
+  EXPECT_THAT(lines_with(toy.results(), "meshes,2,"), SizeIs(2));
+}
+
+// --- items with ground truth -------------------------------------------------------------------------------
+
+void add_mesh_without_truth(const Workspace& toy) {
+  toy.write("data set/Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.15)));
+}
+
+TEST(ScoredItems, AreThoseWithGroundTruth) {
+  const Workspace toy(kMeshesOnly);
+  add_mesh_without_truth(toy);
+  ASSERT_EQ(toy.salbench("run", {"--items", "scored"}).status, 0);
+  EXPECT_THAT(toy.artefacts("map.PS"), SizeIs(2));
+  const std::string results = toy.results();
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_THAT(toy.artefacts("map.PS"), SizeIs(3));
+  EXPECT_EQ(toy.results(), results);
+  fs::remove_all(toy.data() / "Distributions");
+  fs::remove_all(toy.data() / "RawData");
+  const Outcome none = toy.salbench("run", {"--items", "scored"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("--items scored: no item has ground truth"));
+}
+
+TEST(ScoredItems, AreWhatEvaluateTakesSoThatMapsOfThemAreEnough) {
+  const Workspace toy(kMeshesOnly);
+  add_mesh_without_truth(toy);
+  ASSERT_EQ(toy.salbench("maps", {"--models", "PS", "--to", (toy / "maps").string()}).status, 0);
+  fs::remove(toy / "maps/PS/3.val");
+  const std::vector<std::string> mine = {"--maps", (toy / "maps/PS").string(), "--name", "OWN"};
+  const Outcome run = toy.salbench("evaluate", mine);
+  EXPECT_EQ(run.status, 0) << run.err;
+  fs::remove(toy / "maps/PS/2.val");
+  const Outcome missing = toy.salbench("evaluate", mine);
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_THAT(lines_with(missing.err, "2.val: missing"), SizeIs(1)) << "named once: " << missing.err;
+}
+
+TEST(ScoredItems, AreAllWhereParticipantsAreSimulated) {
+  const Workspace toy("dataset: {scans: false, participants: simulated}\nmodels: {PS: , RS: }\n");
+  add_mesh_without_truth(toy);
+  ASSERT_EQ(toy.salbench("run", {"--items", "scored"}).status, 0);
+  EXPECT_THAT(lines_with(toy.results(), "meshes,3,"), SizeIs(2));
 }
 
 }  // namespace

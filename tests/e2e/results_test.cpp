@@ -115,10 +115,9 @@ TEST(Results, TablesOfPeopleHaveTheDocumentedColumnsAndRows) {
               (value[n_metrics] - value[0] + value[3 * n_metrics] - value[2 * n_metrics]) / 2, 1e-12);
 
   const Table equivalents = table("human_equivalents.csv");
-  EXPECT_THAT(equivalents.columns,
-              ElementsAre("dataset", "metric", "model", "n", "n_shapes", "largest_group", "mean", "k",
-                          "ci95_low", "ci95_high", "k_bound", "low_bound", "high_bound", "crossings",
-                          "remark"));
+  EXPECT_THAT(equivalents.columns, ElementsAre("dataset", "metric", "model", "n", "n_shapes", "largest_group",
+                                               "mean", "k", "ci95_low", "ci95_high", "k_bound", "low_bound",
+                                               "high_bound", "crossings", "remark"));
   EXPECT_THAT(equivalents.rows, SizeIs(3 * n_metrics));
   EXPECT_THAT(text_column(equivalents, "remark"), Each("no interval: fewer than 6 units"));
   const auto k = number_column(equivalents, "k");
@@ -133,8 +132,8 @@ TEST(Results, TablesOfPeopleHaveTheDocumentedColumnsAndRows) {
   EXPECT_THAT(text_column(shares, "remark"), Each(Not("")));
   const Table reliability = table("human_reliability.csv");
   EXPECT_THAT(reliability.columns,
-              ElementsAre("metric", "n", "n_shapes", "fewest_participants", "most_participants",
-                          "split_half", "mean", "sd", "ci95_low", "ci95_high"));
+              ElementsAre("metric", "n", "n_shapes", "fewest_participants", "most_participants", "split_half",
+                          "mean", "sd", "ci95_low", "ci95_high"));
   EXPECT_THAT(text_column(reliability, "most_participants"), ElementsAre("4"));
 }
 

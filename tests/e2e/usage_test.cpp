@@ -40,6 +40,54 @@ TEST(Usage, WordsThatTheProgramDoesNotKnow) {
   EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
 }
 
+std::string said_of(const std::vector<std::string>& words) {
+  std::vector<std::string> command = {SALBENCH_PROGRAM};
+  command.insert(command.end(), words.begin(), words.end());
+  const Outcome outcome = run_process(command);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(lines_with(outcome.err, ""), SizeIs(1)) << outcome.err;
+  return outcome.err;
+}
+
+TEST(Usage, AnUnknownWordGetsTheNearestKnownOne) {
+  EXPECT_EQ(said_of({"rnu", "a.yaml"}), "error: there is no subcommand 'rnu'; did you mean 'run'?\n");
+  EXPECT_EQ(said_of({"run", "a.yaml", "--item", "1"}),
+            "error: run: there is no option '--item'; did you mean '--items'?\n");
+  EXPECT_EQ(said_of({"plan", "a.yaml", "--qiet"}),
+            "error: plan: there is no option '--qiet'; did you mean '--quiet'?\n");
+  EXPECT_EQ(said_of({"frobnicate"}),
+            "error: there is no subcommand 'frobnicate'; salbench --help names them\n");
+  const Workspace toy;
+  EXPECT_THAT(said_of({"plan", (toy / "tyo.yaml").string()}),
+              EndsWith("there is no such configuration; did you mean 'toy'?\n"));
+  toy.configure("models:\n  MINE: {comand: \"cp {mesh} {out}\"}\n");
+  EXPECT_THAT(said_of({"plan", toy.config().string(), "--data", toy.data().string()}),
+              EndsWith(":2: models.MINE.comand is not a known key; did you mean 'command'?\n"));
+}
+
+// The examples of a subcommand begin with its name, and name no option that it has not.
+TEST(Usage, EverySubcommandHasExamples) {
+  const std::string all = run_process({SALBENCH_PROGRAM, "--help"}).out;
+  for (const char* name :
+       {"run", "maps", "evaluate", "pictures", "export", "conclusions", "power", "plan", "graph", "explain",
+        "status", "doctor", "config", "verify", "gc", "inspect", "submit", "leaderboard"}) {
+    const Outcome help = run_process({SALBENCH_PROGRAM, name, "--help"});
+    ASSERT_EQ(help.status, 0);
+    const std::size_t begin = help.out.find("Examples:\n");
+    ASSERT_NE(begin, std::string::npos) << name;
+    const auto examples = lines_with(help.out.substr(begin), "  salbench ");
+    ASSERT_FALSE(examples.empty()) << name;
+    for (const std::string& line : examples) {
+      EXPECT_THAT(line, testing::StartsWith(fmt::format("  salbench {}", name)));
+      for (std::size_t at = line.find(" --"); at != std::string::npos; at = line.find(" --", at + 1)) {
+        const std::string option = line.substr(at, line.find(' ', at + 1) - at);
+        EXPECT_THAT(help.out.substr(0, begin), HasSubstr(option)) << line;
+      }
+    }
+    EXPECT_THAT(all, HasSubstr(examples[0])) << name;
+  }
+}
+
 // The one line on stderr; what is unusable from the start leaves nothing behind.
 std::string complaint(const Workspace& toy, const std::vector<std::string>& further = {}) {
   const Outcome run = toy.salbench("run", further);

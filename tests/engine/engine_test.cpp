@@ -70,6 +70,24 @@ TEST_F(EngineTest, AFailureStopsWhatReadsItAndNothingElse) {
   EXPECT_THAT(values, SizeIs(5));
 }
 
+// The other text has the jobs that the longest word is made of, and no more.
+TEST_F(EngineTest, AFamilyThatIsNotChosenTakesPartInWhatIsGatheredOfAll) {
+  Project project = toy_project(folder, kTexts2);
+  const Project whole = project;
+  std::vector<Family> families = project.units.families();
+  families[1].chosen = false;
+  project.units = Units(project.units.levels(), families);
+  const std::vector<bool> needed = project.ancestors({kLongest});
+  for (std::size_t rule = 0; rule < needed.size(); ++rule)
+    project.rules[rule].for_all = needed[rule] && rule != kLongest;
+  EXPECT_THAT(run(project), SizeIs(2 + 2 * 6 + 1 + 3));
+  EXPECT_THAT(values, ElementsAre("a...", "bb..", "ccc.")) << "as wide as the other's word";
+  EXPECT_THAT(run(whole), ElementsAre("padded@text1_0", "padded@text1_1", "padded@text1_2"));
+  for (std::size_t rule = 0; rule < needed.size(); ++rule) project.rules[rule].for_all = false;
+  EXPECT_THAT(run(project), Contains("longest@words")) << "over the words of one text";
+  EXPECT_THAT(values, ElementsAre("a..", "bb.", "ccc"));
+}
+
 TEST_F(EngineTest, ResumesAfterAStop) {
   Project project = toy_project(folder, kTexts2);
   project.rules[kLength].compute = [this, was = project.rules[kLength].compute](const JobInputs& in) {

@@ -32,6 +32,21 @@ void expect_change_is_noticed(Planned& planned) {
               ThrowsMessage<InputError>(AllOf(HasSubstr(planned.path.string()), HasSubstr("changed since"))));
 }
 
+TEST(DependedFiles, AreLookedUpBesideTheConfigurationFirst) {
+  TemporaryFolder folder;
+  folder.write("own.yaml", "key: 1");
+  folder.write("weights", "beside");
+  const Section written = Section::from_file((folder.path() / "own.yaml").string());
+  EXPECT_EQ(place_of_depended("weights", written), folder.path() / "weights");
+  EXPECT_EQ(place_of_depended("other", written), fs::current_path() / "other");
+  EXPECT_EQ(place_of_depended("/etc/passwd", written), "/etc/passwd");
+  EXPECT_EQ(place_of_depended("weights", Section::from_text("", "config")), fs::current_path() / "weights");
+  DependedFiles files{{"weights"}, written};
+  EXPECT_THAT(files.key_lines(), HasSubstr("depends on weights: "));
+  files.link_into(folder.path() / "scratch");
+  EXPECT_EQ(read_file(folder.path() / "scratch/weights"), "beside");
+}
+
 TEST(DependedFiles, ChangedInPlaceWithTheTimeKept) {
   Planned planned;
   planned.files.check_unchanged();

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pages of a leaderboard: scripts/report leaderboard SITE draws the tables that salbench leaderboard wrote to SITE/data.
+
+Nothing is computed here, and nothing that a submission says is more than text.
+"""
+
+import csv
+import itertools
+import shutil
+import sys
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+from report.blocks import Cell, Note, Table, cell, interval
+from report.folder import is_ours
+from report.names import DATASETS
+from report.pages import HERE, environment
+from report.results import Unusable
+
+STATIC = ("report.css", "tables.js")
+NAVIGATION = (("index.html", "Ranking"), ("metrics.html", "Metrics"), ("classes.html", "Classes"),
+              ("history.html", "History"), ("submissions.html", "Submissions"))
+
+
+def rows_of(path):
+    """Rows of a CSV file as the program writes it, below its remarks."""
+    try:
+        with open(path, encoding="utf-8", errors="replace", newline="") as file:
+            return list(csv.DictReader(itertools.dropwhile(lambda line: line.startswith("#"), file)))
+    except OSError as error:
+        raise Unusable(f"{path}: {error.strerror}; salbench leaderboard writes it") from None
+
+
+def number(text):
+    return float(text) if text else float("nan")
+
+
+@dataclass
+class Board:
+    """The tables, by name, and the submissions that are ranked, by model."""
+    site: Path
+
+    def __post_init__(self):
+        data = self.site / "data"
+        self.submissions = rows_of(data / "submissions.csv")
+        self.metrics = {row["metric"]: row for row in rows_of(data / "metrics.csv")}
+        self.summary, self.ranking, self.classes, self.history = (
+            rows_of(data / f"{name}.csv") for name in ("summary", "ranking", "per_class", "history"))
+        self.protocol = (data / "protocol.yaml").read_text(encoding="utf-8")
+        self.models = {row["model"]: row for row in self.submissions if row["status"] == "ranked"}
+        self.ranks = {(part_of(row), row["metric"], row["model"]): row for row in self.ranking}
+
+    @property
+    def simulated(self):
+        return (self.site / "data/results.csv").read_text(encoding="utf-8").startswith("# SIMULATED")
+
+    def named(self, model):
+        """A model in a table: a link where it was submitted."""
+        return Cell(model, href=f"models/{model}.html" if model in self.models else None)
+
+
+def part_of(row):
+    return row["dataset"], row.get("split", "")
+
+
+def heading(part):
+    dataset, split = part
+    return DATASETS.get(dataset, dataset) + (f", split {split}" if split else "")
+
+
+def parts_of(rows):
+    return list(dict.fromkeys(part_of(row) for row in rows))
+
+
+def mean_cell(row, rank):
+    """Mean, half of its interval, and the group of those that cannot be told apart."""
+    value = number(row["mean"])
+    half = (number(row["ci95_high"]) - number(row["ci95_low"])) / 2
+    below = (f"± {half:.3f}" if half == half else "") + (f", group {rank['group']}" if rank and rank["group"] else "")
+    return cell(value, bold=bool(rank) and rank["rank"] == "1", below=below.removeprefix(", "))
+
+
+def ranking(board):
+    """A table per data set and split: models x metrics, the best by the first metric first, references last."""
+    blocks = []
+    for part in parts_of(board.summary):
+        by_model = defaultdict(dict)
+        for row in board.summary:
+            if part_of(row) == part:
+                by_model[row["model"]][row["metric"]] = row
+        metrics = list(board.metrics)
+
+        def order(model, part=part, first=metrics[0]):
+            rank = board.ranks.get((part, first, model), {}).get("rank")
+            return (not rank, int(rank or 0), model)
+        rows = [[board.named(model), *(mean_cell(by_model[model][metric], board.ranks.get((part, metric, model)))
+                                       if metric in by_model[model] else cell(None) for metric in metrics)]
+                for model in sorted(by_model, key=order)]
+        heads = ["Model", *(f"{metric} ({row['better']} is better)" for metric, row in board.metrics.items())]
+        caption = (f"{heading(part)}: means with half of their 95 % intervals; best in bold. Models that share a letter of their "
+                   "groups cannot be told apart. Models without a group are people or chance.")
+        blocks.append(Table("ranking-" + "-".join(filter(None, part)), caption, heads, rows, [False] + [True] * len(metrics)))
+    return blocks or [Note("No submission could be ranked.", missing=True)]
+
+
+def by_metric(board):
+    rows = [[Cell(heading(part_of(row))), Cell(row["metric"]), board.named(row["model"]), cell(number(row["mean"])),
+             Cell(row["rank"]), Cell(f"{row['rank_low']} to {row['rank_high']}"), cell(number(row["first"]), 2),
+             Cell(row["group"])] for row in board.ranking]
+    heads = ["Data set", "Metric", "Model", "Mean", "Rank", "95 % of ranks", "Share first", "Group"]
+    return [Table("ranks", "Ranks, with the ranks that 95 % of the resamples give, and the share of them in which a model is first.",
+                  heads, rows, [False] * 3 + [True] * 4 + [False], filters=[0, 1])]
+
+
+def by_class(board, model=None):
+    rows = [[Cell(heading(part_of(row))), Cell(row["class"]), Cell(row["metric"]), board.named(row["model"]),
+             cell(number(row["mean"])), interval(number(row["ci95_low"]), number(row["ci95_high"])), Cell(row["n"])]
+            for row in board.classes if model in (None, row["model"])]
+    if not rows:
+        return [Note("The items have no classes.")]
+    return [Table("classes", "Means by class of shapes, with 95 % intervals; Avg is the mean over the competitors.",
+                  ["Data set", "Class", "Metric", "Model", "Mean", "95 %", "n"], rows, [False] * 4 + [True] * 3, filters=[0, 1, 2])]
+
+
+def history(board):
+    rows = [[Cell(heading(part_of(row))), Cell(row["metric"]), Cell(row["date"] or "–"), board.named(row["model"]),
+             cell(number(row["mean"]), bold=row["best"] == "yes")] for row in board.history]
+    return [Table("history", "Submissions by date, then by file; in bold those that were the best of all until then.",
+                  ["Data set", "Metric", "Date", "Model", "Mean"], rows, [False] * 4 + [True], filters=[0, 1])]
+
+
+def submissions(board):
+    rows = [[Cell(row["file"]), board.named(row["model"]) if row["status"] == "ranked" else Cell(row["model"]),
+             Cell(row["status"]), Cell(row["reason"] or row["remark"])] for row in board.submissions]
+    return [Table("submissions", "Every submission, ranked or refused, and why.", ["File", "Model", "Status", "Reason or remark"], rows,
+                  [False] * 4)]
+
+
+def card_rows(row):
+    names = {"file": "File", "date": "Date", "citation": "Citation", "licence": "Licence", "training_data": "Training data",
+             "test_overlap": "Overlap with the test items", "url": "Page", "program": "Checked before by salbench", "remark": "Remark"}
+    return [(label, row[key]) for key, label in names.items() if row[key]]
+
+
+def scores(board, model):
+    rows = [[Cell(heading(part_of(row))), Cell(row["metric"]), mean_cell(row, board.ranks.get((part_of(row), row["metric"], model))),
+             Cell(board.ranks.get((part_of(row), row["metric"], model), {}).get("rank", "")), Cell(row["n"])]
+            for row in board.summary if row["model"] == model]
+    return [Table("scores", "Means with half of their 95 % intervals, and ranks.", ["Data set", "Metric", "Mean", "Rank", "n"], rows,
+                  [False] * 2 + [True] * 3)]
+
+
+def write_pages(site):
+    """The pages written, all below the site. Pages of models that are gone go."""
+    board = Board(site)
+    written = set()
+
+    def write(path, template, **values):
+        root = "../" * path.count("/")
+        text = environment().get_template(template).render(path=path, root=root, navigation=NAVIGATION, board=board, **values)
+        file = site / path
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+        written.add(file)
+
+    (site / "static").mkdir(exist_ok=True)
+    for name in STATIC:
+        shutil.copyfile(HERE / "static" / name, site / "static" / name)
+    for path, title, blocks in (("metrics.html", "Metrics", by_metric(board)), ("classes.html", "Classes", by_class(board)),
+                                ("history.html", "History", history(board)),
+                                ("submissions.html", "Submissions", submissions(board))):
+        write(path, "leaderboard.html", title=title, sections=[(title, blocks)], card=(), protocol="")
+    for model, row in board.models.items():
+        write(f"models/{model}.html", "leaderboard.html", title=model, card=card_rows(row), protocol="",
+              sections=[("Scores", scores(board, model)), ("Classes", by_class(board, model))])
+    for page in (site / "models").glob("*.html"):
+        if page not in written and is_ours(page):
+            page.unlink()
+    refused = sum(row["status"] == "refused" for row in board.submissions)
+    sections = [("Ranking", ranking(board))]
+    if refused:
+        sections.append(("Refused", submissions(board)))
+    write("index.html", "leaderboard.html", title="Leaderboard", sections=sections, card=(), protocol=board.protocol)
+    return written
+
+
+def main(argv):
+    if len(argv) != 1:
+        print("usage: scripts/report leaderboard SITE", file=sys.stderr)
+        return 2
+    try:
+        write_pages(Path(argv[0]))
+    except (Unusable, OSError) as error:
+        print(f"scripts/report leaderboard: {error}", file=sys.stderr)
+        return 2
+    return 0
