@@ -120,7 +120,6 @@ ExitStatus print_power(const Arguments& arguments, Options options) {
 
 Subcommand conclusions_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  const FormatWord format = default_format();
   return {
       "conclusions",
       "means, intervals, tests and ranks of a table of scores per shape, of a run or of anybody's",
@@ -131,11 +130,8 @@ Subcommand conclusions_subcommand(Arguments& arguments) {
             "CSV file of what a text says of pairs of models, like configs/paper/claims.csv: each beside "
             "what the scores say, in statements.csv"},
            {"--out", &arguments.output, "folder of the tables (default: salbench-out/NAME)"},
-           {"--quiet", &arguments.quiet, "no table; warnings and errors only"},
-           format_parameter(format)}),
-      [&arguments, options, format](const std::atomic<bool>&) {
-        return write_all(arguments, *options, format_of(format));
-      }};
+           {"--quiet", &arguments.quiet, "no table; warnings and errors only"}}),
+      [&arguments, options](const std::atomic<bool>&) { return write_all(arguments, *options); }};
 }
 
 Subcommand power_subcommand(Arguments& arguments) {

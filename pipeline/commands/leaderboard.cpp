@@ -15,6 +15,7 @@
 #include "io/scratch_folder.h"
 #include "io/values_file.h"
 #include "pipeline/commands/installed.h"
+#include "pipeline/commands/leading.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/commands/submission.h"
 #include "pipeline/commands/summary.h"
@@ -218,16 +219,19 @@ class Silence {
 struct Site {
   std::vector<Entry> entries;
   Table overview;
+  Json leaders = {};
+  std::string leading = {};  // the same in sentences
 };
 
 void print_site(const Site& site, const Session& session, const Arguments& arguments, ReportFormat format) {
-  std::string text = aligned(site.overview) + "\n";
+  std::string text = aligned(site.overview) + "\n" + site.leading;
   for (const Entry& entry : site.entries)
     if (!entry.refused.empty())
       text += fmt::format("refused: {}: {}\n", entry.file.filename().string(), entry.refused);
   Json document = {{"to", arguments.to},
                    {"submissions", rows_json(submissions_table(site.entries))},
-                   {"scores", rows_json(site.overview)}};
+                   {"scores", rows_json(site.overview)},
+                   {"leaders", site.leaders}};
   document.update(summary_of(session));
   print_report(format, "leaderboard", document,
                arguments.quiet ? ""
@@ -251,7 +255,8 @@ Site write_site(Session& session, std::vector<Entry> entries, const fs::path& fo
   write_file(data / "history.csv", to_csv(history_table(entries, conclusions)));
   write_file(data / "metrics.csv", to_csv(metrics_table(metrics)));
   write_file(data / "protocol.yaml", protocol_text(config));
-  return {std::move(entries), overview_table(conclusions)};
+  const std::vector<LevelLeaders> leaders = find_leaders(conclusions);
+  return {std::move(entries), overview_table(conclusions), json_of(leaders), leading_text(leaders)};
 }
 
 ExitStatus run_leaderboard(const Arguments& arguments, const std::string& folder, ReportFormat format,

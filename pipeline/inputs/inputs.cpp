@@ -201,7 +201,7 @@ void select_items(Dataset& dataset, const std::string& selection, const std::str
 Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard,
                    const std::string& split, Others others) {
   std::vector<std::string> errors;
-  if (selection.empty()) errors = errors_of_split(dataset, split);
+  if (selection.empty() || selection == kScoredItems) errors = errors_of_split(dataset, split);
   if (!dataset.unit.where.empty()) fail_mixed_units(dataset);
   Dataset whole = dataset;
   select_items(dataset, selection, split);
