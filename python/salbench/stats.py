@@ -58,7 +58,10 @@ def _columns(table: Any, named: set[str]) -> dict[str, Any]:
         if name in _TEXTS:
             columns[name] = [_text(value) for value in values]
         elif name in named or is_numeric_dtype(values.dtype):
-            columns[name] = values.to_numpy(dtype=np.float64, na_value=np.nan)
+            try:
+                columns[name] = values.to_numpy(dtype=np.float64, na_value=np.nan)
+            except OverflowError:
+                raise ValueError(f"table has a number in column '{name}' that a double cannot hold") from None
     return columns
 
 

@@ -277,7 +277,8 @@ TEST(BadArchive, EndsWithStatus1AndTheOthersAreScored) {
       own.string() + ":6: the split 'test' names 'eel', which is no item of the data set: ";
   Outcome outcome = run("test");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("\n1 failed:\n  data set: " + unknown));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("error: data set: " + unknown),
+                                 HasSubstr("\n1 failed, each named above: 1 data set\n")));
   EXPECT_THAT(scored_items(toy), ElementsAre("ant", "bee"));
   EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("stage: data set, cause: \"" + unknown));
   outcome = run("''");
@@ -286,7 +287,7 @@ TEST(BadArchive, EndsWithStatus1AndTheOthersAreScored) {
   toy.write("data set/maps/bee.txt", "1\n2\n");
   outcome = run("test");
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("\n2 failed:\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("\n2 failed, each named above: 1 data set, 1 ground_truth\n"));
   EXPECT_THAT(outcome.err, HasSubstr("bee.txt:2: the file has 2 values, but the mesh has 42 vertices"));
   EXPECT_THAT(scored_items(toy), ElementsAre("ant"));
   const Outcome found =

@@ -113,7 +113,7 @@ TEST(Command, TheConfigurationOfARunIsReadBack) {
 // With one short line that says why; the other items go on.
 void expect_first_alone_to_fail(const Workspace& toy, const Outcome& run, const std::string& says) {
   EXPECT_EQ(run.status, 1) << run.err;
-  const auto lines = lines_with(run.err, "  1: map.MINE: ");
+  const auto lines = lines_with(run.err, "error: 1: map.MINE: ");
   ASSERT_THAT(lines, SizeIs(1)) << run.err;
   EXPECT_THAT(lines[0], ContainsRegex(says));
   EXPECT_LT(lines[0].size(), 6000U);
