@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -109,14 +110,14 @@ void check_all(std::vector<Entry>& entries, const Expected& expected, const fs::
 // A model that failed on any shape is no competitor: all are compared on the same shapes.
 void refuse_failed(std::vector<Entry>& entries, const Session& session, std::vector<ResultRow>& rows) {
   const Project& project = session.setup.project;
+  std::set<std::string> failed;  // entries that were refused before have no rows; another may have their name
   for (const Failure& failure : session.resolver.failures())
     for (Entry& entry : entries)
-      if (entry.refused.empty() && entry.card.name == project.rule(failure.job).subject)
+      if (entry.refused.empty() && entry.card.name == project.rule(failure.job).subject) {
         entry.refused = fmt::format("{}: {}", project.name(failure.job), failure.cause);
-  std::erase_if(rows, [&](const ResultRow& row) {
-    return std::ranges::any_of(
-        entries, [&](const Entry& entry) { return !entry.refused.empty() && entry.card.name == row.model; });
-  });
+        failed.insert(entry.card.name);
+      }
+  std::erase_if(rows, [&](const ResultRow& row) { return failed.contains(row.model); });
 }
 
 // The scores that came with a submission decide nothing.

@@ -217,6 +217,8 @@ TEST_F(Leaderboard, WhatElseIsRefused) {
   EXPECT_EQ(verdict["G0.zip"], "ranked");
   EXPECT_EQ(verdict["no_licence.zip"], "refused: card.yaml: lacks licence, training_data, test_overlap");
   EXPECT_EQ(verdict["twin.zip"], "refused: the name G0 is taken by G0.zip");
+  EXPECT_THAT(lines_with(read_file(site() / "data/results.csv"), ",G0,"), SizeIs(kMeshCount))
+      << "and stays its own";
   EXPECT_THAT(verdict["of_the_program.zip"], HasSubstr("is the name of something else"));
   EXPECT_THAT(verdict["no_date.zip"], HasSubstr("card.yaml: date is \"soon\""));
   EXPECT_THAT(verdict["lines.zip"], HasSubstr("card.yaml: url has a control character"));
