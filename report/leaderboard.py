@@ -8,12 +8,13 @@ import csv
 import itertools
 import shutil
 import sys
-from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
 from report.blocks import Cell, Note, Table, cell, interval
+from report.compact import score
 from report.folder import is_ours
+from report.metrics import label_of
 from report.names import DATASETS
 from report.pages import HERE, environment
 from report.results import Unusable
@@ -45,8 +46,9 @@ class Board:
         data = self.site / "data"
         self.submissions = rows_of(data / "submissions.csv")
         self.metrics = {row["metric"]: row for row in rows_of(data / "metrics.csv")}
-        self.summary, self.ranking, self.classes, self.history = (
-            rows_of(data / f"{name}.csv") for name in ("summary", "ranking", "per_class", "history"))
+        self.summary, self.ranking, self.compact, self.classes, self.history = (
+            rows_of(data / f"{name}.csv") for name in ("summary", "ranking", "compact", "per_class", "history"))
+        self.sentences = [row["sentence"] for row in rows_of(data / "leaders.csv") if not row["metric"]]
         self.protocol = (data / "protocol.yaml").read_text(encoding="utf-8")
         self.models = {row["model"]: row for row in self.submissions if row["status"] == "ranked"}
         self.ranks = {(part_of(row), row["metric"], row["model"]): row for row in self.ranking}
@@ -84,24 +86,20 @@ def mean_cell(row, rank):
 def ranking(board):
     """A table per data set and split: models x metrics, the best by the first metric first, references last."""
     blocks = []
-    for part in parts_of(board.summary):
-        by_model = defaultdict(dict)
-        for row in board.summary:
-            if part_of(row) == part:
-                by_model[row["model"]][row["metric"]] = row
-        metrics = list(board.metrics)
-
-        def order(model, part=part, first=metrics[0]):
-            rank = board.ranks.get((part, first, model), {}).get("rank")
-            return (not rank, int(rank or 0), model)
-        rows = [[board.named(model), *(mean_cell(by_model[model][metric], board.ranks.get((part, metric, model)))
-                                       if metric in by_model[model] else cell(None) for metric in metrics)]
-                for model in sorted(by_model, key=order)]
-        heads = ["Model", *(f"{metric} ({row['better']} is better)" for metric, row in board.metrics.items())]
-        caption = (f"{heading(part)}: means with half of their 95 % intervals; best in bold. Models that share a letter of their "
-                   "groups cannot be told apart. Models without a group are people or chance.")
-        blocks.append(Table("ranking-" + "-".join(filter(None, part)), caption, heads, rows, [False] + [True] * len(metrics)))
+    for part in parts_of(board.compact):
+        by_cell = {(row["model"], row["metric"]): row for row in board.compact if part_of(row) == part}
+        metrics = [metric for metric in board.metrics if any(metric == of for _, of in by_cell)]
+        rows = [[board.named(model), *(compact_cell(by_cell.get((model, metric))) for metric in metrics)]
+                for model in dict.fromkeys(model for model, _ in by_cell)]
+        caption = (f"{heading(part)}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best in "
+                   "bold. Models that share a letter cannot be told apart. Models without a letter are people or chance.")
+        blocks.append(Table("ranking-" + "-".join(filter(None, part)), caption, ["Model", *map(label_of, metrics)], rows,
+                            [False] + [True] * len(metrics), better=["", *(board.metrics[metric]["better"] for metric in metrics)]))
     return blocks or [Note("No submission could be ranked.", missing=True)]
+
+
+def compact_cell(row):
+    return score(row and {**row, **{key: number(row[key]) for key in ("mean", "low", "high", "half", "best")}})
 
 
 def by_metric(board):

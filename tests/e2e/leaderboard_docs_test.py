@@ -17,7 +17,7 @@ def toy(folder):
     """SchellingData, and maps in mine/."""
     subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", folder / "toy", "3", "16", "8"], check=True)
     numbers = random.Random(1)
-    for part in ("SchellingData/Meshes", "SchellingData/Distributions", "SchellingData/RawData", "mine", "submissions", "bin"):
+    for part in ("SchellingData/Meshes", "SchellingData/Distributions", "SchellingData/RawData", "mine", "bin"):
         (folder / part).mkdir(parents=True)
     for mesh in sorted((folder / "toy").glob("*.off")):
         text = mesh.read_text()
