@@ -16,7 +16,7 @@ from report.compact import score
 from report.folder import is_ours
 from report.metrics import label_of
 from report.names import DATASETS
-from report.pages import HERE, environment
+from report.pages import HERE, SIMULATED, environment
 from report.results import Unusable
 
 STATIC = ("report.css", "tables.js")
@@ -54,8 +54,9 @@ class Board:
         self.ranks = {(part_of(row), row["metric"], row["model"]): row for row in self.ranking}
 
     @property
-    def simulated(self):
-        return (self.site / "data/results.csv").read_text(encoding="utf-8").startswith("# SIMULATED")
+    def banners(self):
+        simulated = (self.site / "data/results.csv").read_text(encoding="utf-8").startswith("# SIMULATED")
+        return [SIMULATED] if simulated else []
 
     def named(self, model):
         """A model in a table: a link where it was submitted."""
@@ -156,7 +157,8 @@ def write_pages(site):
 
     def write(path, template, **values):
         root = "../" * path.count("/")
-        text = environment().get_template(template).render(path=path, root=root, navigation=NAVIGATION, board=board, **values)
+        text = environment().get_template(template).render(path=path, root=root, navigation=NAVIGATION, banners=board.banners, board=board,
+                                                              **values)
         file = site / path
         file.parent.mkdir(exist_ok=True)
         file.write_text(text, encoding="utf-8")

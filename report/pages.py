@@ -15,6 +15,8 @@ HERE = Path(__file__).resolve().parent
 THREE = tuple(Path("/usr/share/javascript/three") / name  # Debian's libjs-three
               for name in ("three.min.js", "examples/js/controls/OrbitControls.js"))
 
+SIMULATED = "Simulated participants: the program made the ground truth. These scores say nothing about people."
+
 
 @cache
 def environment():
@@ -55,7 +57,7 @@ def banners(results):
     """What every page says at its top: simulated participants, a run that did not end, numbers that cannot be used."""
     said = []
     if results.simulated:
-        said.append("Simulated participants: the program made the ground truth. These scores say nothing about people.")
+        said.append(SIMULATED)
     if results.state != "finished":
         said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
     return said + results.unusable
