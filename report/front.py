@@ -188,4 +188,14 @@ def people(results, counts):
     if results.simulated:
         return f"simulated by the program{of}: nothing here is about people"
     scans = "; scans have the ground truth of their mesh, nobody was asked about them" if "scans" in counts else ""
-    return f"real people{of}{scans}"
+    return f"{told_apart(entry)}{of}{scans}"
+
+
+def told_apart(entry):
+    """How many people there were per shape, as far as the files tell them apart."""
+    few, many = entry.get("participants") or (None, None) if isinstance(entry, dict) else (None, None)
+    if few is None:
+        return "real people"
+    if many == 0:
+        return "real people, pooled"
+    return f"{few if few == many else f'{few} to {many}'} real people per shape"

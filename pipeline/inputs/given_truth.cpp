@@ -355,11 +355,11 @@ GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Fi
                        item_of(files.source));
 }
 
-bool has_participants(const DatasetItem& item) {
-  if (item.indexed)
-    return item.indexed->participants >= kMinParticipants || item.indexed->viewers >= kMinParticipants;
-  return item.picks.size() >= kMinParticipants ||
-         (item.by_viewer && item.saliency.size() >= kMinParticipants);
+std::size_t participants_of(const DatasetItem& item) {
+  if (item.indexed) return std::max(item.indexed->participants, item.indexed->viewers);
+  return std::max(item.picks.size(), item.by_viewer ? item.saliency.size() : 0);
 }
+
+bool has_participants(const DatasetItem& item) { return participants_of(item) >= kMinParticipants; }
 
 }  // namespace salbench

@@ -33,8 +33,8 @@ GroundTruth given_truth(const Mesh& mesh, const Files& files);
 GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files);
 
 // The ground truth as its files have it: no saliency is made from picks. Without a surface, cameras see all
-// of a cloud. `as_read`, where it is given, takes the files whose values are not those of the result: of faces
-// or other points, masked, or averaged.
+// of a cloud. `as_read`, where it is given, takes the files whose values are not those of the result: of
+// faces or other points, masked, or averaged.
 GroundTruth measured_truth(const Mesh& mesh, const Files& files,
                            std::vector<ValuesAsRead>* as_read = nullptr);
 GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files,
@@ -42,6 +42,9 @@ GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const
 
 // How the files of an item are written.
 const TruthFormat& format_of(const DatasetItem& item);
+
+// People whose picks or maps are in files of their own; one file may be of several who are not told apart.
+std::size_t participants_of(const DatasetItem& item);
 
 // True if the files tell participants apart, at least two.
 bool has_participants(const DatasetItem& item);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <unordered_set>
 
@@ -12,6 +13,7 @@
 
 #include "io/file.h"
 #include "pipeline/config/section.h"
+#include "pipeline/inputs/given_truth.h"
 #include "stages/core/errors.h"
 #include "stages/stats/summary.h"
 
@@ -141,6 +143,21 @@ std::string remark_lines(const RunRecord& record) {
              : "remarks:  # on odd shapes, and on metrics by which chance is as good as a model\n" + yaml;
 }
 
+// The fewest and the most people that files tell apart, over the shapes of the run with ground truth; [0, 0]:
+// all of them are pooled.
+std::string participants_text(const Inputs& inputs) {
+  std::optional<std::size_t> fewest;
+  std::size_t most = 0;
+  for (const Family& family : inputs.units.families()) {
+    const DatasetItem& item = item_of(family.source);
+    if (!family.chosen || truth_files_of(item).empty()) continue;
+    const std::size_t told_apart = has_participants(item) ? participants_of(item) : 0;
+    fewest = std::min(fewest.value_or(told_apart), told_apart);
+    most = std::max(most, told_apart);
+  }
+  return fmt::format("[{}, {}]", fewest.value_or(0), most);
+}
+
 std::string run_yaml(const RunRecord& record) {
   const auto& [config, inputs, resolver] = record.run;
   std::string yaml;
@@ -157,9 +174,11 @@ std::string run_yaml(const RunRecord& record) {
                           yaml_quoted(model.given->source.string()), model.given->matched);
   const DataIdentity data = identity_of(inputs);
   const std::size_t clouds = inputs.count(kClouds);
-  yaml += fmt::format("data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}}}\n",
-                      yaml_quoted(config.data), yaml_scalar(inputs.layout), inputs.count(kMeshes),
-                      clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex());
+  yaml += fmt::format(
+      "data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}, participants: {}}}\n",
+      yaml_quoted(config.data), yaml_scalar(inputs.layout), inputs.count(kMeshes),
+      clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex(),
+      participants_text(inputs));
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
   yaml += cache_lines(record);

@@ -30,6 +30,11 @@ TEST(Record, IdentifiesTheDataByItsContent) {
   EXPECT_THAT(line, HasSubstr("folder: \"" + toy.data().string() + "\""));
   EXPECT_THAT(line, HasSubstr("layout: schelling, meshes: 2, files: 12, "))
       << "2 x (mesh, saliency, 4 participants)";
+  EXPECT_THAT(line, HasSubstr(", participants: [4, 4]}"));
+  const fs::path last = toy.data() / "RawData/2_3.pid", aside = toy / "2_3.pid";
+  fs::rename(last, aside);
+  EXPECT_THAT(data_line(toy), HasSubstr(", participants: [3, 4]}"));
+  fs::rename(aside, last);
   const fs::path elsewhere = toy / "copy";
   fs::copy(toy.data(), elsewhere, fs::copy_options::recursive);
   EXPECT_EQ(digest_in(data_line(toy, {"--data", elsewhere.string()})), digest_in(line)) << "wherever it lies";

@@ -240,7 +240,9 @@ class Browser(support.BrowserTest):
                 best = leaders.query("dataset == 'meshes' and metric == 'auc'").iloc[0]
                 self.assertEqual(cells, [best["leaders"].split(", ")[0], f"{best['ci95_low']:.3f} to {best['ci95_high']:.3f}",
                                          f"{best['mean']:.3f}", ranked["group"].iloc[0]])
-                self.assertIn("8 meshes, 96 scans", " ".join(self.texts(".facts dd")))
+                facts = " ".join(self.texts(".facts dd"))
+                self.assertIn("8 meshes, 96 scans", facts)
+                self.assertIn("22 to 25 real people per shape", facts)
 
     def test_the_compact_table_sorts_and_its_arrow_has_words(self):
         self.open("ranking.html")
