@@ -25,9 +25,11 @@ std::string yaml_of(py::handle value, const std::string& where) {
     if (!whole) throw py::error_already_set();
     return py::str(whole);
   }
-  if (PyNumber_Check(value.ptr()) != 0 &&
-      PyFloat_Check(py::float_(py::reinterpret_borrow<py::object>(value)).ptr()) != 0)
-    return py::repr(py::float_(py::reinterpret_borrow<py::object>(value)));
+  if (PyNumber_Check(value.ptr()) != 0) {
+    const double number = PyFloat_AsDouble(value.ptr());
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    return py::repr(py::float_(number));  // of a plain one: NumPy's are called np.float64(0.3)
+  }
   throw py::value_error(fmt::format("{} must be a number, a truth value or a text, not {}", where,
                                     std::string(py::str(py::type::of(value).attr("__name__")))));
 }
