@@ -91,10 +91,12 @@ TEST_F(ZipFile, DamageAtEveryByteAndLengthIsARefusalOrNoDamage) {
 
 // Bits of the entry's flags, here and in the directory: encrypted.
 TEST_F(ZipFile, AnEncryptedEntryAndALinkAreRefused) {
-  std::string encrypted = zip_of({{"a", "x"}});
-  encrypted[6] |= 1;
+  std::string encrypted = zip_of({{"a", std::string(100, 'x')}});
   const std::size_t directory = encrypted.find("PK\1\2");
+  encrypted[6] |= 1;
   encrypted[directory + 8] |= 1;
+  encrypted[22] = encrypted[directory + 24] =
+      88;  // unpacked: without the 12 bytes that encryption puts before
   expect_refusal(encrypted, "is encrypted");
   std::string link = zip_of({{"a", "x"}});
   link[link.find("PK\1\2") + 41] = static_cast<char>(0xa1);  // S_IFLNK in the high byte of the attributes
