@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -31,6 +32,20 @@ struct Array {
 };
 
 using Arrays = std::vector<Array>;
+
+// n x 3 numbers, and n.
+template <class Triple>
+Array triples(std::string name, const std::vector<Triple>& rows, std::string unit, std::string description) {
+  static_assert(sizeof(Triple) == 3 * sizeof(typename Triple::value_type));
+  std::vector<typename Triple::value_type> flat(rows.size() * 3);
+  if (!rows.empty()) std::memcpy(flat.data(), rows.data(), rows.size() * sizeof(Triple));
+  return {std::move(name), {rows.size(), 3}, std::move(flat), std::move(unit), std::move(description)};
+}
+template <class T>
+Array column(std::string name, std::vector<T> values, std::string unit, std::string description) {
+  const std::size_t n = values.size();
+  return {std::move(name), {n}, std::move(values), std::move(unit), std::move(description)};
+}
 
 // The array as one value per point: n numbers, n x 1 or 1 x n. Throws InputError for any other shape, and for
 // a whole number that no double is equal to.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the shapes of a data set were looked at from, as a description says it.
+// Cameras of a data set: the places that its shapes were seen from, as a description gives them.
 #pragma once
 
 #include <filesystem>

@@ -82,7 +82,7 @@ struct MaskFile {
   std::string missing = {};  // what to do about it, if it is not there
 };
 
-// What the index of a set in the one form says of an item. (io/one_form_index.h)
+// Entry of an item in the index of a set in the one form (io/one_form_index.h).
 struct IndexedItem {
   bool is_cloud = false;
   bool has_truth = false;
@@ -120,7 +120,7 @@ struct Dataset {
   std::string no_splits = {};            // why no item is in a split; empty: some are, or none are described
   std::vector<SplitEntry> unknown = {};  // names in splits that are no items
   LengthUnit unit = {};
-  std::string licence = {};              // of the description
+  std::string licence = {};  // of the description
 };
 
 // Takes the first layout that fits. Lists folders and reads no file but that of the splits; the result does

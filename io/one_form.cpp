@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is scored is read: points, faces and normals below shape/, values on the points below truth/, or
-// below views/VIEW/ for views that are scored by themselves. What the source's files hold stands beside it,
+// Read back are points, faces and normals below shape/, and the values on the points below truth/, or below
+// views/VIEW/ for views that are scored by themselves. The values of the source's files stand beside them,
 // below as_read/, for people.
 #include "io/one_form.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <functional>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -25,55 +26,32 @@ constexpr const char* kNumber = "number";
 
 // --- writing ----------------------------------------------------------------------------------------------
 
-std::vector<double> flat(Points points) {
-  std::vector<double> values;
-  values.reserve(3 * points.size());
-  for (const Vec3& point : points) values.insert(values.end(), point.begin(), point.end());
-  return values;
-}
-
-template <class T>
-Array array_of(std::string name, std::vector<T> values, std::size_t columns, std::string unit,
-               std::string description) {
-  std::vector<std::size_t> shape = {values.size() / columns};
-  if (columns > 1) shape.push_back(columns);
-  return {.name = std::move(name),
-          .shape = std::move(shape),
-          .values = std::move(values),
-          .unit = std::move(unit),
-          .description = std::move(description)};
-}
-
 void add_shape(Arrays& arrays, const ShapeInForm& shape) {
   const bool is_mesh = !shape.mesh.vertices.empty();
-  arrays.push_back(array_of("shape/points", flat(is_mesh ? shape.mesh.vertices : shape.cloud.points), 3,
-                            kLength, "x, y and z of the points, or of the vertices of the mesh"));
-  if (is_mesh) {
-    std::vector<std::int32_t> corners;
-    for (const Triangle& face : shape.mesh.faces) corners.insert(corners.end(), face.begin(), face.end());
-    arrays.push_back(array_of("shape/faces", std::move(corners), 3, kNumber,
-                              "0-based points at the corners of the triangles, in the order of the source"));
-  }
+  arrays.push_back(triples("shape/points", is_mesh ? shape.mesh.vertices : shape.cloud.points, kLength,
+                           "x, y and z of the points, or of the vertices of the mesh"));
+  if (is_mesh)
+    arrays.push_back(triples("shape/faces", shape.mesh.faces, kNumber,
+                             "0-based points at the corners of the triangles, in the order of the source"));
   const PointCloud& cloud = shape.cloud;
   if (!cloud.normals.empty())
-    arrays.push_back(array_of("shape/normals", flat(cloud.normals), 3, "1", "unit normals of the points"));
-  if (cloud.viewpoint)
-    arrays.push_back(array_of("shape/viewpoint", flat(Points(&*cloud.viewpoint, 1)), 1, kLength,
-                              "x, y and z from where the points were seen"));
+    arrays.push_back(triples("shape/normals", cloud.normals, "1", "unit normals of the points"));
+  if (const auto& place = cloud.viewpoint)
+    arrays.push_back(column("shape/viewpoint", std::vector<double>(place->begin(), place->end()), kLength,
+                            "x, y and z from where the points were seen"));
   if (!cloud.dropped.empty())
-    arrays.push_back(array_of("shape/left_out", cloud.dropped, 1, kNumber,
-                              "0-based numbers in the source of points that are left out here"));
+    arrays.push_back(column("shape/left_out", cloud.dropped, kNumber,
+                            "0-based numbers in the source of points that are left out here"));
 }
 
 void add_as_read(Arrays& arrays, const std::string& group, const ValuesAsRead& read) {
-  arrays.push_back(array_of(group + "values", read.values, 1, "1",
-                            fmt::format("values per {} as {} has them; NaN: not seen", read.per, read.file)));
+  arrays.push_back(column(group + "values", read.values, "1",
+                          fmt::format("values per {} as {} has them; NaN: not seen", read.per, read.file)));
   if (!read.points.empty())
-    arrays.push_back(
-        array_of(group + "points", flat(read.points), 3, kLength, "x, y and z that the values belong to"));
+    arrays.push_back(triples(group + "points", read.points, kLength, "x, y and z that the values belong to"));
   if (!read.mask.empty())
-    arrays.push_back(array_of(group + "mask", std::vector<std::uint8_t>(read.mask.begin(), read.mask.end()),
-                              1, "1", "0: hidden, 1: seen"));
+    arrays.push_back(column(group + "mask", std::vector<std::uint8_t>(read.mask.begin(), read.mask.end()),
+                            "1", "0: hidden, 1: seen"));
 }
 
 std::string group_of(std::string_view view) {
@@ -84,8 +62,7 @@ void add_truth(Arrays& arrays, const TruthInForm& truth) {
   const std::string group = group_of(truth.view);
   const GroundTruth& known = truth.truth;
   if (!known.saliency.empty())
-    arrays.push_back(
-        array_of(group + "saliency", known.saliency, 1, "1", "value of each point; NaN: not seen"));
+    arrays.push_back(column(group + "saliency", known.saliency, "1", "value of each point; NaN: not seen"));
   if (!known.viewers.empty()) {
     std::vector<double> all;
     for (const ScalarField& viewer : known.viewers) all.insert(all.end(), viewer.begin(), viewer.end());
@@ -101,10 +78,10 @@ void add_truth(Arrays& arrays, const TruthInForm& truth) {
       all.insert(all.end(), picks.begin(), picks.end());
       counts.push_back(static_cast<std::int32_t>(picks.size()));
     }
-    arrays.push_back(array_of(group + "picks", std::move(all), 1, kNumber,
-                              "0-based points that people picked, one participant after the other"));
-    arrays.push_back(array_of(group + "picks_of", std::move(counts), 1, kNumber,
-                              "how many of these each participant picked"));
+    arrays.push_back(column(group + "picks", std::move(all), kNumber,
+                            "0-based points that people picked, one participant after the other"));
+    arrays.push_back(
+        column(group + "picks_of", std::move(counts), kNumber, "how many of these each participant picked"));
   }
   for (std::size_t k = 0; k < truth.as_read.size(); ++k)
     add_as_read(arrays, fmt::format("{}as_read/{}/", group, k), truth.as_read[k]);
@@ -203,19 +180,15 @@ std::vector<std::vector<std::int32_t>> picks_in(const FormReader& in, const std:
   const auto& all = in.read<std::int32_t>(group + "picks", 0);
   const auto& counts = in.read<std::int32_t>(group + "picks_of", 0);
   in.check_indices(group + "picks", all, n);
-  std::vector<std::vector<std::int32_t>> picks;
-  std::size_t first = 0;
-  for (const std::int32_t count : counts) {
-    if (count < 0 || static_cast<std::size_t>(count) > all.size() - first)
-      in.fail(
-          fmt::format("the numbers in '{0}picks_of' do not sum to the {1} of '{0}picks'", group, all.size()));
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-    picks.emplace_back(begin, begin + count);
-    first += static_cast<std::size_t>(count);
-  }
-  if (first != all.size())
+  const bool any_negative = std::ranges::any_of(counts, [](std::int32_t count) { return count < 0; });
+  if (any_negative || std::accumulate(counts.begin(), counts.end(), std::size_t{0}) != all.size())
     in.fail(
         fmt::format("the numbers in '{0}picks_of' do not sum to the {1} of '{0}picks'", group, all.size()));
+  std::vector<std::vector<std::int32_t>> picks;
+  for (auto first = all.begin(); const std::int32_t count : counts) {
+    picks.emplace_back(first, first + count);
+    first += count;
+  }
   return picks;
 }
 

@@ -42,7 +42,7 @@ struct FoundSplits {
   std::string missing = {};                                  // the file that is not there: one line
 };
 
-// Where the first of these names is, and what to do: one line.
+// Message about names that are no items: file and line of the first one, and what to do.
 std::string text_of_unknown(const std::vector<SplitEntry>& unknown);
 
 // Reads the file of the splits, if there is one. A line of a list names an item by its last name, with or

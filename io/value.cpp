@@ -18,19 +18,6 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * size
 
 constexpr const char* kLength = "mesh length unit";
 
-template <class Triple>
-Array triples(const char* name, const std::vector<Triple>& rows, const char* unit, const char* description) {
-  std::vector<typename Triple::value_type> flat(rows.size() * 3);
-  if (!rows.empty()) std::memcpy(flat.data(), rows.data(), rows.size() * sizeof(Triple));
-  return {name, {rows.size(), 3}, std::move(flat), unit, description};
-}
-
-template <class T>
-Array column(const char* name, std::vector<T> values, const char* unit, const char* description) {
-  const std::size_t n = values.size();
-  return {name, {n}, std::move(values), unit, description};
-}
-
 template <class T>
 Array scalar(const char* name, T value, const char* unit, const char* description) {
   return {name, {}, std::vector<T>{value}, unit, description};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -85,7 +86,7 @@ bool is_file_or_folder(zip_t* archive, zip_uint64_t index) {
   return system != ZIP_OPSYS_UNIX || type == 0 || type == S_IFREG || type == S_IFDIR;
 }
 
-// What it declares is what it must unpack to.
+// Throws InputError unless the entry unpacks to as many bytes as it declares.
 std::string unpacked(zip_t* archive, zip_uint64_t index, const zip_stat_t& declared) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(fmt::format("the entry {} {}", in_quotes(declared.name), what));
@@ -140,14 +141,14 @@ std::vector<ZipEntry> entries_of(zip_t* archive, const ZipLimits& limits) {
 
 std::vector<ZipEntry> parsed(std::string_view bytes, const ZipLimits& limits) {
   constexpr std::size_t kSmallest = 22;  // without entries, which the library takes nothing for as well
-  if (bytes.size() < kSmallest) throw InputError("is no ZIP archive that can be read: it is cut short");
+  if (bytes.size() < kSmallest) throw InputError("cannot be read as a ZIP archive: it is cut short");
   ZipError error;
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
   const Archive archive(
       source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY | ZIP_CHECKCONS, &error),
       &zip_discard);
   if (archive == nullptr)
-    throw InputError(fmt::format("is no ZIP archive that can be read: {}", zip_error_strerror(&error)));
+    throw InputError(fmt::format("cannot be read as a ZIP archive: {}", zip_error_strerror(&error)));
   return entries_of(archive.get(), limits);
 }
 
@@ -164,15 +165,22 @@ void send_entries(const std::vector<ZipEntry>& entries, const Send& send) {
   }
 }
 
-std::vector<ZipEntry> received(std::string_view sent) {
+// An archive may have taken the child over: lengths are what it says. Nothing if they do not fit.
+std::optional<std::vector<ZipEntry>> received(std::string_view sent) {
   std::vector<ZipEntry> entries;
+  const auto take = [&](std::uint64_t n) {
+    const std::string_view part = sent.substr(0, n);
+    sent.remove_prefix(part.size());
+    return part;
+  };
   while (!sent.empty()) {
-    std::uint64_t lengths[2];
-    std::memcpy(lengths, sent.data(), sizeof lengths);
-    sent.remove_prefix(sizeof lengths);
-    entries.push_back(
-        {std::string(sent.substr(0, lengths[0])), std::string(sent.substr(lengths[0], lengths[1]))});
-    sent.remove_prefix(lengths[0] + lengths[1]);
+    std::uint64_t lengths[2] = {};
+    const std::string_view head = take(sizeof lengths);
+    if (head.size() < sizeof lengths) return {};
+    std::memcpy(lengths, head.data(), sizeof lengths);
+    ZipEntry entry{std::string(take(lengths[0])), std::string(take(lengths[1]))};
+    if (entry.name.size() != lengths[0] || entry.bytes.size() != lengths[1]) return {};
+    entries.push_back(std::move(entry));
   }
   return entries;
 }
@@ -214,7 +222,9 @@ std::vector<ZipEntry> read_zip(const std::filesystem::path& path, const ZipLimit
     throw InputError(fmt::format("{}: damaged: the library that reads it {}", path.string(),
                                  failure.empty() ? "ended the process" : failure));
   if (sent[0] == kMessage) throw InputError(fmt::format("{}: {}", path.string(), sent.substr(1)));
-  return received(std::string_view(sent).substr(1));
+  auto entries = received(std::string_view(sent).substr(1));
+  if (!entries) throw InputError(fmt::format("{}: damaged: its entries were not sent whole", path.string()));
+  return std::move(*entries);
 }
 
 }  // namespace salbench

@@ -193,9 +193,10 @@ def people(results, counts):
 
 def told_apart(entry):
     """How many people there were per shape, as far as the files tell them apart."""
-    few, many = entry.get("participants") or (None, None) if isinstance(entry, dict) else (None, None)
-    if few is None:
+    found = entry.get("participants") if isinstance(entry, dict) else None
+    if not found:
         return "real people"
+    few, many = found
     if many == 0:
         return "real people, pooled"
     return f"{few if few == many else f'{few} to {many}'} real people per shape"

@@ -21,8 +21,7 @@ constexpr std::string_view kCardFile = "card.yaml", kManifestFile = "submission.
                            kConfigurationFile = "configuration.yaml", kResultsFile = "results.csv",
                            kMapsFolder = "maps/", kMapEnding = ".npy";
 constexpr const char* kConfiguration = "shrec07_meshes";
-constexpr std::size_t kLongestText = 64U << 10U;  // of a YAML file
-constexpr std::size_t kLongestValue = 2000;       // of a key of the card
+constexpr std::size_t kLongestValue = 2000;  // of a key of the card
 constexpr std::uint64_t kMapHeader = 1024, kRowOfResults = 4096;
 
 using Texts = std::map<std::string, std::string>;  // by the name of a file

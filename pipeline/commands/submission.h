@@ -15,6 +15,7 @@
 
 namespace salbench {
 
+inline constexpr std::size_t kLongestText = 64U << 10U;  // of a YAML file
 inline constexpr std::string_view kSubmissionFormat = "salbench submission 1";
 
 // card.yaml: what the authors declare of a model.

@@ -11,15 +11,12 @@
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/commands/submission.h"
 #include "pipeline/commands/summary.h"
-#include "pipeline/results/stage_counts.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uint64_t kLongestCard = 64U << 10U;
 
 Words stage_versions(const Project& project) {
   Words stages;
@@ -76,7 +73,7 @@ void write_checked(const fs::path& to, const std::vector<ZipEntry>& entries, con
 ExitStatus run_submit(const Arguments& arguments, const std::string& mine, ReportFormat format,
                       const std::atomic<bool>& stop) {
   const fs::path card_file = fs::path(mine) / "card.yaml";
-  const std::string card_text = read_file(card_file, kLongestCard);
+  const std::string card_text = read_file(card_file, kLongestText);
   const Card card = read_card(card_text, card_file.string());
   Config config = read_configuration(arguments);
   config.models = {given_model(card.name, find_given_maps(mine, false))};

@@ -53,8 +53,7 @@ Table per_class_table(const std::vector<ResultRow>& rows, const Metrics& metrics
   Table table{
       .columns = {"dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"},
       .rows = {}};
-  if (std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); }))
-    table.columns.insert(table.columns.begin() + 1, "split");
+  if (any_in_splits(rows)) table.columns.insert(table.columns.begin() + 1, "split");
   for (const auto& [dataset, category] : datasets_and_classes(rows)) {
     add_class_rows(table, category, DatasetScores(rows, dataset, unit, category), metrics);
     for (const std::string& split : splits_among(rows, dataset))

@@ -91,6 +91,10 @@ std::vector<Unit> RunState::shapes() const {
   return shapes;
 }
 
+bool any_in_splits(const std::vector<ResultRow>& rows) {
+  return std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); });
+}
+
 std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, {}); }
 
 std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k) {
@@ -101,7 +105,7 @@ std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k) {
 std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, {.of_constant = true}); }
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
-  const bool in_splits = std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); });
+  const bool in_splits = any_in_splits(rows);
   Table table{.columns = {"dataset", "item", "class", "view", "model"}, .rows = {}};
   if (in_splits) table.columns.insert(table.columns.begin() + 1, "split");
   for (const Metric& metric : metrics) table.columns.push_back(metric.name);

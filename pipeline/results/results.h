@@ -45,6 +45,9 @@ struct RunState {
   std::vector<Unit> shapes() const;  // for which there are rules, family by family
 };
 
+// True if tables of these rows have a column `split`.
+bool any_in_splits(const std::vector<ResultRow>& rows);
+
 // One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
 // Read from the tables of scores, or for those that are still open from the scores that there are.
 std::vector<ResultRow> collect_results(const RunState& run);

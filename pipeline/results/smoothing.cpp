@@ -55,8 +55,7 @@ Table smoothing_table(const std::vector<SmoothedRows>& smoothed, const Metrics& 
                           "ci95_high", "upper_bound"},
               .rows = {}};
   const std::vector<ResultRow>& rows = smoothed.front().rows;
-  if (std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); }))
-    table.columns.insert(table.columns.begin() + 1, "split");
+  if (any_in_splits(rows)) table.columns.insert(table.columns.begin() + 1, "split");
   for (const std::string_view dataset : kShapeNames) {
     std::vector<std::string> splits = splits_among(rows, dataset);
     splits.insert(splits.begin(), "");

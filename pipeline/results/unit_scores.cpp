@@ -39,8 +39,7 @@ std::vector<std::string> splits_among(const std::vector<ResultRow>& rows, std::s
 
 DatasetScores::DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Observation unit,
                              std::string_view only_class, std::string_view only_split)
-    : dataset_(dataset),
-      in_splits_(std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); })) {
+    : dataset_(dataset), in_splits_(any_in_splits(rows)) {
   if (splits_among(rows, dataset).empty())
     for (const ResultRow& row : rows)
       if (row.dataset == dataset) split_ = row.split;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A search over pairs of boxes that halve the points again and again: a pair is left out where no two of its
-// points can be farther apart than two that are known. On a sphere, where that helps least, it looks at a few
-// hundredths of all pairs.
+// points can be farther apart than two that are known. On a sphere that helps least: many pairs are nearly as
+// far apart.
 #include <algorithm>
 #include <memory>
 

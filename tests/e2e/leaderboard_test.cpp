@@ -150,7 +150,7 @@ TEST_F(Leaderboard, TwelveSubmissionsOfWhichFiveAreBad) {
   EXPECT_THAT(verdict["bad_path.zip"], HasSubstr("\"../evil\" has a path that leaves the folder"));
   EXPECT_EQ(verdict["bad_missing.zip"], "refused: has no map of 1 of 6 items, such as 6");
   EXPECT_THAT(verdict["<b>bad_name.zip"], StartsWith("refused: card.yaml: name \"<script>"));
-  EXPECT_THAT(verdict["bad_truncated.zip"], HasSubstr("no ZIP archive that can be read"));
+  EXPECT_THAT(verdict["bad_truncated.zip"], HasSubstr("cannot be read as a ZIP archive"));
 
   const Table ranking = read_csv(site() / "data/ranking.csv");
   const auto metrics = text_column(ranking, "metric"), models = text_column(ranking, "model");
@@ -233,7 +233,7 @@ TEST_F(Leaderboard, WhatElseIsRefused) {
   EXPECT_THAT(verdict["further.zip"], HasSubstr("the file \"run.sh\" is no part of a submission"));
   EXPECT_THAT(verdict["bomb.zip"], HasSubstr("unpacks to more than "));
   EXPECT_EQ(verdict["no_card.zip"], "refused: has no card.yaml");
-  EXPECT_THAT(verdict["text.zip"], HasSubstr("no ZIP archive"));
+  EXPECT_THAT(verdict["text.zip"], HasSubstr("cannot be read as a ZIP archive"));
   EXPECT_EQ(verdict["scores.zip"], "ranked") << "its own scores decide nothing";
   const Table table = read_csv(site() / "data/submissions.csv");
   EXPECT_THAT(lines_with(to_csv(table), "LIAR"),
