@@ -114,7 +114,7 @@ class Level:
         kept = (self.defined[:, :, metric] & self._common[:, metric, None]).T.copy()  # models x shapes
         places: dict[bytes, list[int]] = {}
         for place, models in enumerate(sets):
-            places.setdefault(kept[models].all(axis=0).tobytes(), []).append(place)
+            places.setdefault(kept[np.asarray(models)].all(axis=0).tobytes(), []).append(place)
         return [(group, self.compared(metric, np.unique(np.concatenate([sets[place] for place in group])))) for group in places.values()]
 
     def _averaged(self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]) -> UnitScores:
