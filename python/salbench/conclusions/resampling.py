@@ -6,17 +6,18 @@ resample. The product is exact, and so the same bytes whatever library multiplie
 scores are rounded to a grid on which no sum of them needs more than the 53 bits of a double.
 """
 
-from collections.abc import Iterator
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from salbench.conclusions.samples import TAIL, means
 from salbench.conclusions.units import Floats
 
 RESAMPLES = 10_000
-CONFIDENCE = 0.95  # of every interval
-TAIL = (1 - CONFIDENCE) / 2
 _ROWS = 32  # resamples multiplied at once: they stay in a core's cache, which libraries without blocks need
 
 # With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do all resamples, whatever
@@ -52,45 +53,60 @@ class Bootstrap:
             yield counted.astype(np.uint8)  # 255 draws of one unit: in no sample of this universe
 
     def means(self, values: Floats) -> Floats:
-        """Means of the columns over each resample: resamples x columns of `values`, units x columns, or units x metrics x models.
+        """Means of the columns of units x columns over each resample: resamples x columns.
 
-        Equal columns have equal means, and a constant one has its value. The columns of the last axis are rounded alike.
+        Equal columns have equal means, and a constant one has its value.
         """
-        n, first = len(values), values[0]
-        relative = _on_grid(values - first, n).reshape(n, -1)
-        counts = self.counts(n)
-        means = np.empty((len(counts), relative.shape[1]))
-        for row in range(0, len(counts), _ROWS):
-            np.matmul(counts[row:row + _ROWS].astype(float), relative, out=means[row:row + _ROWS])
-        averaged: Floats = (means / n).reshape(-1, *first.shape) + first
-        return averaged
+        return self.means_of_each([values])[0]
+
+    def means_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
+        """`means` of several samples; those of as many units share one product, which takes far less time."""
+        means: list[Floats] = [np.empty(0)] * len(samples)
+        for n in sorted({len(values) for values in samples}):
+            places = [place for place, values in enumerate(samples) if len(values) == n]
+            relative = [_on_grid(samples[place] - samples[place][0]) for place in places]
+            resampled = self._product(np.hstack(relative)) / n
+            ends = np.cumsum([values.shape[1] for values in relative])
+            for place, own in zip(places, np.split(resampled, ends[:-1], axis=1)):
+                means[place] = own + samples[place][0]
+        return means
+
+    def _product(self, values: Floats) -> Floats:
+        counts = self.counts(len(values))
+        sums = np.empty((len(counts), values.shape[1]))
+
+        def multiply(row: int) -> None:
+            np.matmul(counts[row:row + _ROWS].astype(float), values, out=sums[row:row + _ROWS])
+
+        with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as threads:
+            list(threads.map(multiply, range(0, len(counts), _ROWS)))
+        return sums
 
 
-def _on_grid(values: Floats, n: int) -> Floats:
+def _on_grid(values: Floats) -> Floats:
     """Rounded to multiples of a power of two, such that n times the largest value is below 2^53 of them: to 2^-40 of the largest
-    value for 4 800 units. The columns of the last axis share their power."""
-    largest = np.abs(values).max(axis=(0, -1), keepdims=True)
-    _, exponent = np.frexp(largest * n)
+    value for 4 800 units."""
+    _, exponent = np.frexp(np.abs(values).max() * len(values))
     step = np.ldexp(1.0, exponent - 53)
     rounded: Floats = np.rint(values / step) * step
     return rounded
 
 
-def bca_interval(sample: Floats, means: Floats) -> tuple[float, float]:
+def bca_interval(sample: Floats, resampled: Floats) -> tuple[float, float]:
     """95 % interval of the mean of a sample from its resampled means, bias-corrected and accelerated [efron1987].
 
     None for fewer than two values, or for equal ones.
     """
     if len(sample) < 2 or np.ptp(sample) == 0:
         return np.nan, np.nan
-    mean = sample[0] + (sample - sample[0]).mean()
-    below = ((means < mean).mean() + (means <= mean).mean()) / 2  # a resampled mean equal to the mean counts one half
+    mean = means(sample)
+    below = ((resampled < mean).mean() + (resampled <= mean).mean()) / 2  # a resampled mean equal to the mean counts one half
     if below <= 0 or below >= 1:
         return np.nan, np.nan
     away = sample - mean
     bias, acceleration = special.ndtri(below), (away**3).sum() / (6 * (away**2).sum() ** 1.5)
     z = bias + special.ndtri([TAIL, 1 - TAIL])
-    low, high = np.quantile(means, special.ndtr(bias + z / (1 - acceleration * z)))
+    low, high = np.quantile(resampled, special.ndtr(bias + z / (1 - acceleration * z)))
     return float(low), float(high)
 
 

@@ -92,6 +92,10 @@ class Level:
         """Those of them that are no references."""
         return np.flatnonzero(self.is_scored[:, metric] & ~self.is_reference)
 
+    def n_defined(self, metric: int, model: int) -> int:
+        """Shapes that the model has a score for."""
+        return int(np.count_nonzero(self.defined[:, model, metric]))
+
     def compared(self, metric: int, models: Sequence[int] | Numbers) -> UnitScores:
         """Scores of some models on the shapes that they and all competitors have a score for.
 
@@ -104,16 +108,14 @@ class Level:
         """Scores of some models on the shapes that they and those of `required` have a score for."""
         return self._averaged(metric, models, self.defined[:, np.asarray(required, dtype=np.intp), metric].all(axis=1))
 
-    def groups(self, metric: int, models: Sequence[int] | Numbers) -> list[UnitScores]:
-        """`compared` of each of the models: those that all have scores on the same shapes stand together, in their order.
-
-        So that statistics of most models, which are complete, are computed at once.
-        """
-        kept = self.defined[:, models, metric] & self._common[:, metric, None]
-        groups: dict[bytes, list[int]] = {}
-        for column, model in enumerate(models):
-            groups.setdefault(kept[:, column].tobytes(), []).append(int(model))
-        return [self.compared(metric, group) for group in groups.values()]
+    def groups(self, metric: int, sets: Sequence[Sequence[int] | Numbers]) -> list[tuple[list[int], UnitScores]]:
+        """`compared` of each set of models, at once for sets that are compared on the same shapes: their places, and the scores of
+        all models in them. Statistics of most sets, which lack nothing, are so computed together."""
+        kept = (self.defined[:, :, metric] & self._common[:, metric, None]).T.copy()  # models x shapes
+        places: dict[bytes, list[int]] = {}
+        for place, models in enumerate(sets):
+            places.setdefault(kept[np.asarray(models)].all(axis=0).tobytes(), []).append(place)
+        return [(group, self.compared(metric, np.unique(np.concatenate([sets[place] for place in group])))) for group in places.values()]
 
     def _averaged(self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]) -> UnitScores:
         models = np.asarray(models, dtype=np.intp)
