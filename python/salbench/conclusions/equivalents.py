@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas
-from numpy.typing import NDArray
 
 from salbench.conclusions.people import curve_level
 from salbench.conclusions.resampling import FEWEST_OF_PERCENTILES, percentile_interval

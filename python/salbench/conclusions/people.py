@@ -27,6 +27,7 @@ CURVE = (PARTICIPANTS, METRIC, count("n_meshes", "meshes with so many participan
 CURVE_BY_MESH = (ITEM, CLASS, PARTICIPANTS, METRIC, number("value", "score of n participants against n others"),
                  number("reliability", "of cc: correlation of 2 n participants with as many others, 2 r / (1 + r)"))
 
+_OF_PAIRS = ("mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high")
 DIFFERENCES = (METRIC, count("from_participants", "fewer participants"), count("to_participants", "more participants"), N, N_SHAPES,
                number("mean_difference", "mean over the units of more - fewer"), *CI95, number("t_p", "two-sided p of the paired t-test"),
                number("ci90_low", "90 % interval, lower end"), number("ci90_high", "upper end"))
@@ -75,15 +76,15 @@ def human_curve_differences(study: Study) -> pandas.DataFrame:
 
 def _differences(level: Level, curve: Numbers, metric: int) -> Part:
     fewer, more = np.triu_indices(len(curve), 1)
-    cells = {name: np.full(len(fewer), np.nan) for name in ("mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high")}
+    cells = {name: np.full(len(fewer), np.nan) for name in _OF_PAIRS}
     n, n_shapes = np.zeros(len(fewer), dtype=int), np.zeros(len(fewer), dtype=int)
     for places in _on_same_shapes(level, metric, curve[fewer], curve[more]):
         scores = level.averaged(metric, np.unique(curve[np.concatenate([fewer[places], more[places]])]))
         high, low = (np.searchsorted(scores.models, curve[ends[places]]) for ends in (more, fewer))
         found = compare(scores.values[:, high] - scores.values[:, low])
         n[places], n_shapes[places] = scores.n, scores.n_shapes
-        for name, values in zip(cells, (*found.summary[1:2], *found.summary[3:], found.t_p, found.low_90, found.high_90)):
-            cells[name][places] = values
+        for name in _OF_PAIRS:
+            cells[name][places] = getattr(found, name)
     return {"metric": level.metrics[metric].name, "from_participants": fewer + 1, "to_participants": more + 1, "n": n,
             "n_shapes": n_shapes, **cells}
 

@@ -46,7 +46,7 @@ def detectable(n: int) -> float:
     """In standard deviations of the differences, the smallest mean difference that n units show."""
     from scipy import optimize
 
-    root = optimize.brentq(lambda shift: float(power_of_paired_test(np.float64(shift), np.float64(n))) - POWER, 0, 100, xtol=1e-12)
+    root = optimize.brentq(lambda shift: power_of_paired_test(np.array([shift]), np.array([float(n)]))[0] - POWER, 0, 100, xtol=1e-12)
     return float(root) / float(np.sqrt(n))
 
 
@@ -89,7 +89,7 @@ def power(study: Study) -> pandas.DataFrame:
 
 def _part(level: Level, metric: int) -> Part:
     pairs = pairs_of(level, metric)
-    deviation, difference = pairs.paired.summary.sd, pairs.paired.summary.mean
+    deviation, difference = pairs.paired.sd, pairs.paired.mean_difference
     shown = np.array([detectable(int(n)) if sd > 0 else np.nan for n, sd in zip(pairs.n, deviation)]) * deviation
     names = np.array(level.models, dtype=object)
     return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[pairs.a],

@@ -4,6 +4,7 @@
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas
@@ -55,14 +56,18 @@ def read_smoothed(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pa
     """smoothed.csv of a run: the columns of its scores behind `smoothing`."""
     table = read_csv(path, {metric.name for metric in metrics})
     columns = {name: table.column_if_any(name) for name in ("smoothing", *TEXTS)}
-    return pandas.DataFrame({**columns, **{metric.name: table.number_column(metric.name) for metric in metrics}})
+    return _with_numbers(columns, table, metrics)
 
 
 def read_people(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
     """people.csv of a run: item, class, n and a column per metric."""
     table = read_csv(path, {"n", *(metric.name for metric in metrics)})
     columns = {"item": table.column("item"), "class": table.column("class"), "n": table.number_column("n").astype(int)}
-    return pandas.DataFrame({**columns, **{metric.name: table.number_column(metric.name) for metric in metrics}})
+    return _with_numbers(columns, table, metrics)
+
+
+def _with_numbers(columns: dict[str, Any], table: Table, metrics: Sequence[Metric]) -> pandas.DataFrame:
+    return pandas.DataFrame(columns | {metric.name: table.number_column(metric.name) for metric in metrics})
 
 
 def scores_from(table: Table, metrics: Sequence[Metric], class_of: dict[str, str] | None = None, may_be_empty: bool = False) -> Scores:

@@ -7,10 +7,9 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.pairs import compare
-from salbench.conclusions.ranks import RankedMetric
 from salbench.conclusions.resampling import FEWEST_OF_PERCENTILES, percentile_interval
 from salbench.conclusions.samples import LEVEL, means
-from salbench.conclusions.study import Study
+from salbench.conclusions.study import RankedMetric, Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, framed, number, text
 from salbench.conclusions.units import Floats, Level, UnitScores
 
@@ -80,7 +79,7 @@ def _scale_of(study: Study, level: Level, ranked: RankedMetric, metric: int) -> 
 
 def _is_better(differences: Floats, higher_is_better: bool) -> bool:
     found = compare(differences[:, None])
-    mean = found.summary.mean[0]
+    mean = found.mean_difference[0]
     return bool(found.t_p[0] < LEVEL and (mean > 0 if higher_is_better else mean < 0))
 
 

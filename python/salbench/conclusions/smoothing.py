@@ -11,7 +11,7 @@ from salbench.conclusions.metrics import Metric
 from salbench.conclusions.samples import Summary, summarise
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, count, framed, text
-from salbench.conclusions.units import Level, Scores, levels
+from salbench.conclusions.units import Floats, Level, Scores, levels
 
 COLUMNS = (
     DATASET, SPLIT, MODEL, METRIC, text("steps", 'of smoothing; "best": for each shape and model the best of them'), N, N_SHAPES, MEAN, *CI95,
@@ -39,9 +39,10 @@ def best_of(smoothed: list[Scores]) -> Scores:
     return Scores(best, smoothed[0].metrics)
 
 
-def _better(metric: Metric, values: list[np.ndarray]) -> np.ndarray:  # type: ignore[type-arg]
+def _better(metric: Metric, values: list[Floats]) -> Floats:
     """Elementwise; the other one where one is undefined."""
-    return (np.fmax if metric.higher_is_better else np.fmin).reduce(values)
+    found: Floats = np.fmax.reduce(values) if metric.higher_is_better else np.fmin.reduce(values)
+    return found
 
 
 def _parts(of_steps: tuple[Level, ...], steps: list[str]) -> Iterator[Part]:

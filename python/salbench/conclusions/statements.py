@@ -87,16 +87,13 @@ def _pair(level: Level, pairs: Pairs, a: str, b: str) -> dict[str, float]:
     if not len(place):
         return {"n": 0, "n_shapes": 0, **cells}
     at = int(place[0])
-    summary, paired = pairs.paired.summary, pairs.paired
-    ends = [("mean_difference", "mean_difference", summary.mean, summary.mean), ("ci95_low", "ci95_high", summary.low, summary.high),
-            ("ci90_low", "ci90_high", paired.low_90, paired.high_90), ("rank_sum_z", "rank_sum_z", pairs.rank_sum_z, pairs.rank_sum_z)]
-    for low_name, high_name, low, high in ends:
-        if pairs.a[at] == first:
-            cells[low_name], cells[high_name] = low[at], high[at]
-        else:
-            cells[low_name], cells[high_name] = -high[at], -low[at]
-    return {**cells, "n": int(pairs.n[at]), "n_shapes": int(pairs.n_shapes[at]), "rank_sum_p": pairs.rank_sum_p[at],
-            "signed_rank_p_holm": pairs.holm[at]}
+    known = {**pairs.paired._asdict(), "rank_sum_z": pairs.rank_sum_z}
+    for low, high in (("mean_difference", "mean_difference"), ("ci95_low", "ci95_high"), ("ci90_low", "ci90_high"),
+                      ("rank_sum_z", "rank_sum_z")):
+        of_pair = float(known[low][at]), float(known[high][at])
+        cells[low], cells[high] = of_pair if pairs.a[at] == first else (-of_pair[1], -of_pair[0])
+    return {**cells, "n": int(pairs.n[at]), "n_shapes": int(pairs.n_shapes[at]), "rank_sum_p": float(pairs.rank_sum_p[at]),
+            "signed_rank_p_holm": float(pairs.holm[at])}
 
 
 def _verdicts(relation: str, margin: float, found: dict[str, float], higher_is_better: bool) -> dict[str, str]:
