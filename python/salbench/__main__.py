@@ -76,9 +76,10 @@ SUBCOMMANDS = {"conclude": conclude, "power": power}
 def _source(given: argparse.Namespace) -> Any:
     """The scores, with a warning of columns that are left out."""
     from salbench import conclusions
+    from salbench.conclusions.csv_file import InputError
 
     if given.format not in ("text", "json"):
-        raise conclusions.InputError(f"--format {given.format}: must be text or json")
+        raise InputError(f"--format {given.format}: must be text or json")
     source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=_names(given.higher), lower=_names(given.lower))
     for note in source.notes:
         print(f"warning: {note}", file=sys.stderr)
@@ -91,7 +92,7 @@ def _names(text: str) -> list[str]:
 
 def _only_results() -> str:
     """The only results below salbench-out."""
-    from salbench.conclusions import InputError
+    from salbench.conclusions.csv_file import InputError
 
     found = sorted(str(path.parent) for path in Path("salbench-out").glob("*/results.csv"))
     if len(found) == 1:
@@ -117,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     name, *others = sys.argv[1:] if arguments is None else arguments or [""]
     if name not in SUBCOMMANDS:
         return _fail(UNUSABLE_ARGUMENTS, f"there is no subcommand '{name}' in the package; there are {', '.join(SUBCOMMANDS)}")
-    from salbench.conclusions import InputError
+    from salbench.conclusions.csv_file import InputError
     from salbench.conclusions.folders import StorageError
 
     try:

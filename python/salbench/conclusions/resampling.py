@@ -99,8 +99,8 @@ def bca_interval(sample: Floats, resampled: Floats) -> tuple[float, float]:
     """
     if len(sample) < 2 or np.ptp(sample) == 0:
         return np.nan, np.nan
-    mean = means(sample)
-    below = ((resampled < mean).mean() + (resampled <= mean).mean()) / 2  # a resampled mean equal to the mean counts one half
+    mean, rounding = means(sample), 1e-10 * np.ptp(sample)  # coarser than the grid: a resample may have the mean of the sample itself
+    below = ((resampled < mean - rounding).mean() + (resampled <= mean + rounding).mean()) / 2  # and counts one half then
     if below <= 0 or below >= 1:
         return np.nan, np.nan
     away = sample - mean
