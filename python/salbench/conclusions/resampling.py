@@ -6,14 +6,13 @@ resample. The product is exact, and so the same bytes whatever library multiplie
 scores are rounded to a grid on which no sum of them needs more than the 53 bits of a double.
 """
 
-import os
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from salbench.conclusions.parallel import mapped
 from salbench.conclusions.samples import TAIL, means
 from salbench.conclusions.units import Floats
 
@@ -60,10 +59,11 @@ class Bootstrap:
         return self.means_of_each([values])[0]
 
     def means_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
-        """`means` of several samples; those of as many units share one product, which takes far less time."""
-        means: list[Floats] = [np.empty(0)] * len(samples)
-        for n in sorted({len(values) for values in samples}):
-            places = [place for place, values in enumerate(samples) if len(values) == n]
+        """`means` of several samples; those of as many units share one product, which takes far less time. No resamples of fewer than
+        two units."""
+        means = [np.empty((0, values.shape[1])) for values in samples]
+        for n in sorted({len(values) for values in samples if len(values) > 1 and values.size}):
+            places = [place for place, values in enumerate(samples) if len(values) == n and values.size]
             relative = [_on_grid(samples[place] - samples[place][0]) for place in places]
             resampled = self._product(np.hstack(relative)) / n
             ends = np.cumsum([values.shape[1] for values in relative])
@@ -78,8 +78,7 @@ class Bootstrap:
         def multiply(row: int) -> None:
             np.matmul(counts[row:row + _ROWS].astype(float), values, out=sums[row:row + _ROWS])
 
-        with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as threads:
-            list(threads.map(multiply, range(0, len(counts), _ROWS)))
+        mapped(multiply, range(0, len(counts), _ROWS))
         return sums
 
 
