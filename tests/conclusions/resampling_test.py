@@ -43,7 +43,7 @@ class ResamplesTest(unittest.TestCase):
     def test_are_the_same_whatever_is_multiplied_at_once(self):
         values = skewed(25, 4)
         whole = Bootstrap(1, 500).means(values)
-        with mock.patch.object(resampling, "_ROWS", 7):
+        with mock.patch.object(resampling, "_BLOCK", 7):
             np.testing.assert_array_equal(Bootstrap(1, 500).means(values), whole)
         for one, other in zip(Bootstrap(1, 500).means_of_each([values, skewed(9), values[:, :1]]), (whole, None, whole[:, :1])):
             if other is not None:

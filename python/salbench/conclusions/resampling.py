@@ -17,7 +17,7 @@ from salbench.conclusions.samples import TAIL, means
 from salbench.conclusions.units import Floats
 
 RESAMPLES = 10_000
-_ROWS = 32  # resamples multiplied at once: they stay in a core's cache, which libraries without blocks need
+_BLOCK = 128  # resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their own need
 
 # With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do all resamples, whatever
 # percentiles are taken.
@@ -72,13 +72,17 @@ class Bootstrap:
         return means
 
     def _product(self, values: Floats) -> Floats:
+        """Sums of the columns over each resample."""
         counts = self.counts(len(values))
-        sums = np.empty((len(counts), values.shape[1]))
+        sums = np.zeros((len(counts), values.shape[1]))
 
         def multiply(row: int) -> None:
-            np.matmul(counts[row:row + _ROWS].astype(float), values, out=sums[row:row + _ROWS])
+            rows = slice(row, row + _BLOCK)
+            for unit in range(0, len(values), _BLOCK):
+                units = slice(unit, unit + _BLOCK)
+                sums[rows] += counts[rows, units].astype(float) @ values[units]
 
-        mapped(multiply, range(0, len(counts), _ROWS))
+        mapped(multiply, range(0, len(counts), _BLOCK))
         return sums
 
 
