@@ -13,7 +13,8 @@ from typing import Any
 import pandas
 
 from salbench.conclusions import (
-    agreement, chance, classes, compact, equivalents, folders, leaders, means, pairs, people, power, ranking, shares, smoothing, statements, tables,
+    agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, ranking, shares, significance, smoothing,
+    statements, tables,
 )
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.study import Study
@@ -33,7 +34,7 @@ TABLES = (
     Table("summary", means.summary),
     Table("ranking", ranking.ranking),
     Table("ranking_agreement", agreement.agreement),
-    Table("significance", pairs.significance),
+    Table("significance", significance.significance),
     Table("per_class", classes.per_class),
     Table("human_share", shares.human_share),
     Table("compact", compact.compact),

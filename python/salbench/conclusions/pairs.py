@@ -1,30 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pairs of models: which differ, by how much, and how sure that is. significance.csv. Differences are a - b."""
+"""Pairs of models: which differ, by how much, and how sure that is. Differences are a - b."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import pandas
 from numpy.typing import NDArray
 from scipy import special
 
 from salbench.conclusions.samples import LEVEL, summarise
-from salbench.conclusions.study import Study
-from salbench.conclusions.tables import CI95, DATASET, METRIC, N_SHAPES, SPLIT, N, Part, count, framed, number, text
 from salbench.conclusions.units import Floats, Level, Numbers
-
-COLUMNS = (
-    DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
-    number("mean_difference", "mean over the units of a - b"), *CI95, number("t_p", "two-sided p of the paired t-test"),
-    number("ci90_low", "90 % interval, lower end: within -+ margin, the two are equivalent at 0.05"), number("ci90_high", "upper end"),
-    number("d_z", "mean difference over the standard deviation of the differences"),
-    number("rank_biserial", "matched-pairs rank-biserial correlation, -1 to 1"),
-    number("superiority", "probability that a is higher on a new unit"), number("superiority_low", "its 95 % interval (Wilson)"),
-    number("superiority_high", "upper end"), number("rank_sum_z", "the paper's rank-sum test, over all shapes of each model"),
-    number("rank_sum_p", "two-sided p"), number("signed_rank", "the smaller sum of ranks"),
-    number("signed_rank_p", "two-sided p of the signed-rank test"),
-    number("signed_rank_p_holm", "after Holm's correction over the pairs of the data set and metric"), count("n_tests", "that many"))
 
 _MOST_EXACT = 50  # pairs of the exact distribution
 
@@ -172,18 +157,3 @@ def pairs_of(level: Level, metric: int) -> Pairs:
     by_shape = {model: np.sort(level.values[level.defined[:, model, metric], model, metric]) for model in models}
     rank_sums = np.array([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)]).reshape(-1, 2)
     return Pairs(a, b, n, n_shapes, paired, holm_adjusted(paired.signed_rank_p), rank_sums[:, 0], rank_sums[:, 1])
-
-
-def significance(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and pair of models, references included."""
-    parts = (_part(level, metric) for level in study.levels for metric in range(len(level.metrics)))
-    return framed(COLUMNS, parts, study.in_splits)
-
-
-def _part(level: Level, metric: int) -> Part:
-    pairs = pairs_of(level, metric)
-    names = np.array(level.models, dtype=object)
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[pairs.a],
-            "model_b": names[pairs.b], "n": pairs.n, "n_shapes": pairs.n_shapes, **pairs.paired._asdict(),
-            "rank_sum_z": pairs.rank_sum_z, "rank_sum_p": pairs.rank_sum_p, "signed_rank_p_holm": pairs.holm,
-            "n_tests": np.count_nonzero(~np.isnan(pairs.holm))}

@@ -11,7 +11,7 @@ import pandas
 from numpy.typing import NDArray
 from scipy import special
 
-from salbench.conclusions.pairs import pairs_of
+from salbench.conclusions.pairs import Pairs
 from salbench.conclusions.samples import LEVEL
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, METRIC, N, N_SHAPES, SPLIT, Part, framed, number, optional_count, text
@@ -73,12 +73,11 @@ def _is_enough(size: Floats, n: Floats) -> NDArray[np.bool_]:
 
 def power(study: Study) -> pandas.DataFrame:
     """A row per data set, metric and pair of models, references included."""
-    parts = (_part(level, metric) for level in study.levels for metric in range(len(level.metrics)))
+    parts = (_part(level, metric, pairs) for level, of_level in study.pairs for metric, pairs in enumerate(of_level))
     return framed(COLUMNS, parts, study.in_splits)
 
 
-def _part(level: Level, metric: int) -> Part:
-    pairs = pairs_of(level, metric)
+def _part(level: Level, metric: int, pairs: Pairs) -> Part:
     deviation, difference = pairs.paired.sd, pairs.paired.mean_difference
     shown = np.array([detectable(int(n)) if sd > 0 else np.nan for n, sd in zip(pairs.n, deviation)]) * deviation
     names = np.array(level.models, dtype=object)

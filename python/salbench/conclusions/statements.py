@@ -13,7 +13,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.csv_file import read_csv
-from salbench.conclusions.pairs import Pairs, pairs_of
+from salbench.conclusions.pairs import Pairs
 from salbench.conclusions.samples import LEVEL
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, N, N_SHAPES, Part, framed, number, text
@@ -60,20 +60,17 @@ def statements(study: Study) -> pandas.DataFrame:
 
 
 def _rows(study: Study, claims: pandas.DataFrame) -> Iterator[Part]:
-    known: dict[tuple[str, str], tuple[Level, Pairs]] = {}
     metrics = [metric.name for metric in study.scores.metrics]
+    whole = {level.dataset: (level, pairs) for level, pairs in reversed(study.pairs)}  # the first of a data set is of all its splits
     for said in claims.to_dict("records"):
-        level = next((level for level in study.levels if level.dataset == said["dataset"]), None)
-        if level is None or said["metric"] not in metrics:
+        if said["dataset"] not in whole or said["metric"] not in metrics:
             continue
+        level, pairs = whole[said["dataset"]]
         metric = metrics.index(said["metric"])
-        key = said["dataset"], said["metric"]
-        if key not in known:
-            known[key] = level, pairs_of(level, metric)
         for a in said["a"].split():
             for b in said["b"].split():
                 told = {name: said[name] for name in ("section", "claim", "word", "dataset", "metric", "check", "margin")}
-                found = _pair(*known[key], a, b)
+                found = _pair(level, pairs[metric], a, b)
                 yield {**told, "model_a": a, "model_b": b, **found,
                        **_verdicts(said["check"], said["margin"], found, level.metrics[metric].higher_is_better)}
 

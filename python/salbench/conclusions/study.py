@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 import pandas
 
+from salbench.conclusions.pairs import Pairs, pairs_of
 from salbench.conclusions.ranks import Ranking, rank_models
 from salbench.conclusions.resampling import Bootstrap
 from salbench.conclusions.units import Floats, Level, Scores, UnitScores, levels
@@ -97,6 +98,11 @@ class Study:
     def ranked(self) -> list[tuple[Level, list[RankedMetric]]]:
         """Each level with its models ranked by each metric."""
         return [(level, rank_level(level, self.bootstrap)) for level in self.levels]
+
+    @cached_property
+    def pairs(self) -> list[tuple[Level, list[Pairs]]]:
+        """Each level with its pairs of models by each metric."""
+        return [(level, [pairs_of(level, metric) for metric in range(len(level.metrics))]) for level in self.levels]
 
     @property
     def in_splits(self) -> bool:
