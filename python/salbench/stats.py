@@ -108,7 +108,7 @@ def conclude(
     unit : str
         What counts as one observation: "mesh", the scans of one being averaged; "class"; "shape".
     seed : int
-        Of the resamples; the default is that of the command `salbench conclusions`.
+        Of the resamples; the default is that of the command `salbench conclude`.
     metrics : sequence of str, optional
         Columns that count. All that are known by default.
     higher_is_better, lower_is_better : sequence of str
@@ -155,10 +155,10 @@ def conclude(
         if name not in columns and not (name == "lcc" and "cc" in columns):
             _core.fail_unknown("column", name, list(columns))
     scores = _scores(_table_of(columns), chosen, higher, lower)
-    _whole_number("threads", threads, 1, _MOST_THREADS)
+    workers = _whole_number("threads", threads, 1, _MOST_THREADS)
     if str(unit) not in UNITS:
         raise ValueError(f"unit must be one of {', '.join(UNITS)}, not '{unit}'")
-    return Conclusions(Study(scores, str(unit), _whole_number("seed", seed, 0, 2**64 - 1)))
+    return Conclusions(Study(scores, str(unit), _whole_number("seed", seed, 0, 2**64 - 1), threads=workers))
 
 
 def _table_of(columns: dict[str, Any]) -> "Table":

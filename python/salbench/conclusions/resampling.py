@@ -28,8 +28,10 @@ FEWEST_OF_PERCENTILES = 6
 class Bootstrap:
     """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone."""
 
-    def __init__(self, seed: int, resamples: int = RESAMPLES) -> None:
+    def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
+        """threads: that may multiply; by default one per core that the process may use."""
         self._seed, self._resamples = seed, resamples
+        self._threads = threads or len(os.sched_getaffinity(0))
         self._counts: dict[int, NDArray[np.uint8]] = {}
 
     def counts(self, n: int) -> NDArray[np.uint8]:
@@ -78,7 +80,7 @@ class Bootstrap:
         def multiply(row: int) -> None:
             np.matmul(counts[row:row + _ROWS].astype(float), values, out=sums[row:row + _ROWS])
 
-        with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as threads:
+        with ThreadPoolExecutor(self._threads) as threads:
             list(threads.map(multiply, range(0, len(counts), _ROWS)))
         return sums
 

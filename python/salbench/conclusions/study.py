@@ -75,6 +75,7 @@ class Study:
     smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
     constant: of the constant map, the columns of the scores.
     claims: what a text says of pairs of models, like configs/paper/claims.csv.
+    threads: that may work on it; no table depends on it. None: one per core.
     """
 
     scores: Scores
@@ -84,10 +85,11 @@ class Study:
     smoothed: pandas.DataFrame | None = None
     constant: pandas.DataFrame | None = None
     claims: pandas.DataFrame | None = None
+    threads: int | None = None
     bootstrap: Bootstrap = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "bootstrap", Bootstrap(self.seed))
+        object.__setattr__(self, "bootstrap", Bootstrap(self.seed, threads=self.threads))
 
     @cached_property
     def levels(self) -> list[Level]:
