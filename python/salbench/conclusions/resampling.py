@@ -27,8 +27,9 @@ FEWEST_OF_PERCENTILES = 6
 class Bootstrap:
     """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone."""
 
-    def __init__(self, seed: int, resamples: int = RESAMPLES) -> None:
-        self._seed, self._resamples = seed, resamples
+    def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
+        """threads: that may multiply; by default one per core."""
+        self._seed, self._resamples, self._threads = seed, resamples, threads
         self._counts: dict[int, NDArray[np.uint8]] = {}
 
     def counts(self, n: int) -> NDArray[np.uint8]:
@@ -82,7 +83,7 @@ class Bootstrap:
                 units = slice(unit, unit + _BLOCK)
                 sums[rows] += counts[rows, units].astype(float) @ values[units]
 
-        mapped(multiply, range(0, len(counts), _BLOCK))
+        mapped(multiply, range(0, len(counts), _BLOCK), self._threads)
         return sums
 
 
