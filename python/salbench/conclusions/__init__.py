@@ -31,6 +31,7 @@ class Table:
 
 
 TABLES = (
+    Table("chance", chance.chance, needs="constant"),  # first: it takes a data set apart once more, before resamples fill the memory
     Table("summary", means.summary),
     Table("ranking", ranking.ranking),
     Table("ranking_agreement", agreement.agreement),
@@ -46,7 +47,6 @@ TABLES = (
     Table("human_equivalents", equivalents.human_equivalents, needs="people"),
     Table("human_reliability", people.human_reliability, needs="people"),
     Table("smoothing", smoothing.smoothing, needs="smoothed"),
-    Table("chance", chance.chance, needs="constant"),
     Table("statements", statements.statements, needs="claims"),
 )
 

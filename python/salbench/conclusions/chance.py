@@ -24,8 +24,9 @@ def chance(study: Study) -> pandas.DataFrame:
 
 
 def _parts(study: Study, dataset: str) -> Iterator[Part]:
-    of_maps = [rows[rows["dataset"] == dataset] for rows in (study.scores.frame, study.constant) if rows is not None]
-    level = Level(replace(study.scores, frame=pandas.concat(of_maps, ignore_index=True)), dataset, study.unit)
+    frames = (rows for rows in (study.scores.frame, study.constant) if rows is not None)
+    frame = pandas.concat((rows[rows["dataset"] == dataset] for rows in frames), ignore_index=True)
+    level = Level(replace(study.scores, frame=frame), dataset, study.unit)
     for number, metric in enumerate(level.metrics):
         if remark := _remark(level, number):
             yield {"dataset": dataset, "metric": metric.name, "remark": remark}

@@ -72,7 +72,8 @@ class Level:
         self.n_units = len(unit_names)
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
         values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)  # one metric lies in one piece
-        values[:, shapes, models] = rows[[metric.name for metric in self.metrics]].to_numpy(dtype=float).T
+        for number, metric in enumerate(self.metrics):
+            values[number, shapes, models] = rows[metric.name]
         self.values = values.transpose(1, 2, 0)  # shapes x models x metrics
         self.defined = (~np.isnan(values)).transpose(1, 2, 0)
         self.is_scored = self.defined.any(axis=0)  # models x metrics
