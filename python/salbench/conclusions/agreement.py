@@ -12,6 +12,7 @@ import numpy as np
 import pandas
 from numpy.typing import NDArray
 
+from salbench.conclusions.parallel import mapped
 from salbench.conclusions.samples import TAIL, means
 from salbench.conclusions.study import RankedMetric, Study
 from salbench.conclusions.tables import CI95, DATASET, SPLIT, N, Part, count, framed, number, text
@@ -22,7 +23,7 @@ COLUMNS = (
     number("tau", "Kendall's tau-b of the two rankings of the means, 1: the same order"), *CI95)
 
 Signs = NDArray[np.int8]  # rows (the sample, then its resamples) x pairs of models x metrics: which of the two is better, 1, 0 or -1
-_METRICS = 16  # whose tau with as many others are computed at once
+_METRICS = 12  # whose tau with as many others are computed at once
 
 def agreement(study: Study) -> pandas.DataFrame:
     """A row per data set and pair of metrics, over the units and competitors that both are defined for [kendall1945]."""
@@ -69,14 +70,20 @@ def _fill(cells: dict[str, Floats], study: Study, ranked: list[RankedMetric], on
         return
     signs_x = _signs(study, ranked, one, models, units)
     signs_y = signs_x if one is other else _signs(study, ranked, other, models, units)
-    for a in range(0, len(one), _METRICS):
-        for b in range(a if one is other else 0, len(other), _METRICS):
-            tau = tau_b(signs_x[:, :, a:a + _METRICS], signs_y[:, :, b:b + _METRICS])
-            low, high = _ends(tau[1:])
-            found = {"n": np.full_like(low, len(units)), "n_models": np.full_like(low, len(models)), "tau": tau[0], "ci95_low": low, "ci95_high": high}
-            for name, values in found.items():
-                cells[name][np.ix_(one[a:a + _METRICS], other[b:b + _METRICS])] = values
-                cells[name][np.ix_(other[b:b + _METRICS], one[a:a + _METRICS])] = values.T
+    tiles = [(a, b) for a in range(0, len(one), _METRICS) for b in range(a if one is other else 0, len(other), _METRICS)]
+
+    def fill(tile: tuple[int, int]) -> None:
+        a, b = (slice(first, first + _METRICS) for first in tile)
+        tau = tau_b(signs_x[:, :, a], signs_y[:, :, b])
+        low, high = _ends(tau[1:])
+        found = {"n": np.full_like(low, len(units)), "n_models": np.full_like(low, len(models)), "tau": tau[0], "ci95_low": low, "ci95_high": high}
+        for name, values in found.items():
+            cells[name][np.ix_(one[a], other[b])] = values
+            cells[name][np.ix_(other[b], one[a])] = values.T
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # where all models tie in all resamples, so that there is no interval
+        mapped(fill, tiles, study.threads)
 
 
 def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> Signs:
@@ -96,7 +103,5 @@ def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models:
 def _ends(taus: Floats) -> tuple[Floats, Floats]:
     """95 % interval by percentiles, of resamples x metrics x metrics, without those in which all models tie."""
     quantile = np.nanquantile if np.isnan(taus).any() else np.quantile
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # all models tie in all resamples: no interval
-        low, high = quantile(taus, [TAIL, 1 - TAIL], axis=0)
+    low, high = quantile(taus, [TAIL, 1 - TAIL], axis=0)
     return low, high

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Metrics that do not tell models from chance: by their means, random values (RS) or a constant map are as good. chance.csv."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pandas
 
 from salbench.conclusions.samples import means
 from salbench.conclusions.study import Study
-from salbench.conclusions.tables import DATASET, METRIC, framed, text
+from salbench.conclusions.tables import DATASET, METRIC, Part, framed, text
 from salbench.conclusions.units import DATASETS, Level
 
 COLUMNS = (DATASET, METRIC, text("remark", "which of the two is level with or ahead of which models, or of people, and by how much"))
@@ -19,13 +20,15 @@ _REFERENCES = {"RS": "chance (RS)", "constant": "a constant map"}
 
 def chance(study: Study) -> pandas.DataFrame:
     """A row per data set and metric with something to remark; over the shapes and units of the other tables."""
-    frame = study.scores.frame
-    if study.constant is not None:
-        frame = pandas.concat([frame, study.constant], ignore_index=True)
-    scores = replace(study.scores, frame=frame)
-    levels = [Level(scores.part(frame["dataset"] == dataset), dataset, study.unit) for dataset in DATASETS]
-    remarks = ((level.dataset, level.metrics[metric].name, _remark(level, metric)) for level in levels for metric in range(len(level.metrics)))
-    return framed(COLUMNS, ({"dataset": dataset, "metric": metric, "remark": remark} for dataset, metric, remark in remarks if remark))
+    return framed(COLUMNS, (part for dataset in DATASETS for part in _parts(study, dataset)))
+
+
+def _parts(study: Study, dataset: str) -> Iterator[Part]:
+    of_maps = [rows[rows["dataset"] == dataset] for rows in (study.scores.frame, study.constant) if rows is not None]
+    level = Level(replace(study.scores, frame=pandas.concat(of_maps, ignore_index=True)), dataset, study.unit)
+    for number, metric in enumerate(level.metrics):
+        if remark := _remark(level, number):
+            yield {"dataset": dataset, "metric": metric.name, "remark": remark}
 
 
 def _remark(level: Level, metric: int) -> str:

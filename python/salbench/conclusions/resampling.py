@@ -6,19 +6,18 @@ resample. The product is exact, and so the same bytes whatever library multiplie
 scores are rounded to a grid on which no sum of them needs more than the 53 bits of a double.
 """
 
-import os
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from salbench.conclusions.parallel import mapped
 from salbench.conclusions.samples import TAIL, means
 from salbench.conclusions.units import Floats
 
 RESAMPLES = 10_000
-_ROWS = 32  # resamples multiplied at once: they stay in a core's cache, which libraries without blocks need
+_BLOCK = 128  # resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their own need
 
 # With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do all resamples, whatever
 # percentiles are taken.
@@ -29,9 +28,8 @@ class Bootstrap:
     """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone."""
 
     def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
-        """threads: that may multiply; by default one per core that the process may use."""
-        self._seed, self._resamples = seed, resamples
-        self._threads = threads or len(os.sched_getaffinity(0))
+        """threads: that may multiply; by default one per core."""
+        self._seed, self._resamples, self._threads = seed, resamples, threads
         self._counts: dict[int, NDArray[np.uint8]] = {}
 
     def counts(self, n: int) -> NDArray[np.uint8]:
@@ -62,10 +60,11 @@ class Bootstrap:
         return self.means_of_each([values])[0]
 
     def means_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
-        """`means` of several samples; those of as many units share one product, which takes far less time."""
-        means: list[Floats] = [np.empty(0)] * len(samples)
-        for n in sorted({len(values) for values in samples}):
-            places = [place for place, values in enumerate(samples) if len(values) == n]
+        """`means` of several samples; those of as many units share one product, which takes far less time. No resamples of fewer than
+        two units."""
+        means = [np.empty((0, values.shape[1])) for values in samples]
+        for n in sorted({len(values) for values in samples if len(values) > 1 and values.size}):
+            places = [place for place, values in enumerate(samples) if len(values) == n and values.size]
             relative = [_on_grid(samples[place] - samples[place][0]) for place in places]
             resampled = self._product(np.hstack(relative)) / n
             ends = np.cumsum([values.shape[1] for values in relative])
@@ -74,14 +73,17 @@ class Bootstrap:
         return means
 
     def _product(self, values: Floats) -> Floats:
+        """Sums of the columns over each resample."""
         counts = self.counts(len(values))
-        sums = np.empty((len(counts), values.shape[1]))
+        sums = np.zeros((len(counts), values.shape[1]))
 
         def multiply(row: int) -> None:
-            np.matmul(counts[row:row + _ROWS].astype(float), values, out=sums[row:row + _ROWS])
+            rows = slice(row, row + _BLOCK)
+            for unit in range(0, len(values), _BLOCK):
+                units = slice(unit, unit + _BLOCK)
+                sums[rows] += counts[rows, units].astype(float) @ values[units]
 
-        with ThreadPoolExecutor(self._threads) as threads:
-            list(threads.map(multiply, range(0, len(counts), _ROWS)))
+        mapped(multiply, range(0, len(counts), _BLOCK), self._threads)
         return sums
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.pairs import Pairs, pairs_of
+from salbench.conclusions.parallel import mapped
 from salbench.conclusions.ranks import Ranking, rank_models
 from salbench.conclusions.resampling import Bootstrap
 from salbench.conclusions.units import Floats, Level, Scores, UnitScores, levels
@@ -52,19 +53,20 @@ class RankedMetric:
         return bootstrap.means(scores.values)
 
 
-def rank_level(level: Level, bootstrap: Bootstrap) -> list[RankedMetric]:
+def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -> list[RankedMetric]:
     """Per metric; all means are resampled together."""
     samples: list[list[UnitScores]] = []
     for number in range(len(level.metrics)):
         references = [[model] for model in level.scored(number) if level.is_reference[model]]
         samples.append([level.compared(number, level.competitors(number)), *(scores for _, scores in level.groups(number, references))])
-    known = [scores for of_metric in samples for scores in of_metric if scores.n >= 2 and len(scores.models)]
-    resampled = dict(zip(map(id, known), bootstrap.means_of_each([scores.values for scores in known])))
-    ranked = []
-    for metric, of_metric in zip(level.metrics, samples):
-        first, *others = [Resampled(scores, resampled.get(id(scores), np.empty((0, len(scores.models))))) for scores in of_metric]
-        ranked.append(RankedMetric(first, others, rank_models(first.scores.values, first.means, metric.higher_is_better)))
-    return ranked
+    resampled = iter(bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
+    known = [[Resampled(scores, next(resampled)) for scores in of_metric] for of_metric in samples]
+
+    def rank(number: int) -> RankedMetric:
+        first, *others = known[number]
+        return RankedMetric(first, others, rank_models(first.scores.values, first.means, level.metrics[number].higher_is_better))
+
+    return mapped(rank, range(len(level.metrics)), threads)
 
 
 @dataclass(frozen=True)
@@ -99,12 +101,12 @@ class Study:
     @cached_property
     def ranked(self) -> list[tuple[Level, list[RankedMetric]]]:
         """Each level with its models ranked by each metric."""
-        return [(level, rank_level(level, self.bootstrap)) for level in self.levels]
+        return [(level, rank_level(level, self.bootstrap, self.threads)) for level in self.levels]
 
     @cached_property
     def pairs(self) -> list[tuple[Level, list[Pairs]]]:
         """Each level with its pairs of models by each metric."""
-        return [(level, [pairs_of(level, metric) for metric in range(len(level.metrics))]) for level in self.levels]
+        return [(level, mapped(lambda metric: pairs_of(level, metric), range(len(level.metrics)), self.threads)) for level in self.levels]
 
     @property
     def in_splits(self) -> bool:

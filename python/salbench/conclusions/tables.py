@@ -9,6 +9,7 @@ import numpy as np
 import pandas
 
 DIGITS = 10  # significant ones, in every file
+_ROWS = 20_000  # that are texts at once
 
 
 @dataclass(frozen=True)
@@ -83,8 +84,10 @@ def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
 
 def csv(frame: pandas.DataFrame, remarks: Sequence[str] = ()) -> str:
     """RFC 4180, below a line of '#' per remark."""
-    table: str = texts(frame).to_csv(index=False, lineterminator="\n")
-    return "".join(f"# {remark}\n" for remark in remarks) + table
+    parts = [f"# {remark}\n" for remark in remarks]
+    for first in range(0, max(1, len(frame)), _ROWS):
+        parts.append(texts(frame[first:first + _ROWS]).to_csv(index=False, header=first == 0, lineterminator="\n"))
+    return "".join(parts)
 
 
 def records(frame: pandas.DataFrame) -> list[dict[str, str]]:
