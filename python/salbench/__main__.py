@@ -38,8 +38,8 @@ def conclude(arguments: Sequence[str]) -> int:
     from salbench.conclusions.statements import read_statements
 
     parser = _scores_parser("conclude", conclude.__doc__ or "", "OUT|SCORES.csv")
-    parser.add_argument("--statements", metavar="FILE", help="CSV file of what a text says of pairs of models, like configs/paper/claims.csv: each beside "
-                        "what the scores say, in statements.csv")
+    parser.add_argument("--statements", metavar="FILE", help="CSV file of what a text says of pairs of models, like configs/paper/claims.csv: "
+                        "each beside what the scores say, in statements.csv")
     parser.add_argument("--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)")
     parser.add_argument("--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats")
     given = parser.parse_args(arguments)

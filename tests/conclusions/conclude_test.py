@@ -212,10 +212,12 @@ class LayersTest(unittest.TestCase):
                 self.assertTrue(top in self.BELOW | {"yaml"} or top in sys.stdlib_module_names, f"{path.name}: {name}")
                 if top == "salbench":
                     self.assertTrue(rest[0] in ("conclusions", "_core"), f"{path.name}: {name}")
-                self.assertFalse(name.startswith(("pathlib", "os", "yaml", "tempfile")) and path.stem not in self.FILES | {"parallel"}, f"{path.name}: {name}")
+                if path.stem not in self.FILES | {"parallel"}:
+                    self.assertFalse(name.startswith(("pathlib", "os", "yaml", "tempfile")), f"{path.name}: {name}")
 
     def test_no_module_imports_one_that_imports_it(self):
-        below = {path.stem: {name.split(".")[2] for name in self.imports(path) if name.startswith("salbench.conclusions.")} for path in PACKAGE.glob("*.py")}
+        below = {path.stem: {name.split(".")[2] for name in self.imports(path) if name.startswith("salbench.conclusions.")}
+                 for path in PACKAGE.glob("*.py")}
         done = set()
         while ready := {name for name, needs in below.items() if name not in done and needs & set(below) <= done}:
             done |= ready

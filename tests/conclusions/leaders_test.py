@@ -58,7 +58,7 @@ class LeadersTest(unittest.TestCase):
 
     def test_references_are_no_candidates(self):
         leader = level_of(scored({"HS": .9, "A": .6, "B": .5, "RS": .8}, 20)).leaders[0]
-        self.assertEqual((leader.models, leader.n_models), (["A"], 2))
+        self.assertEqual((leader.models, leader.second), (["A"], "B"))
         alone = level_of(scored({"HS": .9, "RS": .5}, 20))
         self.assertEqual((alone.leaders, alone.sentence), ([], "On meshes, no model has scores but references."))
 

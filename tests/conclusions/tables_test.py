@@ -20,7 +20,8 @@ COLUMNS = (text("name", "a name"), SPLIT, count("n", "so many"), optional_count(
 
 class FramesTest(unittest.TestCase):
     def test_have_the_same_columns_and_types_without_rows(self):
-        parts = [{"name": "a", "split": "", "n": 3, "rank": [1, NAN], "mean": [.5, NAN]}, {"name": ["b"], "split": "", "n": [2], "rank": 2.0, "mean": 1}]
+        parts = [{"name": "a", "split": "", "n": 3, "rank": [1, NAN], "mean": [.5, NAN]},
+                 {"name": ["b"], "split": "", "n": [2], "rank": 2.0, "mean": 1}]
         full, empty = framed(COLUMNS, parts, in_splits=False), framed(COLUMNS, [], in_splits=False)
         self.assertEqual([str(kind) for kind in full.dtypes], ["object", "int64", "Int64", "float64"])
         self.assertEqual(list(full.dtypes), list(empty.dtypes))
@@ -33,7 +34,8 @@ class FramesTest(unittest.TestCase):
 
 
 class TextTest(unittest.TestCase):
-    FRAME = framed(COLUMNS, [{"name": ["a, \"b\"", "", "ö\nx"], "split": "", "n": [1, 2, 30], "rank": [1, NAN, 12], "mean": [1 / 3, NAN, -1e-7]}], False)
+    FRAME = framed(COLUMNS, [{"name": ["a, \"b\"", "", "ö\nx"], "split": "", "n": [1, 2, 30], "rank": [1, NAN, 12],
+                              "mean": [1 / 3, NAN, -1e-7]}], in_splits=False)
 
     def test_of_a_file(self):
         made = tables.csv(self.FRAME, ["PARTIAL: so far", "SIMULATED"])

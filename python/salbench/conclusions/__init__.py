@@ -82,11 +82,12 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     """Writes every table, and last the document that says so. of: digest of what the scores were made of, for who asks again."""
     folder = source.tables if out is None else Path(out)
     folders.make(folder)
-    (folder / folders.CONCLUDED).unlink(missing_ok=True)
+    folders.remove(folder / folders.CONCLUDED)
     study = source.study
     names = folders.write_tables(folder, tables_of(study), source.remarks)
     overview, found = means.overview(study), leaders.find_leaders(study)
-    concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), _text(overview, source.remarks, found), source.notes)
+    text = _text(overview, source.remarks, found)
+    concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
     folders.write_document(folder, {
         "format": 1, "version": _version(), "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
         "leaders": concluded.leaders, "text": concluded.text, "tables": names})

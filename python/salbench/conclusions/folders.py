@@ -66,7 +66,7 @@ def write_tables(folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None
     names = []
     for name, frame in made:
         if frame is None:
-            (folder / f"{name}.csv").unlink(missing_ok=True)
+            remove(folder / f"{name}.csv")
             continue
         write(folder / f"{name}.csv", tables.csv(frame, remarks))
         names.append(f"{name}.csv")
@@ -83,6 +83,13 @@ def make(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StorageError(f"{folder}: the folder cannot be created: {error.strerror}; choose another with --out") from None
+
+
+def remove(path: Path) -> None:
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be removed: {error.strerror}; choose another folder with --out") from None
 
 
 def write(path: Path, text: str) -> None:

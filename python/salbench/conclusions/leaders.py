@@ -39,7 +39,8 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
     spoken_of = leading_metrics(study.scores.metrics)
     found = []
     for level, ranked in study.ranked:
-        leaders = [leader_of(level, of_metric, metric) for metric, of_metric in zip(level.metrics, ranked) if of_metric.competitors.scores.models.size]
+        leaders = [leader_of(level, of_metric, metric) for metric, of_metric in zip(level.metrics, ranked)
+                   if len(of_metric.competitors.scores.models)]
         leading = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
         found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, leading)))
     return found
@@ -53,7 +54,7 @@ def leader_of(level: Level, ranked: RankedMetric, metric: Metric) -> Leader:
     best = order[0]
     of_best = summarise(scores.values[:, [best]])
     low, high = within_range(of_best, metric)
-    leader = Leader(metric, "one unit", may_be_first, len(names), float(of_best.mean[0]), (float(low[0]), float(high[0])), scores.n, scores.n_shapes)
+    leader = Leader(metric, "one unit", may_be_first, float(of_best.mean[0]), (float(low[0]), float(high[0])), scores.n, scores.n_shapes)
     if scores.n == 0:
         leader.verdict = "no common shape"
     if scores.n < 2:

@@ -37,11 +37,6 @@ class RankedMetric:
         """Each scored model once, on the shapes that it and all competitors have a score for."""
         return [self.competitors, *self.references]
 
-    def place(self, model: int) -> int | None:
-        """The column of a competitor; None for a model that has no rank."""
-        found = np.flatnonzero(self.competitors.scores.models == model)
-        return int(found[0]) if len(found) else None
-
     def resampled(self, scores: UnitScores, bootstrap: Bootstrap) -> Floats:
         """Resampled means of scores of these models on the shapes that all of them are compared on: mostly known already."""
         known: dict[int, Floats] = {}

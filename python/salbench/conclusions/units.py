@@ -67,9 +67,8 @@ class Level:
         self.dataset, self.split, self.metrics = dataset, split, scores.metrics
         models, self.models = _numbered(rows["model"])
         views = _names(rows, "item", "view")
-        units, unit_names = _numbered({"mesh": rows["item"], "class": rows["class"], "shape": views}[unit])
+        units, _ = _numbered({"mesh": rows["item"], "class": rows["class"], "shape": views}[unit])
         shapes, self.unit_of_shape = _shapes(views, units)
-        self.n_units = len(unit_names)
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
         values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)  # one metric lies in one piece
         for number, metric in enumerate(self.metrics):

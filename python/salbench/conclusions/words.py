@@ -27,7 +27,6 @@ class Leader:
     metric: Metric
     verdict: str
     models: list[str]  # whose rank may be the first, best mean first; all for one unit
-    n_models: int
     mean: float  # of the best model
     interval: tuple[float, float]  # of it, 95 %, within the range of the metric
     n: int  # units
