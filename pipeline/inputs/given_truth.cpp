@@ -62,7 +62,10 @@ std::string saliency_name(const DatasetItem& item, std::size_t k) {
   const std::string name = item.by_viewer             ? fmt::format("saliency of viewer {}", k)
                            : item.saliency.size() > 1 ? fmt::format("saliency file {}", k)
                                                       : "saliency file";
-  return name + described(format_of(item).values) + camera_text(item, k);
+  const ValuesFormat& values = format_of(item).values;
+  // Keys without this are of programs that took rows as they stood.
+  const bool may_be_numbered = !values.column.empty() && values.per != ValuePer::point;
+  return name + described(values) + (may_be_numbered ? ", rows by their numbers" : "") + camera_text(item, k);
 }
 
 // True if the saliency files may say that something was not seen.
@@ -165,20 +168,15 @@ struct Mask {
 };
 
 // What one file holds, before its mask is applied.
-ValuesAsRead read_values(const Target& target, ValuesFormat format, std::string_view bytes,
+ValuesAsRead read_values(const Target& target, const ValuesFormat& format, std::string_view bytes,
                          const std::string& path, const Mask& mask) {
   ValuesAsRead read{.file = std::filesystem::path(path).filename(), .per = name_of(format.per), .values = {}};
-  Elements elements = target.in_file();
-  format.positives = kPositivesArePicks;  // what is picked is no matter of reading
-  if (key_text(format).empty() && !is_npy(bytes) && !is_mat(bytes)) {
-    read.values = parse_saliency(bytes, path, elements);
-  } else {
-    TruthValues truth = parse_truth_values(bytes, path, format, target.described_by(format));
-    read.values = std::move(truth.values);
-    read.points = std::move(truth.points);
-    elements = format.per == ValuePer::point ? Elements{read.values.size(), "file", "point", "points"}
-                                             : target.described_by(format);
-  }
+  TruthValues truth = parse_truth_values(bytes, path, format, target.described_by(format));
+  read.values = std::move(truth.values);
+  read.points = std::move(truth.points);
+  const Elements elements = format.per == ValuePer::point
+                                ? Elements{read.values.size(), "file", "point", "points"}
+                                : target.described_by(format);
   read.mask = mask.read(elements);
   return read;
 }
