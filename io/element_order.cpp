@@ -75,14 +75,15 @@ std::vector<std::size_t> rows_in_order(const TextScanner& in, std::string_view c
   std::vector<std::size_t> row_of(n, n);
   for (std::size_t row = 0; row < n; ++row) {
     const double place = numbers[row] - base;
-    const bool is_place =
-        place >= 0 && place < static_cast<double>(n) && place == static_cast<double>(static_cast<std::size_t>(place));
+    const bool is_place = place >= 0 && place < static_cast<double>(n) &&
+                          place == static_cast<double>(static_cast<std::size_t>(place));
     if (!is_place || row_of[static_cast<std::size_t>(place)] != n)
-      in.fail_at(lines[row],
-                 fmt::format("column {} has {}{}; it numbers the {}, expected each number from 0 to {}, or from 1 "
-                             "to {}, once: correct it, or rename it if it is something else",
-                             in_quotes(column), numbers[row], is_place ? " a second time" : "",
-                             elements.plural, n - 1, n));
+      in.fail_at(
+          lines[row],
+          fmt::format("column {} has {}{}; it numbers the {}, expected each number from 0 to {}, or from 1 "
+                      "to {}, once: correct it, or rename it if it is something else",
+                      in_quotes(column), numbers[row], is_place ? " a second time" : "", elements.plural,
+                      n - 1, n));
     row_of[static_cast<std::size_t>(place)] = row;
   }
   return row_of;

@@ -136,8 +136,7 @@ class Columns {
           const std::optional<Elements>& elements)
       : names_(names), size_(first.size()), filled_(count_filled(first)), has_header_(!header.empty()) {
     for (const std::string& name : names) places_.push_back(place_of(in, name, header));
-    by_name_ =
-        std::ranges::any_of(names, [](const std::string& name) { return column_number(name) == 0; });
+    by_name_ = std::ranges::any_of(names, [](const std::string& name) { return column_number(name) == 0; });
     if (elements) find_numbering(in, header, *elements);
   }
 
@@ -173,10 +172,10 @@ class Columns {
   std::string_view cell(const TextScanner& in, const std::vector<std::string_view>& cells,
                         std::size_t c) const {
     if (names_[c].empty() && cells.size() > (numbering_ ? 2U : 1U))
-      in.fail(fmt::format("the line has {} columns, expected one value: keep that column alone, or, of ground "
-                          "truth, name it in the description (`column:`){}",
-                          cells.size(),
-                          is_one_number(cells) ? ", or write its decimal comma as a point" : ""));
+      in.fail(
+          fmt::format("the line has {} columns, expected one value: keep that column alone, or, of ground "
+                      "truth, name it in the description (`column:`){}",
+                      cells.size(), is_one_number(cells) ? ", or write its decimal comma as a point" : ""));
     if (places_[c] >= cells.size())
       in.fail(fmt::format("the line has {} {}, expected column {}", cells.size(),
                           cells.size() == 1 ? "column" : "columns", described(c)));
@@ -189,8 +188,7 @@ class Columns {
                       const Elements& elements) {
     const bool only = names_.size() == 1 && names_[0].empty();
     if (only && header.size() != 2) return;
-    const auto place =
-        numbering_column(in, header, elements, only ? std::vector<std::size_t>{} : places_);
+    const auto place = numbering_column(in, header, elements, only ? std::vector<std::size_t>{} : places_);
     if (!place) return;
     numbering_ = header[*place];
     numbering_place_ = *place;

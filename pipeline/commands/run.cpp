@@ -124,7 +124,8 @@ ExitStatus run_session(Session& session, const std::string& name, const Argument
 Subcommand run_subcommand(Arguments& arguments) {
   const FormatWord word = default_format();
   return {"run", "compute what is missing and write the tables",
-          run_parameters(arguments, {shard_parameter(arguments), format_parameter(word)}),
+          running_parameters(
+              arguments, {output_parameter(arguments), shard_parameter(arguments), format_parameter(word)}),
           [&arguments, word](const std::atomic<bool>& stop) {
             const ReportFormat format = format_of(word);
             Session session(arguments, stop);

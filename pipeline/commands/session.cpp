@@ -71,8 +71,7 @@ Selection selection_of(const Arguments& arguments) {
 }
 
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
-  const std::string path = configuration_path(arguments.config);
-  Config config = read_config(Section::from_file(path), fs::path(path).stem().string());
+  Config config = read_config(configuration(arguments.config), fs::path(arguments.config).stem().string());
   select_models(config, arguments.models);
   if (given) {
     for (const Model& model : config.models)
@@ -83,7 +82,7 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
   }
   config.pictures = std::max(config.pictures, pictures);
   if (!arguments.data.empty()) config.data = arguments.data;
-  if (!arguments.split.empty()) config.dataset.split = arguments.split;
+  if (arguments.split) config.dataset.split = *arguments.split;
   if (!arguments.cache.empty()) config.cache = arguments.cache;
   if (!arguments.output.empty()) config.output = arguments.output;
   if (config.data.empty())

@@ -90,8 +90,7 @@ std::vector<std::string> notes_of(const Table& table, const std::vector<ScoreCol
   std::ranges::copy_if(table.columns, std::back_inserter(left_out),
                        [&](const std::string& name) { return !known.contains(name); });
   std::vector<std::string> notes;
-  for (const std::string& remark : table.remarks)
-    notes.push_back(fmt::format("{}: {}", table.name, remark));
+  for (const std::string& remark : table.remarks) notes.push_back(fmt::format("{}: {}", table.name, remark));
   if (!left_out.empty())
     notes.push_back(
         fmt::format("{}: columns that are no metrics of the program were left out: {}; name them with "

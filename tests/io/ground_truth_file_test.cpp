@@ -49,8 +49,8 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
 
 // As numpy.savetxt and pandas write it.
 TEST(GroundTruthFile, ReadsValuesBelowCommentsAndAHeader) {
-  for (const char* text :
-       {"# saliency of vertices, mesh 9\n0.5\n0\n1e-3\n", "saliency\n0.5\n0\n1e-3\n", "#\n\n # a\n0.5\n#b\n0\n1e-3\n#"})
+  for (const char* text : {"# saliency of vertices, mesh 9\n0.5\n0\n1e-3\n", "saliency\n0.5\n0\n1e-3\n",
+                           "#\n\n # a\n0.5\n#b\n0\n1e-3\n#"})
     EXPECT_THAT(parse_values(text, "9.val", {3}), ElementsAre(0.5, 0, 1e-3)) << text;
   EXPECT_THAT(parse_picks("# picks, from 0\n7\n0\n", "9_0.pid", {8}), ElementsAre(7, 0));
 }
@@ -107,8 +107,7 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
     SCOPED_TRACE(item.name);
     const std::size_t n = read_mesh(item.mesh).vertices.size();
     GroundTruth truth{parse_values(read_file(item.saliency[0]), item.saliency[0], {n}), {}};
-    for (const auto& path : item.picks)
-      truth.picks.push_back(parse_picks(read_file(path), path, {n}));
+    for (const auto& path : item.picks) truth.picks.push_back(parse_picks(read_file(path), path, {n}));
     ++with_truth;
     EXPECT_GE(truth.picks.size(), 22U);
     // A vertex that somebody picked has at least that person's share of saliency.

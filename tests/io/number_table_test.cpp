@@ -57,13 +57,14 @@ TEST(NumberTable, NamesFileLineAndWhatWasExpected) {
             "a.csv:1: no column \"saliency\": the first line has numbers, not names of columns");
   EXPECT_EQ(error_of("1 2\n3\n", "2"), "a.csv:2: the line has 1 column, expected column 2");
   EXPECT_EQ(error_of("x,s\n1,2\n3\n", "s"), "a.csv:3: the line has 1 column, expected column \"s\"");
+  EXPECT_EQ(error_of("1,2\n", ""),
+            "a.csv:1: the line has 2 columns, expected one value: keep that column alone, or, of ground "
+            "truth, name "
+            "it in the description (`column:`), or write its decimal comma as a point");
   EXPECT_EQ(
-      error_of("1,2\n", ""),
-      "a.csv:1: the line has 2 columns, expected one value: keep that column alone, or, of ground truth, name "
-      "it in the description (`column:`), or write its decimal comma as a point");
-  EXPECT_EQ(error_of("1,2.5\n", ""),
-            "a.csv:1: the line has 2 columns, expected one value: keep that column alone, or, of ground truth, "
-            "name it in the description (`column:`)");
+      error_of("1,2.5\n", ""),
+      "a.csv:1: the line has 2 columns, expected one value: keep that column alone, or, of ground truth, "
+      "name it in the description (`column:`)");
   EXPECT_EQ(error_of("1\nx\n", "1"), "a.csv:2: \"x\" is not a number");
   EXPECT_EQ(error_of("1,\n2,3\n", "2"), "a.csv:1: \"\" is not a number");
   EXPECT_EQ(error_of("1\n\n2\n", "1", {{3, "mesh", "face", "faces"}}),
@@ -125,14 +126,15 @@ TEST(NumberTable, OtherTextsBetweenCommasAreReadAsTheyStand) {
 
 const Elements kVertices{4}, kFaces{4, "mesh", "face", "faces"};
 
-ScalarField of_elements(std::string_view text, const std::string& name, const Elements& elements = kVertices) {
+ScalarField of_elements(std::string_view text, const std::string& name,
+                        const Elements& elements = kVertices) {
   return parse_columns(text, "a.csv", {name}, {}, elements)[0];
 }
 
 // Shuffled rows had been read in the order of the file.
 TEST(NumberTable, AColumnThatNumbersTheVerticesIsObeyed) {
-  for (const char* name : {"vertex", "index", "id", "Vertex ID", "vertex_index", "VertexIdx", "point", "nr", "",
-                           "Unnamed: 0"}) {
+  for (const char* name :
+       {"vertex", "index", "id", "Vertex ID", "vertex_index", "VertexIdx", "point", "nr", "", "Unnamed: 0"}) {
     const std::string header = std::string(name) + ",saliency\n";
     EXPECT_THAT(of_elements(header + "2,0.2\n0,0\n3,0.3\n1,0.1\n", "saliency"), ElementsAre(0, 0.1, 0.2, 0.3))
         << "from 0: " << name;
@@ -148,7 +150,8 @@ TEST(NumberTable, AColumnThatNumbersTheVerticesIsObeyed) {
 TEST(NumberTable, AHeaderMayBeAComment) {
   const std::string rows = "2 0.2\n0 0\n3 0.3\n1 0.1\n";
   EXPECT_THAT(of_elements("# vertex saliency\n" + rows, "saliency"), ElementsAre(0, 0.1, 0.2, 0.3));
-  EXPECT_THAT(of_elements("# vertex saliency\n# of mesh 52, by gaze\n" + rows, "2"), ElementsAre(0, 0.1, 0.2, 0.3));
+  EXPECT_THAT(of_elements("# vertex saliency\n# of mesh 52, by gaze\n" + rows, "2"),
+              ElementsAre(0, 0.1, 0.2, 0.3));
   EXPECT_THAT(of_elements("# of mesh 52, by gaze\n" + rows, "2"), ElementsAre(0.2, 0, 0.3, 0.1))
       << "nothing says what the first column is";
   EXPECT_EQ(error_of("# gaze, of 52\n1 2\n", "saliency"),
@@ -176,7 +179,8 @@ std::string refusal_of_numbers(const std::string& text, const std::string& name 
 
 TEST(NumberTable, NumbersOfVerticesThatAreNoneAreRefused) {
   const std::string rest =
-      "; it numbers the vertices, expected each number from 0 to 3, or from 1 to 4, once: correct it, or rename "
+      "; it numbers the vertices, expected each number from 0 to 3, or from 1 to 4, once: correct it, or "
+      "rename "
       "it if it is something else";
   const auto refusal = [](const std::string& rows) { return refusal_of_numbers("vertex,s\n" + rows); };
   EXPECT_EQ(refusal("0,1\n1,1\n1,1\n3,1\n"), "a.csv:4: column \"vertex\" has 1 a second time" + rest);
