@@ -42,8 +42,8 @@ class Tables(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             config = pathlib.Path(folder) / "all.yaml"
             config.write_text(f"{dataset}metrics: {{names: all}}\nmodels: {{LS: {{}}, RS: {{}}}}\n")
-            options = ["--data", data, "--cache", f"{folder}/cache", "--out", f"{folder}/out", *items]
-            toy.run(config, *options)
+            options = ["--data", data, "--cache", f"{folder}/cache", *items]
+            toy.run(config, *options, "--out", f"{folder}/out")
             toy.export(config, *options, "--to", f"{folder}/all.h5")
             with h5py.File(f"{folder}/all.h5") as file:
                 return self.compare_rows(file)
