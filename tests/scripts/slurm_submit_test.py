@@ -38,6 +38,7 @@ class SlurmSubmitTest(unittest.TestCase):
         (tools / "sbatch").chmod(0o755)
         self.submitted = self.folder / "submitted"
         self.environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "SUBMITTED": str(self.submitted)}
+        del self.environment["SALBENCH_PROGRAM"]  # the program is that of the tree, unless it names one
 
     def options(self, out):
         return ["--data", "data set", "--cache", "cache", *(["--out", out] if out else [])]
