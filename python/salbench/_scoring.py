@@ -5,10 +5,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from salbench import _core
 from salbench._options import Value, with_options
+from salbench._types import ArrayLike, NDArray
 
 Seed = int | tuple[int, str, str]
 
