@@ -69,8 +69,7 @@ int read_all(int fd, Buffer& buffer) {
 std::size_t check_regular(int fd, const fs::path& path) {
   struct stat status {};
   if (fd < 0 || ::fstat(fd, &status) != 0) fail_input(path, errno);
-  if (S_ISDIR(status.st_mode))
-    throw FileError(path, "is a folder, where a file is expected");
+  if (S_ISDIR(status.st_mode)) throw FileError(path, "is a folder, where a file is expected");
   if (!S_ISREG(status.st_mode)) throw FileError(path, "is not a regular file");
   return static_cast<std::size_t>(status.st_size);
 }

@@ -151,10 +151,10 @@ py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle
   MetricsOptions options = options_from<ScoreOptions>(keywords, "score");
   options.names = names_from(metrics);
   const View<double> predictions = rows({prediction, "prediction"}, {{ground_truth, "ground_truth"},
-                                                                       {masked, "mask"},
-                                                                       {areas, "areas"},
-                                                                       {negatives, "negatives"},
-                                                                       {points_of, "points"}});
+                                                                     {masked, "mask"},
+                                                                     {areas, "areas"},
+                                                                     {negatives, "negatives"},
+                                                                     {points_of, "points"}});
   const bool several = predictions.array.ndim() == 2;
   const auto n = static_cast<std::size_t>(predictions.array.shape(several ? 1 : 0));
   if (n == 0) throw py::value_error("prediction must have at least one point");

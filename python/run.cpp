@@ -231,8 +231,9 @@ class Run {
     require_name("item in the run", item, shapes_with_maps(session_->setup.project));
     const auto n = python::computed([&] { return point_count(*session_, item); });
     const auto map = field({prediction, "prediction"}, n);
-    const Scores scores = python::computed(
-        [&] { return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model); });
+    const Scores scores = python::computed([&] {
+      return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);
+    });
     py::dict by_metric;
     const Metrics metrics = chosen_metrics(session_->setup.config.metrics);
     for (std::size_t m = 0; m < metrics.size(); ++m)
@@ -251,8 +252,7 @@ class Run {
  private:
   static void require_name(std::string_view what, const std::string& name,
                            const std::vector<std::string>& known) {
-    if (std::ranges::find(known, name) == known.end())
-      fail_unknown(what, name, {known.begin(), known.end()});
+    if (std::ranges::find(known, name) == known.end()) fail_unknown(what, name, {known.begin(), known.end()});
   }
 
   void add(Config& config, const FunctionModel& model) {

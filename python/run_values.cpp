@@ -57,8 +57,8 @@ ValuePtr with_map(Session& session, const Job& job, const Job& map_job, const Va
   if (job == map_job) return map;
   if (rule.subject != project.rule(map_job).subject) {
     if (const ValuePtr value = known_value(session, job)) return value;
-    throw InputError(fmt::format("{}: the run has no scores of it: there is no {}", project.name(map_job),
-                                 rule.stage));
+    throw InputError(
+        fmt::format("{}: the run has no scores of it: there is no {}", project.name(map_job), rule.stage));
   }
   JobInputs inputs{.random = {project.seed, project.name(job)}};
   for (std::size_t i = 0; i < rule.inputs.size(); ++i)

@@ -41,7 +41,8 @@ std::optional<Job> input_named(const Project& project, const Job& job, const std
   return {};
 }
 
-// "mesh file .off" -> "mesh file 52.off": keys hold no names of files. One that is read no more keeps its name.
+// "mesh file .off" -> "mesh file 52.off": keys hold no names of files. One that is read no more keeps its
+// name.
 std::string source_text(const FilesOfUnit& files, const std::string& name) {
   const auto file = std::ranges::find(files, name, &File::name);
   return file == files.end() || file->title.empty() ? name : file->title;
@@ -109,8 +110,7 @@ std::string difference_line(Causes& causes, const Job& job, const RecipeDifferen
   if (difference.part != Part::input) return group_text(project, job, difference);
   if (project.rule(job).gathers) return fmt::format("that of {} {}", difference.name, fate(difference));
   const std::optional<Job> input = input_named(project, job, difference.name);
-  if (!input)
-    return fmt::format("{} {}", source_text(project.files(job), difference.name), fate(difference));
+  if (!input) return fmt::format("{} {}", source_text(project.files(job), difference.name), fate(difference));
   std::vector<std::string> origin;
   if (project.rule(*input).given)
     origin.emplace_back("given by --reference");

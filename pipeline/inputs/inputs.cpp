@@ -58,16 +58,17 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
     const std::optional<Range> range = as_range(part);
     if (!range) {
       const std::string hint = did_you_mean(part, {present.begin(), present.end()});
-      throw UnknownNameError(fmt::format("{}: the data set has no item '{}'{}{}", as_option("items", selection),
-                                         part, hint.empty() ? "" : "; ", hint));
+      throw UnknownNameError(fmt::format("{}: the data set has no item '{}'{}{}",
+                                         as_option("items", selection), part, hint.empty() ? "" : "; ",
+                                         hint));
     }
     const std::size_t before = names.size();
     for (const std::string& name : present)
       if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
         names.insert(name);
     if (names.size() == before)
-      throw ConfigError(fmt::format("{}: the data set has no item in the range {}",
-                                    as_option("items", selection), part));
+      throw ConfigError(
+          fmt::format("{}: the data set has no item in the range {}", as_option("items", selection), part));
   }
   return names;
 }
@@ -84,8 +85,8 @@ void select_split(Dataset& dataset, const std::string& split) {
         dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
   if (!known.contains(split)) {
     const std::string hint = did_you_mean(split, {known.begin(), known.end()});
-    throw UnknownNameError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})", split,
-                                       hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
+    throw UnknownNameError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})",
+                                       split, hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
                                        dataset.splits_where));
   }
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
