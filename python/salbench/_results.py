@@ -75,8 +75,11 @@ class Reference(Mapping[str, NDArray[np.float64]]):
         return len(self._histograms)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float64]:
-        if len({values.tobytes() for values in self.values()}) != 1:
-            raise ValueError(f"the run has a reference for each of {', '.join(self)}: choose one, as results.reference['{next(iter(self), '')}']")
+        if not self:
+            raise ValueError("the run has no reference: none of its shapes has ground truth")
+        if len({values.tobytes() for values in self.values()}) > 1:
+            raise ValueError(f"the run has a reference for each of {', '.join(self)}: choose one, such as "
+                             f"results.reference['{next(iter(self))}']")
         return np.array(next(iter(self.values())), dtype)
 
     def __repr__(self) -> str:
@@ -168,7 +171,7 @@ class Results(Tables):
         return pathlib.Path(folder) / "index.html"
 
     def _repr_html_(self) -> str:
-        head = f"<p>{html.escape(repr(self))}</p>"
+        head = f"<pre>{html.escape(repr(self))}</pre>"
         columns = ["dataset", "metric", "model", "mean", "rank", "group"]
         try:
             return head + str(self.ranking[columns].to_html(index=False, max_rows=60))

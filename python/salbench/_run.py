@@ -206,7 +206,9 @@ def _raised(error: BaseException, trace: Any) -> tuple[str, str]:
         text = f"{type(error).__name__}: {error}"
     except Exception:  # of its own __str__
         text = type(error).__name__
-    return " ".join(text.split()) + place, "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    lines = " ".join(text.split()) + place, "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    line, whole = (one.encode("utf-8", "backslashreplace").decode() for one in lines)
+    return line, whole
 
 
 class _Bar:

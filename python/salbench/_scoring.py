@@ -56,7 +56,7 @@ def score(
     metrics : str or sequence of str
         Columns of the program's tables, or "all".
     reference : (100,) array, optional
-        Histogram that maps are matched to (`histogram`, or the mean of several).
+        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several.
     seed : int or (int, str, str)
         Of the metrics that draw points; (seed, model, item) are the draws of a run's table.
     **options

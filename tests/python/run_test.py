@@ -202,7 +202,8 @@ class Runs(unittest.TestCase):
         results = self.run_with({"MINE": predict, "LS": {}})
         maps = results.maps("MINE")
         self.assertIsInstance(maps, collections.abc.Mapping)
-        self.assertEqual(list(maps), ["1", *(f"1_{view}" for view in range(12) if view != 3), "2", *(f"2_{view}" for view in range(12))])
+        scans = [f"{item}_{view}" for item in "12" for view in range(12)]
+        self.assertEqual(list(maps), ["1", *(name for name in scans[:12] if name != "1_3"), "2", *scans[12:]])
         self.assertEqual((len(maps), "1_3" in maps, "2" in maps, 3 in maps), (25, False, True, False))
         for item, values in results.maps("LS").items():
             np.testing.assert_array_equal(results.maps("LS")[item], values)
@@ -236,7 +237,8 @@ class Runs(unittest.TestCase):
         table = results.score(results.maps("MINE")["1"], "1")
         self.assertEqual(known, {name: table[name] for name in known})
         for error, what, call in [
-            (KeyError, "did you mean '1_1", lambda: results.score([0], "1_111")), (KeyError, "'Mine'; did you mean 'MINE'", lambda: results.score([0], "1", model="Mine")),
+            (KeyError, "did you mean '1_1", lambda: results.score([0], "1_111")),
+            (KeyError, "'Mine'; did you mean 'MINE'", lambda: results.score([0], "1", model="Mine")),
             (ValueError, r"prediction must have shape \(\d+,\), not \(1,\)", lambda: results.score([0], "1")),
             (ValueError, "prediction is .*nan", lambda: results.score(results.maps("CS")["1"] * np.nan, "1")),
             (ValueError, "results that run\\(\\) returned", lambda: salbench.Results(self.folder / "out").score([0], "1")),
@@ -251,7 +253,7 @@ class Runs(unittest.TestCase):
             self.assertEqual(read.reference["scans"].shape, (100,))
             np.testing.assert_array_equal(salbench.match_histogram(results.maps("LS")["1"], read.reference["meshes"]),
                                           salbench.Cache(self.folder / "cache")["1"].matched["LS"])
-        with self.assertRaisesRegex(ValueError, "choose one, as results.reference\\['meshes'\\]"):
+        with self.assertRaisesRegex(ValueError, "choose one, such as results.reference\\['meshes'\\]"):
             salbench.score([0, 1], reference=results.reference)
         with self.assertRaisesRegex(KeyError, "did you mean 'scans'"):
             results.reference["scan"]
@@ -275,10 +277,12 @@ class Runs(unittest.TestCase):
             (data / part).mkdir(parents=True, exist_ok=True)
             for number in "1234":
                 text = (self.meshes / f"{int(number) % 2 + 1}.off").read_text()
+                values = "\n".join(map(str, range(int(text.split()[1]))))
                 if part == "" or number != "1":
-                    (data / part / (number + name)).write_text(text if part == "" else "\n".join(map(str, range(int(text.split()[1])))))
+                    (data / part / (number + name)).write_text(values if part else text)
         layout = self.folder / "split.yaml"
-        layout.write_text("places: [{meshes: '*.off', truth: {saliency: 'Distributions/{item}.val'}}]\nsplits: {items: {train: ['2', '1'], test: ['3', '4']}}\n")
+        layout.write_text("places: [{meshes: '*.off', truth: {saliency: 'Distributions/{item}.val'}}]\n"
+                          "splits: {items: {train: ['2', '1'], test: ['3', '4']}}\n")
         seen = []
 
         def predict(shape):
