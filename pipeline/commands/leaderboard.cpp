@@ -80,13 +80,6 @@ void require_new_name(const std::vector<Entry>& entries, const Entry& entry, con
       throw InputError(fmt::format("the name {} is that of a model of the configuration", entry.card.name));
 }
 
-// Without the folder: the table is the same wherever the submissions lie.
-std::string reason_of(const std::exception& error, const fs::path& file) {
-  std::string reason = error.what();
-  for (std::string path = file.string() + ": "; reason.starts_with(path);) reason.erase(0, path.size());
-  return reason;
-}
-
 // Adds the models of the submissions that pass.
 void check_all(std::vector<Entry>& entries, const Expected& expected, const fs::path& scratch,
                Config& config) {
@@ -100,8 +93,10 @@ void check_all(std::vector<Entry>& entries, const Expected& expected, const fs::
       config.models.push_back(given_model(
           entry.card.name, unpacked(submission, entry.file, scratch / std::to_string(config.models.size()))));
       entry.refused = "";
+    } catch (const FileError& error) {
+      entry.refused = error.reason;  // without the folder: the table is the same wherever submissions lie
     } catch (const InputError& error) {
-      entry.refused = reason_of(error, entry.file);
+      entry.refused = error.what();
     }
 }
 

@@ -85,7 +85,7 @@ void carry_out(Session& session, int threads, const Show& show) {
     warn_of_space(session);
   }
   const auto& shard = setup.inputs.shard;
-  shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
+  shard ? make_folder(setup.output, "choose another with " + as_option("out")) : prepare_output(setup.output);
   session.run(threads);
   const bool interrupted = session.stop;
   if (interrupted && shard) return;

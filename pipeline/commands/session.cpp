@@ -126,8 +126,8 @@ void Session::run(int threads, const std::string& what, const std::vector<bool>&
   if (const std::size_t open = rules.empty() ? open_of_others(resolver) : 0; open > 0)
     spdlog::warn(
         "{} jobs of items that are left out come first, once: maps are matched to the mean over all items, "
-        "as in a run over all; --reference items matches to the mean over these alone",
-        open);
+        "as in a run over all; {} matches to the mean over these alone",
+        open, as_option("reference", "items"));
   const OrderlyEnd orderly;
   salbench::run(resolver, {threads, what, rules}, *progress, stop);
 }

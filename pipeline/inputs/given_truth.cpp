@@ -105,6 +105,10 @@ bool has_truth_in_columns(const DatasetItem& item) {
   return has_columns(item) && format_of(item).columns.has_truth();
 }
 
+std::string titled(std::string_view kind, const std::filesystem::path& path) {
+  return fmt::format("{} {}", kind, path.filename().string());
+}
+
 // A file that fails its item as soon as it is read.
 File unusable(std::string name, std::string place, std::string why) {
   auto fail = [why = std::move(why)]() -> FileData { throw InputError(why); };
@@ -288,7 +292,9 @@ GroundTruth read_truth(Target target, const Files& files, std::vector<ValuesAsRe
 }  // namespace
 
 File mesh_file_of(const DatasetItem& item) {
-  return {.name = "mesh file " + lower_case_extension(item.mesh), .place = item.mesh};
+  return {.name = "mesh file " + lower_case_extension(item.mesh),
+          .place = item.mesh,
+          .title = titled("mesh file", item.mesh)};
 }
 
 FilesOfUnit truth_files_of(const DatasetItem& item) {
@@ -304,11 +310,14 @@ FilesOfUnit truth_files_of(const DatasetItem& item) {
              .place = item.mesh}};
   if (are_in_file_order(item)) files.push_back(mesh_file_of(item));
   for (std::size_t k = 0; k < item.saliency.size(); ++k)
-    files.push_back({.name = saliency_name(item, k), .place = item.saliency[k]});
+    files.push_back({.name = saliency_name(item, k),
+                     .place = item.saliency[k],
+                     .title = titled("saliency file", item.saliency[k])});
   for (std::size_t k = 0; k < item.masks.size(); ++k) {
     const std::string name = fmt::format("mask {}", k);
     const auto& [path, missing] = item.masks[k];
-    files.push_back(missing.empty() ? File{.name = name, .place = path} : unusable(name, path, missing));
+    files.push_back(missing.empty() ? File{.name = name, .place = path, .title = titled("mask", path)}
+                                    : unusable(name, path, missing));
   }
   for (std::size_t k = 0; k < item.picks.size(); ++k)
     files.push_back({.name = fmt::format("picks {}{}{}{}", k, described(format_of(item).indices),

@@ -51,18 +51,24 @@ std::set<std::string> selected_names(const std::string& selection, const std::se
       continue;
     }
     if (part == kScoredItems) {
-      if (scored.empty()) throw ConfigError(fmt::format("--items {}: no item has ground truth", selection));
+      if (scored.empty()) throw ConfigError(as_option("items", selection) + ": no item has ground truth");
       names.insert(scored.begin(), scored.end());
       continue;
     }
     const std::optional<Range> range = as_range(part);
-    if (!range) throw ConfigError(fmt::format("--items {}: the data set has no item '{}'", selection, part));
+    if (!range) {
+      const std::string hint = did_you_mean(part, {present.begin(), present.end()});
+      throw UnknownNameError(fmt::format("{}: the data set has no item '{}'{}{}",
+                                         as_option("items", selection), part, hint.empty() ? "" : "; ",
+                                         hint));
+    }
     const std::size_t before = names.size();
     for (const std::string& name : present)
       if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
         names.insert(name);
     if (names.size() == before)
-      throw ConfigError(fmt::format("--items {}: the data set has no item in the range {}", selection, part));
+      throw ConfigError(
+          fmt::format("{}: the data set has no item in the range {}", as_option("items", selection), part));
   }
   return names;
 }
@@ -74,14 +80,14 @@ void select_split(Dataset& dataset, const std::string& split) {
   for (const DatasetItem& item : items)
     if (!item.split.empty()) known.insert(item.split);
   if (known.empty())
-    throw ConfigError(fmt::format(
+    throw UnknownNameError(fmt::format(
         "split '{}': the data set has no splits{}", split,
         dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
   if (!known.contains(split)) {
     const std::string hint = did_you_mean(split, {known.begin(), known.end()});
-    throw ConfigError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})", split,
-                                  hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
-                                  dataset.splits_where));
+    throw UnknownNameError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})",
+                                       split, hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
+                                       dataset.splits_where));
   }
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
 }
@@ -101,15 +107,20 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
 // a name that says so.
 std::pair<Level, File> shape_file_of(const DatasetItem& item) {
   File file = mesh_file_of(item);
+  const std::string cloud_title = "point cloud file " + std::filesystem::path(item.mesh).filename().string();
   if (has_columns(item)) {
     file.name = column_cloud_name(item);
+    file.title = cloud_title;
     return {kClouds, std::move(file)};
   }
   const std::string extension = lower_case_extension(item.mesh);
   FileData data;
   if (extension == ".ply") look(file, &data);
   const bool is_cloud = holds_cloud(item, data.text());
-  if (is_cloud) file.name = "point cloud file " + extension;
+  if (is_cloud) {
+    file.name = "point cloud file " + extension;
+    file.title = cloud_title;
+  }
   return {is_cloud ? kClouds : kMeshes, std::move(file)};
 }
 
@@ -188,14 +199,15 @@ void select_items(Dataset& dataset, const std::string& selection, const std::str
   }
   const std::set<std::string> names =
       selection.empty() ? present : selected_names(selection, present, scored);
-  if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
+  if (names.empty()) throw ConfigError(as_option("items", selection) + ": names no item");
 
   if (!split.empty()) select_split(dataset, split);
   std::erase_if(dataset.items, [&](const DatasetItem& item) {
     return !names.contains(item.name) && !names.contains(item.shape_name());
   });
   if (dataset.items.empty())
-    throw ConfigError(fmt::format("--items {}: none of them is in the split '{}'", selection, split));
+    throw ConfigError(
+        fmt::format("{}: none of them is in the split '{}'", as_option("items", selection), split));
 }
 
 Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard,

@@ -12,11 +12,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from numpy.typing import ArrayLike
-
 from salbench import _core
 from salbench._results import Results
 from salbench._shape import Shape
+from salbench._types import ArrayLike
 
 Predict = Callable[[Shape], ArrayLike]
 PARTS = ("normals", "faces", "fpfh")
@@ -69,6 +68,8 @@ def run(
     cache: str | os.PathLike[str] | None = None,
     out: str | os.PathLike[str] | None = None,
     items: str | Iterable[str] | None = None,
+    split: str | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
     threads: int | None = None,
     progress: bool = True,
 ) -> Results:
@@ -91,6 +92,11 @@ def run(
     items : str or sequence of str, optional
         Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default. Maps are
         matched to the mean over all items of the data set all the same.
+    split : str, optional
+        Items of one split alone, such as "test"; "" for all, where the configuration names one.
+    reference : path or (100,) array, optional
+        Histogram that maps are matched to, in place of the mean over the data set: of another run
+        (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are run.
     threads : int, optional
         All cores by default.
     progress : bool
@@ -102,8 +108,10 @@ def run(
 
     Raises
     ------
+    KeyError
+        An item or a split that there is not.
     ValueError
-        A configuration, a data set or an argument that cannot be used.
+        A configuration, a data set or another argument that cannot be used.
     OSError
         A cache or a folder that cannot be written to; FileNotFoundError for data or a configuration that is not there.
     KeyboardInterrupt
@@ -123,6 +131,8 @@ def run(
         "data": data and os.fspath(data),
         "cache": cache and os.fspath(cache),
         "out": out and os.fspath(out),
+        "split": split,
+        "reference": os.fspath(reference) if isinstance(reference, (str, os.PathLike)) else reference,
         "items": items if items is None or isinstance(items, str) else ",".join(map(str, items)),
     }
     threads = len(os.sched_getaffinity(0)) if threads is None else threads
@@ -188,15 +198,17 @@ def _content_of(what: Any) -> str:
     return _source_of(what) if callable(what) or inspect.ismodule(what) else repr(what)
 
 
-def _raised(error: BaseException, trace: Any) -> str:
-    """An exception as one line, with the innermost line of code."""
+def _raised(error: BaseException, trace: Any) -> tuple[str, str]:
+    """An exception as one line, with the innermost line of code; and its whole traceback."""
     frames = traceback.extract_tb(trace)
     place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
     try:
         text = f"{type(error).__name__}: {error}"
     except Exception:  # of its own __str__
         text = type(error).__name__
-    return " ".join(text.split()) + place
+    lines = " ".join(text.split()) + place, "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    line, whole = (one.encode("utf-8", "backslashreplace").decode() for one in lines)
+    return line, whole
 
 
 class _Bar:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark with models that are functions: tables, reruns, failures, Ctrl-C."""
 
+import collections.abc
+import inspect
 import os
 import pathlib
 import signal
@@ -102,6 +104,29 @@ class Runs(unittest.TestCase):
             self.assertRegex(cause, r"MINE\(\) raised ValueError: no eyes \(.*module_\d+\.py, line 4\)")
         self.assertEqual(len(results.scores), 24)
 
+    def test_a_failure_has_the_whole_traceback_of_the_function(self):
+        text = """
+            def helper(shape):
+                return {}[shape.id]
+            def predict(shape):
+                try:
+                    return helper(shape)
+                except KeyError as error:
+                    raise ValueError("no eyes") from error
+            """
+        results = self.run_with({"MINE": function(text, self.folder)}, items="1")
+        failure = results.failures[0]
+        self.assertEqual((failure.item, failure.stage), ("1", "map.MINE"))
+        first, *trace = failure.cause.splitlines()
+        self.assertRegex(first, r"^MINE\(\) raised ValueError: no eyes \(.*, line 8\)$")
+        trace = "\n".join(trace)
+        for line in ("line 3, in helper", "KeyError: '1'", "direct cause", "line 8, in predict"):
+            self.assertIn(line, trace)
+        self.assertTrue(trace.endswith("ValueError: no eyes"), trace)
+        record = (self.folder / "out" / "run.yaml").read_text()
+        self.assertIn("raised ValueError: no eyes", record)
+        self.assertNotIn("Traceback", record)
+
     def test_what_is_no_map_fails_its_shape(self):
         for returned, cause in [
             ("None", r"the map must have"), ("shape.points", r"the map must have shape \(\d+,\), not \(\d+, 3\)"),
@@ -167,6 +192,136 @@ class Runs(unittest.TestCase):
             np.testing.assert_array_equal(again.maps("AGAIN")[item], kept[item])
         with self.assertRaisesRegex(KeyError, "nobody"):
             again.maps("AGAIN")["nobody"]
+
+    def test_maps_are_a_mapping(self):
+        def predict(shape):
+            if shape.id == "1_3":
+                raise ValueError
+            return shape.points[:, 0]
+
+        results = self.run_with({"MINE": predict, "LS": {}})
+        maps = results.maps("MINE")
+        self.assertIsInstance(maps, collections.abc.Mapping)
+        scans = [f"{item}_{view}" for item in "12" for view in range(12)]
+        self.assertEqual(list(maps), ["1", *(name for name in scans[:12] if name != "1_3"), "2", *scans[12:]])
+        self.assertEqual((len(maps), "1_3" in maps, "2" in maps, 3 in maps), (25, False, True, False))
+        for item, values in results.maps("LS").items():
+            np.testing.assert_array_equal(results.maps("LS")[item], values)
+        self.assertIsNone(maps.get("1_3"))
+        with self.assertRaisesRegex(KeyError, "called '1_33'; did you mean '1_"):
+            maps["1_33"]
+        with self.assertRaisesRegex(KeyError, "'mine'; did you mean 'MINE'"):
+            results.maps("mine")
+        with self.assertRaisesRegex(KeyError, "no model with maps 'XX'; there are LS, MINE"):
+            results.maps("XX")
+
+    def test_scores_of_maps_are_those_of_the_tables(self):
+        config = CONFIG | {"metrics": {"names": "all"}}
+        models = {"MINE": function(HEIGHT.format(axis=0), self.folder), "TWO": function(HEIGHT.format(axis=1), self.folder), "CS": {}}
+        results = salbench.run(config, data=self.meshes, models=models, cache=self.folder / "cache", out=self.folder / "out",
+                               progress=False)
+        self.assertEqual(len(results.scores), 3 * 26)
+        for row in results.scores.to_dict("records"):
+            item = row["item"] if row["view"] != row["view"] else f"{row['item']}_{row['view']}"
+            scores = results.score(results.maps(row["model"])[item], item)
+            for metric, score in scores.items():
+                self.assertEqual(repr(score), repr(row[metric]), (item, row["model"], metric))
+        of_another = results.score(-results.maps("TWO")["1"], "1")
+        self.assertEqual(of_another, results.score(-results.maps("TWO")["1"], "1", model="CS"))
+        self.assertNotEqual(of_another["auc"], results.score(-results.maps("TWO")["1"], "1", model="TWO")["auc"])
+        # The same from arrays alone.
+        truth = salbench.Cache(self.folder / "cache")["1"]["ground_truth"]
+        picks = np.split(truth["picks"], truth["pick_offsets"][1:-1])
+        known = salbench.score(results.maps("MINE")["1"], truth["saliency"], picks, metrics=["auc", "nss", "cc"],
+                               reference=results.reference["meshes"], seed=(2016, "MINE", "1"))
+        table = results.score(results.maps("MINE")["1"], "1")
+        self.assertEqual(known, {name: table[name] for name in known})
+        for error, what, call in [
+            (KeyError, "did you mean '1_1", lambda: results.score([0], "1_111")),
+            (KeyError, "'Mine'; did you mean 'MINE'", lambda: results.score([0], "1", model="Mine")),
+            (ValueError, r"prediction must have shape \(\d+,\), not \(1,\)", lambda: results.score([0], "1")),
+            (ValueError, "prediction is .*nan", lambda: results.score(results.maps("CS")["1"] * np.nan, "1")),
+            (ValueError, "results that run\\(\\) returned", lambda: salbench.Results(self.folder / "out").score([0], "1")),
+        ]:
+            with self.subTest(what), self.assertRaisesRegex(error, what):
+                call()
+
+    def test_the_reference_is_the_histogram_that_maps_were_matched_to(self):
+        results = self.run_with({"LS": {}})
+        for read in (results, salbench.Results(self.folder / "out")):
+            self.assertEqual(list(read.reference), ["meshes", "scans"])
+            self.assertEqual(read.reference["scans"].shape, (100,))
+            np.testing.assert_array_equal(salbench.match_histogram(results.maps("LS")["1"], read.reference["meshes"]),
+                                          salbench.Cache(self.folder / "cache")["1"].matched["LS"])
+        with self.assertRaisesRegex(ValueError, "choose one, such as results.reference\\['meshes'\\]"):
+            salbench.score([0, 1], reference=results.reference)
+        with self.assertRaisesRegex(KeyError, "did you mean 'scans'"):
+            results.reference["scan"]
+        part = self.run_with({"LS": {}}, items="1", reference=results.reference["meshes"])
+        np.testing.assert_array_equal(np.asarray(part.reference), results.reference["meshes"])
+        np.testing.assert_array_equal(salbench.match_histogram(part.maps("LS")["1"], part.reference),
+                                      salbench.match_histogram(part.maps("LS")["1"], results.reference["meshes"]))
+        file = self.folder / "out" / "mean_histograms_meshes.csv"
+        kept = file.rename(self.folder / "reference.csv")
+        of_file = self.run_with({"LS": {}}, items="1", reference=kept)
+        self.assertEqual(of_file.computed, 0)
+        own = self.run_with({"LS": {}}, items="1", reference="items")
+        truth = salbench.Cache(self.folder / "cache")["1"].ground_truth
+        np.testing.assert_array_equal(own.reference["meshes"], salbench.histogram(truth))
+        with self.assertRaisesRegex(ValueError, "reference must have shape"):
+            self.run_with({"LS": {}}, reference=[1, 2])
+
+    def test_items_with_ground_truth_and_splits_are_run_alone(self):
+        data = self.folder / "split"
+        for part, name in (("", ".off"), ("Distributions", ".val")):
+            (data / part).mkdir(parents=True, exist_ok=True)
+            for number in "1234":
+                text = (self.meshes / f"{int(number) % 2 + 1}.off").read_text()
+                values = "\n".join(map(str, range(int(text.split()[1]))))
+                if part == "" or number != "1":
+                    (data / part / (number + name)).write_text(values if part else text)
+        layout = self.folder / "split.yaml"
+        layout.write_text("places: [{meshes: '*.off', truth: {saliency: 'Distributions/{item}.val'}}]\n"
+                          "splits: {items: {train: ['2', '1'], test: ['3', '4']}}\n")
+        seen = []
+
+        def predict(shape):
+            seen.append(shape.id)
+            return shape.points[:, 0]
+
+        config = {"dataset": {"layout": str(layout), "scans": False, "split": "test"}}
+        for number, (keywords, items) in enumerate([
+            ({"split": "train"}, ["1", "2"]), ({"split": "train", "items": "scored"}, ["2"]), ({}, ["3", "4"]),
+            ({"split": ""}, ["1", "2", "3", "4"]), ({"split": "", "items": "scored"}, ["2", "3", "4"]),
+        ]):
+            with self.subTest(keywords):
+                seen.clear()
+                salbench.run(config, data=data, models={f"M{number}": predict}, cache=self.folder / "cache", out=self.folder / "out",
+                             progress=False, **keywords)
+                self.assertEqual(sorted(seen), items)
+        for keywords, what in (({"split": "trian"}, "did you mean 'train'"), ({"items": "5-box"}, "no item '5-box'")):
+            with self.subTest(what), self.assertRaisesRegex(KeyError, what):
+                salbench.run(config, data=data, models={"LS": {}}, progress=False, **keywords)
+
+    def test_a_warning_recommends_arguments_of_run(self):
+        with self.assertLogs("salbench", "WARNING") as logged:
+            self.run_with({"LS": {}}, items="1")
+        text = "\n".join(logged.output)
+        self.assertIn("reference='items' matches to the mean over these alone", text)
+        self.assertNotIn("--", text)
+        self.assertIn("reference", inspect.signature(salbench.run).parameters)
+        with self.assertRaisesRegex(OSError, "choose another with `out`"):
+            (self.folder / "file").write_text("")
+            self.run_with({"LS": {}}, out=self.folder / "file" / "out")
+
+    def test_a_notebook_shows_results(self):
+        results = self.run_with({"LS": {}, "A": function(HEIGHT.format(axis=0), self.folder)})
+        page = results._repr_html_()
+        self.assertIn("artefacts computed", page)
+        self.assertIn("<td>LS</td>", page)
+        for path in (self.folder / "out").glob("ranking.csv"):
+            path.unlink()
+        self.assertNotIn("<table", salbench.Results(self.folder / "out")._repr_html_())
 
     def test_a_map_that_was_damaged_since_is_computed_again(self):
         results = self.run_with({"MINE": function(HEIGHT.format(axis=0), self.folder)})
