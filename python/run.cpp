@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "pipeline/results/map_counts.h"
 #include "python/arrays.h"
 #include "python/caller.h"
 #include "python/computing.h"
@@ -96,6 +98,11 @@ Output<Map> add_function(RuleTable& table, const ShapeOutputs& shape, const Func
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 
+// Since 1970.
+double seconds(std::chrono::system_clock::time_point time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
 // --- what is run -----------------------------------------------------------------------------------------
 
 // Counts for whoever asks from the calling thread.
@@ -125,6 +132,13 @@ class Counts final : public Progress {
 std::string text_or_empty(const py::dict& settings, const char* key) {
   const py::object value = settings[key];
   return value.is_none() ? std::string() : std::string(py::str(value));
+}
+
+// None, a text such as "1-20,52", or a list of names.
+ItemChoice items_from(const py::object& given) {
+  if (given.is_none()) return {};
+  if (py::isinstance<py::bytes>(given)) return given.cast<std::string>();
+  return ItemChoice(given.cast<std::vector<std::string>>());
 }
 
 // What _run.py says of a configuration: `path` or `yaml`; `models`, as YAML, in place of those that it names;
@@ -161,7 +175,7 @@ class Run {
     }
     Config config = config_from(settings);
     for (const FunctionModel& model : models_) add(config, model);
-    const Selection selection{.items = text_or_empty(settings, "items")};
+    const Selection selection{.items = items_from(settings["items"])};
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
     const LogDelivery delivery;
@@ -182,6 +196,15 @@ class Run {
     const Project& project = session_->setup.project;
     for (const Failure& failure : session_->resolver.failures())
       rows.append(py::make_tuple(project.name(failure.job), project.rule(failure.job).stage, failure.cause));
+    return rows;
+  }
+
+  // (model, maps computed by this run, maps read, when the first and the last of these were stored) of each.
+  py::list models() const {
+    py::list rows;
+    for (const MapCount& count : count_maps(session_->resolver, session_->store))
+      rows.append(py::make_tuple(count.model, count.computed, count.read, seconds(count.first),
+                                 seconds(count.last)));
     return rows;
   }
 
@@ -228,6 +251,7 @@ void bind_run(py::module_& module) {
       .def("carry_out", &Run::carry_out)
       .def("failures", &Run::failures)
       .def("map", &Run::map)
+      .def("models", &Run::models)
       .def_property_readonly("output", &Run::output)
       .def_property_readonly("computed", &Run::computed);
 }
