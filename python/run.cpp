@@ -203,8 +203,8 @@ class Run {
   py::list models() const {
     py::list rows;
     for (const MapCount& count : count_maps(session_->resolver, session_->store))
-      rows.append(py::make_tuple(count.model, count.computed, count.read, seconds(count.first),
-                                 seconds(count.last)));
+      rows.append(
+          py::make_tuple(count.model, count.computed, count.read, seconds(count.first), seconds(count.last)));
     return rows;
   }
 

@@ -42,7 +42,8 @@ std::string summary_text(const Session& session, const Conclusions& conclusions,
       "{}\n{}{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: {} {}\n",
       aligned(overview_table(conclusions)),
       setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "", leading_text(leaders),
-      aligned(map_table(count_maps(session.resolver, session.store))), name_of(setup.config.protocol), session.resolver.computed(), setup.output.string(), report_command(),
+      aligned(map_table(count_maps(session.resolver, session.store))), name_of(setup.config.protocol),
+      session.resolver.computed(), setup.output.string(), report_command(),
       shell_word(setup.output.string()));
 }
 

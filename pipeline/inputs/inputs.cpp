@@ -63,7 +63,8 @@ std::set<std::string> selected_names(const ItemChoice& choice, const std::set<st
       if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
         names.insert(name);
     if (names.size() == before)
-      throw ConfigError(fmt::format("--items {}: the data set has no item in the range {}", choice.text, part));
+      throw ConfigError(
+          fmt::format("--items {}: the data set has no item in the range {}", choice.text, part));
   }
   return names;
 }

@@ -15,11 +15,11 @@ namespace {
 void add_read(MapCount& count, const std::optional<std::filesystem::path>& file) {
   ++count.read;
   std::error_code gone;
-  const auto written = file ? std::filesystem::last_write_time(*file, gone)
-                            : std::filesystem::file_time_type();
+  const auto written =
+      file ? std::filesystem::last_write_time(*file, gone) : std::filesystem::file_time_type();
   if (!file || gone) return;
-  const auto time = std::chrono::time_point_cast<MapCount::Time::duration>(
-      std::chrono::file_clock::to_sys(written));
+  const auto time =
+      std::chrono::time_point_cast<MapCount::Time::duration>(std::chrono::file_clock::to_sys(written));
   count.first = std::min(count.first, time);
   count.last = std::max(count.last, time);
 }

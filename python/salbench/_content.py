@@ -12,12 +12,12 @@ import inspect
 import struct
 import sys
 import types
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from salbench._names import Origin, Unwalkable
 
-ATOMS = {
+ATOMS: dict[type, Callable[[Any], Any]] = {
     type(None): lambda value: b"", type(...): lambda value: b"", type(NotImplemented): lambda value: b"",
     bool: lambda value: b"1" if value else b"0", bytes: lambda value: value,
     int: lambda value: value.to_bytes(value.bit_length() // 8 + 1, "little", signed=True),
@@ -46,6 +46,9 @@ ATTRIBUTES: dict[type, tuple[str, ...]] = {
                      types.GetSetDescriptorType, types.MemberDescriptorType), ("__name__", "__objclass__")),
 }
 
+# Likewise, of packages whose own state has addresses in it.
+OF_PACKAGES = {"scipy.spatial._ckdtree.cKDTree": ("data", "leafsize", "boxsize", "indices")}
+
 # Content of a user's class over one of these, whatever methods it overrides.
 CONTENT: dict[type, Any] = {
     list: lambda value: list(list.__iter__(value)), dict: lambda value: list(dict.items(value)),
@@ -57,7 +60,7 @@ CONTENT: dict[type, Any] = {
 CLASS_SKIPPED = {"__dict__", "__weakref__", "__module__", "__qualname__", "__annotations__", "__annotate__",
                  "__annotate_func__", "__annotations_cache__", "__dataclass_params__", "__abstractmethods__", "_abc_impl",
                  "__slotnames__", "__static_attributes__", "__firstlineno__", "__orig_bases__", "__parameters__",
-                 "__type_params__"}
+                 "__type_params__", "_value2member_map_"}
 MODULE_SKIPPED = {"__builtins__", "__cached__", "__doc__", "__file__", "__loader__", "__name__", "__package__",
                   "__path__", "__spec__", "__annotations__", "__warningregistry__"}
 

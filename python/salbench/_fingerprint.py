@@ -13,25 +13,24 @@ annotations. What cannot be seen: files, the environment and clocks that a funct
 
 import builtins
 import copyreg
-import enum
 import functools
 import hashlib
 import os
 import pickle
 import sys
 import types
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
 from salbench._content import (
-    ATOM_TAGS, ATOMS, ATTRIBUTES, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OPAQUE, UNNUMBERED, attributes, extension_file, has_own_state,
-    is_plain, no_content, place, sorted_names)
+    ATOM_TAGS, ATOMS, ATTRIBUTES, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OF_PACKAGES, OPAQUE, UNNUMBERED, attributes,
+    extension_file, has_own_state, is_plain, no_content, place, sorted_names)
 from salbench._data import Dataset
 from salbench._names import Origin, Unwalkable, imported, names_in, origin_of, resolved
 
-MAX_OBJECTS = 10_000_000  # about 10 s; an array is one object
+MAX_OBJECTS = 10_000_000  # 13 s on a busy machine; an array is one object
 Parts = Iterable[tuple[Any, Any]]  # labels and values; a text as a label counts, others are for messages
 
 
@@ -57,17 +56,16 @@ class _Walk:
         self._objects = 0
         self._origins: dict[int, tuple[Origin | None, Any]] = {}  # likewise, of namespaces
         self._globals: dict[str, dict[int, str]] = {}  # names of the values of a module, by address
-        self._exact = {
+        self._exact: dict[type, Callable[[Any], Parts]] = {
             tuple: enumerate, list: enumerate, dict: self._dict, set: self._set, frozenset: self._set,
             types.MappingProxyType: self._dict, types.CodeType: self._code, types.FunctionType: self._function,
             types.BuiltinFunctionType: self._builtin, functools._lru_cache_wrapper: self._cached,
             types.CellType: self._cell, Origin: self._named,
         }
-        self._kinds = (
+        self._kinds: tuple[tuple[Any, Callable[[Any], Parts]], ...] = (
             (tuple(ATTRIBUTES), self._made_of_attributes), (types.ModuleType, self._module),
-            (enum.EnumMeta, self._enumeration), (type, self._class), (enum.Enum, self._member),
-            (np.generic, self._scalar), (np.dtype, self._dtype), (np.ndarray, self._array), ((set, frozenset), self._set),
-            (object, self._instance),
+            (type, self._class), (np.generic, self._scalar), (np.dtype, self._dtype), (np.ndarray, self._array),
+            ((set, frozenset), self._set), (object, self._instance),
         )
 
     def visit(self, root: Any) -> None:
@@ -122,7 +120,7 @@ class _Walk:
         """Of a class, or of the names of a module."""
         names = what
         if isinstance(what, type):
-            module = type.__dict__["__module__"].__get__(what)
+            module = what.__module__
             names = vars(sys.modules[module]) if isinstance(module, str) and module in sys.modules else {}
         if id(names) not in self._origins:
             path = names.get("__file__") or next(iter(names.get("__path__", ())), None)
@@ -138,7 +136,7 @@ class _Walk:
         """The order of elements differs between interpreters, and so would numbers: each by itself."""
         digests = []
         outer, met = self.hash, len(self._met)
-        for value in (set if isinstance(values, set) else frozenset).__iter__(values):
+        for value in set.__iter__(values) if isinstance(values, set) else frozenset.__iter__(values):
             self.hash = hashlib.sha256()
             self.visit(value)
             digests.append(self.hash.digest())
@@ -158,7 +156,7 @@ class _Walk:
 
     def _function(self, function: types.FunctionType) -> Parts:
         names = function.__globals__
-        parts = [("default", function.__defaults__), ("keyword default", function.__kwdefaults__)]
+        parts: list[tuple[Any, Any]] = [("default", function.__defaults__), ("keyword default", function.__kwdefaults__)]
         parts += zip(function.__code__.co_freevars, function.__closure__ or ())
         parts += sorted_names(vars(function))
         origin = self._origin_of(names)
@@ -176,7 +174,7 @@ class _Walk:
     def _follow(self, chain: tuple[str, ...], function: types.FunctionType) -> tuple[str, Any]:
         """The value of a global that code names, or of an attribute of a module."""
         unbound = Origin("no value", chain[0])
-        value = function.__globals__.get(chain[0], function.__builtins__.get(chain[0], unbound))
+        value = function.__globals__.get(chain[0], function.__builtins__.get(chain[0], unbound))  # type: ignore
         at, origin = 1, None
         while isinstance(value, types.ModuleType) and at < len(chain) and chain[at] in vars(value):
             origin = self._origin_of(vars(value))
@@ -217,7 +215,7 @@ class _Walk:
 
     def _class(self, kind: type) -> Parts:
         """A user's class with all of its names; of an installed one those that the user has put there."""
-        names = type.__dict__["__dict__"].__get__(kind)
+        names = vars(kind)
         parts: list[tuple[Any, Any]] = [("bases", kind.__bases__), ("metaclass", type(kind))]
         origin = self._origin_of(kind)
         if origin:
@@ -226,15 +224,6 @@ class _Walk:
                             if type(part[1]) is types.FunctionType and not self._origin_of(part[1].__globals__)]
         module = sys.modules.get(kind.__module__)
         return parts + [("module", module)] if extension_file(module) else parts + sorted_names(names, CLASS_SKIPPED)
-
-    def _enumeration(self, kind: type[enum.Enum]) -> Parts:
-        own = (types.FunctionType, staticmethod, classmethod, property)
-        names = {name: value for name, value in vars(kind).items() if isinstance(value, own)}
-        values = [(name, member._value_) for name, member in kind.__members__.items()]
-        return [("bases", kind.__bases__), ("members", values), *sorted_names(names, CLASS_SKIPPED)]
-
-    def _member(self, value: enum.Enum) -> Parts:
-        return [("class", type(value)), ("name", value._name_), ("value", value._value_)]
 
     def _made_of_attributes(self, value: Any) -> Parts:
         names = next(names for kind, names in ATTRIBUTES.items() if isinstance(value, kind))
@@ -251,7 +240,7 @@ class _Walk:
 
     def _array(self, array: Any) -> Parts:
         plain: Any = array.view(np.ndarray)
-        parts = [((), plain.dtype), ((), plain.shape)]
+        parts: list[tuple[Any, Any]] = [((), plain.dtype), ((), plain.shape)]
         if type(array) not in (np.ndarray, np.memmap):
             parts += [("class", type(array)), *attributes(array)]
         if plain.dtype.hasobject:
@@ -276,7 +265,7 @@ class _Walk:
 
     def _instance(self, value: Any) -> Parts:
         """By class and attributes; what else it holds, as it says to pickle."""
-        kind = type(value)
+        kind: Any = type(value)
         if isinstance(value, Dataset) or "ctypes" in sys.modules and isinstance(value, sys.modules["ctypes"].CDLL):
             raise no_content(value)  # what they read lies in files
         is_users = self._origin_of(kind) is None
@@ -296,6 +285,9 @@ class _Walk:
 
     def _reduced(self, value: Any) -> Parts:
         kind = type(value)
+        for base in kind.__mro__:
+            if held := OF_PACKAGES.get(f"{base.__module__}.{base.__qualname__}"):
+                return [(name, getattr(value, name)) for name in held]
         try:
             reduce = copyreg.dispatch_table.get(kind)
             reduced = reduce(value) if reduce else value.__reduce_ex__(4)
@@ -305,7 +297,7 @@ class _Walk:
             raise Unwalkable(f"{type(error).__name__}: {error}") from None
         if isinstance(reduced, str):
             return self._by_name(value, reduced)
-        function, arguments, state, items, entries = (*reduced, *[None] * 5)[:5]
+        function, arguments, state, items, entries = [*reduced, None, None, None][:5]
         names = sorted_names(state) if type(state) is dict else [("state", state)]
         return [("made by", function), ("of", arguments), *names,
                 ("items", items and list(items)), ("entries", entries and list(entries))]

@@ -53,12 +53,12 @@ def origin_of(name: str, path: str | None) -> Origin | None:
 @functools.cache
 def _version(top: str) -> str | None:
     """The version of what is installed under the name of a module, without importing it."""
-    for distributions in (lambda: [top], lambda: importlib.metadata.packages_distributions().get(top, [])):
-        for distribution in distributions():
-            try:
-                return importlib.metadata.version(distribution)
-            except importlib.metadata.PackageNotFoundError:
-                continue
+    try:
+        return importlib.metadata.version(top)
+    except importlib.metadata.PackageNotFoundError:
+        pass
+    for distribution in importlib.metadata.packages_distributions().get(top, []):  # such as Pillow of PIL
+        return importlib.metadata.version(distribution)
     version = getattr(sys.modules.get(top), "__version__", None)
     return version if isinstance(version, str) else None
 

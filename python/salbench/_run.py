@@ -183,7 +183,8 @@ def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], in
 
 def _key(name: str, made: Model) -> str:
     """Text that stands for what maps depend on; one that no other call has where that cannot be told."""
-    from salbench._fingerprint import Unwalkable, file_digest, fingerprint
+    from salbench._fingerprint import file_digest, fingerprint
+    from salbench._names import Unwalkable
 
     if not made.cache:
         return _key_of_this_call()
