@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include <pybind11/stl.h>
 
 #include "pipeline/inputs/given_reference.h"
+#include "pipeline/results/map_counts.h"
 #include "python/arrays.h"
 #include "python/caller.h"
 #include "python/computing.h"
@@ -105,6 +107,11 @@ Output<Map> add_function(RuleTable& table, const ShapeOutputs& shape, const Func
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 
+// Since 1970.
+double seconds(std::chrono::system_clock::time_point time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
 // --- what is run -----------------------------------------------------------------------------------------
 
 // Counts for whoever asks from the calling thread.
@@ -136,6 +143,13 @@ std::string text_or_empty(const py::dict& settings, const char* key) {
   return value.is_none() ? std::string() : std::string(py::str(value));
 }
 
+// None, a text such as "1-20,52", or a list of names.
+ItemChoice items_from(const py::object& given) {
+  if (given.is_none()) return {};
+  if (py::isinstance<py::bytes>(given)) return given.cast<std::string>();
+  return ItemChoice(given.cast<std::vector<std::string>>());
+}
+
 // What _run.py says of a configuration: `path` or `yaml`; `models`, as YAML, in place of those that it names;
 // `data`, `cache` and `out`.
 Config config_from(const py::dict& settings) {
@@ -162,7 +176,7 @@ Config config_from(const py::dict& settings) {
 }
 
 Selection selection_from(const py::dict& settings) {
-  Selection selection{.items = text_or_empty(settings, "items")};
+  Selection selection{.items = items_from(settings["items"])};
   const py::object reference = settings["reference"];
   if (!py::isinstance<py::str>(reference))
     selection.reference = histogram({reference, "reference"});
@@ -241,6 +255,15 @@ class Run {
     return by_metric;
   }
 
+  // (model, maps computed by this run, maps read, when the first and the last of these were stored) of each.
+  py::list models() const {
+    py::list rows;
+    for (const MapCount& count : count_maps(session_->resolver, session_->store))
+      rows.append(
+          py::make_tuple(count.model, count.computed, count.read, seconds(count.first), seconds(count.last)));
+    return rows;
+  }
+
   // The map of a model, or nothing if there is none of this shape.
   py::object map(const std::string& model, const std::string& item) {
     const ValuePtr value = python::computed([&] { return map_of(*session_, model, item); });
@@ -284,6 +307,7 @@ void bind_run(py::module_& module) {
       .def("mapped", &Run::mapped)
       .def("require_model", &Run::require_model)
       .def("score", &Run::score)
+      .def("models", &Run::models)
       .def_property_readonly("output", &Run::output)
       .def_property_readonly("computed", &Run::computed);
 }

@@ -44,7 +44,7 @@ Inputs inputs_of(const Config& config, const Selection& selection) {
                         : simulated                                         ? Others::simulated
                                                                             : Others::measured;
   return read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
-                     simulated && selection.items == kScoredItems ? std::string() : selection.items,
+                     simulated && selection.items.text == kScoredItems ? ItemChoice() : selection.items,
                      selection.shard, config.dataset.split, others);
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a run has written, as tables."""
 
+import datetime
 import html
 import os
 import pathlib
@@ -100,6 +101,9 @@ class Results(Tables):
         Artefacts that this run has computed; 0 where all were in the cache.
     failures : list of (item, stage, cause)
         What could not be computed. The cause of a function that raised ends in its traceback.
+    models : dict of str to dict
+        By name of a model: "computed", how many maps this run has computed, "read", how many it found in the cache, and
+        "from", when the first and the last of these were stored (None if there are none). Empty for tables of a folder.
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
@@ -109,6 +113,10 @@ class Results(Tables):
         self._run = run
         self.computed: int = run.computed if run else 0
         self.failures: list[Failure] = [Failure(*row) for row in run.failures()] if run else []
+        self.models: dict[str, dict[str, Any]] = {
+            name: {"computed": computed, "read": read,
+                   "from": tuple(map(datetime.datetime.fromtimestamp, (first, last))) if first <= last else None}
+            for name, computed, read, first, last in (run.models() if run else ())}
 
     def _text(self, name: str) -> str:
         return (self.folder / f"{name}.csv").read_text(encoding="utf-8")
@@ -180,4 +188,14 @@ class Results(Tables):
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
-        return f"Results({str(self.folder)!r}): {self.computed} artefacts computed{failed}"
+        return "\n".join([f"Results({str(self.folder)!r}): {self.computed} artefacts computed{failed}",
+                          *(f"  {line}" for line in self._model_lines())])
+
+    def _model_lines(self) -> list[str]:
+        """A line per model: which of its maps are new."""
+        lines = []
+        for name, maps in self.models.items():
+            first, last = (f"{time:%Y-%m-%d %H:%M}" for time in maps["from"]) if maps["from"] else ("", "")
+            when = f" (from {first}{'' if first == last else f' to {last}'})" if first else ""
+            lines.append(f"{name}: {maps['computed']} maps computed now, {maps['read']} read{when}")
+        return lines
