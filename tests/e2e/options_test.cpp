@@ -108,6 +108,21 @@ TEST_F(Options, ThatASubcommandTakesAreUsedByIt) {
     }
 }
 
+TEST_F(Options, ThatASubcommandDoesNotUseAreRefused) {
+  for (const auto& [subcommand, option] : {std::pair("plan", "--quiet"),
+                                           {"plan", "--threads"},
+                                           {"graph", "--out"},
+                                           {"explain", "--quiet"},
+                                           {"doctor", "--out"},
+                                           {"maps", "--out"},
+                                           {"pictures", "--reference"},
+                                           {"leaderboard", "--items"}}) {
+    const Outcome outcome = said(subcommand, {option, "1"});
+    EXPECT_EQ(outcome.status, 2) << subcommand << option;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("there is no option '") + option + "'")) << subcommand;
+  }
+}
+
 TEST_F(Options, ThreadsAreForWhatComputes) {
   for (const Subcommand& subcommand : subcommands()) {
     toy_.forget_everything();
