@@ -157,8 +157,8 @@ Subcommand export_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<ExportOptions>();
   return {
       "export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
-      run_parameters(arguments,
-                     {{"--stage", &options->stages,
+      running_parameters(
+          arguments, {{"--stage", &options->stages,
                        "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
                       {"--models", &arguments.models, "only these, such as LS,PS"},
                       {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes", true},

@@ -80,13 +80,6 @@ void require_new_name(const std::vector<Entry>& entries, const Entry& entry, con
       throw InputError(fmt::format("the name {} is that of a model of the configuration", entry.card.name));
 }
 
-// Without the folder: the table is the same wherever the submissions lie.
-std::string reason_of(const std::exception& error, const fs::path& file) {
-  std::string reason = error.what();
-  for (std::string path = file.string() + ": "; reason.starts_with(path);) reason.erase(0, path.size());
-  return reason;
-}
-
 // Adds the models of the submissions that pass.
 void check_all(std::vector<Entry>& entries, const Expected& expected, const fs::path& scratch,
                Config& config) {
@@ -100,8 +93,10 @@ void check_all(std::vector<Entry>& entries, const Expected& expected, const fs::
       config.models.push_back(given_model(
           entry.card.name, unpacked(submission, entry.file, scratch / std::to_string(config.models.size()))));
       entry.refused = "";
+    } catch (const FileError& error) {
+      entry.refused = error.reason;  // without the folder: the table is the same wherever submissions lie
     } catch (const InputError& error) {
-      entry.refused = reason_of(error, entry.file);
+      entry.refused = error.what();
     }
 }
 
@@ -188,13 +183,16 @@ void require_own_folder(const fs::path& site) {
         fmt::format("{}: holds something else than a leaderboard; choose another with --to", site.string()));
 }
 
-void render(const fs::path& site) try {
+// False if there are no pages.
+bool render(const fs::path& site) try {
   if (report_program().empty()) throw InputError("the report's program is not there");
   run_command(fmt::format("{} leaderboard {}", shell_quoted(report_program().string()),
                           shell_quoted(fs::absolute(site).string())),
               site, kRendering);
+  return size_of_file(site / "index.html").has_value();
 } catch (const InputError& error) {
   spdlog::warn("{}: the tables are there, but no pages: {}", site.string(), error.what());
+  return false;
 }
 
 // --- together ---------------------------------------------------------------------------------------------
@@ -222,6 +220,7 @@ struct Site {
   Table overview;
   Json leaders = {};
   std::string leading = {};  // the same in sentences
+  bool has_pages = false;
 };
 
 void print_site(const Site& site, const Session& session, const Arguments& arguments, ReportFormat format) {
@@ -229,15 +228,15 @@ void print_site(const Site& site, const Session& session, const Arguments& argum
   for (const Entry& entry : site.entries)
     if (!entry.refused.empty())
       text += fmt::format("refused: {}: {}\n", entry.file.filename().string(), entry.refused);
+  text += site.has_pages
+              ? fmt::format("the leaderboard is {}\n", (fs::path(arguments.to) / "index.html").string())
+              : fmt::format("the tables are in {}\n", (fs::path(arguments.to) / "data").string());
   Json document = {{"to", arguments.to},
                    {"submissions", rows_json(submissions_table(site.entries))},
                    {"scores", rows_json(site.overview)},
                    {"leaders", site.leaders}};
   document.update(summary_of(session));
-  print_report(format, "leaderboard", document,
-               arguments.quiet ? ""
-                               : text + fmt::format("the leaderboard is {}\n",
-                                                    (fs::path(arguments.to) / "index.html").string()));
+  print_report(format, "leaderboard", document, arguments.quiet ? "" : text);
 }
 
 Site write_site(Session& session, std::vector<Entry> entries, const fs::path& folder) {
@@ -278,8 +277,8 @@ ExitStatus run_leaderboard(const Arguments& arguments, const std::string& folder
   session.run(thread_count(arguments));
   silence.reset();
   if (stop) return interrupted_status(arguments);
-  const Site site = write_site(session, std::move(entries), arguments.to);
-  render(arguments.to);
+  Site site = write_site(session, std::move(entries), arguments.to);
+  site.has_pages = render(arguments.to);
   print_site(site, session, arguments, format);
   const bool any_refused =
       std::ranges::any_of(site.entries, [](const Entry& entry) { return !entry.refused.empty(); });

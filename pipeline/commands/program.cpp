@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -125,6 +126,10 @@ struct Declare {
 
   void operator()(bool* target) const { app.add_flag(parameter.name, *target, parameter.help); }
   void operator()(int* target) const { declared(*target)->check(CLI::Range(1, parameter.max)); }
+  void operator()(std::optional<std::string>* target) const {  // an empty text is one
+    app.add_option_function<std::string>(
+        parameter.name, [target](const std::string& text) { *target = text; }, parameter.help);
+  }
   template <class Text>
   void operator()(Text* target) const {
     declared(*target);
@@ -152,6 +157,9 @@ int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> 
     examples += examples_of(subcommand.name, false);
     for (const Parameter& parameter : subcommand.parameters)
       std::visit(Declare{*declared, parameter}, parameter.target);
+    for (const Parameter& parameter : subcommand.parameters)
+      if (!parameter.needs.empty())
+        declared->get_option(parameter.name)->needs(declared->get_option(parameter.needs));
   }
   app.footer(fmt::format("Examples:\n{}\n{}", examples, kExitStatus));
   try {

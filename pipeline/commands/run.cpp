@@ -16,6 +16,7 @@
 #include "pipeline/commands/why.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/results/conclusions.h"
+#include "pipeline/results/map_counts.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
 
@@ -33,15 +34,16 @@ std::string shard_text(const Session& session) {
       session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
 }
 
-// The last lines say who leads, and where the tables are.
+// The last lines say who leads, which maps are new, and where the tables are.
 std::string summary_text(const Session& session, const Conclusions& conclusions,
                          const std::vector<LevelLeaders>& leaders) {
   const Setup& setup = session.setup;
   return fmt::format(
-      "{}\n{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: {} {}\n",
+      "{}\n{}{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: {} {}\n",
       aligned(overview_table(conclusions)),
       setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "", leading_text(leaders),
-      name_of(setup.config.protocol), session.resolver.computed(), setup.output.string(), report_command(),
+      aligned(map_table(count_maps(session.resolver, session.store))), name_of(setup.config.protocol),
+      session.resolver.computed(), setup.output.string(), report_command(),
       shell_word(setup.output.string()));
 }
 
@@ -85,7 +87,7 @@ void carry_out(Session& session, int threads, const Show& show) {
     warn_of_space(session);
   }
   const auto& shard = setup.inputs.shard;
-  shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
+  shard ? make_folder(setup.output, "choose another with " + as_option("out")) : prepare_output(setup.output);
   session.run(threads);
   const bool interrupted = session.stop;
   if (interrupted && shard) return;
@@ -112,6 +114,9 @@ ExitStatus run_session(Session& session, const std::string& name, const Argument
     document["leaders"] = json_of(leaders);
   });
   if (setup.inputs.shard && !session.stop) text = shard_text(session);
+  document["maps"] = list_of(count_maps(session.resolver, session.store), [](const MapCount& count) {
+    return Json{{"model", count.model}, {"computed", count.computed}, {"read", count.read}};
+  });
   document.update(summary_of(session));
   print_report(format, name, document, arguments.quiet ? "" : text);
   if (!session.stop) return finished_status(session);
@@ -124,7 +129,8 @@ ExitStatus run_session(Session& session, const std::string& name, const Argument
 Subcommand run_subcommand(Arguments& arguments) {
   const FormatWord word = default_format();
   return {"run", "compute what is missing and write the tables",
-          run_parameters(arguments, {shard_parameter(arguments), format_parameter(word)}),
+          running_parameters(
+              arguments, {output_parameter(arguments), shard_parameter(arguments), format_parameter(word)}),
           [&arguments, word](const std::atomic<bool>& stop) {
             const ReportFormat format = format_of(word);
             Session session(arguments, stop);

@@ -122,7 +122,7 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) 
 }
 
 void prepare_output(const fs::path& folder) {
-  make_folder(folder, "choose another with --out");
+  make_folder(folder, "choose another with " + as_option("out"));
   visit_abandoned(folder, [](const fs::path& file) { fs::remove(file); });
   write_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
 }

@@ -89,11 +89,14 @@ std::vector<std::string> notes_of(const Table& table, const std::vector<ScoreCol
   std::vector<std::string> left_out;
   std::ranges::copy_if(table.columns, std::back_inserter(left_out),
                        [&](const std::string& name) { return !known.contains(name); });
-  if (left_out.empty()) return {};
-  return {
-      fmt::format("{}: columns that are no metrics of the program were left out: {}; name them with "
-                  "--higher or --lower",
-                  table.name, fmt::join(left_out, ", "))};
+  std::vector<std::string> notes;
+  for (const std::string& remark : table.remarks) notes.push_back(fmt::format("{}: {}", table.name, remark));
+  if (!left_out.empty())
+    notes.push_back(
+        fmt::format("{}: columns that are no metrics of the program were left out: {}; name them with "
+                    "--higher or --lower",
+                    table.name, fmt::join(left_out, ", ")));
+  return notes;
 }
 
 }  // namespace

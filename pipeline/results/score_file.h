@@ -14,7 +14,7 @@ namespace salbench {
 struct ScoreFile {
   std::vector<ResultRow> rows;
   Metrics metrics;                 // by name, direction and nothing else
-  std::vector<std::string> notes;  // columns that were left out
+  std::vector<std::string> notes;  // remarks of the file; columns that were left out
 };
 
 struct ScoreColumns {

@@ -54,8 +54,8 @@ TEST(Usage, AnUnknownWordGetsTheNearestKnownOne) {
   EXPECT_EQ(said_of({"rnu", "a.yaml"}), "error: there is no subcommand 'rnu'; did you mean 'run'?\n");
   EXPECT_EQ(said_of({"run", "a.yaml", "--item", "1"}),
             "error: run: there is no option '--item'; did you mean '--items'?\n");
-  EXPECT_EQ(said_of({"plan", "a.yaml", "--qiet"}),
-            "error: plan: there is no option '--qiet'; did you mean '--quiet'?\n");
+  EXPECT_EQ(said_of({"run", "a.yaml", "--qiet"}),
+            "error: run: there is no option '--qiet'; did you mean '--quiet'?\n");
   EXPECT_EQ(said_of({"frobnicate"}),
             "error: there is no subcommand 'frobnicate'; salbench --help names them\n");
   const Workspace toy;

@@ -131,12 +131,13 @@ TEST_F(WithSplits, ANameThatIsNoItemIsNotedWithItsLine) {
 
 TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {
   const std::string splits = "splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n";
-  EXPECT_THAT([&] { run_splits(splits, "tets"); },
-              ThrowsMessage<ConfigError>("split 'tets': the data set has no such split; did you mean 'test'? "
-                                         "it has test, train (" +
-                                         (folder_ / "own.yaml").string() + ":4)"));
+  EXPECT_THAT(
+      [&] { run_splits(splits, "tets"); },
+      ThrowsMessage<UnknownNameError>("split 'tets': the data set has no such split; did you mean 'test'? "
+                                      "it has test, train (" +
+                                      (folder_ / "own.yaml").string() + ":4)"));
   EXPECT_THAT([&] { run_splits("", "test"); },
-              ThrowsMessage<ConfigError>(HasSubstr("split 'test': the data set has no splits")));
+              ThrowsMessage<UnknownNameError>(HasSubstr("split 'test': the data set has no splits")));
   EXPECT_THAT([&] { run_splits("splits: {file: splits.csv}\n", "test"); },
               ThrowsMessage<ConfigError>(HasSubstr(place("splits.csv") + ": is missing (")));
 }
