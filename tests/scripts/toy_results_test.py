@@ -34,8 +34,8 @@ class ToyResultsTest(unittest.TestCase):
         cls.out, cls.export = folder / "out", folder / "out/shapes.h5"
         ran(SCRIPTS / "slurm/toy_meshes.py", folder / "meshes", "2", "24", "12")
         (folder / "toy.yaml").write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\n")
-        options = [folder / "toy.yaml", "--data", folder / "meshes", "--cache", folder / "cache", "--out", cls.out, "--quiet"]
-        ran(PROGRAM, "run", *options)
+        options = [folder / "toy.yaml", "--data", folder / "meshes", "--cache", folder / "cache", "--quiet"]
+        ran(PROGRAM, "run", *options, "--out", cls.out)
         ran(PROGRAM, "pictures", *options)
         ran(PROGRAM, "export", *options, "--to", cls.export)
 
