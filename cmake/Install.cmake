@@ -83,7 +83,7 @@ Needs the package salbench for configurations and reports.")
   math(EXPR next "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, salbench (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "libjs-three, python3-pandas, python3-tqdm")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "libjs-three, python3-pandas, python3-scipy, python3-tqdm, python3-yaml")
 endif()
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every pair of models under every metric: significance.csv."""
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.pairs import Pairs
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import CI95, DATASET, METRIC, N_SHAPES, SPLIT, N, Part, count, framed, number, text
+from salbench.conclusions.units import Level
+
+COLUMNS = (
+    DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
+    number("mean_difference", "mean over the units of a - b"), *CI95, number("t_p", "two-sided p of the paired t-test"),
+    number("ci90_low", "90 % interval, lower end: within -+ margin, the two are equivalent at 0.05"), number("ci90_high", "upper end"),
+    number("d_z", "mean difference over the standard deviation of the differences"),
+    number("rank_biserial", "matched-pairs rank-biserial correlation, -1 to 1"),
+    number("superiority", "probability that a is higher on a new unit"), number("superiority_low", "its 95 % interval (Wilson)"),
+    number("superiority_high", "upper end"), number("rank_sum_z", "the paper's rank-sum test, over all shapes of each model"),
+    number("rank_sum_p", "two-sided p"), number("signed_rank", "the smaller sum of ranks"),
+    number("signed_rank_p", "two-sided p of the signed-rank test"),
+    number("signed_rank_p_holm", "after Holm's correction over the pairs of the data set and metric"), count("n_tests", "that many"))
+
+
+def significance(study: Study) -> pandas.DataFrame:
+    """A row per data set, metric and pair of models, references included. Differences are a - b."""
+    parts = (_part(level, metric, pairs) for level, of_level in study.pairs for metric, pairs in enumerate(of_level))
+    return framed(COLUMNS, parts, study.in_splits)
+
+
+def _part(level: Level, metric: int, pairs: Pairs) -> Part:
+    names = np.array(level.models, dtype=object)
+    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[pairs.a],
+            "model_b": names[pairs.b], "n": pairs.n, "n_shapes": pairs.n_shapes, **pairs.paired._asdict(),
+            "rank_sum_z": pairs.rank_sum_z, "rank_sum_p": pairs.rank_sum_p, "signed_rank_p_holm": pairs.holm,
+            "n_tests": np.count_nonzero(~np.isnan(pairs.holm))}

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""conclude() on folders: which files it reads and writes, what it prints, how it fails; and how a table is added."""
+
+import ast
+import contextlib
+import io
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+import pandas
+from support import row, scores_of
+
+from salbench import __main__, conclusions
+from salbench.conclusions import Table, folders, tables
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import DATASET, framed, number
+
+PACKAGE = Path(conclusions.__file__).parent
+SIMULATED = "SIMULATED participants: made up"
+RUN = """results: finished
+metrics:
+  auc: {unit: "1", better: higher, matching: histogram}
+  kl: {unit: bit, better: lower, matching: none}
+scores_digest: 0123abcd
+configuration:
+  seed: 7
+  statistics:
+    unit: mesh
+"""
+
+
+def made_up_rows(metrics=2):
+    rng = np.random.default_rng(9)
+    return [row(mesh, view, model, *(m / 10 + rng.random(metrics)), category=f"class {mesh % 3}")
+            for mesh in range(9) for view in ("", 0, 1) for m, model in enumerate(("A", "B", "HS", "RS"))]
+
+
+class FolderTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write_run(self, remarks=()):
+        frame = scores_of(made_up_rows(), ("auc", "kl")).frame.drop(columns="split")
+        (self.folder / "results.csv").write_text(tables.csv(frame, remarks))
+        (self.folder / "constant.csv").write_text(tables.csv(frame[frame["model"] == "A"].assign(model="constant", auc=.5, kl=1.0)))
+        people = [(mesh, f"class {mesh % 3}", n, .5 + n / 100 + mesh / 1000, 1.0) for mesh in range(9) for n in (1, 2, 3)]
+        (self.folder / "people.csv").write_text(tables.csv(pandas.DataFrame(people, columns=["item", "class", "n", "auc", "kl"])))
+        (self.folder / "run.yaml").write_text(RUN)
+
+    def call(self, *arguments):
+        """Exit status, and what was printed."""
+        out, errors = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
+            try:
+                status = __main__.main([*map(str, arguments)])
+            except SystemExit as stopped:
+                status = stopped.code
+        return status, out.getvalue(), errors.getvalue()
+
+    def document(self, folder=None):
+        return json.loads(((folder or self.folder) / "conclusions.json").read_text())
+
+    def files(self, folder=None):
+        return {path.name: path.read_bytes() for path in (folder or self.folder).iterdir()}
+
+
+class ConcludeTest(FolderTest):
+    def test_a_run_has_every_table_below_its_remarks(self):
+        self.write_run([SIMULATED])
+        (self.folder / "smoothing.csv").write_text("of an earlier run\n")
+        status, out, errors = self.call("conclude", self.folder)
+        self.assertEqual((status, errors), (0, ""))
+        there = {path.stem for path in self.folder.glob("*.csv")} - {"results", "constant", "people"}
+        self.assertEqual(there, {table.name for table in conclusions.TABLES} - {"smoothing", "statements"})
+        document = self.document()
+        self.assertEqual(set(document["tables"]), {f"{name}.csv" for name in there})
+        self.assertEqual([document[name] for name in ("format", "of", "unit")], [1, "0123abcd", "mesh"])
+        for name in document["tables"]:
+            self.assertTrue((self.folder / name).read_text().startswith(f"# {SIMULATED}\n"), name)
+        head, _, tail = document["text"].partition("\n\n")
+        self.assertTrue(head.startswith("dataset  model  metric"))
+        self.assertEqual(tail.splitlines()[0], SIMULATED)
+        self.assertEqual(out, document["text"] + f"one observation per mesh; tables in {self.folder}\n")
+
+    def test_another_unit_is_not_what_the_program_asked_for(self):
+        self.write_run()
+        for unit, of in (("class", None), ("mesh", "0123abcd")):
+            self.call("conclude", self.folder, "--unit", unit, "--out", self.folder / unit)
+            self.assertEqual(self.document(self.folder / unit)["of"], of)
+        self.call("conclude", self.folder, "--of", "beef")
+        self.assertEqual(self.document()["of"], "beef")
+
+    def test_a_table_of_anybody(self):
+        file = self.folder / "scores.csv"
+        file.write_text("item,model,auc,depth,mine\n1,A,.5,1,2\n2,A,.6,1,3\n")
+        out = self.folder / "tables"
+        status, text, errors = self.call("conclude", file, "--out", out, "--higher", "mine", "--format", "json")
+        self.assertEqual((status, errors), (0, f"warning: {file}: columns that are no metrics of the program were left out: depth; name them with "
+                                              "--higher or --lower\n"))
+        document = json.loads(text)
+        self.assertEqual(list(document), ["schema", "command", "results", "unit", "scores", "leaders"])
+        self.assertEqual(document["scores"][0] | {"ci95_low": "", "ci95_high": ""}, {
+            "dataset": "meshes", "model": "A", "metric": "auc", "n": "2", "mean": "0.55", "ci95_low": "", "ci95_high": "", "rank": "1", "group": "a"})
+        self.assertEqual(document["leaders"][0]["metrics"][0]["lead"], None)  # JSON knows no NaN
+        self.assertEqual(self.document(out)["of"], None)
+
+    def test_the_same_bytes_whatever_the_number_of_threads(self):
+        self.write_run()
+        made = []
+        for threads in ("1", "8"):
+            limits = {name: threads for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS")}
+            script = "import os, sys; os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:int(sys.argv[1])]); from salbench import __main__; " \
+                     "sys.exit(__main__.main(['conclude', sys.argv[2], '--out', sys.argv[3], '--quiet']))"
+            subprocess.run([sys.executable, "-B", "-c", script, threads, self.folder, self.folder / threads], check=True, env=os.environ | limits)
+            made.append(self.files(self.folder / threads))
+        self.assertEqual(*made)
+
+    def test_power_prints_its_table(self):
+        self.write_run()
+        status, out, _ = self.call("power", self.folder, "--to", self.folder / "mine.csv")
+        self.assertEqual(status, 0)
+        self.assertIn("n_to_detect: how many would show", out)
+        self.call("conclude", self.folder, "--quiet")
+        self.assertEqual((self.folder / "mine.csv").read_text(), (self.folder / "power.csv").read_text())
+
+
+class FailureTest(FolderTest):
+    def test_unusable_arguments(self):
+        self.write_run()
+        unfinished = self.folder / "unfinished"
+        unfinished.mkdir()
+        (unfinished / "run.yaml").write_text("# a run is under way, or was ended before its end\n")
+        for arguments, said in (
+                (["conclude", self.folder, "--unit", "foo"], "--unit foo: must be one of mesh, class, shape"),
+                (["conclude", self.folder, "--format", "xml"], "--format xml: must be text or json"),
+                (["conclude", self.folder / "none.csv"], "none.csv: cannot be read: No such file or directory"),
+                (["conclude", unfinished], "is no record of a finished run"),
+                (["conclude", self.folder, "--uni", "mesh"], "--uni"),
+                (["conclude"], "OUT|SCORES.csv"), (["foo"], "there is no subcommand 'foo'"), ([], "there is no subcommand")):
+            status, out, errors = self.call(*arguments)
+            self.assertEqual((status, out), (2, ""), arguments)
+            self.assertTrue(errors.startswith("error: ") and said in errors and errors.count("\n") == 1, errors)
+
+    def test_a_folder_that_cannot_be_written(self):
+        self.write_run()
+        (self.folder / "file").write_text("")
+        status, _, errors = self.call("conclude", self.folder, "--out", self.folder / "file" / "below")
+        self.assertEqual(status, 3)
+        self.assertIn("the folder cannot be created: Not a directory; choose another with --out", errors)
+        (self.folder / "summary.csv").mkdir()
+        status, _, errors = self.call("conclude", self.folder)
+        self.assertEqual(status, 3)
+        self.assertFalse([name for name in os.listdir(self.folder) if name.endswith(".unfinished")])
+
+    def test_a_defect_leaves_the_scores_and_no_document(self):
+        self.write_run()
+        self.call("conclude", self.folder, "--quiet")
+        results = (self.folder / "results.csv").read_bytes()
+        with mock.patch.object(conclusions, "TABLES", (Table("summary", lambda study: 1 / 0),)):  # type: ignore
+            status, _, errors = self.call("conclude", self.folder)
+        self.assertEqual((status, errors), (70, "error: a defect of salbench, please report it: ZeroDivisionError: division by zero\n"))
+        self.assertEqual((self.folder / "results.csv").read_bytes(), results)
+        self.assertFalse((self.folder / "conclusions.json").exists())
+
+
+# A table of one's own: its columns, its function of a study and a row of the list; no other place knows of it.
+SPREAD = (DATASET, number("spread", "largest less smallest score of all"))
+
+
+def spread(study: Study) -> pandas.DataFrame:
+    return framed(SPREAD, ({"dataset": level.dataset, "spread": np.ptp(level.values)} for level in study.levels))
+
+
+class AddOneTest(FolderTest):
+    def test_a_table_is_a_function_and_a_row(self):
+        self.write_run()
+        with mock.patch.object(conclusions, "TABLES", (*conclusions.TABLES, Table("spread", spread))):
+            self.assertEqual(self.call("conclude", self.folder, "--quiet")[0], 0)
+        self.assertIn("spread.csv", self.document()["tables"])
+        found = pandas.read_csv(self.folder / "spread.csv")
+        scores = pandas.read_csv(self.folder / "results.csv")
+        of_meshes = scores.loc[scores["dataset"] == "meshes", ["auc", "kl"]].to_numpy()
+        self.assertAlmostEqual(found["spread"][0], np.ptp(of_meshes))
+
+
+class LayersTest(unittest.TestCase):
+    """Who may import what: conclusions stand on arrays and frames, and files are folders' alone."""
+
+    FILES = {"folders", "csv_file", "scores", "statements", "__init__"}  # that know of paths
+    BELOW = {"numpy", "pandas", "scipy", "salbench"}
+
+    def imports(self, path):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                yield from (alias.name for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+    def test_conclusions_import_no_other_part_of_the_package(self):
+        for path in PACKAGE.glob("*.py"):
+            for name in self.imports(path):
+                top, *rest = name.split(".")
+                self.assertTrue(top in self.BELOW | {"yaml"} or top in sys.stdlib_module_names, f"{path.name}: {name}")
+                if top == "salbench":
+                    self.assertTrue(rest[0] in ("conclusions", "_core"), f"{path.name}: {name}")
+                self.assertFalse(name.startswith(("pathlib", "os", "yaml", "tempfile")) and path.stem not in self.FILES | {"parallel"}, f"{path.name}: {name}")
+
+    def test_no_module_imports_one_that_imports_it(self):
+        below = {path.stem: {name.split(".")[2] for name in self.imports(path) if name.startswith("salbench.conclusions.")} for path in PACKAGE.glob("*.py")}
+        done = set()
+        while ready := {name for name, needs in below.items() if name not in done and needs & set(below) <= done}:
+            done |= ready
+        self.assertEqual(set(below) - done, set())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sentences on who leads say what the intervals of the ranks allow and no more; compact intervals stay within the range of their metric."""
+
+import collections
+import unittest
+
+import numpy as np
+from support import NAN, row, study_of
+
+from salbench.conclusions.compact import compact
+from salbench.conclusions.leaders import find_leaders, leaders
+from salbench.conclusions.means import summary
+from salbench.conclusions.metrics import Metric, of_program
+from salbench.conclusions.words import leading_metrics
+
+
+def scored(models, meshes, noise=.01, split="", dataset=""):
+    """Scores of meshes that differ much between meshes and little between models, which are named with their means."""
+    rng = np.random.default_rng(7)
+    of_mesh = .05 * rng.normal(size=meshes)
+    return [row(f"{split}{mesh}", "", model, mean + of_mesh[mesh] + noise * rng.normal(), split=split)
+            for mesh in range(meshes) for model, mean in models.items()]
+
+
+def level_of(rows, metrics=("auc",)):
+    (level,) = find_leaders(study_of(rows, metrics))
+    return level
+
+
+class LeadersTest(unittest.TestCase):
+    def test_one_that_is_ahead_of_all_leads(self):
+        level = level_of(scored({"A": .6, "B": .5, "C": .45}, 20))
+        leader = level.leaders[0]
+        self.assertEqual((leader.verdict, leader.models, leader.second), ("leads", ["A"], "B"))
+        self.assertGreater(leader.lead_interval[0], 0)
+        self.assertAlmostEqual(leader.lead, .1, delta=.02)
+        self.assertRegex(level.sentence, r"^On 20 meshes, A leads by AUC \(mean 0\.\d{3}, 95 % interval 0\.\d{3} to 0\.\d{3}\)\.$")
+
+    def test_equal_models_cannot_be_told_apart(self):
+        level = level_of(scored({"A": .5, "B": .5, "C": .2}, 20))
+        leader = level.leaders[0]
+        self.assertEqual((leader.verdict, sorted(leader.models)), ("not told apart", ["A", "B"]))
+        self.assertLess(leader.lead_interval[0], 0)
+        self.assertRegex(level.sentence, r"by AUC \([AB] mean .*\), ([AB]) and [AB] cannot be told apart\.$")
+
+    def test_a_noisy_model_keeps_the_best_one_from_leading(self):  # A is ahead of B, but not of C, which varies much
+        rng = np.random.default_rng(3)
+        rows = [row(mesh, "", model, mean + .001 * rng.normal()) for mesh in range(12)
+                for model, mean in (("A", .6), ("B", .55), ("C", .9 if mesh % 2 == 0 else .1))]
+        level = level_of(rows)
+        self.assertNotEqual(level.leaders[0].verdict, "leads")
+        self.assertRegex(level.sentence, "cannot be told apart.*C|C.*cannot be told apart")
+
+    def test_a_metric_where_lower_is_better_is_led_by_the_lowest(self):
+        leader = level_of(scored({"A": .6, "B": .5}, 20), ("mse",)).leaders[0]
+        self.assertEqual(leader.models, ["B"])
+        self.assertGreater(leader.lead_interval[0], 0)
+
+    def test_references_are_no_candidates(self):
+        leader = level_of(scored({"HS": .9, "A": .6, "B": .5, "RS": .8}, 20)).leaders[0]
+        self.assertEqual((leader.models, leader.n_models), (["A"], 2))
+        alone = level_of(scored({"HS": .9, "RS": .5}, 20))
+        self.assertEqual((alone.leaders, alone.sentence), ([], "On meshes, no model has scores but references."))
+
+    def test_one_mesh_one_model_and_no_common_shape_are_said(self):
+        self.assertEqual(level_of(scored({"A": .6, "B": .5}, 1)).sentence, "On 1 mesh, one observation does not tell how the models rank by AUC.")
+        self.assertRegex(level_of(scored({"A": .6}, 5)).sentence, r"A is the only model that is scored by AUC \(mean")
+        self.assertEqual(level_of([row(1, "", "A", .5), row(2, "", "B", .6)]).sentence, "On meshes, no shape has scores of all models by AUC.")
+
+    def test_metrics_that_say_the_same_share_a_clause(self):
+        rows = [(*cells, cells[-1], .5) for cells in scored({"A": .6, "B": .5}, 20)]
+        sentence = level_of(rows, ("auc", "nss", "lcc")).sentence
+        self.assertRegex(sentence, r"A leads by AUC \(mean [0-9., a-z%]*\) and NSS \(0.*; by LCC \(A 0\.500, no interval\), A and B cannot")
+
+    def test_views_are_counted_beside_their_meshes(self):
+        rows = [("scans", *cells[1:4], view, *cells[5:]) for cells in scored({"A": .6, "B": .5}, 20) for view in "01"]
+        self.assertRegex(level_of(rows).sentence, "^On 40 scans of 20 meshes, A leads")
+
+    def test_each_split_has_a_sentence_of_its_own(self):
+        study = study_of(scored({"A": .6, "B": .5}, 10, split="train") + scored({"A": .5, "B": .6}, 10, split="test"))
+        _, train, test = find_leaders(study)
+        self.assertRegex(train.sentence, "^On 10 meshes of split train, A leads")
+        self.assertRegex(test.sentence, "^On 10 meshes of split test, B leads")
+        self.assertEqual(list(leaders(study)["split"]), ["", "", "train", "train", "test", "test"])
+
+    def test_the_table_has_the_sentence_and_a_row_per_metric(self):
+        study = study_of(scored({"A": .6, "B": .5}, 20))
+        table = leaders(study)
+        self.assertEqual([list(table[name]) for name in ("metric", "verdict", "leaders")], [["", "auc"], ["", "leads"], ["", "A"]])
+        self.assertEqual(set(table["sentence"]), {find_leaders(study)[0].sentence})
+
+    def test_long_lists_are_cut_and_leading_metrics_are_the_papers(self):
+        self.assertIn("and 8 others cannot be told apart", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .5), 20)).sentence)
+        self.assertEqual(leading_metrics([Metric(name) for name in ("lcc", "kl", "auc", "sim", "mse")]), ["auc", "lcc", "kl"])
+
+    def test_no_sentence_claims_more_than_its_interval(self):  # over many made-up data sets
+        seen = collections.Counter()
+        for trial in range(60):
+            apart = .0004 * trial
+            level = level_of(scored({"A": .5 + apart, "B": .5, "C": .5 - apart}, 8))
+            leader = level.leaders[0]
+            seen[leader.verdict] += 1
+            self.assertEqual(" leads " in level.sentence, leader.verdict == "leads")
+            self.assertTrue(leader.lead_interval[0] > 0 or leader.verdict != "leads", level.sentence)
+        self.assertTrue(seen["leads"] and seen["not told apart"], seen)
+
+
+class CompactTest(unittest.TestCase):
+    def test_intervals_stay_within_the_range_of_the_metric(self):
+        study = study_of(scored({"A": .99, "B": .5}, 3, .002))
+        a, b = (found for _, found in compact(study).iterrows())
+        self.assertEqual(a["high"], max(1, a["mean"]))
+        self.assertTrue(np.isnan(a["half"]))  # not the same on both sides
+        self.assertLess(b["high"], 1)
+        self.assertAlmostEqual(b["half"], b["high"] - b["mean"], delta=1e-12)
+        self.assertGreater(summary(study)["ci95_high"][0], 1)  # which has the whole interval
+
+    def test_a_model_that_failed_is_compared_on_the_common_shapes_and_counted(self):
+        rows = scored({"A": .6, "B": .5, "HS": .7}, 10)
+        rows[0] = (*rows[0][:-1], NAN)  # A on the first mesh
+        table = compact(study_of(rows))
+        self.assertEqual({name: list(table[name]) for name in ("model", "kind", "n_missing", "n_shapes", "best")}, {
+            "model": ["A", "B", "HS"], "kind": ["model", "model", "reference"], "n_missing": [1, 0, 0], "n_shapes": [9, 9, 9], "best": [1, 0, 0]})
+        self.assertTrue(table["rank"].isna()[2])
+
+    def test_every_metric_of_the_unit_1_is_bounded(self):
+        from salbench import metrics
+
+        units = {metric.name: metric.unit for metric in metrics.table()}
+        for name, metric in of_program().items():
+            self.assertLess(metric.low, metric.high)
+            self.assertEqual(np.isfinite([metric.low, metric.high]).all(), units[name] == "1", name)
+        self.assertEqual((of_program()["kl_area"].low, of_program()["cc"].low), (0, -1))
+
+
+if __name__ == "__main__":
+    unittest.main()

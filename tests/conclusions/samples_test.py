@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Statistics of samples and pairs: worked out by hand, and beside SciPy and statsmodels on random samples with and without ties."""
+
+import itertools
+import unittest
+
+import numpy as np
+from scipy import special, stats
+from statsmodels.stats.multitest import multipletests
+from statsmodels.stats.proportion import proportion_confint
+from statsmodels.stats.weightstats import DescrStatsW
+from support import NAN
+
+from salbench.conclusions.pairs import compare, holm_adjusted, rank_sum_test, signed_rank_test, wilson_interval
+from salbench.conclusions.samples import summarise
+
+
+def column(*values):
+    return np.array(values, dtype=float)[:, None]
+
+
+def random_samples(columns=1):
+    """Of several sizes, rounded or not."""
+    rng = np.random.default_rng(3)
+    for n, step in itertools.product((2, 3, 5, 12, 39, 50, 51, 120), (0, .25, .5)):
+        values = rng.normal(size=(n, columns)) * np.exp(rng.normal()) + .3 * rng.normal()
+        yield step * np.round(values / step) if step else values
+
+
+class SummaryTest(unittest.TestCase):
+    def test_five_values_by_hand(self):
+        found = summarise(column(1, 2, 3, 4, 5))
+        half = 2.7764451051977987 * .5**.5  # t(0.975, 4) of the tables
+        np.testing.assert_allclose(np.ravel(found[1:]), [3, 2.5**.5, 3 - half, 3 + half], rtol=1e-9)
+
+    def test_two_values_have_the_interval_of_cauchys_distribution(self):
+        np.testing.assert_allclose(summarise(column(-1, 1)).high, np.tan(.475 * np.pi), rtol=1e-7)
+
+    def test_few_or_equal_values_have_no_interval(self):
+        for values, mean, sd in ((column(), NAN, NAN), (column(7), 7, NAN), (column(.1, .1, .1), .1, 0)):
+            found = summarise(values.reshape(-1, 1))
+            np.testing.assert_array_equal(np.ravel(found[1:]), [mean, sd, NAN, NAN])  # 0.1 + 0.1 + 0.1 rounds: not here
+
+    def test_values_beyond_the_square_root_of_the_largest_double(self):
+        found = summarise(column(1e308, 1.2e308, 1.1e308))
+        np.testing.assert_allclose(np.ravel(found[1:3]), [1.1e308, 1e307], rtol=1e-12)
+        self.assertTrue(np.isfinite(found.high))
+
+    def test_equals_statsmodels(self):
+        for values in random_samples(4):
+            values = values[:, np.ptp(values, axis=0) > 0]
+            theirs, found = DescrStatsW(values), summarise(values)
+            np.testing.assert_allclose(found.mean, theirs.mean, atol=1e-12)
+            np.testing.assert_allclose((found.low, found.high), theirs.tconfint_mean(), rtol=1e-7, atol=1e-12)
+
+
+class PairsTest(unittest.TestCase):
+    def test_a_hand_made_example(self):
+        found = compare(column(1, 2, -1, 4))
+        half = 2.353363434801824 * (13 / 3) ** .5 / 2  # t(0.95, 3) of the tables
+        expected = {"mean_difference": 1.5, "d_z": 1.5 / (13 / 3) ** .5, "rank_biserial": (8.5 - 1.5) / 10, "superiority": .75,
+                    "ci90_low": 1.5 - half, "ci90_high": 1.5 + half, "signed_rank": 1.5}  # ranks 1.5, 3, -1.5, 4
+        for name, value in expected.items():
+            np.testing.assert_allclose(getattr(found, name), value, rtol=1e-7, err_msg=name)
+
+    def test_one_unit_has_a_difference_and_models_that_agree_no_interval(self):
+        one = compare(column(1))._asdict()
+        self.assertEqual([name for name, value in one.items() if not np.isnan(value)], ["mean_difference", "signed_rank", "signed_rank_p"])
+        equal = compare(column(0, 0, 0, 0, 0))
+        self.assertEqual([float(value) for value in (equal.t_p, equal.superiority, equal.rank_biserial, equal.signed_rank_p)], [1, .5, 0, 1])
+        self.assertTrue(np.isnan(equal.ci95_low) and np.isnan(equal.d_z))
+        self.assertEqual(float(compare(column(2, 2, 2)).t_p), 0)
+
+    def test_swaps_with_its_models(self):
+        differences = column(-1, 0, 2, 1.5, .5)
+        ab, ba = compare(differences), compare(-differences)
+        np.testing.assert_allclose([ab.mean_difference, ab.ci95_low, ab.t_p, ab.rank_biserial, ab.superiority, ab.superiority_low],
+                                   [-ba.mean_difference, -ba.ci95_high, ba.t_p, -ba.rank_biserial, 1 - ba.superiority, 1 - ba.superiority_high])
+
+    def test_equals_scipy_and_statsmodels(self):
+        for differences in random_samples(3):
+            found = compare(differences)
+            for at, d in enumerate(differences.T):
+                n, mine = len(d), {name: float(values[at]) for name, values in found._asdict().items()}
+                with self.subTest(n=n, at=at):
+                    self.compare_one(d, mine)
+
+    def compare_one(self, d, mine):
+        if np.ptp(d) > 0:
+            theirs = DescrStatsW(d)
+            low, high = theirs.tconfint_mean(.1)
+            self.near(mine, ci90_low=low, ci90_high=high, t_p=theirs.ttest_mean(0)[1], d_z=d.mean() / d.std(ddof=1))
+        ranks, signs = stats.rankdata(np.abs(d[d != 0])), np.sign(d[d != 0])
+        wins = np.mean(d > 0) + np.mean(d == 0) / 2
+        low, high = proportion_confint(wins * len(d), len(d), method="wilson")
+        self.near(mine, rank_biserial=(ranks * signs).sum() / ranks.sum() if len(ranks) else 0, superiority=wins,
+                  superiority_low=low, superiority_high=high)
+        if d.any():
+            # SciPy before 1.11 takes the exact distribution for tied differences too, where it does not hold.
+            exact = len(d) <= 50 and len(set(np.abs(d))) == len(d) and (d != 0).all()
+            statistic, p = stats.wilcoxon(d, method="exact" if exact else "approx")
+            self.near(mine, signed_rank=statistic, signed_rank_p=p)
+
+    def near(self, mine, **theirs):
+        for name, value in theirs.items():
+            np.testing.assert_allclose(mine[name], value, rtol=1e-7, atol=1e-12, err_msg=name)
+
+    def test_the_interval_and_the_test_decide_alike(self):
+        differences = np.random.default_rng(1).normal(.7, 2**.5, size=(10, 300))
+        found = compare(differences)
+        outside = (found.ci95_low > 0) | (found.ci95_high < 0)
+        np.testing.assert_array_equal(found.t_p < .05, outside)
+        self.assertTrue(30 < outside.sum() < 270)
+
+    def test_wilsons_interval_of_no_win(self):
+        low, high = wilson_interval(np.array([0.0, .5]), 10)
+        np.testing.assert_allclose([*low, *high], [0, .2366, .2775, .7634], atol=1e-4)  # z^2 / (n + z^2)
+
+
+class RankTestsTest(unittest.TestCase):
+    def test_signed_ranks_equal_an_enumeration_of_all_signs(self):
+        rng = np.random.default_rng(4)
+        for n in range(1, 11):
+            d = rng.normal(.4, 1, size=(n, 5))
+            _, _, p = signed_rank_test(d)
+            patterns = np.array(list(itertools.product((0, 1), repeat=n)))
+            for at in range(5):
+                ranks = stats.rankdata(np.abs(d[:, at]))
+                away = np.abs(patterns @ ranks - ranks.sum() / 2)
+                self.assertAlmostEqual(p[at], np.mean(away >= abs(ranks[d[:, at] > 0].sum() - ranks.sum() / 2)), delta=1e-12)
+
+    def test_fifty_are_exact_and_fifty_one_are_not(self):
+        for n, p in ((50, 2.0**-49), (51, 2 * special.ndtr(-(51 * 52 / 4) / (51 * 52 * 103 / 24) ** .5))):
+            self.assertAlmostEqual(float(signed_rank_test(np.arange(1.0, n + 1)[:, None])[2]) / p, 1, delta=1e-9)
+
+    def test_ties_take_the_corrected_normal_approximation(self):
+        _, statistic, p = signed_rank_test(column(1, -1, 2, 2, 2))
+        variance = (5 * 6 * 11 - (6 + 24) / 2) / 24
+        self.assertEqual(float(statistic), 1.5)
+        self.assertAlmostEqual(float(p), 2 * special.ndtr(-6 / variance**.5))
+
+    def test_rank_sums_by_hand_and_beside_scipy(self):
+        self.assertEqual(rank_sum_test(np.array([1.0, 2, 4]), np.array([3.0, 5, 6, 7]))[0], (1 - 6) / 8**.5)  # only 4 lies above 3
+        for values in random_samples(2):
+            x, y = np.sort(values[:, 0]), np.sort(values[: 1 + len(values) // 2, 1])
+            np.testing.assert_allclose(rank_sum_test(x, y), stats.ranksums(x, y), rtol=1e-9, atol=1e-12)
+        self.assertTrue(np.isnan(rank_sum_test(np.array([]), np.array([1.0]))[1]))
+
+    def test_holms_adjustment(self):
+        np.testing.assert_allclose(holm_adjusted(np.array([.01, .04, .03, .005])), [.03, .06, .06, .02])
+        np.testing.assert_allclose(holm_adjusted(np.array([NAN, .01, .02])), [NAN, .02, .02])  # NaN is no test
+        p = np.random.default_rng(5).random(20) ** 4
+        np.testing.assert_allclose(holm_adjusted(p), multipletests(p, method="holm")[1])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames have their columns and types whatever their rows; their text in files and on a console; every column is documented."""
+
+import csv
+import io
+import re
+import unittest
+from pathlib import Path
+
+import pandas
+from support import NAN
+
+from salbench import conclusions
+from salbench.conclusions import tables
+from salbench.conclusions.tables import SPLIT, count, framed, number, optional_count, text
+
+ROOT = Path(__file__).resolve().parents[2]
+COLUMNS = (text("name", "a name"), SPLIT, count("n", "so many"), optional_count("rank", "if any"), number("mean", "of them"))
+
+
+class FramesTest(unittest.TestCase):
+    def test_have_the_same_columns_and_types_without_rows(self):
+        parts = [{"name": "a", "split": "", "n": 3, "rank": [1, NAN], "mean": [.5, NAN]}, {"name": ["b"], "split": "", "n": [2], "rank": 2.0, "mean": 1}]
+        full, empty = framed(COLUMNS, parts, in_splits=False), framed(COLUMNS, [], in_splits=False)
+        self.assertEqual([str(kind) for kind in full.dtypes], ["object", "int64", "Int64", "float64"])
+        self.assertEqual(list(full.dtypes), list(empty.dtypes))
+        self.assertEqual(list(full["name"]), ["a", "a", "b"])
+        self.assertIn("split", framed(COLUMNS, parts))
+
+    def test_refuse_an_unknown_count(self):
+        with self.assertRaises(ValueError):
+            framed((count("n", "so many"),), [{"n": [1, NAN]}])
+
+
+class TextTest(unittest.TestCase):
+    FRAME = framed(COLUMNS, [{"name": ["a, \"b\"", "", "ö\nx"], "split": "", "n": [1, 2, 30], "rank": [1, NAN, 12], "mean": [1 / 3, NAN, -1e-7]}], False)
+
+    def test_of_a_file(self):
+        made = tables.csv(self.FRAME, ["PARTIAL: so far", "SIMULATED"])
+        self.assertEqual(made, '# PARTIAL: so far\n# SIMULATED\nname,n,rank,mean\n"a, ""b""",1,1,0.3333333333\n,2,,\n"ö\nx",30,12,-1e-07\n')
+        rows = list(csv.reader(io.StringIO(made.split("\n", 2)[2])))
+        self.assertEqual(rows[3], ["ö\nx", "30", "12", "-1e-07"])
+
+    def test_of_numbers_beyond_the_usual(self):
+        frame = framed((number("x", ""),), [{"x": [float("inf"), -float("inf"), 1e300, 123456789012345, 0.0, -0.0]}])
+        self.assertEqual([row["x"] for row in tables.records(frame)], ["inf", "-inf", "1e+300", "1.23456789e+14", "0", "-0"])
+
+    def test_of_a_row_of_one_empty_cell(self):  # a blank line would not be read as a row
+        self.assertEqual(tables.csv(framed((text("a", ""),), [{"a": ["", "b"]}])), 'a\n""\nb\n')
+
+    def test_of_a_console(self):  # numbers to the right, but for a column with empty cells
+        frame = framed(COLUMNS, [{"name": ["a", "long"], "split": "", "n": [1, 20], "rank": [1, NAN], "mean": [1 / 3, NAN]}], False)
+        self.assertEqual(tables.aligned(frame), "name  n   rank  mean\n".replace("n   rank  mean", " n  rank    mean")
+                         + "a      1  1     0.3333\nlong  20             -\n")
+        self.assertEqual(tables.aligned(framed((number("x", ""),), [{"x": [1e-6, 0]}])), "      x\n1.0e-06\n 0.0000\n")
+
+
+class DictionaryTest(unittest.TestCase):
+    def test_every_column_is_documented(self):
+        dictionary = (ROOT / "docs/data_dictionary.md").read_text(encoding="utf-8")
+        known = set(re.findall(r"`([a-z0-9_]+)`", dictionary)) | {f"{name}{end}" for name in ("ci95", "ci90", "bca95") for end in ("_low", "_high")}
+        for table in conclusions.TABLES:
+            self.assertTrue(f"`{table.name}.csv`" in dictionary, f"{table.name}.csv is not in docs/data_dictionary.md")
+            module = __import__(table.make.__module__, fromlist=["*"])
+            for name in dir(module):
+                columns = getattr(module, name)
+                if isinstance(columns, tuple) and columns and all(isinstance(column, tables.Column) for column in columns):
+                    for column in columns:
+                        self.assertTrue(column.name in known, f"{table.name}.csv: {column.name} is not in docs/data_dictionary.md")
+                        self.assertTrue(column.meaning)
+
+
+if __name__ == "__main__":
+    unittest.main()
