@@ -83,7 +83,7 @@ def _fill(cells: dict[str, Floats], study: Study, ranked: list[RankedMetric], on
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # where all models tie in all resamples, so that there is no interval
-        mapped(fill, tiles)
+        mapped(fill, tiles, study.threads)
 
 
 def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> Signs:

@@ -11,7 +11,9 @@ import numpy as np
 
 from salbench.conclusions.units import Floats
 
-_UNCLOSED = "unexpected end of data"  # by the words of the module csv
+# What the module csv says, in our words.
+_WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
+          "',' expected after '\"'": "there is text after the quote that closes a field"}
 
 
 class InputError(ValueError):
@@ -75,8 +77,7 @@ def _rows(reader: Any, name: str) -> Iterator[tuple[int, list[str]]]:
         try:
             fields = next(reader, None)
         except csv.Error as error:
-            what = "a quote opens a field that nothing closes" if str(error) == _UNCLOSED else str(error)
-            raise InputError(f"{name}:{line}: {what}") from None
+            raise InputError(f"{name}:{line}: {_WRONG.get(str(error), str(error))}") from None
         if fields is None:
             return
         if fields:

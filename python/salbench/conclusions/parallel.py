@@ -11,7 +11,7 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 
-def mapped(function: Callable[[T], R], items: Iterable[T]) -> list[R]:
-    """function(item) of each."""
-    with ThreadPoolExecutor(min(_MOST, len(os.sched_getaffinity(0)))) as threads:
-        return list(threads.map(function, items))
+def mapped(function: Callable[[T], R], items: Iterable[T], threads: int | None = None) -> list[R]:
+    """function(item) of each, in at most so many threads; None: one per core."""
+    with ThreadPoolExecutor(min(_MOST, threads or len(os.sched_getaffinity(0)))) as workers:
+        return list(workers.map(function, items))

@@ -27,8 +27,10 @@ FEWEST_OF_PERCENTILES = 6
 class Bootstrap:
     """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone."""
 
-    def __init__(self, seed: int, resamples: int = RESAMPLES) -> None:
+    def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
+        """threads: that may work on resamples; None: one per core."""
         self._seed, self._resamples = seed, resamples
+        self.threads = threads
         self._counts: dict[int, NDArray[np.uint8]] = {}
 
     def counts(self, n: int) -> NDArray[np.uint8]:
@@ -82,7 +84,7 @@ class Bootstrap:
                 units = slice(unit, unit + _BLOCK)
                 sums[rows] += counts[rows, units].astype(float) @ values[units]
 
-        mapped(multiply, range(0, len(counts), _BLOCK))
+        mapped(multiply, range(0, len(counts), _BLOCK), self.threads)
         return sums
 
 

@@ -66,7 +66,7 @@ def rank_level(level: Level, bootstrap: Bootstrap) -> list[RankedMetric]:
         first, *others = known[number]
         return RankedMetric(first, others, rank_models(first.scores.values, first.means, level.metrics[number].higher_is_better))
 
-    return mapped(rank, range(len(level.metrics)))
+    return mapped(rank, range(len(level.metrics)), bootstrap.threads)
 
 
 @dataclass(frozen=True)
@@ -77,6 +77,7 @@ class Study:
     smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
     constant: of the constant map, the columns of the scores.
     claims: what a text says of pairs of models, like configs/paper/claims.csv.
+    threads: that may work on it; no table depends on it. None: one per core.
     """
 
     scores: Scores
@@ -86,10 +87,11 @@ class Study:
     smoothed: pandas.DataFrame | None = None
     constant: pandas.DataFrame | None = None
     claims: pandas.DataFrame | None = None
+    threads: int | None = None
     bootstrap: Bootstrap = field(init=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "bootstrap", Bootstrap(self.seed))
+        object.__setattr__(self, "bootstrap", Bootstrap(self.seed, threads=self.threads))
 
     @cached_property
     def levels(self) -> list[Level]:
@@ -104,7 +106,7 @@ class Study:
     @cached_property
     def pairs(self) -> list[tuple[Level, list[Pairs]]]:
         """Each level with its pairs of models by each metric."""
-        return [(level, mapped(lambda metric: pairs_of(level, metric), range(len(level.metrics)))) for level in self.levels]
+        return [(level, mapped(lambda metric: pairs_of(level, metric), range(len(level.metrics)), self.threads)) for level in self.levels]
 
     @property
     def in_splits(self) -> bool:

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of anybody's scores: what is read of them, and what is refused, with its line."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from salbench.conclusions.csv_file import InputError, read_csv
+from salbench.conclusions.scores import read_results, read_scores
+
+
+class FileTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, text, name="scores.csv"):
+        path = self.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    def refused(self, message, read, *arguments, **options):
+        with self.assertRaises(InputError) as caught:
+            read(*arguments, **options)
+        self.assertEqual(str(caught.exception), f"{self.folder}/{message}")
+
+
+class Csv(FileTest):
+    def test_texts_and_numbers(self):
+        table = read_csv(self.write('# one\n# two\na,b\n\n"x, ""y""\n",\r\n,1e-3\nz,nan\n'), {"b"})
+        self.assertEqual(table.remarks, ["one", "two"])
+        self.assertEqual(table.column("a"), ['x, "y"\n', "", "z"])
+        np.testing.assert_array_equal(table.number_column("b"), [np.nan, 1e-3, np.nan])
+        self.assertEqual(table.lines, [5, 7, 8])
+        self.assertEqual(table.column_if_any("c"), [""] * 3)
+
+    def test_any_bytes_are_a_name(self):
+        self.assertEqual(read_csv(self.write(b"\xef\xbb\xbfa\n\xff\n")).column("a"), ["\udcff"])
+
+    def test_what_is_wrong_is_named_with_its_line(self):
+        for text, message in (
+                ("", "the file is empty, where a line of column names is expected"),
+                ("a,b\n1,2\n1\n", ":3: the line has 1 fields, the header 2"), ("a,a\n", ":1: two columns are named 'a'"),
+                ('a\n1\n"2\n', ":3: a quote opens a field that nothing closes"), ("a,b\n1,x\n", ":2: 'x' is not a number"),
+                ('a,b\n"1"x,2\n', ":2: there is text after the quote that closes a field")):
+            separator = "" if message.startswith(":") else ": "
+            self.refused(f"scores.csv{separator}{message}", read_csv, self.write(text), {"b"})
+        self.refused("scores.csv: there is no column 'c'; there are 'a', 'b'", read_csv(self.write("a,b\n")).column, "c")
+
+
+class ScoreFiles(FileTest):
+    def values(self, text, **options):
+        found = read_scores(self.write(text), **options).scores
+        return found.frame[[metric.name for metric in found.metrics]].values.tolist()
+
+    def test_rows_with_a_view_are_scans(self):
+        found = read_scores(self.write("item,view,model,nss,auc\n1,,LS,2,.5\n1,3,LS,,.7\n"))
+        self.assertEqual(found.scores.frame["dataset"].tolist(), ["meshes", "scans"])
+        self.assertEqual([metric.name for metric in found.scores.metrics], ["auc", "nss"], "in the program's order")
+        np.testing.assert_array_equal(found.scores.frame[["auc", "nss"]], [[.5, 2], [.7, np.nan]])
+        self.assertEqual((found.notes, found.remarks), ([], []))
+
+    def test_lcc_is_made_of_cc_where_it_is_missing(self):
+        self.assertEqual(self.values("item,model,cc\n1,LS,-.5\n"), [[-.5, .5]])
+        self.assertEqual(self.values("item,model,cc,lcc\n1,LS,-.5,.25\n"), [[-.5, .25]])
+
+    def test_other_columns_count_if_they_are_named(self):
+        text = "item,model,auc,mine,error\n1,LS,.5,3,4\n"
+        path = self.write(text)
+        self.assertEqual(read_scores(path).notes, [f"{path}: columns that are no metrics of the program were left out: mine, error; name them "
+                                                   "with --higher or --lower"])
+        found = read_scores(path, ["mine"], ["error"])
+        self.assertEqual([(metric.name, metric.higher_is_better) for metric in found.scores.metrics],
+                         [("auc", True), ("mine", True), ("error", False)])
+        self.assertEqual(self.values(text, higher=["mine"], lower=["error"]), [[.5, 3, 4]])
+
+    def test_classes_come_from_a_file_of_their_own(self):
+        path, classes = self.write("item,model,auc\n1,LS,.5\n2,LS,.5\n"), self.write("item,class\n1,cup\n", "classes.csv")
+        self.assertEqual(read_scores(path, classes=classes).scores.frame["class"].tolist(), ["cup", ""])
+        self.refused("classes.csv:3: item '1' has a class already", read_scores, path, classes=self.write("item,class\n1,cup\n1,ant\n", "classes.csv"))
+
+    def test_bad_tables_are_refused_by_line(self):
+        for text, message in (
+                ("item,model\n1,LS\n", ": no column is a metric; name the columns of scores with --higher or --lower; there are item, model"),
+                ("model,auc\nLS,.5\n", ": there is no column 'item'; there are 'model', 'auc'"),
+                ("item,model,auc\n1,LS,good\n", ":2: 'good' is not a number"),
+                ("item,model,auc\n1,LS,inf\n", ":2: auc is infinite: no score can be"),
+                ("item,model,auc\n1,LS,.5\n1,LS,.6\n", ":3: a second row of item '1', model 'LS'"),
+                ("item,view,model,auc\n1,7,LS,.5\n1,7,LS,.6\n", ":3: a second row of item '1', view 7, model 'LS'"),
+                ("dataset,item,model,auc\nshapes,1,LS,.5\n", ":2: data set 'shapes', expected one of meshes, scans, clouds"),
+                ("item,model,auc\n", ": no scores below the names of the columns")):
+            self.refused("scores.csv" + message, read_scores, self.write(text))
+        self.refused("scores.csv: no column 'mine'", read_scores, self.write("item,model,auc\n1,LS,.5\n"), ["mine"])
+
+    def test_results_of_a_run_have_its_metrics_alone_and_may_have_no_rows(self):
+        known = read_scores(self.write("item,model,cc,auc\n1,LS,.5,.5\n")).scores.metrics
+        chosen = [metric for metric in known if metric.name == "cc"]
+        found = read_results(self.write("# PARTIAL: so far\ndataset,item,class,view,model,cc,auc,n_points,n_picks\n"), chosen)
+        self.assertEqual((found.scores.metrics, len(found.scores.frame), found.remarks), (tuple(chosen), 0, ["PARTIAL: so far"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
