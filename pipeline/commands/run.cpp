@@ -16,6 +16,7 @@
 #include "pipeline/commands/why.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/results/conclusions.h"
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
 

@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <optional>
-#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -55,36 +52,7 @@ std::string remark_on(const DatasetScores& scores, std::size_t metric, bool high
   return text;
 }
 
-using ShapeName = std::tuple<std::string, std::string, std::string>;
-ShapeName shape_of(const ResultRow& row) { return {row.dataset, row.item, row.view}; }
-bool same_shape(const ResultRow& a, const ResultRow& b) {
-  return a.item == b.item && a.view == b.view && a.dataset == b.dataset;
-}
-
 }  // namespace
-
-std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
-                                        const std::vector<ResultRow>& varying,
-                                        const MetricsOptions& options) {
-  std::vector<std::optional<double>> of_every_shape;
-  for (const Metric& metric : chosen_metrics(options))
-    of_every_shape.push_back(score_of_constant(metric, options));
-  std::map<ShapeName, const ResultRow*> of_shape;
-  for (const ResultRow& row : varying) of_shape[shape_of(row)] = &row;
-  std::vector<ResultRow> constant;
-  for (const ResultRow& row : rows) {
-    if (!constant.empty() && same_shape(constant.back(), row)) continue;
-    const auto known = of_shape.find(shape_of(row));
-    ResultRow& made = constant.emplace_back(
-        ResultRow{row.dataset, row.item, row.category, row.view, std::string(kConstantMap), {}});
-    std::size_t next = 0;
-    for (const std::optional<double>& value : of_every_shape)
-      made.scores.values.push_back(value                     ? *value
-                                   : known != of_shape.end() ? known->second->value(next++)
-                                                             : std::numeric_limits<double>::quiet_NaN());
-  }
-  return constant;
-}
 
 std::vector<ChanceRemark> chance_remarks(const std::vector<ResultRow>& rows, const Metrics& metrics,
                                          Observation unit) {

@@ -15,12 +15,6 @@ struct ChanceRemark {
   std::string text;  // one line: which reference is level with or ahead of which models, and by how much
 };
 
-// Rows of a constant map, one for each shape that the rows have, those of a shape being together. `varying`
-// has the scores of the metrics whose score of it differs from shape to shape, as collect_constant gives
-// them; without one it is NaN.
-std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
-                                        const std::vector<ResultRow>& varying, const MetricsOptions& options);
-
 // One per data set and metric by whose means chance (RS) or the constant map, as far as the rows have them,
 // is level with or ahead of a model or of people; over the shapes and units of the other tables.
 std::vector<ChanceRemark> chance_remarks(const std::vector<ResultRow>& rows, const Metrics& metrics,

@@ -7,6 +7,7 @@
 #include "io/file.h"
 #include "pipeline/results/compact.h"
 #include "pipeline/results/leaders.h"
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 

@@ -211,16 +211,6 @@ class EquivalentsOfMetric {
 
 }  // namespace
 
-std::vector<MeshCurve> collect_human_curves(const RunState& run) {
-  std::vector<MeshCurve> curves;
-  for (const Job& job : run.project().jobs()) {
-    if (!has_role(run.project().rule(job), Role::curve) || !run.decision(job).known()) continue;
-    const DatasetItem& item = item_of(run.units(), job.unit);
-    curves.push_back({item.name, item.category, value_as<HumanCurve>(*run.resolver.value(job))});
-  }
-  return curves;
-}
-
 Table human_curve_table(const std::vector<MeshCurve>& curves, const Metrics& metrics) {
   Table table{.columns = {"n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"}, .rows = {}};
   std::size_t longest = 0;

@@ -10,17 +10,10 @@
 
 #include "io/table.h"
 #include "pipeline/results/conclusions.h"
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/results.h"
 
 namespace salbench {
-
-struct MeshCurve {
-  std::string item, category;
-  HumanCurve curve;
-};
-
-// Those of the meshes that HS was computed for, in their order.
-std::vector<MeshCurve> collect_human_curves(const RunState& run);
 
 // The tables of these names, whose columns are those of docs/data_dictionary.md.
 Table human_curve_table(const std::vector<MeshCurve>& curves, const Metrics& metrics);

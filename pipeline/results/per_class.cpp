@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 

@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "pipeline/results/conclusions.h"
 #include "pipeline/results/human_curves.h"
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/smoothing.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/core/check.h"
@@ -135,22 +136,28 @@ void write_tables(const fs::path& folder, const RunState& run, const std::vector
     write_file(folder / name, head + to_csv(table));
   };
   const Metrics& metrics = conclusions.metrics;
-  write("results.csv", results_table(rows, metrics));
-  write_conclusions(folder, rows, conclusions, head);
   // Tables of an earlier run would pass for some of this.
+  const auto write_if = [&](bool there, const std::string& name, const auto& table) {
+    there ? write(name, table()) : remove_file(folder / name);
+  };
+  write("results.csv", results_table(rows, metrics));
+  write("means.csv", means_table(rows, metrics));
+  write("constant.csv",
+        results_table(rows_of_constant(rows, collect_constant(run), run.config.metrics), metrics));
+  const std::vector<MeshCurve> curves = collect_human_curves(run);
+  write_if(!curves.empty(), "people.csv", [&] { return people_table(curves, metrics); });
+  write_if(!run.config.metrics.smoothing.empty(), "smoothed.csv",
+           [&] { return smoothed_table(run, metrics); });
+  write_conclusions(folder, rows, conclusions, head);
   for (const Level level : kShapeLevels) {
-    const std::string name = fmt::format("mean_histograms_{}.csv", shapes_name(level));
-    if (level == kClouds && !run.inputs.has(level))
-      remove_file(folder / name);
-    else
-      write(name, mean_histogram_table(run, level));
+    write_if(level != kClouds || run.inputs.has(level),
+             fmt::format("mean_histograms_{}.csv", shapes_name(level)),
+             [&] { return mean_histogram_table(run, level); });
   }
   const std::vector<SmoothedRows> smoothed = smoothed_rows(run, metrics);
-  if (smoothed.empty())
-    remove_file(folder / "smoothing.csv");
-  else
-    write("smoothing.csv", smoothing_table(smoothed, metrics, conclusions.unit));
-  write_human_curves(folder, collect_human_curves(run), rows, conclusions, head);
+  write_if(!smoothed.empty(), "smoothing.csv",
+           [&] { return smoothing_table(smoothed, metrics, conclusions.unit); });
+  write_human_curves(folder, curves, rows, conclusions, head);
 }
 
 }  // namespace salbench

@@ -66,7 +66,8 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics =
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
-// results.csv, the tables of write_conclusions, mean_histograms_{meshes,scans}.csv,
+// results.csv, means.csv, constant.csv, people.csv where HS was computed, smoothed.csv where maps were
+// smoothed, the tables of write_conclusions, mean_histograms_{meshes,scans}.csv,
 // mean_histograms_clouds.csv where there are point clouds, smoothing.csv where maps were smoothed and, where
 // HS was computed, those of write_human_curves. Each begins with the remarks, as comments. Throws
 // StorageError.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/stats/summary.h"
 

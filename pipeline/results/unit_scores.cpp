@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/rules/models.h"
 
 namespace salbench {
@@ -25,17 +26,6 @@ std::string unit_name(const ResultRow& row, Observation unit) {
 }
 
 }  // namespace
-
-std::vector<std::string> splits_among(const std::vector<ResultRow>& rows, std::string_view dataset) {
-  std::vector<std::string> splits;
-  for (const ResultRow& row : rows) {
-    if (row.dataset != dataset) continue;
-    if (std::ranges::find(splits, row.split) == splits.end()) splits.push_back(row.split);
-  }
-  if (splits.size() < 2) return {};
-  std::erase(splits, "");
-  return splits;
-}
 
 DatasetScores::DatasetScores(const std::vector<ResultRow>& rows, std::string_view dataset, Observation unit,
                              std::string_view only_class, std::string_view only_split)

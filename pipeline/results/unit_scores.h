@@ -29,9 +29,6 @@ struct UnitScores {
   }
 };
 
-// Splits among the rows of a data set, in their order; none where all rows are of one, or of none.
-std::vector<std::string> splits_among(const std::vector<ResultRow>& rows, std::string_view dataset);
-
 // The scores of one data set, or of one class or one split of it. Keeps references to the rows.
 class DatasetScores {
  public:

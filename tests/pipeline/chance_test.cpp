@@ -59,24 +59,5 @@ TEST(ChanceRemarks, AreAboutTheShapesThatBothHave) {
   EXPECT_THAT(remarks_on({}), IsEmpty());
 }
 
-TEST(RowsOfConstant, HaveTheScoresOfAllShapesOrOfEach) {
-  MetricsOptions options;
-  options.names = {"auc_exact", "nss", "kl"};
-  options.constant_nss = -0.5;
-  ResultRow a = {"scans", "7", "cup", "3", "A", {{0.9, 1, 2}}};
-  ResultRow b = a, other = a, varying = a;
-  b.model = "B";
-  other.view = "4";
-  varying.scores.values = {1.25};
-  const std::vector<ResultRow> rows = rows_of_constant({a, b, other}, {varying}, options);
-  ASSERT_EQ(rows.size(), 2U);
-  EXPECT_EQ(rows[0].model, kConstantMap);
-  EXPECT_EQ(rows[0].category, "cup");
-  EXPECT_THAT(rows[0].scores.values, ElementsAre(0.5, -0.5, 1.25));
-  EXPECT_EQ(rows[1].view, "4");
-  EXPECT_TRUE(std::isnan(rows[1].value(2)));
-  EXPECT_TRUE(is_reference_model(kConstantMap)) << "it is no competitor";
-}
-
 }  // namespace
 }  // namespace salbench

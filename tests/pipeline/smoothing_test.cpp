@@ -60,6 +60,13 @@ TEST_F(Smoothing, ScoresAreThoseOfTheSmoothedMaps) {
   const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), metrics);
   ASSERT_THAT(smoothed, SizeIs(4));
   const std::vector<ResultRow> rows = toy.results();
+  const Table table = smoothed_table(toy.state(), metrics);
+  EXPECT_THAT(std::vector(table.columns.begin(), table.columns.begin() + 3),
+              ElementsAre("smoothing", "dataset", "item"));
+  ASSERT_THAT(table.rows, SizeIs(3 * rows.size()));
+  EXPECT_EQ(table.rows[rows.size()][0], Cell("3"));
+  EXPECT_EQ(std::vector(table.rows[0].begin() + 1, table.rows[0].end()),
+            results_table(rows, metrics).rows[0]);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     EXPECT_EQ(smoothed[0].rows.at(row).scores.values, rows[row].scores.values)
         << "no steps: the plain scores";
@@ -148,6 +155,7 @@ TEST_F(Smoothing, WritesItsTableWhereItIsAskedFor) {
     const std::vector<ResultRow> rows = toy.results();
     const Conclusions conclusions = conclude(rows, chosen_metrics(toy.config.metrics), {}, 1);
     write_tables(out.path(), toy.state(), rows, conclusions, {});
+    EXPECT_EQ(std::filesystem::exists(out / "smoothed.csv"), std::filesystem::exists(out / "smoothing.csv"));
     return std::filesystem::exists(out / "smoothing.csv");
   };
   EXPECT_TRUE(write(kSmoothing));
