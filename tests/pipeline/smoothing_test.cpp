@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/results/conclusions.h"
+#include "pipeline/results/raw_tables.h"
 #include "stages/core/field.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/laplacian.h"
