@@ -18,7 +18,8 @@ namespace salbench {
 // The tables of these names, whose columns are those of docs/data_dictionary.md.
 Table human_curve_table(const std::vector<MeshCurve>& curves, const Metrics& metrics);
 Table human_curve_by_mesh_table(const std::vector<MeshCurve>& curves, const Metrics& metrics);
-Table human_curve_differences_table(const std::vector<MeshCurve>& curves, const Metrics& metrics, Observation unit);
+Table human_curve_differences_table(const std::vector<MeshCurve>& curves, const Metrics& metrics,
+                                    Observation unit);
 Table human_reliability_table(const std::vector<MeshCurve>& curves, const Metrics& metrics, Observation unit);
 
 // How many participants a model is worth: where the mean human curve first is as good as the model's mean on
