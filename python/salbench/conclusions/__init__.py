@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Conclusions from scores: how good each model is, which differ, which is best, and how sure that is.
+
+Scores come as a frame (units.Scores), tables go as frames: each is a function of a Study, and a row of TABLES. A new statistic is a file
+with its columns and its function, and a row here. Files are read and written in folders.py alone.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas
+
+from salbench.conclusions import (
+    agreement, chance, classes, compact, equivalents, folders, leaders, means, pairs, people, power, ranking, shares, smoothing, statements, tables,
+)
+from salbench.conclusions.csv_file import InputError
+from salbench.conclusions.study import Study
+from salbench.conclusions.units import UNITS
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: the file NAME.csv."""
+
+    name: str
+    make: Callable[[Study], pandas.DataFrame]
+    needs: str = ""  # the field of the study without which there is no such table
+
+
+TABLES = (
+    Table("summary", means.summary),
+    Table("ranking", ranking.ranking),
+    Table("ranking_agreement", agreement.agreement),
+    Table("significance", pairs.significance),
+    Table("per_class", classes.per_class),
+    Table("human_share", shares.human_share),
+    Table("compact", compact.compact),
+    Table("leaders", leaders.leaders),
+    Table("power", power.power),
+    Table("human_curve", people.human_curve, needs="people"),
+    Table("human_curve_by_mesh", people.human_curve_by_mesh, needs="people"),
+    Table("human_curve_differences", people.human_curve_differences, needs="people"),
+    Table("human_equivalents", equivalents.human_equivalents, needs="people"),
+    Table("human_reliability", people.human_reliability, needs="people"),
+    Table("smoothing", smoothing.smoothing, needs="smoothed"),
+    Table("chance", chance.chance, needs="constant"),
+    Table("statements", statements.statements, needs="claims"),
+)
+
+
+@dataclass(frozen=True)
+class Concluded:
+    """What a caller says of conclusions that were drawn and written."""
+
+    folder: Path
+    unit: str
+    scores: list[dict[str, str]]  # rows of the overview
+    leaders: list[dict[str, Any]]
+    text: str  # the overview as a terminal shows it, and the sentences
+    notes: list[str]  # on what was left out of the scores
+
+
+def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.Source:
+    """Of the folder of a run, or of a table of anybody's scores. columns: as of folders.read_table, for tables alone."""
+    if unit is not None and unit not in UNITS:
+        raise InputError(f"--unit {unit}: must be one of {', '.join(UNITS)}")
+    path = Path(scores)
+    return folders.read_run(path, unit) if (path / "run.yaml").is_file() else folders.read_table(path, unit, **columns)
+
+
+def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
+    """Each table by its name; None for what the study has nothing of."""
+    for table in TABLES:
+        is_there = not table.needs or getattr(study, table.needs) is not None
+        yield table.name, table.make(study) if is_there else None
+
+
+def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> Concluded:
+    """Writes every table, and last the document that says so. of: digest of what the scores were made of, for who asks again."""
+    folder = source.tables if out is None else Path(out)
+    folders.make(folder)
+    (folder / folders.CONCLUDED).unlink(missing_ok=True)
+    study = source.study
+    names = folders.write_tables(folder, tables_of(study), source.remarks)
+    overview, found = means.overview(study), leaders.find_leaders(study)
+    concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), _text(overview, source.remarks, found), source.notes)
+    folders.write_document(folder, {
+        "format": 1, "version": _version(), "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
+        "leaders": concluded.leaders, "text": concluded.text, "tables": names})
+    return concluded
+
+
+def _text(overview: pandas.DataFrame, remarks: Sequence[str], found: Sequence[leaders.LevelLeaders]) -> str:
+    simulated = [remark for remark in remarks if remark.startswith("SIMULATED")]
+    return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*simulated, *(level.sentence for level in found)))
+
+
+def _version() -> str:
+    from salbench import _core
+
+    return str(_core.version)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far the rankings by two metrics agree: ranking_agreement.csv.
+
+Rankings are compared by the signs of the differences of their models' means, pair by pair; a product of matrices of these signs counts
+the pairs on which each two of many metrics agree, in every resample.
+"""
+
+import warnings
+from itertools import combinations_with_replacement
+
+import numpy as np
+import pandas
+from numpy.typing import NDArray
+
+from salbench.conclusions.samples import TAIL, means
+from salbench.conclusions.study import RankedMetric, Study
+from salbench.conclusions.tables import CI95, DATASET, SPLIT, N, Part, count, framed, number, text
+from salbench.conclusions.units import Floats, Level, Numbers
+
+COLUMNS = (
+    DATASET, SPLIT, text("metric_a", "first metric"), text("metric_b", "second metric"), N, count("n_models", "competitors"),
+    number("tau", "Kendall's tau-b of the two rankings of the means, 1: the same order"), *CI95)
+
+Signs = NDArray[np.float32]  # of one metric: rows (the sample, then its resamples) x pairs of models: 1, 0 or -1, which is better
+_METRICS = 8  # whose tau with all others are computed at once
+
+
+def agreement(study: Study) -> pandas.DataFrame:
+    """A row per data set and pair of metrics, over the units and competitors that both are defined for [kendall1945]."""
+    return framed(COLUMNS, (_part(study, level, ranked) for level, ranked in study.ranked), study.in_splits)
+
+
+def signs_of(values: Floats, resampled: Floats, higher_is_better: bool) -> Signs:
+    """Of units x models, and resamples x models."""
+    rows = np.vstack([means(values), resampled]) * (1 if higher_is_better else -1)
+    a, b = np.triu_indices(rows.shape[1], 1)
+    return np.sign(rows[:, a] - rows[:, b]).astype(np.float32)
+
+
+def tau_b(x: NDArray[np.float32], y: NDArray[np.float32]) -> Floats:
+    """Kendall's, of rows x metrics x pairs, each metric of x with each of y: rows x metrics x metrics. NaN where all models tie.
+    Counts are small whole numbers, which single precision adds up exactly."""
+    agreeing = x @ np.ascontiguousarray(y.transpose(0, 2, 1))
+    untied_x, untied_y = (np.abs(signs).sum(axis=2, dtype=float) for signs in (x, y))
+    with np.errstate(invalid="ignore"):
+        tau: Floats = agreeing / np.sqrt(untied_x[:, :, None] * untied_y[:, None, :])
+    return tau
+
+
+def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
+    """Metrics over the same units and models stand together: `cells` has their rows of the table, metrics x metrics."""
+    cells = {name: np.zeros((len(ranked), len(ranked))) for name in ("n", "n_models", "tau", "ci95_low", "ci95_high")}
+    groups: dict[tuple[bytes, bytes], list[int]] = {}
+    for metric, of_metric in enumerate(ranked):
+        scores = of_metric.competitors.scores
+        groups.setdefault((scores.models.tobytes(), scores.units.tobytes()), []).append(metric)
+    for one, other in combinations_with_replacement(groups.values(), 2):
+        _fill(cells, study, ranked, one, other)
+    a, b = np.nonzero(np.triu(cells["n"], 1))
+    names = np.array([metric.name for metric in level.metrics], dtype=object)
+    return {"dataset": level.dataset, "split": level.split, "metric_a": names[a], "metric_b": names[b],
+            **{name: values[a, b] for name, values in cells.items()}}
+
+
+def _fill(cells: dict[str, Floats], study: Study, ranked: list[RankedMetric], one: list[int], other: list[int]) -> None:
+    """The cells of each metric of one group with each of another one; none where these have fewer than two units or models in common."""
+    x, y = (ranked[metrics[0]].competitors.scores for metrics in (one, other))
+    models, units = np.intersect1d(x.models, y.models), np.intersect1d(x.units, y.units)
+    if len(models) < 2 or len(units) < 2:
+        return
+    signs_x = _signs(study, ranked, one, models, units)
+    signs_y = signs_x if one is other else _signs(study, ranked, other, models, units)
+    for first in range(0, len(one), _METRICS):
+        a = one[first:first + _METRICS]
+        b = other[first:] if one is other else other
+        tau = tau_b(signs_x[:, first:first + _METRICS], signs_y[:, first:] if one is other else signs_y)
+        low, high = _ends(tau[1:])
+        found = {"n": np.full_like(low, len(units)), "n_models": np.full_like(low, len(models)), "tau": tau[0], "ci95_low": low, "ci95_high": high}
+        for name, values in found.items():
+            cells[name][np.ix_(a, b)] = values
+            cells[name][np.ix_(b, a)] = values.T
+
+
+def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> NDArray[np.float32]:
+    """Rows x metrics x pairs of models, of metrics over the same units and models, for some of these."""
+    samples = [ranked[metric].competitors for metric in metrics]
+    scores = samples[0].scores
+    if len(models) < len(scores.models) or len(units) < len(scores.units):
+        kept = np.ix_(np.searchsorted(scores.units, units), np.searchsorted(scores.models, models))
+        values = [sample.scores.values[kept] for sample in samples]
+        resampled = study.bootstrap.means_of_each(values)
+    else:
+        values, resampled = [sample.scores.values for sample in samples], [sample.means for sample in samples]
+    directions = [study.scores.metrics[metric].higher_is_better for metric in metrics]
+    return np.stack(list(map(signs_of, values, resampled, directions)), axis=1)
+
+
+def _ends(taus: Floats) -> tuple[Floats, Floats]:
+    """95 % interval by percentiles, of resamples x metrics x metrics, without those in which all models tie."""
+    quantile = np.nanquantile if np.isnan(taus).any() else np.quantile
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # all models tie in all resamples: no interval
+        low, high = quantile(taus, [TAIL, 1 - TAIL], axis=0)
+    return low, high

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Metrics that do not tell models from chance: by their means, random values (RS) or a constant map are as good. chance.csv."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.samples import means
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import DATASET, METRIC, framed, text
+from salbench.conclusions.units import DATASETS, Level
+
+COLUMNS = (DATASET, METRIC, text("remark", "which of the two is level with or ahead of which models, or of people, and by how much"))
+
+_ROUNDING = 1e-12  # relative difference: the same scores summed in another order
+_REFERENCES = {"RS": "chance (RS)", "constant": "a constant map"}
+
+
+def chance(study: Study) -> pandas.DataFrame:
+    """A row per data set and metric with something to remark; over the shapes and units of the other tables."""
+    frame = study.scores.frame
+    if study.constant is not None:
+        frame = pandas.concat([frame, study.constant], ignore_index=True)
+    scores = replace(study.scores, frame=frame)
+    levels = [Level(scores.part(frame["dataset"] == dataset), dataset, study.unit) for dataset in DATASETS]
+    remarks = ((level.dataset, level.metrics[metric].name, _remark(level, metric)) for level in levels for metric in range(len(level.metrics)))
+    return framed(COLUMNS, ({"dataset": dataset, "metric": metric, "remark": remark} for dataset, metric, remark in remarks if remark))
+
+
+def _remark(level: Level, metric: int) -> str:
+    passed = ((words, _passed_by(level, metric, reference)) for reference, words in _REFERENCES.items())
+    return "; ".join(f"{words} is level with or ahead of {models}" for words, models in passed if models)
+
+
+def _passed_by(level: Level, metric: int, reference: str) -> str:
+    """ "PS (by 0.064), HS (level)": the models that the reference is level with or ahead of."""
+    scored = [int(model) for model in level.scored(metric)]
+    models = [model for model in scored if level.models[model] not in _REFERENCES]
+    place = level.find(reference)
+    if place not in scored or not models:
+        return ""
+    leads = np.full(len(models), np.nan)
+    for places, scores in level.groups(metric, [[place, model] for model in models]):
+        if scores.n:
+            average = dict(zip(scores.models.tolist(), means(scores.values)))
+            leads[places] = [_lead(average[place], average[models[at]], level.metrics[metric].higher_is_better) for at in places]
+    return ", ".join(f"{level.models[model]} ({f'by {lead:.3g}' if lead > 0 else 'level'})" for model, lead in zip(models, leads) if lead >= 0)
+
+
+def _lead(reference: float, model: float, higher_is_better: bool) -> float:
+    """How far the reference is ahead; 0 where the two are equal but for rounding."""
+    lead = reference - model if higher_is_better else model - reference
+    return 0 if abs(lead) <= _ROUNDING * max(abs(reference), abs(model)) else lead

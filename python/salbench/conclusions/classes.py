@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Means by class of the items: per_class.csv."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.samples import summarise
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, Part, framed, text
+from salbench.conclusions.units import DATASETS, Floats, Level, Numbers, only_split, splits_among
+
+COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SHAPES, MEAN, *CI95)
+AVERAGE = "Avg"  # the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called so
+
+
+def per_class(study: Study) -> pandas.DataFrame:
+    """A row per data set, class, model and metric, over the shapes of the class that all competitors have a score for."""
+    return framed(COLUMNS, (_part(name, level) for name, level in _levels(study)), study.in_splits)
+
+
+def _levels(study: Study) -> Iterator[tuple[str, Level]]:
+    """Classes in the order of their first item, each followed by its splits. Within a class its shapes are the units."""
+    unit = "mesh" if study.unit == "class" else study.unit
+    for dataset in DATASETS:
+        of_dataset = study.scores.part(study.scores.frame["dataset"] == dataset)
+        splits = splits_among(of_dataset)
+        for name in of_dataset.frame["class"].unique():
+            if not name:
+                continue
+            of_class = of_dataset.part(of_dataset.frame["class"] == name)
+            yield name, Level(of_class, dataset, unit, only_split(of_dataset))
+            for split in splits:
+                yield name, Level(of_class.part(of_class.frame["split"] == split), dataset, unit, split)
+
+
+def _part(name: str, level: Level) -> Part:
+    """By model, the average after all others, and metric."""
+    models, metrics = [*level.models, AVERAGE], [metric.name for metric in level.metrics]
+    cells = {column: np.zeros((len(models), len(metrics))) for column in ("n", "n_shapes", "mean", "ci95_low", "ci95_high")}
+    for number in range(len(metrics)):
+        for rows, values, n_shapes in _samples(level, number):
+            found = summarise(values)
+            for column, value in zip(cells, (found.n, n_shapes, found.mean, found.low, found.high)):
+                cells[column][rows, number] = value
+    known = cells["n"] > 0
+    model, metric = np.nonzero(known)
+    return {"dataset": level.dataset, "split": level.split, "class": name, "model": [models[place] for place in model],
+            "metric": [metrics[place] for place in metric], **{column: values[known] for column, values in cells.items()}}
+
+
+def _samples(level: Level, metric: int) -> Iterator[tuple[Numbers, Floats, int]]:
+    """Rows of the table of models and metrics, with values by unit, and the shapes in these."""
+    for _, scores in level.groups(metric, [[model] for model in level.scored(metric)]):
+        yield scores.models, scores.values, scores.n_shapes
+    competitors = level.compared(metric, level.competitors(metric))
+    if competitors.n > 0:
+        yield np.array([len(level.models)]), competitors.values.mean(axis=1, keepdims=True), competitors.n_shapes

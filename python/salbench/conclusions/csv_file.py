@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""CSV files (RFC 4180) of anybody's, read strictly: a message names the file, the line and what was expected there."""
+
+import csv
+import os
+from collections.abc import Container, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NoReturn
+
+import numpy as np
+
+from salbench.conclusions.units import Floats
+
+_UNCLOSED = "unexpected end of data"  # by the words of the module csv
+
+
+class InputError(ValueError):
+    """A file or table that cannot be used: the message says which, where and why."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of texts, or of numbers with NaN for empty cells."""
+
+    name: str  # the file, for messages
+    texts: dict[str, list[str]]
+    numbers: dict[str, Floats]
+    lines: Sequence[int]  # on which each row begins
+    columns: list[str]  # all of them, in their order
+    remarks: list[str] = field(default_factory=list)  # lines above the names of the columns, without their '#'
+
+    def fail(self, row: int, what: str) -> NoReturn:
+        raise InputError(f"{self.name}:{self.lines[row]}: {what}")
+
+    def column(self, name: str) -> list[str]:
+        """A column of texts that must be there."""
+        self._require(name)
+        return self.texts[name]
+
+    def number_column(self, name: str) -> Floats:
+        self._require(name)
+        return self.numbers[name]
+
+    def column_if_any(self, name: str) -> list[str]:
+        """Empty cells where there is no such column."""
+        return self.texts[name] if name in self.texts else [""] * len(self.lines)
+
+    def _require(self, name: str) -> None:
+        if name not in self.columns:
+            known = ", ".join(f"'{column}'" for column in self.columns)
+            raise InputError(f"{self.name}: there is no column '{name}'; there are {known}")
+
+
+def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> Table:
+    """The first line names the columns, below any lines of one field that begin with '#'. numeric: columns of numbers.
+
+    Throws InputError for a line with another number of fields, a quote that does not close, a column named twice, a cell of a
+    column of numbers that is none; OSError for a file that cannot be read.
+    """
+    name = os.fspath(path)
+    with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
+        rows = _rows(csv.reader(file, strict=True), name)
+        remarks, columns = _head(rows, name)
+        read = _Columns(name, columns, numeric)
+        for line, fields in rows:
+            read.add(line, fields)
+    return Table(name, dict(read.texts), {column: np.array(cells, dtype=float) for column, cells in read.numbers}, read.lines, columns,
+                 remarks)
+
+
+def _rows(reader: Any, name: str) -> Iterator[tuple[int, list[str]]]:
+    """The line on which each row begins, and its fields; lines without any are left out."""
+    while True:
+        line = reader.line_num + 1
+        try:
+            fields = next(reader, None)
+        except csv.Error as error:
+            what = "a quote opens a field that nothing closes" if str(error) == _UNCLOSED else str(error)
+            raise InputError(f"{name}:{line}: {what}") from None
+        if fields is None:
+            return
+        if fields:
+            yield line, fields
+
+
+def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> tuple[list[str], list[str]]:
+    remarks = []
+    for line, fields in rows:
+        if len(fields) == 1 and fields[0].startswith("#"):
+            remarks.append(fields[0][2:])
+            continue
+        for column in fields:
+            if fields.count(column) > 1:
+                raise InputError(f"{name}:{line}: two columns are named '{column}'")
+        return remarks, fields
+    raise InputError(f"{name}: the file is empty, where a line of column names is expected")
+
+
+class _Columns:
+    """Takes up row after row: texts that repeat are kept once, numbers as such, so that a large file takes little memory."""
+
+    def __init__(self, name: str, columns: list[str], numeric: Container[str]) -> None:
+        self.name, self.width = name, len(columns)
+        self.lines: list[int] = []
+        self.texts: list[tuple[str, list[str]]] = [(column, []) for column in columns if column not in numeric]
+        self.numbers: list[tuple[str, list[float]]] = [(column, []) for column in columns if column in numeric]
+        self._text_places = [(place, cells) for place, (_, cells) in zip(_where(columns, numeric, False), self.texts)]
+        self._number_places = [(place, cells) for place, (_, cells) in zip(_where(columns, numeric, True), self.numbers)]
+        self._known: dict[str, str] = {}
+
+    def add(self, line: int, fields: list[str]) -> None:
+        if len(fields) != self.width:
+            raise InputError(f"{self.name}:{line}: the line has {len(fields)} fields, the header {self.width}")
+        self.lines.append(line)
+        for place, cells in self._text_places:
+            cells.append(self._known.setdefault(fields[place], fields[place]))
+        for place, numbers in self._number_places:
+            numbers.append(self._number(line, fields[place]))
+
+    def _number(self, line: int, cell: str) -> float:
+        try:
+            return float(cell) if cell else np.nan
+        except ValueError:
+            raise InputError(f"{self.name}:{line}: '{cell}' is not a number") from None
+
+
+def _where(columns: list[str], numeric: Container[str], is_number: bool) -> list[int]:
+    return [place for place, column in enumerate(columns) if (column in numeric) == is_number]

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many participants a model is worth: where the mean human curve first is as good as the model's mean on the same meshes.
+human_equivalents.csv. The curve is used up to the largest group that at least half of the meshes have, over the meshes that have it.
+[tasse2016]"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.people import curve_level
+from salbench.conclusions.resampling import FEWEST_OF_PERCENTILES, percentile_interval
+from salbench.conclusions.samples import means
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPES, Part, count, framed, number, text
+from salbench.conclusions.units import Floats, Level, Numbers, UnitScores
+
+COLUMNS = (
+    DATASET, METRIC, MODEL, N, N_SHAPES, count("largest_group", "participants up to which the curve is used"),
+    number("mean", "mean of the model on these meshes"), number("k", "participants that it is worth; empty beyond the curve"), *CI95,
+    text("k_bound", '"<1" or ">largest_group" where k is beyond the curve'), text("low_bound", "likewise of the lower end"),
+    text("high_bound", "likewise of the upper end"),
+    count("crossings", "how often the curve passes the model's mean; for 2 or more k is the first"),
+    text("remark", "why there is no interval, or no number of people"))
+
+_ONE = "HS"  # the score of one participant, which is worth one
+
+
+def first_reached(curves: Floats, levels: Floats, higher_is_better: bool) -> Floats:
+    """First place where each curve with values at 1, 2, ... and straight lines between them is as good as its level: -infinity where it
+    begins better, infinity where it never is. curves: k x length."""
+    ahead = (curves - levels[:, None]) * (1 if higher_is_better else -1)
+    first = np.argmax(ahead >= 0, axis=1)
+    row = np.arange(len(ahead))
+    after, before = ahead[row, first], ahead[row, np.maximum(first - 1, 0)]
+    with np.errstate(divide="ignore", invalid="ignore"):  # at the first point there is nothing before
+        place = first + 1 - np.where(first > 0, after / (after - before), 0)
+    reached = np.where((ahead >= 0).any(axis=1), place, np.inf)
+    return np.where(ahead[:, 0] > 0, -np.inf, reached)
+
+
+def crossings(curve: Floats, level: float) -> int:
+    """How often the curve passes from one side of the level to the other."""
+    sides = np.sign(curve - level)
+    sides = sides[sides != 0]
+    return int(np.count_nonzero(sides[1:] != sides[:-1]))
+
+
+@dataclass(frozen=True)
+class Equivalent:
+    """Of one model; the defaults are of one that no mesh can be compared on."""
+
+    n: int = 0
+    n_shapes: int = 0
+    mean: float = np.nan
+    k: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+    crossings: int = 0
+
+
+def human_equivalents(study: Study) -> pandas.DataFrame:
+    """A row per metric and model of the meshes."""
+    meshes = next((level for level in study.levels if level.dataset == "meshes"), None)
+    if meshes is None:
+        return framed(COLUMNS, [])
+    level, curve = curve_level(study, study.scores.frame[study.scores.frame["dataset"] == "meshes"])
+    return framed(COLUMNS, (_part(study, meshes, level, curve, metric) for metric in range(len(level.metrics))))
+
+
+def _part(study: Study, meshes: Level, level: Level, curve: Numbers, metric: int) -> Part:
+    used = curve[:usable_length(level, metric, curve, meshes.competitors(metric))]
+    found = {model: Equivalent() for model in range(len(meshes.models))}
+    if len(used):
+        for scores in _samples(meshes, level, used, metric):
+            found.update(_equivalents(study, scores, used, level.metrics[metric].higher_is_better))
+    rows = [found[model] for model in range(len(meshes.models))]
+    ends = {name: [getattr(row, name) for row in rows] for name in ("n", "n_shapes", "mean", "crossings")}
+    places = {name: np.array([getattr(row, name) for row in rows]) for name in ("k", "low", "high")}
+    finite = {name: np.where(np.isfinite(values), values, np.nan) for name, values in places.items()}
+    bounds = {f"{name}_bound": [_bound(place, len(used)) for place in values] for name, values in places.items()}
+    return {"dataset": meshes.dataset, "metric": level.metrics[metric].name, "model": meshes.models, "largest_group": len(used), **ends,
+            "k": finite["k"], "ci95_low": finite["low"], "ci95_high": finite["high"], **bounds,
+            "remark": [_remark(meshes, metric, model, found, len(used)) for model in found]}
+
+
+def usable_length(level: Level, metric: int, curve: Numbers, required: Numbers) -> int:
+    """Up to which number of participants the curve is used, being that of at least half of the meshes."""
+    has_models = level.defined[:, required, metric].all(axis=1)
+    n_shapes = (np.logical_and.accumulate(level.defined[:, curve, metric], axis=1) & has_models[:, None]).sum(axis=0)
+    usable = (n_shapes > 0) & (2 * n_shapes >= n_shapes[:1])
+    return len(usable) if usable.all() else int(np.argmin(usable))
+
+
+def _samples(meshes: Level, level: Level, used: Numbers, metric: int) -> Iterator[UnitScores]:
+    """The curve, then the models, on the same meshes. References bound nobody else's; mostly they have scores of all of them."""
+    competitors, scored = meshes.competitors(metric), meshes.scored(metric)
+    every, bound = (level.averaged(metric, np.concatenate([used, models]), competitors) for models in (scored, competitors))
+    if every.n_shapes == bound.n_shapes:
+        yield every
+        return
+    yield bound
+    for model in scored[meshes.is_reference[scored]]:
+        yield level.averaged(metric, [*used, model], competitors)
+
+
+def _equivalents(study: Study, scores: UnitScores, used: Numbers, higher_is_better: bool) -> dict[int, Equivalent]:
+    """By model."""
+    if scores.n == 0:
+        return {}
+    length, average, resampled = len(used), means(scores.values), study.bootstrap.means(scores.values)
+    places = first_reached(np.tile(average[:length], (len(average) - length, 1)), average[length:], higher_is_better)
+    found = {}
+    for column, (model, k) in enumerate(zip(scores.models[length:], places), start=length):
+        low, high = percentile_interval(first_reached(resampled[:, :length], resampled[:, column], higher_is_better), scores.n)
+        found[int(model)] = Equivalent(scores.n, scores.n_shapes, float(average[column]), float(k), low, high,
+                                       crossings(average[:length], average[column]))
+    return found
+
+
+def _bound(place: float, length: int) -> str:
+    return "<1" if place == -np.inf else f">{length}" if place == np.inf else ""
+
+
+def _remark(meshes: Level, metric: int, model: int, found: dict[int, Equivalent], length: int) -> str:
+    own = found[model]
+    if not meshes.is_scored[model, metric]:
+        return "no scores"
+    if own.n == 0:
+        return "no mesh has a human curve and scores of all models"
+    if own.n < FEWEST_OF_PERCENTILES:
+        return f"no interval: fewer than {FEWEST_OF_PERCENTILES} units"
+    if np.isnan(own.low):
+        return "no interval: the values do not vary"
+    return _remark_on_scale(meshes, model, found, length)
+
+
+def _remark_on_scale(meshes: Level, model: int, found: dict[int, Equivalent], length: int) -> str:
+    """One participant is worth one, unless the target of a model's score, all participants, makes another score of the same map than
+    that of the curve, as many others."""
+    one = meshes.find(_ONE)
+    if one is None or one == model or np.isnan(found[one].low) or found[one].low <= 1 <= found[one].high:
+        return ""
+    k = found[one].k
+    return f"not a number of people: one participant ({_ONE}) has k {f'{k:.2f}' if np.isfinite(k) else _bound(k, length)} here"

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The folders that conclusions read and write: of a run, or of tables of anybody's scores."""
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pandas
+
+from salbench.conclusions import tables
+from salbench.conclusions.csv_file import InputError
+from salbench.conclusions.metrics import Metric, of_program
+from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
+from salbench.conclusions.study import DEFAULT_SEED, Study
+
+CONCLUDED = "conclusions.json"
+
+
+class StorageError(RuntimeError):
+    """A folder or file that cannot be written."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Scores, as they were found."""
+
+    study: Study
+    tables: Path  # folder of the tables, unless another one is named
+    remarks: list[str] = field(default_factory=list)  # at the head of every table
+    notes: list[str] = field(default_factory=list)  # on what was left out of the scores
+    digest: str | None = None  # of what the program wrote, if the conclusions are those that it asks for
+
+
+def read_run(folder: Path, unit: str | None = None) -> Source:
+    """What `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by the metrics, seed and unit of run.yaml."""
+    record = _yaml(folder / "run.yaml")
+    if not isinstance(record, dict) or "metrics" not in record:
+        raise InputError(f"{folder / 'run.yaml'}: is no record of a finished run; let `salbench run` end before its scores are concluded")
+    known, configuration = of_program(), record.get("configuration") or {}
+    metrics = [known.get(name, Metric(name, of["better"] == "higher")) for name, of in record["metrics"].items()]
+    own_unit = (configuration.get("statistics") or {}).get("unit", "mesh")
+    results = read_results(folder / "results.csv", metrics)
+
+    def if_there(name: str, read: Any) -> Any:
+        return read(folder / name, metrics) if (folder / name).is_file() else None
+
+    constant = if_there("constant.csv", read_results)
+    study = Study(results.scores, unit or own_unit, int(configuration.get("seed", DEFAULT_SEED)), if_there("people.csv", read_people),
+                  if_there("smoothed.csv", read_smoothed), constant and constant.scores.frame)
+    digest = record.get("scores_digest") if study.unit == own_unit else None
+    return Source(study, folder, results.remarks, digest=digest)
+
+
+def read_table(path: Path, unit: str | None = None, classes: str | None = None, higher: Sequence[str] = (), lower: Sequence[str] = ()) -> Source:
+    """A table of anybody's scores."""
+    found = read_scores(path, higher, lower, classes)
+    return Source(Study(found.scores, unit or "mesh"), Path("salbench-out") / path.stem, notes=found.notes)
+
+
+def write_tables(folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:
+    """A file per table, and none where there is no such table: one of an earlier run would pass for it. Returns the names of files."""
+    names = []
+    for name, frame in made:
+        if frame is None:
+            (folder / f"{name}.csv").unlink(missing_ok=True)
+            continue
+        write(folder / f"{name}.csv", tables.csv(frame, remarks))
+        names.append(f"{name}.csv")
+    return names
+
+
+def write_document(folder: Path, document: dict[str, Any]) -> None:
+    """Last of all: who finds it finds all tables that it names."""
+    write(folder / CONCLUDED, json.dumps(document, ensure_ascii=False) + "\n")
+
+
+def make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StorageError(f"{folder}: the folder cannot be created: {error.strerror}; choose another with --out") from None
+
+
+def write(path: Path, text: str) -> None:
+    """A file is there whole or not at all."""
+    try:
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".unfinished", encoding="utf-8", errors="surrogateescape", newline="",
+                                         delete=False) as file:
+            try:
+                file.write(text)
+                file.flush()
+                os.fchmod(file.fileno(), 0o666 & ~_umask())
+                os.replace(file.name, path)
+            except BaseException:
+                os.unlink(file.name)
+                raise
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be written: {error.strerror}; choose another folder with --out") from None
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _yaml(path: Path) -> Any:
+    import yaml
+
+    try:
+        with open(path, encoding="utf-8") as file:
+            return yaml.load(file, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: {error}") from None

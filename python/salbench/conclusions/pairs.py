@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pairs of models: which differ, by how much, and how sure that is. significance.csv. Differences are a - b."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pandas
+from numpy.typing import NDArray
+from scipy import special
+
+from salbench.conclusions.samples import LEVEL, summarise
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import CI95, DATASET, METRIC, N_SHAPES, SPLIT, N, Part, count, framed, number, text
+from salbench.conclusions.units import Floats, Level, Numbers
+
+COLUMNS = (
+    DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
+    number("mean_difference", "mean over the units of a - b"), *CI95, number("t_p", "two-sided p of the paired t-test"),
+    number("ci90_low", "90 % interval, lower end: within -+ margin, the two are equivalent at 0.05"), number("ci90_high", "upper end"),
+    number("d_z", "mean difference over the standard deviation of the differences"),
+    number("rank_biserial", "matched-pairs rank-biserial correlation, -1 to 1"),
+    number("superiority", "probability that a is higher on a new unit"), number("superiority_low", "its 95 % interval (Wilson)"),
+    number("superiority_high", "upper end"), number("rank_sum_z", "the paper's rank-sum test, over all shapes of each model"),
+    number("rank_sum_p", "two-sided p"), number("signed_rank", "the smaller sum of ranks"),
+    number("signed_rank_p", "two-sided p of the signed-rank test"),
+    number("signed_rank_p_holm", "after Holm's correction over the pairs of the data set and metric"), count("n_tests", "that many"))
+
+_MOST_EXACT = 50  # pairs of the exact distribution
+
+
+class Paired(NamedTuple):
+    """Columns of differences; NaN where there are too few units: one for the mean and the signed ranks, two for everything else."""
+
+    mean_difference: Floats
+    sd: Floats  # by n - 1
+    ci95_low: Floats  # Student's
+    ci95_high: Floats
+    t_p: Floats  # two-sided; below .05 where the interval leaves out 0
+    ci90_low: Floats  # within +-margin, the two are equivalent at 0.05 by two one-sided tests [schuirmann1987] [lakens2017]
+    ci90_high: Floats
+    d_z: Floats  # [cohen1988]
+    rank_biserial: Floats  # [kerby2014]
+    superiority: Floats  # P(a > b) + P(a = b) / 2 [agarwal2021]
+    superiority_low: Floats
+    superiority_high: Floats
+    signed_rank: Floats
+    signed_rank_p: Floats
+
+
+def compare(differences: Floats) -> Paired:
+    """Of units x pairs."""
+    n, unknown = len(differences), np.full(differences.shape[1], np.nan)
+    _, mean, sd, low, high = summarise(differences)
+    positive, statistic, p = signed_rank_test(differences)
+    if n < 2:
+        return Paired._make([mean, *[unknown] * 11, statistic, p])
+    of_90 = summarise(differences, LEVEL)
+    changed = (differences != 0).sum(axis=0)
+    all_ranks = changed * (changed + 1) / 2
+    with np.errstate(divide="ignore", invalid="ignore"):  # all differences equal
+        t = np.where(mean == 0, 0, mean / (sd / np.sqrt(n)))
+        biserial = np.where(changed > 0, 2 * positive / all_ranks - 1, 0)
+        d_z = np.where(sd > 0, mean / sd, np.nan)
+    superiority = ((differences > 0).mean(axis=0) + (differences >= 0).mean(axis=0)) / 2
+    t_p = 2 * special.stdtr(n - 1, -np.abs(t))
+    return Paired(mean, sd, low, high, t_p, of_90.low, of_90.high, d_z, biserial, superiority, *wilson_interval(superiority, n), statistic, p)
+
+
+def wilson_interval(share: Floats, n: int) -> tuple[Floats, Floats]:
+    """Wilson's score interval of shares of n independent cases, 95 % [wilson1927]."""
+    z = special.ndtri(1 - LEVEL / 2)
+    centre = (share + z**2 / (2 * n)) / (1 + z**2 / n)
+    half = z / (1 + z**2 / n) * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
+    return np.maximum(0, centre - half), np.minimum(1, centre + half)
+
+
+def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
+    """Wilcoxon's, of units x pairs: sums of the ranks of positive differences, the smaller sums of ranks, two-sided p [wilcoxon1945].
+
+    Zeros are left out. Exact for at most 50 units without zeros and equal sizes, else normal and corrected for ties, as SciPy does
+    since 1.11; p = 1 where all are zeros, since nothing speaks against the hypothesis.
+    """
+    n, pairs = differences.shape
+    if n == 0:
+        return np.zeros(pairs), np.full(pairs, np.nan), np.full(pairs, np.nan)
+    order = np.argsort(np.abs(differences.T), axis=1, kind="stable")
+    ordered = np.take_along_axis(differences.T, order, axis=1)
+    zeros = (ordered == 0).sum(axis=1)
+    ranks, equal = _midranks(np.abs(ordered))
+    ranks -= zeros[:, None]  # zeros come first
+    positive, negative = np.where(ordered > 0, ranks, 0).sum(axis=1), np.where(ordered < 0, ranks, 0).sum(axis=1)
+    statistic = np.minimum(positive, negative)
+    ties = np.where(ordered != 0, equal**2 - 1.0, 0).sum(axis=1)  # t^3 - t of each run of t
+    m = n - zeros
+    with np.errstate(divide="ignore", invalid="ignore"):  # nothing but zeros
+        z = (statistic - m * (m + 1) / 4) / np.sqrt((m * (m + 1) * (2 * m + 1) - ties / 2) / 24)
+    p = np.where(m > 0, 2 * special.ndtr(-np.abs(z)), 1)
+    if n <= _MOST_EXACT:
+        below = np.cumsum(_patterns(n)) / 2.0**n
+        p = np.where((zeros == 0) & (ties == 0), np.minimum(1, 2 * below[np.floor(statistic).astype(int)]), p)
+    return positive, statistic, p
+
+
+def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
+    """Ranks from 1 in rows of ascending values, equal ones sharing their mean, and how many values are equal to each."""
+    n = ordered.shape[1]
+    place = np.arange(n)
+    is_new = np.ones(ordered.shape, dtype=bool)
+    is_new[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
+    is_last = np.ones(ordered.shape, dtype=bool)
+    is_last[:, :-1] = is_new[:, 1:]
+    first = np.maximum.accumulate(np.where(is_new, place, 0), axis=1)
+    last = np.minimum.accumulate(np.where(is_last, place, n)[:, ::-1], axis=1)[:, ::-1]
+    return (first + last) / 2 + 1, (last - first + 1).astype(float)
+
+
+def _patterns(n: int) -> NDArray[np.int64]:
+    """Number of sets of the ranks 1 to n with the sums 0, 1, ...: of 2^n in all, exact in 64 bits."""
+    counts = np.zeros(n * (n + 1) // 2 + 1, dtype=np.int64)
+    counts[0] = 1
+    for rank in range(1, n + 1):
+        counts[rank:] += counts[:-rank].copy()
+    return counts
+
+
+def rank_sum_test(x: Floats, y: Floats) -> tuple[float, float]:
+    """z and two-sided p of two independent samples, ascending, by the normal approximation without correction for ties, as SciPy's
+    ranksums; NaN if one is empty [mann1947]."""
+    if len(x) == 0 or len(y) == 0:
+        return np.nan, np.nan
+    below, up_to = np.searchsorted(y, x, "left").sum(), np.searchsorted(y, x, "right").sum()
+    above = (below + up_to) / 2  # pairs with x above y, ties one half
+    n_x, n_y = len(x), len(y)
+    z = (above - n_x * n_y / 2) / np.sqrt(n_x * n_y * (n_x + n_y + 1) / 12)
+    return float(z), float(2 * special.ndtr(-abs(z)))
+
+
+def holm_adjusted(p: Floats) -> Floats:
+    """Holm's step-down adjustment: rejecting what is at most the level keeps the probability of any false rejection at most the level.
+    NaN stays NaN and does not count as a test [holm1979]."""
+    order = np.argsort(p, kind="stable")[: np.count_nonzero(~np.isnan(p))]  # NaN is last
+    adjusted = p.copy()
+    adjusted[order] = np.maximum.accumulate(np.minimum(1, p[order] * np.arange(len(order), 0, -1)))
+    return adjusted
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Every pair of models that have scores of a metric, a before b: arrays by pair."""
+
+    a: Numbers  # as Level.models numbers them
+    b: Numbers
+    n: Numbers
+    n_shapes: Numbers  # that both, and all competitors, have a score for
+    paired: Paired
+    holm: Floats
+    rank_sum_z: Floats  # the paper's: over all shapes of each, whatever the unit
+    rank_sum_p: Floats
+
+
+def pairs_of(level: Level, metric: int) -> Pairs:
+    models = level.scored(metric)
+    a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
+    n, n_shapes = np.zeros(len(a), dtype=np.intp), np.zeros(len(a), dtype=np.intp)
+    paired = Paired._make([np.full(len(a), np.nan) for _ in Paired._fields])
+    for places, scores in level.groups(metric, list(zip(a, b))):
+        of_a, of_b = (scores.values[:, np.searchsorted(scores.models, numbers[places])] for numbers in (a, b))
+        n[places], n_shapes[places] = scores.n, scores.n_shapes
+        for values, found in zip(paired, compare(of_a - of_b)):
+            values[places] = found
+    by_shape = {model: np.sort(level.values[level.defined[:, model, metric], model, metric]) for model in models}
+    rank_sums = np.array([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)]).reshape(-1, 2)
+    return Pairs(a, b, n, n_shapes, paired, holm_adjusted(paired.signed_rank_p), rank_sums[:, 0], rank_sums[:, 1])
+
+
+def significance(study: Study) -> pandas.DataFrame:
+    """A row per data set, metric and pair of models, references included."""
+    parts = (_part(level, metric) for level in study.levels for metric in range(len(level.metrics)))
+    return framed(COLUMNS, parts, study.in_splits)
+
+
+def _part(level: Level, metric: int) -> Part:
+    pairs = pairs_of(level, metric)
+    names = np.array(level.models, dtype=object)
+    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[pairs.a],
+            "model_b": names[pairs.b], "n": pairs.n, "n_shapes": pairs.n_shapes, **pairs.paired._asdict(),
+            "rank_sum_z": pairs.rank_sum_z, "rank_sum_p": pairs.rank_sum_p, "signed_rank_p_holm": pairs.holm,
+            "n_tests": np.count_nonzero(~np.isnan(pairs.holm))}

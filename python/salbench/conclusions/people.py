@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Human curves [tasse2016]: how well n participants predict n others, what more of them add, how many of them a model is worth, and how
+reliable the ground truth is that they make. Within a mesh, since hard meshes are hard for any number of people.
+
+A point of the curve stands among the models as one more of them, under a name that no model can have, so that units and shapes are
+chosen where they are for everything else.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.metrics import Metric
+from salbench.conclusions.pairs import compare
+from salbench.conclusions.samples import Summary, summarise
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import CI95, METRIC, N, N_SHAPES, Part, count, framed, number, text
+from salbench.conclusions.units import Floats, Level, Numbers, Scores
+
+ITEM, CLASS = text("item", "the mesh"), text("class", "of the mesh; empty if it has none")
+PARTICIPANTS = count("n", "participants, predicting as many others")
+
+CURVE = (PARTICIPANTS, METRIC, count("n_meshes", "meshes with so many participants, twice, and a score"),
+         number("mean", "mean over these meshes"), number("sd", "standard deviation over them, by n - 1"), *CI95)
+
+CURVE_BY_MESH = (ITEM, CLASS, PARTICIPANTS, METRIC, number("value", "score of n participants against n others"),
+                 number("reliability", "of cc: correlation of 2 n participants with as many others, 2 r / (1 + r)"))
+
+_OF_PAIRS = ("mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high")
+DIFFERENCES = (METRIC, count("from_participants", "fewer participants"), count("to_participants", "more participants"), N, N_SHAPES,
+               number("mean_difference", "mean over the units of more - fewer"), *CI95, number("t_p", "two-sided p of the paired t-test"),
+               number("ci90_low", "90 % interval, lower end"), number("ci90_high", "upper end"))
+
+RELIABILITY = (METRIC, N, N_SHAPES, count("fewest_participants", "of a mesh, both halves together"),
+               count("most_participants", "of a mesh, both halves together"), number("split_half", "mean correlation of two halves"),
+               number("mean", "mean reliability of all participants, 2 r / (1 + r)"), number("sd", "standard deviation, by n - 1"), *CI95)
+
+
+def human_curve(study: Study) -> pandas.DataFrame:
+    """A row per number of participants and metric."""
+    people, metrics = _people(study), study.scores.metrics
+    parts = ((n, metric.name, *_of_one(rows[metric.name].dropna().to_numpy()))
+             for n, rows in people.groupby("n") for metric in metrics)
+    return framed(CURVE, (dict(zip((column.name for column in CURVE), part)) for part in parts))
+
+
+def _of_one(values: Floats) -> tuple[float, ...]:
+    """n, mean, sd and interval of one sample."""
+    found = summarise(values[:, None])
+    return found.n, *(float(column[0]) for column in found[1:])
+
+
+def human_curve_by_mesh(study: Study) -> pandas.DataFrame:
+    """A row per mesh, number of participants and metric."""
+    people, metrics = _people(study), study.scores.metrics
+    names = [metric.name for metric in metrics]
+    values = people[names].to_numpy(dtype=float).ravel()
+    columns = {name: np.repeat(people[name].to_numpy(), len(names)) for name in ("item", "class", "n")}
+    metric = np.tile(np.array(names, dtype=object), len(people))
+    return framed(CURVE_BY_MESH, [{**columns, "metric": metric, "value": values,
+                                   "reliability": np.where(metric == "cc", reliability(values), np.nan)}])
+
+
+def reliability(r: Floats) -> Floats:
+    """Of the whole, from the correlation of its halves [spearman1910] [brown1910]."""
+    positive = np.maximum(r, 0)  # NaN stays
+    return np.asarray(2 * positive / (1 + positive))
+
+
+def human_curve_differences(study: Study) -> pandas.DataFrame:
+    """A row per metric and pair of numbers of participants."""
+    level, curve = curve_level(study)
+    return framed(DIFFERENCES, (_differences(level, curve, metric) for metric in range(len(level.metrics))))
+
+
+def _differences(level: Level, curve: Numbers, metric: int) -> Part:
+    fewer, more = np.triu_indices(len(curve), 1)
+    cells = {name: np.full(len(fewer), np.nan) for name in _OF_PAIRS}
+    n, n_shapes = np.zeros(len(fewer), dtype=int), np.zeros(len(fewer), dtype=int)
+    for places in _on_same_shapes(level, metric, curve[fewer], curve[more]):
+        scores = level.averaged(metric, np.unique(curve[np.concatenate([fewer[places], more[places]])]))
+        high, low = (np.searchsorted(scores.models, curve[ends[places]]) for ends in (more, fewer))
+        found = compare(scores.values[:, high] - scores.values[:, low])
+        n[places], n_shapes[places] = scores.n, scores.n_shapes
+        for name in _OF_PAIRS:
+            cells[name][places] = getattr(found, name)
+    return {"metric": level.metrics[metric].name, "from_participants": fewer + 1, "to_participants": more + 1, "n": n,
+            "n_shapes": n_shapes, **cells}
+
+
+def _on_same_shapes(level: Level, metric: int, a: Numbers, b: Numbers) -> Iterator[list[int]]:
+    """Places of those pairs of models that are scored together on the same shapes: compared at once."""
+    both = (level.defined[:, a, metric] & level.defined[:, b, metric]).T
+    places: dict[bytes, list[int]] = {}
+    for place, shapes in enumerate(both):
+        places.setdefault(shapes.tobytes(), []).append(place)
+    yield from places.values()
+
+
+def human_reliability(study: Study) -> pandas.DataFrame:
+    """One row, of the metric cc; none without it."""
+    people = _people(study)
+    if "cc" not in people:
+        return framed(RELIABILITY, [])
+    known = people.dropna(subset=["cc"])
+    last = known[~known["item"].duplicated(keep="last")]  # the largest groups of each mesh
+    r = last["cc"].to_numpy(dtype=float)
+    halves = Scores(_as_models(last, pandas.DataFrame({"cc": r, "reliability": reliability(r)}), "people"),
+                    (Metric("cc"), Metric("reliability")))
+    level = Level(halves, "meshes", study.unit)
+    if not level.models:
+        return framed(RELIABILITY, [])
+    scores = level.averaged(1, [0])
+    mean, sd, low, high = _numbers(summarise(scores.values))
+    return framed(RELIABILITY, [{
+        "metric": "cc", "n": scores.n, "n_shapes": scores.n_shapes, "fewest_participants": 2 * last["n"].min(),
+        "most_participants": 2 * last["n"].max(), "split_half": float(summarise(level.averaged(0, [0]).values).mean[0]), "mean": mean,
+        "sd": sd, "ci95_low": low, "ci95_high": high}])
+
+
+def _numbers(found: Summary) -> list[float]:
+    """Mean, deviation and interval of its only column."""
+    return [float(column[0]) for column in found[1:]]
+
+
+def curve_level(study: Study, beside: pandas.DataFrame | None = None) -> tuple[Level, Numbers]:
+    """The scores `beside`, if any, followed by the curve, a model per number of participants; and the numbers of these.
+
+    Units may leave meshes out, and curves with them.
+    """
+    people = _people(study)
+    names = [metric.name for metric in study.scores.metrics]
+    curves = _as_models(people, people[names], people["n"].astype(str) + " participants")
+    rows = curves if beside is None else pandas.concat([beside, curves], ignore_index=True)
+    level = Level(Scores(rows, study.scores.metrics), "meshes", study.unit)
+    places = (level.find(f"{n} participants") for n in range(1, int(people["n"].max()) + 1))
+    return level, np.array([place for place in places if place is not None], dtype=np.intp)
+
+
+def _as_models(meshes: pandas.DataFrame, values: pandas.DataFrame, model: "str | pandas.Series") -> pandas.DataFrame:
+    """Rows of scores."""
+    texts = meshes[["item", "class"]].assign(dataset="meshes", split="", view="", model=model)
+    return pandas.concat([texts.reset_index(drop=True), values.reset_index(drop=True)], axis=1)
+
+
+def _people(study: Study) -> pandas.DataFrame:
+    if study.people is None:
+        raise LookupError("no human curves")
+    return study.people

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The bootstrap over the units of inference [efron1993]: a matrix of counts times a matrix of scores.
+
+One set of resamples serves every column of a table, so that means, differences and ranks of models are compared within the same
+resample. The product is exact, and so the same bytes whatever library multiplies, in whatever order, with however many threads:
+scores are rounded to a grid on which no sum of them needs more than the 53 bits of a double.
+"""
+
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from salbench.conclusions.samples import TAIL, means
+from salbench.conclusions.units import Floats
+
+RESAMPLES = 10_000
+_ROWS = 32  # resamples multiplied at once: they stay in a core's cache, which libraries without blocks need
+
+# With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do all resamples, whatever
+# percentiles are taken.
+FEWEST_OF_PERCENTILES = 6
+
+
+class Bootstrap:
+    """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone."""
+
+    def __init__(self, seed: int, resamples: int = RESAMPLES) -> None:
+        self._seed, self._resamples = seed, resamples
+        self._counts: dict[int, NDArray[np.uint8]] = {}
+
+    def counts(self, n: int) -> NDArray[np.uint8]:
+        """How often each of n units is drawn: resamples x n."""
+        if n not in self._counts:
+            while len(self._counts) > 3:  # of thousands of scans, 48 MB each
+                del self._counts[next(iter(self._counts))]
+            self._counts[n] = np.concatenate(list(self._drawn(n)))
+        return self._counts[n]
+
+    def _drawn(self, n: int) -> Iterator[NDArray[np.uint8]]:
+        """Block by block. Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that taking
+        the upper 32 bits times n makes no unit likelier by more than n / 2^32."""
+        generator = np.random.PCG64([self._seed, n])
+        block = max(1, 1_000_000 // n)
+        for first in range(0, self._resamples, block):
+            rows = min(block, self._resamples - first)
+            units = ((generator.random_raw(rows * n) >> np.uint64(32)) * np.uint64(n)) >> np.uint64(32)
+            cells = units.astype(np.intp).reshape(rows, n) + n * np.arange(rows)[:, None]
+            counted = np.bincount(cells.ravel(), minlength=rows * n).reshape(rows, n)
+            yield counted.astype(np.uint8)  # 255 draws of one unit: in no sample of this universe
+
+    def means(self, values: Floats) -> Floats:
+        """Means of the columns of units x columns over each resample: resamples x columns.
+
+        Equal columns have equal means, and a constant one has its value.
+        """
+        return self.means_of_each([values])[0]
+
+    def means_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
+        """`means` of several samples; those of as many units share one product, which takes far less time."""
+        means: list[Floats] = [np.empty(0)] * len(samples)
+        for n in sorted({len(values) for values in samples}):
+            places = [place for place, values in enumerate(samples) if len(values) == n]
+            relative = [_on_grid(samples[place] - samples[place][0]) for place in places]
+            resampled = self._product(np.hstack(relative)) / n
+            ends = np.cumsum([values.shape[1] for values in relative])
+            for place, own in zip(places, np.split(resampled, ends[:-1], axis=1)):
+                means[place] = own + samples[place][0]
+        return means
+
+    def _product(self, values: Floats) -> Floats:
+        counts = self.counts(len(values))
+        sums = np.empty((len(counts), values.shape[1]))
+
+        def multiply(row: int) -> None:
+            np.matmul(counts[row:row + _ROWS].astype(float), values, out=sums[row:row + _ROWS])
+
+        with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as threads:
+            list(threads.map(multiply, range(0, len(counts), _ROWS)))
+        return sums
+
+
+def _on_grid(values: Floats) -> Floats:
+    """Rounded to multiples of a power of two, such that n times the largest value is below 2^53 of them: to 2^-40 of the largest
+    value for 4 800 units."""
+    _, exponent = np.frexp(np.abs(values).max() * len(values))
+    step = np.ldexp(1.0, exponent - 53)
+    rounded: Floats = np.rint(values / step) * step
+    return rounded
+
+
+def bca_interval(sample: Floats, resampled: Floats) -> tuple[float, float]:
+    """95 % interval of the mean of a sample from its resampled means, bias-corrected and accelerated [efron1987].
+
+    None for fewer than two values, or for equal ones.
+    """
+    if len(sample) < 2 or np.ptp(sample) == 0:
+        return np.nan, np.nan
+    mean, rounding = means(sample), 1e-10 * np.ptp(sample)  # coarser than the grid: a resample may have the mean of the sample itself
+    below = ((resampled < mean - rounding).mean() + (resampled <= mean + rounding).mean()) / 2  # and counts one half then
+    if below <= 0 or below >= 1:
+        return np.nan, np.nan
+    away = sample - mean
+    bias, acceleration = special.ndtri(below), (away**3).sum() / (6 * (away**2).sum() ** 1.5)
+    z = bias + special.ndtri([TAIL, 1 - TAIL])
+    low, high = np.quantile(resampled, special.ndtr(bias + z / (1 - acceleration * z)))
+    return float(low), float(high)
+
+
+def percentile_interval(values: Floats, n: int) -> tuple[float, float]:
+    """95 % interval of any function of the means of n units, from its values in their resamples.
+
+    Percentiles at the levels that give a mean of normal values Student's interval [hesterberg2015]. Ends are among the values, which may
+    be infinite. None for too few units, where a value is NaN, or for equal finite values.
+    """
+    if n < FEWEST_OF_PERCENTILES or len(values) == 0 or np.isnan(values).any():
+        return np.nan, np.nan
+    z = np.sqrt(n / (n - 1)) * special.stdtrit(n - 1, 1 - TAIL)
+    place = int(special.ndtr(-z) * (len(values) - 1))
+    ends = np.partition(values, [place, len(values) - 1 - place])
+    low, high = float(ends[place]), float(ends[len(values) - 1 - place])
+    return (np.nan, np.nan) if low == high and np.isfinite(low) else (low, high)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scores per shape from a table of anybody's: results.csv of a run, or what others have published."""
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.csv_file import InputError, Table, read_csv
+from salbench.conclusions.metrics import Metric, of_program
+from salbench.conclusions.units import DATASETS, TEXTS, Floats, Scores
+
+_BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
+
+
+@dataclass(frozen=True)
+class ScoreFile:
+    scores: Scores
+    notes: list[str]  # on columns that were left out
+    remarks: list[str]  # above the names of the columns
+
+
+def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> list[Metric]:
+    """The program's metrics, and columns that are named by their direction."""
+    named = [*(Metric(name, True) for name in higher), *(Metric(name, False) for name in lower)]
+    return [*of_program().values(), *named]
+
+
+def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower: Sequence[str] = (),
+                classes: str | os.PathLike[str] | None = None) -> ScoreFile:
+    """A CSV file with a row per shape and model. Columns: item, model and at least one metric; dataset, view, class and split if there
+    are any. Without `dataset`, rows with a view are of scans and others of meshes; `lcc` is made of `cc` where it is missing.
+
+    higher, lower: further columns of scores, of which higher or lower ones are better. classes: a CSV file with columns item and class.
+    Throws InputError with file and line for a missing column, a score that is no number, a second row of a shape and model.
+    """
+    metrics = metrics_to_read(higher, lower)
+    table = read_csv(path, {metric.name for metric in metrics})
+    for name in (*higher, *lower):
+        if name not in table.columns:
+            raise InputError(f"{table.name}: no column '{name}'")
+    found = scores_from(table, metrics, {} if classes is None else read_classes(classes))
+    return ScoreFile(found, _notes(table, found.metrics), table.remarks)
+
+
+def read_results(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> ScoreFile:
+    """results.csv or constant.csv of a run, with its metrics alone; it may have no rows."""
+    table = read_csv(path, {metric.name for metric in metrics})
+    return ScoreFile(scores_from(table, metrics, may_be_empty=True), [], table.remarks)
+
+
+def read_smoothed(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
+    """smoothed.csv of a run: the columns of its scores behind `smoothing`."""
+    table = read_csv(path, {metric.name for metric in metrics})
+    columns = {name: table.column_if_any(name) for name in ("smoothing", *TEXTS)}
+    return _with_numbers(columns, table, metrics)
+
+
+def read_people(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
+    """people.csv of a run: item, class, n and a column per metric."""
+    table = read_csv(path, {"n", *(metric.name for metric in metrics)})
+    columns = {"item": table.column("item"), "class": table.column("class"), "n": table.number_column("n").astype(int)}
+    return _with_numbers(columns, table, metrics)
+
+
+def _with_numbers(columns: dict[str, Any], table: Table, metrics: Sequence[Metric]) -> pandas.DataFrame:
+    return pandas.DataFrame(columns | {metric.name: table.number_column(metric.name) for metric in metrics})
+
+
+def scores_from(table: Table, metrics: Sequence[Metric], class_of: dict[str, str] | None = None, may_be_empty: bool = False) -> Scores:
+    """The scores of a table by those of the metrics that it has, in their order."""
+    if not len(table.lines) and not may_be_empty:
+        raise InputError(f"{table.name}: no scores below the names of the columns")
+    texts = {name: table.column(name) if name in ("item", "model") else table.column_if_any(name) for name in TEXTS}
+    frame = pandas.DataFrame({name: pandas.Series(texts[name], dtype=object) for name in TEXTS})
+    scores = _score_columns(table, metrics)
+    unnamed = frame["dataset"] == ""
+    frame.loc[unnamed, "dataset"] = np.where(frame.loc[unnamed, "view"] == "", "meshes", "scans")
+    _check_rows(table, frame)
+    if class_of:
+        frame["class"] = [class_of.get(item, own) for item, own in zip(frame["item"], frame["class"])]
+    numbers = pandas.DataFrame({metric.name: values for metric, values in scores}, index=frame.index)
+    return Scores(pandas.concat([frame, numbers], axis=1), tuple(metric for metric, _ in scores))
+
+
+def _score_columns(table: Table, metrics: Sequence[Metric]) -> list[tuple[Metric, Floats]]:
+    found = []
+    for metric in metrics:
+        if metric.name in table.numbers:
+            found.append((metric, table.numbers[metric.name]))
+        elif metric.name == "lcc" and "cc" in table.numbers:
+            found.append((metric, table.numbers["cc"]))
+        if found and metric.name == "lcc" and found[-1][0] is metric:
+            found[-1] = metric, np.abs(found[-1][1])
+    if not found:
+        raise InputError(f"{table.name}: no column is a metric; name the columns of scores with --higher or --lower; there are "
+                         f"{', '.join(table.columns)}")
+    for metric, values in found:
+        for row in np.flatnonzero(np.isinf(values))[:1]:
+            table.fail(row, f"{metric.name} is infinite: no score can be")
+    return found
+
+
+def _check_rows(table: Table, frame: pandas.DataFrame) -> None:
+    unknown = ~frame["dataset"].isin(DATASETS)
+    again = frame.duplicated(["dataset", "item", "view", "model"])
+    for row in np.flatnonzero(unknown | again)[:1]:
+        dataset, item, view, model = frame.loc[row, ["dataset", "item", "view", "model"]]
+        if unknown[row]:
+            table.fail(row, f"data set '{dataset}', expected one of {', '.join(DATASETS)}")
+        table.fail(row, f"a second row of item '{item}'{', view ' + view if view else ''}, model '{model}'")
+
+
+def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
+    """Class by item."""
+    table = read_csv(path)
+    found: dict[str, str] = {}
+    for row, (item, own) in enumerate(zip(table.column("item"), table.column("class"))):
+        if item in found:
+            table.fail(row, f"item '{item}' has a class already")
+        found[item] = own
+    return found
+
+
+def only(scores: Scores, names: Sequence[str]) -> Scores:
+    """The metrics of these names alone, in their order."""
+    by_name = {metric.name: metric for metric in scores.metrics}
+    return replace(scores, metrics=tuple(by_name[name] for name in names))
+
+
+def _notes(table: Table, metrics: Iterable[Metric]) -> list[str]:
+    known = {*_BESIDE_SCORES, *(metric.name for metric in metrics)}
+    left_out = [name for name in table.columns if name not in known]
+    if not left_out:
+        return []
+    return [f"{table.name}: columns that are no metrics of the program were left out: {', '.join(left_out)}; name them with --higher "
+            "or --lower"]

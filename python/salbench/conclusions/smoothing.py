@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scores of maps that were smoothed, beside those of the maps as they are, which all other tables have. smoothing.csv."""
+
+from collections.abc import Iterator
+from itertools import chain
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.metrics import Metric
+from salbench.conclusions.samples import Summary, summarise
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, count, framed, text
+from salbench.conclusions.units import Floats, Level, Scores, levels
+
+COLUMNS = (
+    DATASET, SPLIT, MODEL, METRIC, text("steps", 'of smoothing; "best": for each shape and model the best of them'), N, N_SHAPES, MEAN, *CI95,
+    count("upper_bound", "1 for best: the ground truth itself chose it, so that it is an upper bound and no score"))
+
+_BEST = "best"
+
+
+def smoothing(study: Study) -> pandas.DataFrame:
+    """A row per data set, model, metric and number of steps."""
+    if study.smoothed is None:
+        raise LookupError("no scores of smoothed maps")
+    by_steps = {str(steps): Scores(rows.reset_index(drop=True), study.scores.metrics)
+                for steps, rows in study.smoothed.groupby("smoothing", sort=False)}
+    by_steps[_BEST] = best_of(list(by_steps.values()))
+    parts = zip(*(levels(scores, study.unit) for scores in by_steps.values()))  # a part of the data by each number of steps
+    return framed(COLUMNS, chain.from_iterable(_parts(part, list(by_steps)) for part in parts), by_steps[_BEST].in_splits)
+
+
+def best_of(smoothed: list[Scores]) -> Scores:
+    """The best score of each row by each metric; all have the same shapes and models, in the same order."""
+    best = smoothed[0].frame.copy()
+    for metric in smoothed[0].metrics:
+        best[metric.name] = _better(metric, [scores.frame[metric.name].to_numpy() for scores in smoothed])
+    return Scores(best, smoothed[0].metrics)
+
+
+def _better(metric: Metric, values: list[Floats]) -> Floats:
+    """Elementwise; the other one where one is undefined."""
+    found: Floats = np.fmax.reduce(values) if metric.higher_is_better else np.fmin.reduce(values)
+    return found
+
+
+def _parts(of_steps: tuple[Level, ...], steps: list[str]) -> Iterator[Part]:
+    found = [[_summaries(level, metric) for metric in range(len(level.metrics))] for level in of_steps]
+    for model, name in enumerate(of_steps[0].models):
+        for metric, of_metric in enumerate(of_steps[0].metrics):
+            cells = [by_metric[metric][model] for by_metric in found]
+            yield {"dataset": of_steps[0].dataset, "split": of_steps[0].split, "model": name, "metric": of_metric.name, "steps": steps,
+                   **{column: [cell[place] for cell in cells] for place, column in enumerate(("n", "n_shapes", "mean", "ci95_low", "ci95_high"))},
+                   "upper_bound": [int(step == _BEST) for step in steps]}
+
+
+def _summaries(level: Level, metric: int) -> list[tuple[float, ...]]:
+    """n, n_shapes, mean and interval of each model."""
+    found: list[tuple[float, ...]] = [()] * len(level.models)
+    for places, scores in level.groups(metric, [[model] for model in range(len(level.models))]):
+        summary: Summary = summarise(scores.values)
+        for column, place in enumerate(places):
+            found[place] = scores.n, scores.n_shapes, summary.mean[column], summary.low[column], summary.high[column]
+    return found

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Statements of a text about pairs of models, beside what scores say: statements.csv.
+
+Each pair is judged twice: by the paper's rank-sum test over shapes, where what is not significant is no difference, and by intervals
+over units, where sameness has to be shown: two models are the same if the 90 % interval lies within a margin [schuirmann1987]
+[lakens2017].
+"""
+
+import os
+from collections.abc import Iterator
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.csv_file import read_csv
+from salbench.conclusions.pairs import Pairs, pairs_of
+from salbench.conclusions.samples import LEVEL
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import CI95, DATASET, METRIC, N, N_SHAPES, Part, framed, number, text
+from salbench.conclusions.units import DATASETS, Level
+
+RELATIONS = ("above", "same", "differ")  # a is better than b; the two do not differ; they differ
+
+COLUMNS = (
+    text("section", "of the text"), text("claim", "what it says"), text("word", "how it puts it"), DATASET, METRIC,
+    text("check", "above: a is better than b; same: the two do not differ; differ: they differ"), text("model_a", "first model"),
+    text("model_b", "second model"), N_SHAPES, number("rank_sum_z", "the paper's rank-sum test, over all shapes of each model"),
+    number("rank_sum_p", "two-sided p"), text("by_shapes", "holds or does not hold, as the paper reads its test"), N,
+    number("mean_difference", "mean over the units of a - b"), *CI95, number("ci90_low", "90 % interval, lower end"),
+    number("ci90_high", "upper end"), number("margin", "differences below it count as none; empty: none is given"),
+    text("by_units", "holds, does not hold, or undecided"),
+    number("signed_rank_p_holm", "signed-rank test, after Holm's correction over all pairs of the data set and metric"))
+
+_HOLDS, _DOES_NOT, _UNDECIDED = "holds", "does not hold", "undecided"
+
+
+def read_statements(path: str | os.PathLike[str]) -> pandas.DataFrame:
+    """The statements about pairs in a CSV file like configs/paper/claims.csv: columns section, claim, word, dataset, metric, check, a, b,
+    margin; rows with another check, and those without a word, are left out.
+
+    Throws InputError with the line of a data set that there is none of, or of a margin that is not above 0.
+    """
+    table = read_csv(path, {"margin"})
+    margin = table.number_column("margin")
+    frame = pandas.DataFrame({name: pandas.Series(table.column(name), dtype=object)
+                              for name in ("section", "claim", "word", "dataset", "metric", "check", "a", "b")}).assign(margin=margin)
+    said = frame["check"].isin(RELATIONS) & (frame["word"] != "")
+    for row in np.flatnonzero(said & (~frame["dataset"].isin(DATASETS) | (margin <= 0)))[:1]:
+        if frame["dataset"][row] not in DATASETS:
+            table.fail(row, f"data set '{frame['dataset'][row]}', expected one of {', '.join(DATASETS)}")
+        table.fail(row, f"margin {margin[row]:g}, expected above 0")
+    return frame[said].reset_index(drop=True)
+
+
+def statements(study: Study) -> pandas.DataFrame:
+    """A row per statement and pair; empty cells where a model has no scores; no row without data set and metric."""
+    if study.claims is None:
+        raise LookupError("no statements")
+    return framed(COLUMNS, _rows(study, study.claims))
+
+
+def _rows(study: Study, claims: pandas.DataFrame) -> Iterator[Part]:
+    known: dict[tuple[str, str], tuple[Level, Pairs]] = {}
+    metrics = [metric.name for metric in study.scores.metrics]
+    for said in claims.to_dict("records"):
+        level = next((level for level in study.levels if level.dataset == said["dataset"]), None)
+        if level is None or said["metric"] not in metrics:
+            continue
+        metric = metrics.index(said["metric"])
+        key = said["dataset"], said["metric"]
+        if key not in known:
+            known[key] = level, pairs_of(level, metric)
+        for a in said["a"].split():
+            for b in said["b"].split():
+                told = {name: said[name] for name in ("section", "claim", "word", "dataset", "metric", "check", "margin")}
+                found = _pair(*known[key], a, b)
+                yield {**told, "model_a": a, "model_b": b, **found,
+                       **_verdicts(said["check"], said["margin"], found, level.metrics[metric].higher_is_better)}
+
+
+def _pair(level: Level, pairs: Pairs, a: str, b: str) -> dict[str, float]:
+    """What the scores say of a - b; the pair may be known as b - a."""
+    first, second = level.find(a), level.find(b)
+    place = np.flatnonzero(((pairs.a == first) & (pairs.b == second)) | ((pairs.a == second) & (pairs.b == first)))
+    cells = dict.fromkeys(("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "rank_sum_z", "rank_sum_p",
+                           "signed_rank_p_holm"), np.nan)
+    if not len(place):
+        return {"n": 0, "n_shapes": 0, **cells}
+    at = int(place[0])
+    known = {**pairs.paired._asdict(), "rank_sum_z": pairs.rank_sum_z}
+    for low, high in (("mean_difference", "mean_difference"), ("ci95_low", "ci95_high"), ("ci90_low", "ci90_high"),
+                      ("rank_sum_z", "rank_sum_z")):
+        of_pair = float(known[low][at]), float(known[high][at])
+        cells[low], cells[high] = of_pair if pairs.a[at] == first else (-of_pair[1], -of_pair[0])
+    return {**cells, "n": int(pairs.n[at]), "n_shapes": int(pairs.n_shapes[at]), "rank_sum_p": float(pairs.rank_sum_p[at]),
+            "signed_rank_p_holm": float(pairs.holm[at])}
+
+
+def _verdicts(relation: str, margin: float, found: dict[str, float], higher_is_better: bool) -> dict[str, str]:
+    return {"by_shapes": _by_shapes(relation, found["rank_sum_z"], found["rank_sum_p"], higher_is_better),
+            "by_units": _by_units(relation, margin, found, higher_is_better)}
+
+
+def _by_shapes(relation: str, z: float, p: float, higher_is_better: bool) -> str:
+    """As the paper reads its test: what is not significant is no difference."""
+    if np.isnan(p):
+        return ""
+    significant, better = p < LEVEL, z > 0 if higher_is_better else z < 0
+    holds = {"above": significant and better, "same": not significant, "differ": significant}[relation]
+    return _HOLDS if holds else _DOES_NOT
+
+
+def _by_units(relation: str, margin: float, found: dict[str, float], higher_is_better: bool) -> str:
+    if found["n"] < 2:
+        return ""
+    above, below = found["ci95_low"] > 0, found["ci95_high"] < 0
+    if relation == "above":
+        return _UNDECIDED if not (above or below) else _HOLDS if above == higher_is_better else _DOES_NOT
+    equivalent = -margin < found["ci90_low"] and found["ci90_high"] < margin
+    if not (equivalent or above or below):
+        return _UNDECIDED
+    holds = equivalent if relation == "same" else above or below
+    return _HOLDS if holds else _DOES_NOT

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables: a record per column, frames that have these columns and types whatever their rows, and their text."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas
+
+DIGITS = 10  # significant ones, in every file
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table: `type` is that of the frame, and "Int64" has empty cells where "int64" has none."""
+
+    name: str
+    type: str  # "str", "int64", "Int64" or "float64"
+    meaning: str
+
+
+def text(name: str, meaning: str) -> Column:
+    return Column(name, "str", meaning)
+
+
+def count(name: str, meaning: str) -> Column:
+    return Column(name, "int64", meaning)
+
+
+def optional_count(name: str, meaning: str) -> Column:
+    return Column(name, "Int64", meaning)
+
+
+def number(name: str, meaning: str) -> Column:
+    return Column(name, "float64", meaning)
+
+
+DATASET = text("dataset", '"meshes", "scans" or "clouds"')
+SPLIT = text("split", "of the data set; empty for all of them together")  # only in tables of items that are in splits
+METRIC = text("metric", "name of the metric")
+MODEL = text("model", "name of the model")
+N = count("n", "units that the row is over")
+N_SHAPES = count("n_shapes", "shapes in these units")
+MEAN = number("mean", "mean over the units")
+CI95 = (number("ci95_low", "95 % interval, lower end"), number("ci95_high", "95 % interval, upper end"))
+
+Part = Mapping[str, Any]  # some rows: a list or array per column, or one value for all of these rows
+
+
+def framed(columns: Sequence[Column], parts: Iterable[Part], in_splits: bool = True) -> pandas.DataFrame:
+    """The rows of all parts below each other. Without splits the column `split` is left out."""
+    kept = [column for column in columns if in_splits or column != SPLIT]
+    pieces: dict[str, list[Any]] = {column.name: [] for column in kept}
+    for part in parts:
+        n = max((len(values) for values in part.values() if _is_list(values)), default=1)
+        for column in kept:
+            values = part[column.name]
+            pieces[column.name].append(values if _is_list(values) else [values] * n)
+    return pandas.DataFrame({column.name: _typed(pieces[column.name], column.type) for column in kept})
+
+
+def _is_list(values: Any) -> bool:
+    return isinstance(values, (list, tuple, np.ndarray))
+
+
+def _typed(pieces: list[Any], type: str) -> Any:
+    if type == "str":
+        return pandas.Series([str(value) for piece in pieces for value in piece], dtype=object)
+    values = np.concatenate([np.asarray(piece, dtype=float) for piece in pieces]) if pieces else np.empty(0)
+    return pandas.Series(values).astype(type)  # NaN is an empty cell of "Int64", and an error in "int64"
+
+
+def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
+    """The cells as a file has them: empty where a value is not known."""
+    def of(values: pandas.Series) -> list[str]:
+        if values.dtype == np.float64:
+            return ["" if value != value else f"{value:.{DIGITS}g}" for value in values.to_list()]
+        return ["" if value is pandas.NA else str(value) for value in values.to_list()]
+
+    return pandas.DataFrame({name: of(frame[name]) for name in frame}, columns=frame.columns)
+
+
+def csv(frame: pandas.DataFrame, remarks: Sequence[str] = ()) -> str:
+    """RFC 4180, below a line of '#' per remark."""
+    table: str = texts(frame).to_csv(index=False, lineterminator="\n")
+    return "".join(f"# {remark}\n" for remark in remarks) + table
+
+
+def records(frame: pandas.DataFrame) -> list[dict[str, str]]:
+    """The rows as documents of JSON have them: every cell as text."""
+    rows: list[dict[str, str]] = texts(frame).to_dict("records")
+    return rows
+
+
+def aligned(frame: pandas.DataFrame, decimals: int = 4) -> str:
+    """For the console: columns two spaces apart, numbers to the right, "-" for what is not known."""
+    columns = []
+    for name in frame:
+        cells = [str(name), *(_console_cell(value, decimals) for value in frame[name].to_list())]
+        width = max(map(len, cells))
+        to_the_right = frame[name].dtype != object and "" not in cells
+        columns.append([cell.rjust(width) if to_the_right else cell.ljust(width) for cell in cells])
+    return "".join("  ".join(line).rstrip(" ") + "\n" for line in zip(*columns))
+
+
+def _console_cell(value: Any, decimals: int) -> str:
+    if value is pandas.NA:
+        return ""
+    if not isinstance(value, float):
+        return str(value)
+    if value != value:
+        return "-"
+    vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals  # a value that rounds to 0 keeps its magnitude
+    return f"{value:.1e}" if vanishes else f"{value:.{decimals}f}"
+
+

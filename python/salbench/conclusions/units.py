@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scores by unit of inference: the one place that decides what counts as one observation, and which shapes models are compared on.
+
+The views of a mesh share its form and its participants: they are no independent shapes, and intervals that take them for such are
+too narrow. So by default a unit is a mesh, and its score the mean over its scans.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas
+from numpy.typing import NDArray
+
+from salbench.conclusions.metrics import Metric
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+UNITS = ("mesh", "class", "shape")  # a mesh with its scans, or a cloud; a class of shapes; a mesh, scan or cloud by itself
+DATASETS = ("meshes", "scans", "clouds")  # in the order of the tables
+REFERENCES = ("HS", "RS", "constant")  # people, chance and the map that is the same everywhere: no competitors
+TEXTS = ("dataset", "split", "item", "class", "view", "model")
+
+
+@dataclass(frozen=True)
+class Scores:
+    """A row per shape and model: the columns TEXTS, "" where there is none, and one per metric, NaN where undefined."""
+
+    frame: pandas.DataFrame
+    metrics: tuple[Metric, ...]
+
+    @cached_property
+    def in_splits(self) -> bool:
+        """True if tables of these scores have a column `split`."""
+        return bool((self.frame["split"] != "").any())
+
+    def part(self, rows: Any) -> "Scores":
+        """Some of the rows."""
+        return Scores(self.frame[rows], self.metrics)
+
+
+@dataclass(frozen=True)
+class UnitScores:
+    """Scores of some models on the same units, without gaps."""
+
+    models: Numbers  # numbers of the columns of `values` in Level.models
+    units: Numbers  # and of its rows among the units of the level
+    values: Floats  # units x models: means over the shapes of a unit
+    n_shapes: int  # in these units
+
+    @property
+    def n(self) -> int:
+        return len(self.units)
+
+
+class Level:
+    """The scores of one data set, or of one split or class of it: arrays by shape, model and metric."""
+
+    def __init__(self, scores: Scores, dataset: str, unit: str, split: str = "") -> None:
+        """scores: of this data set, split and class alone. split: as tables name it; empty for several, or none."""
+        rows = scores.frame
+        if unit == "class":
+            rows = rows[rows["class"] != ""]  # a shape without a class is no unit of them
+        self.dataset, self.split, self.metrics = dataset, split, scores.metrics
+        models, self.models = _numbered(rows["model"])
+        shapes, names = _numbered(_names(rows, "item", "view"))
+        by = {"mesh": rows["item"], "class": rows["class"], "shape": _names(rows, "item", "view")}[unit]
+        units, unit_names = _numbered(by)
+        self.n_units = len(unit_names)
+        self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
+        self.values = np.full((len(names), len(self.models), len(self.metrics)), np.nan)  # shapes x models x metrics
+        self.values[shapes, models] = rows[[metric.name for metric in self.metrics]].to_numpy(dtype=float)
+        self.unit_of_shape = np.zeros(len(names), dtype=np.intp)
+        self.unit_of_shape[shapes] = units
+        self.defined = ~np.isnan(self.values)
+        self.is_scored = self.defined.any(axis=0)  # models x metrics
+        others = self.is_reference[:, None] | ~self.is_scored
+        self._common = (self.defined | others).all(axis=1)  # shapes x metrics: those that all competitors have a score for
+
+    def find(self, model: str) -> int | None:
+        """The number of a model; None if it has no row."""
+        return self.models.index(model) if model in self.models else None
+
+    def scored(self, metric: int) -> Numbers:
+        """Models with at least one score of the metric."""
+        return np.flatnonzero(self.is_scored[:, metric])
+
+    def competitors(self, metric: int) -> Numbers:
+        """Those of them that are no references."""
+        return np.flatnonzero(self.is_scored[:, metric] & ~self.is_reference)
+
+    def n_defined(self, metric: int, model: int) -> int:
+        """Shapes that the model has a score for."""
+        return int(np.count_nonzero(self.defined[:, model, metric]))
+
+    def compared(self, metric: int, models: Sequence[int] | Numbers) -> UnitScores:
+        """Scores of some models on the shapes that they and all competitors have a score for.
+
+        So all means, tests and ranks are about the same shapes, and a model gains nothing by failing on hard ones. References may
+        have fewer: they bound nobody else's shapes.
+        """
+        return self._averaged(metric, models, self._common[:, metric])
+
+    def averaged(self, metric: int, models: Sequence[int] | Numbers, required: Sequence[int] | Numbers = ()) -> UnitScores:
+        """Scores of some models on the shapes that they and those of `required` have a score for."""
+        return self._averaged(metric, models, self.defined[:, np.asarray(required, dtype=np.intp), metric].all(axis=1))
+
+    def groups(self, metric: int, sets: Sequence[Sequence[int] | Numbers]) -> list[tuple[list[int], UnitScores]]:
+        """`compared` of each set of models, at once for sets that are compared on the same shapes: their places, and the scores of
+        all models in them. Statistics of most sets, which lack nothing, are so computed together."""
+        kept = (self.defined[:, :, metric] & self._common[:, metric, None]).T.copy()  # models x shapes
+        places: dict[bytes, list[int]] = {}
+        for place, models in enumerate(sets):
+            places.setdefault(kept[np.asarray(models)].all(axis=0).tobytes(), []).append(place)
+        return [(group, self.compared(metric, np.unique(np.concatenate([sets[place] for place in group])))) for group in places.values()]
+
+    def _averaged(self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]) -> UnitScores:
+        models = np.asarray(models, dtype=np.intp)
+        kept = np.flatnonzero(shapes & self.defined[:, models, metric].all(axis=1)) if len(models) else np.empty(0, dtype=np.intp)
+        counts = np.bincount(self.unit_of_shape[kept], minlength=self.n_units)
+        units = np.flatnonzero(counts)
+        values = np.empty((len(units), len(models)))
+        for column, model in enumerate(models):  # bincount adds shape after shape, so that equal models have equal means
+            sums = np.bincount(self.unit_of_shape[kept], self.values[kept, model, metric], self.n_units)
+            values[:, column] = sums[units] / counts[units]
+        return UnitScores(models, units, values, len(kept))
+
+
+def levels(scores: Scores, unit: str) -> list[Level]:
+    """Those with scores: meshes, scans, clouds, each followed by its splits."""
+    found = []
+    for dataset in DATASETS:
+        part = scores.part(scores.frame["dataset"] == dataset)
+        splits = splits_among(part)
+        found.append(Level(part, dataset, unit, only_split(part)))
+        found += [Level(part.part(part.frame["split"] == split), dataset, unit, split) for split in splits]
+    return [level for level in found if level.models]
+
+
+def splits_among(scores: Scores) -> list[str]:
+    """Splits of the rows of a data set, in their order; none where all rows are of one, or of none."""
+    splits = list(scores.frame["split"].unique())
+    return [split for split in splits if split] if len(splits) > 1 else []
+
+
+def only_split(scores: Scores) -> str:
+    """The split that all rows are of; empty for several, or none."""
+    splits: list[str] = list(scores.frame["split"].unique())
+    return splits[0] if len(splits) == 1 else ""
+
+
+def _numbered(names: pandas.Series) -> tuple[Numbers, list[str]]:
+    """Each name by its number, given out in the order of first use, and the names."""
+    numbers, known = pandas.factorize(names)
+    return numbers, list(known)
+
+
+def _names(rows: pandas.DataFrame, *columns: str) -> pandas.Series:
+    """Several columns as one text: no name has the line feed between them."""
+    joined = rows[columns[0]]
+    for column in columns[1:]:
+        joined = joined + "\n" + rows[column]
+    return joined
