@@ -52,7 +52,6 @@ PYBIND11_MODULE(_core, module) {
   bind_models(module);
   bind_run(module);
   bind_shapes(module);
-  bind_stats(module);
 }
 
 }  // namespace salbench::python

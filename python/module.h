@@ -22,6 +22,5 @@ void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
 void bind_shapes(pybind11::module_& module);
-void bind_stats(pybind11::module_& module);
 
 }  // namespace salbench::python

@@ -2,6 +2,7 @@
 """What scores per shape show: how good each model is, which differ, which is best, and how sure that is."""
 
 import math
+import operator
 from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,12 @@ from salbench._tables import Tables
 if TYPE_CHECKING:
     import pandas
 
+    from salbench.conclusions.csv_file import Table
+    from salbench.conclusions.study import Study
+    from salbench.conclusions.units import Scores
+
 _TEXTS = ("item", "model", "dataset", "view", "class", "split")
+_MOST_THREADS = 1024
 
 
 class Conclusions(Tables):
@@ -23,17 +29,34 @@ class Conclusions(Tables):
     Each is worked out when it is first asked for; all speak of the same units, shapes and resamples.
     """
 
-    def __init__(self, tables: Any) -> None:
-        self._tables = tables
+    def __init__(self, study: "Study") -> None:
+        self._study = study
+
+    def _made(self, name: str) -> "pandas.DataFrame":
+        from salbench.conclusions import TABLES
+
+        return next(table for table in TABLES if table.name == name).make(self._study)
 
     def _text(self, name: str) -> str:
-        text: str = self._tables.table(name)
-        return text
+        from salbench.conclusions import tables
+
+        return tables.csv(self._made(name))
+
+    def _table(self, name: str) -> "pandas.DataFrame":
+        return _as_read(self._made(name))
 
     @cached_property
     def power(self) -> "pandas.DataFrame":
         """Which differences the scores could have shown [cohen1988]."""
         return self._table("power")
+
+
+def _as_read(frame: "pandas.DataFrame") -> "pandas.DataFrame":
+    """With the types of a table that is read from a file: what is empty is NaN."""
+    columns = {name: values.where(values != "", np.nan) if values.dtype == object else
+               values.astype(float if values.isna().any() else int) if values.dtype == "Int64" else values
+               for name, values in frame.items()}
+    return frame.assign(**columns)
 
 
 def _text(value: Any) -> str:
@@ -120,6 +143,9 @@ def conclude(
     >>> found.ranking[["model", "rank"]].values.tolist()
     [['A', 1], ['B', 2]]
     """
+    from salbench.conclusions.study import Study
+    from salbench.conclusions.units import UNITS
+
     chosen = None if metrics is None else _names("metrics", metrics)
     higher, lower = _names("higher_is_better", higher_is_better), _names("lower_is_better", lower_is_better)
     if not hasattr(table, "columns"):
@@ -128,7 +154,49 @@ def conclude(
     for name in [*(chosen or ()), *higher, *lower]:
         if name not in columns and not (name == "lcc" and "cc" in columns):
             _core.fail_unknown("column", name, list(columns))
-    return Conclusions(_core.Conclusions(columns, chosen, higher, lower, str(unit), seed, threads))
+    scores = _scores(_table_of(columns), chosen, higher, lower)
+    _whole_number("threads", threads, 1, _MOST_THREADS)
+    if str(unit) not in UNITS:
+        raise ValueError(f"unit must be one of {', '.join(UNITS)}, not '{unit}'")
+    return Conclusions(Study(scores, str(unit), _whole_number("seed", seed, 0, 2**64 - 1)))
+
+
+def _table_of(columns: dict[str, Any]) -> "Table":
+    """Rows are named by their position."""
+    from salbench.conclusions.csv_file import Table
+
+    texts = {name: values for name, values in columns.items() if isinstance(values, list)}
+    numbers = {name: values for name, values in columns.items() if name not in texts}
+    for needed in ("item", "model"):
+        if needed not in columns:
+            raise ValueError(f"table must have a column '{needed}'")
+    return Table("table", texts, numbers, range(len(texts["item"])), list(columns))
+
+
+def _scores(table: "Table", chosen: list[str] | None, higher: list[str], lower: list[str]) -> "Scores":
+    """By all metrics that are known, or by those chosen."""
+    from salbench.conclusions.scores import metrics_to_read, only, scores_from
+
+    known = metrics_to_read(higher, lower)
+    if not any(metric.name in table.columns for metric in known):
+        raise ValueError("table must have a column that is a metric of the program, or is named in higher_is_better or lower_is_better")
+    scores = scores_from(table, known)
+    if chosen is None:
+        return scores
+    for name in chosen:
+        if name not in (metric.name for metric in scores.metrics):
+            raise ValueError(f"metrics: '{name}' is no metric of the program: name it in higher_is_better or lower_is_better")
+    return only(scores, chosen)
+
+
+def _whole_number(name: str, value: Any, low: int, high: int) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise ValueError(f"{name} must be a whole number, not of type {type(value).__name__}") from None
+    if not low <= number <= high:
+        raise ValueError(f"{name} must be a whole number from {low} to {high}, not {number}")
+    return number
 
 
 def _names(argument: str, names: Iterable[str]) -> list[str]:

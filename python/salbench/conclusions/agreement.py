@@ -21,27 +21,26 @@ COLUMNS = (
     DATASET, SPLIT, text("metric_a", "first metric"), text("metric_b", "second metric"), N, count("n_models", "competitors"),
     number("tau", "Kendall's tau-b of the two rankings of the means, 1: the same order"), *CI95)
 
-Signs = NDArray[np.float32]  # of one metric: rows (the sample, then its resamples) x pairs of models: 1, 0 or -1, which is better
-_METRICS = 8  # whose tau with all others are computed at once
-
+Signs = NDArray[np.int8]  # rows (the sample, then its resamples) x pairs of models x metrics: which of the two is better, 1, 0 or -1
+_METRICS = 16  # whose tau with as many others are computed at once
 
 def agreement(study: Study) -> pandas.DataFrame:
     """A row per data set and pair of metrics, over the units and competitors that both are defined for [kendall1945]."""
     return framed(COLUMNS, (_part(study, level, ranked) for level, ranked in study.ranked), study.in_splits)
 
 
-def signs_of(values: Floats, resampled: Floats, higher_is_better: bool) -> Signs:
-    """Of units x models, and resamples x models."""
+def signs_of(values: Floats, resampled: Floats, higher_is_better: bool) -> NDArray[np.int8]:
+    """Of units x models and resamples x models: rows x pairs of models."""
     rows = np.vstack([means(values), resampled]) * (1 if higher_is_better else -1)
     a, b = np.triu_indices(rows.shape[1], 1)
-    return np.sign(rows[:, a] - rows[:, b]).astype(np.float32)
+    return np.sign(rows[:, a] - rows[:, b]).astype(np.int8)
 
 
-def tau_b(x: NDArray[np.float32], y: NDArray[np.float32]) -> Floats:
-    """Kendall's, of rows x metrics x pairs, each metric of x with each of y: rows x metrics x metrics. NaN where all models tie.
-    Counts are small whole numbers, which single precision adds up exactly."""
-    agreeing = x @ np.ascontiguousarray(y.transpose(0, 2, 1))
-    untied_x, untied_y = (np.abs(signs).sum(axis=2, dtype=float) for signs in (x, y))
+def tau_b(x: Signs, y: Signs) -> Floats:
+    """Kendall's, each metric of x with each of y: rows x metrics x metrics. NaN where all models tie. Counts are small whole numbers,
+    which single precision adds up exactly."""
+    agreeing = x.transpose(0, 2, 1).astype(np.float32) @ y.astype(np.float32)
+    untied_x, untied_y = (np.count_nonzero(signs, axis=1).astype(float) for signs in (x, y))
     with np.errstate(invalid="ignore"):
         tau: Floats = agreeing / np.sqrt(untied_x[:, :, None] * untied_y[:, None, :])
     return tau
@@ -70,19 +69,18 @@ def _fill(cells: dict[str, Floats], study: Study, ranked: list[RankedMetric], on
         return
     signs_x = _signs(study, ranked, one, models, units)
     signs_y = signs_x if one is other else _signs(study, ranked, other, models, units)
-    for first in range(0, len(one), _METRICS):
-        a = one[first:first + _METRICS]
-        b = other[first:] if one is other else other
-        tau = tau_b(signs_x[:, first:first + _METRICS], signs_y[:, first:] if one is other else signs_y)
-        low, high = _ends(tau[1:])
-        found = {"n": np.full_like(low, len(units)), "n_models": np.full_like(low, len(models)), "tau": tau[0], "ci95_low": low, "ci95_high": high}
-        for name, values in found.items():
-            cells[name][np.ix_(a, b)] = values
-            cells[name][np.ix_(b, a)] = values.T
+    for a in range(0, len(one), _METRICS):
+        for b in range(a if one is other else 0, len(other), _METRICS):
+            tau = tau_b(signs_x[:, :, a:a + _METRICS], signs_y[:, :, b:b + _METRICS])
+            low, high = _ends(tau[1:])
+            found = {"n": np.full_like(low, len(units)), "n_models": np.full_like(low, len(models)), "tau": tau[0], "ci95_low": low, "ci95_high": high}
+            for name, values in found.items():
+                cells[name][np.ix_(one[a:a + _METRICS], other[b:b + _METRICS])] = values
+                cells[name][np.ix_(other[b:b + _METRICS], one[a:a + _METRICS])] = values.T
 
 
-def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> NDArray[np.float32]:
-    """Rows x metrics x pairs of models, of metrics over the same units and models, for some of these."""
+def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> Signs:
+    """Of metrics over the same units and models, for some of these."""
     samples = [ranked[metric].competitors for metric in metrics]
     scores = samples[0].scores
     if len(models) < len(scores.models) or len(units) < len(scores.units):
@@ -92,7 +90,7 @@ def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models:
     else:
         values, resampled = [sample.scores.values for sample in samples], [sample.means for sample in samples]
     directions = [study.scores.metrics[metric].higher_is_better for metric in metrics]
-    return np.stack(list(map(signs_of, values, resampled, directions)), axis=1)
+    return np.stack(list(map(signs_of, values, resampled, directions)), axis=2)
 
 
 def _ends(taus: Floats) -> tuple[Floats, Floats]:

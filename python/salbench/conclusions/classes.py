@@ -52,8 +52,10 @@ def _part(name: str, level: Level) -> Part:
 
 def _samples(level: Level, metric: int) -> Iterator[tuple[Numbers, Floats, int]]:
     """Rows of the table of models and metrics, with values by unit, and the shapes in these."""
+    competitors = level.competitors(metric)
     for _, scores in level.groups(metric, [[model] for model in level.scored(metric)]):
-        yield scores.models, scores.values, scores.n_shapes
-    competitors = level.compared(metric, level.competitors(metric))
-    if competitors.n > 0:
-        yield np.array([len(level.models)]), competitors.values.mean(axis=1, keepdims=True), competitors.n_shapes
+        models, values = scores.models, scores.values
+        if np.isin(models, competitors).any():  # they are all there: no shape counts that one of them has no score for
+            average = values[:, np.searchsorted(models, competitors)].mean(axis=1, keepdims=True)
+            models, values = np.append(models, len(level.models)), np.hstack([values, average])
+        yield models, values, scores.n_shapes

@@ -3,8 +3,9 @@
 human_equivalents.csv. The curve is used up to the largest group that at least half of the meshes have, over the meshes that have it.
 [tasse2016]"""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 import pandas
@@ -24,6 +25,7 @@ COLUMNS = (
     count("crossings", "how often the curve passes the model's mean; for 2 or more k is the first"),
     text("remark", "why there is no interval, or no number of people"))
 
+_AT_ONCE = 16  # metrics: one product of matrices takes less time, and all of them too much memory
 _ONE = "HS"  # the score of one participant, which is worth one
 
 
@@ -66,23 +68,33 @@ def human_equivalents(study: Study) -> pandas.DataFrame:
     if meshes is None:
         return framed(COLUMNS, [])
     level, curve = curve_level(study, study.scores.frame[study.scores.frame["dataset"] == "meshes"])
-    return framed(COLUMNS, (_part(study, meshes, level, curve, metric) for metric in range(len(level.metrics))))
+    metrics = range(len(level.metrics))
+    parts = (_parts(study, meshes, level, curve, metrics[first:first + _AT_ONCE]) for first in metrics[::_AT_ONCE])
+    return framed(COLUMNS, chain.from_iterable(parts))
 
 
-def _part(study: Study, meshes: Level, level: Level, curve: Numbers, metric: int) -> Part:
-    used = curve[:usable_length(level, metric, curve, meshes.competitors(metric))]
-    found = {model: Equivalent() for model in range(len(meshes.models))}
-    if len(used):
-        for scores in _samples(meshes, level, used, metric):
-            found.update(_equivalents(study, scores, used, level.metrics[metric].higher_is_better))
-    rows = [found[model] for model in range(len(meshes.models))]
-    ends = {name: [getattr(row, name) for row in rows] for name in ("n", "n_shapes", "mean", "crossings")}
+def _parts(study: Study, meshes: Level, level: Level, curve: Numbers, metrics: Sequence[int]) -> Iterator[Part]:
+    """Of metrics whose means are resampled together."""
+    used = [curve[:usable_length(level, metric, curve, meshes.competitors(metric))] for metric in metrics]
+    samples = [[scores for scores in _samples(meshes, level, of_metric, metric) if scores.n] if len(of_metric) else []
+               for metric, of_metric in zip(metrics, used)]
+    resampled = iter(study.bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
+    for metric, of_metric, scores in zip(metrics, used, samples):
+        found = {model: Equivalent() for model in range(len(meshes.models))}
+        for sample in scores:
+            found.update(_equivalents(sample, next(resampled), len(of_metric), level.metrics[metric].higher_is_better))
+        yield _part(meshes, metric, len(of_metric), found)
+
+
+def _part(meshes: Level, metric: int, length: int, found: dict[int, Equivalent]) -> Part:
+    rows = list(found.values())
+    known = {name: [getattr(row, name) for row in rows] for name in ("n", "n_shapes", "mean", "crossings")}
     places = {name: np.array([getattr(row, name) for row in rows]) for name in ("k", "low", "high")}
     finite = {name: np.where(np.isfinite(values), values, np.nan) for name, values in places.items()}
-    bounds = {f"{name}_bound": [_bound(place, len(used)) for place in values] for name, values in places.items()}
-    return {"dataset": meshes.dataset, "metric": level.metrics[metric].name, "model": meshes.models, "largest_group": len(used), **ends,
+    bounds = {f"{name}_bound": [_bound(place, length) for place in values] for name, values in places.items()}
+    return {"dataset": meshes.dataset, "metric": meshes.metrics[metric].name, "model": meshes.models, "largest_group": length, **known,
             "k": finite["k"], "ci95_low": finite["low"], "ci95_high": finite["high"], **bounds,
-            "remark": [_remark(meshes, metric, model, found, len(used)) for model in found]}
+            "remark": [_remark(meshes, metric, model, found, length) for model in found]}
 
 
 def usable_length(level: Level, metric: int, curve: Numbers, required: Numbers) -> int:
@@ -105,17 +117,15 @@ def _samples(meshes: Level, level: Level, used: Numbers, metric: int) -> Iterato
         yield level.averaged(metric, [*used, model], competitors)
 
 
-def _equivalents(study: Study, scores: UnitScores, used: Numbers, higher_is_better: bool) -> dict[int, Equivalent]:
-    """By model."""
-    if scores.n == 0:
-        return {}
-    length, average, resampled = len(used), means(scores.values), study.bootstrap.means(scores.values)
-    places = first_reached(np.tile(average[:length], (len(average) - length, 1)), average[length:], higher_is_better)
+def _equivalents(scores: UnitScores, resampled: Floats, length: int, higher_is_better: bool) -> dict[int, Equivalent]:
+    """By model. Columns of the scores and their resampled means: the curve, then the models."""
+    average = means(scores.values)
+    curve = average[:length]
     found = {}
-    for column, (model, k) in enumerate(zip(scores.models[length:], places), start=length):
+    for column, model in enumerate(scores.models[length:].tolist(), start=length):
+        k = first_reached(curve[None], average[column:column + 1], higher_is_better)[0]
         low, high = percentile_interval(first_reached(resampled[:, :length], resampled[:, column], higher_is_better), scores.n)
-        found[int(model)] = Equivalent(scores.n, scores.n_shapes, float(average[column]), float(k), low, high,
-                                       crossings(average[:length], average[column]))
+        found[model] = Equivalent(scores.n, scores.n_shapes, float(average[column]), float(k), low, high, crossings(curve, average[column]))
     return found
 
 

@@ -54,31 +54,21 @@ def units_to_detect(difference: Floats, deviation: Floats) -> Floats:
     """Units that show differences as large, 2 at least; NaN beyond 10^9, or where nothing varies."""
     with np.errstate(divide="ignore", invalid="ignore"):
         size = np.where(deviation > 0, np.abs(difference) / deviation, np.nan)
-    high = _doubled(size)
-    low = np.where(high > 2, high // 2, 1)  # fewer than 2 units show nothing
-    while (open_ := high - low > 1).any():
+        # A test that knows the deviation needs almost as many and never more, but for the other tail, a millionth of the power.
+        of_known = (special.ndtri(1 - LEVEL / 2) + special.ndtri(POWER)) ** 2 / size**2
+    high = np.clip(np.ceil(of_known) + 3, 2, _MOST)
+    while (short := ~_is_enough(size, high) & (high < _MOST)).any():
+        high = np.where(short, np.minimum(2 * high, _MOST), high)
+    low = np.clip(np.floor(of_known * (1 - 1e-5)) - 1, 1, high - 1)
+    while (high - low > 1).any():
         middle = low + (high - low) // 2
-        enough = np.zeros(len(size), dtype=bool)
-        enough[open_] = _is_enough(size[open_], middle[open_])
-        high, low = np.where(open_ & enough, middle, high), np.where(open_ & ~enough, middle, low)
-    return high
-
-
-def _doubled(size: Floats) -> Floats:
-    """The first of 2, 4, 8, ... units that are enough; NaN if 10^9 are not."""
-    found, n = np.full(len(size), np.nan), 2.0
-    open_ = ~np.isnan(size)
-    while open_.any():
-        enough = np.zeros(len(size), dtype=bool)
-        enough[open_] = _is_enough(size[open_], np.full(np.count_nonzero(open_), n))
-        found[enough] = n
-        open_ &= ~enough & (n < _MOST)
-        n = min(2 * n, _MOST)
-    return found
+        enough = _is_enough(size, middle)
+        high, low = np.where(enough, middle, high), np.where(enough, low, middle)
+    return np.where(_is_enough(size, high), high, np.nan)
 
 
 def _is_enough(size: Floats, n: Floats) -> NDArray[np.bool_]:
-    return np.asarray(power_of_paired_test(size * np.sqrt(n), n) >= POWER)
+    return np.asarray(power_of_paired_test(size * np.sqrt(n), n) >= POWER)  # not where one of them is NaN
 
 
 def power(study: Study) -> pandas.DataFrame:

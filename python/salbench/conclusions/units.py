@@ -66,16 +66,15 @@ class Level:
             rows = rows[rows["class"] != ""]  # a shape without a class is no unit of them
         self.dataset, self.split, self.metrics = dataset, split, scores.metrics
         models, self.models = _numbered(rows["model"])
-        shapes, names = _numbered(_names(rows, "item", "view"))
-        by = {"mesh": rows["item"], "class": rows["class"], "shape": _names(rows, "item", "view")}[unit]
-        units, unit_names = _numbered(by)
+        views = _names(rows, "item", "view")
+        units, unit_names = _numbered({"mesh": rows["item"], "class": rows["class"], "shape": views}[unit])
+        shapes, self.unit_of_shape = _shapes(views, units)
         self.n_units = len(unit_names)
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
-        self.values = np.full((len(names), len(self.models), len(self.metrics)), np.nan)  # shapes x models x metrics
-        self.values[shapes, models] = rows[[metric.name for metric in self.metrics]].to_numpy(dtype=float)
-        self.unit_of_shape = np.zeros(len(names), dtype=np.intp)
-        self.unit_of_shape[shapes] = units
-        self.defined = ~np.isnan(self.values)
+        values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)  # one metric lies in one piece
+        values[:, shapes, models] = rows[[metric.name for metric in self.metrics]].to_numpy(dtype=float).T
+        self.values = values.transpose(1, 2, 0)  # shapes x models x metrics
+        self.defined = (~np.isnan(values)).transpose(1, 2, 0)
         self.is_scored = self.defined.any(axis=0)  # models x metrics
         others = self.is_reference[:, None] | ~self.is_scored
         self._common = (self.defined | others).all(axis=1)  # shapes x metrics: those that all competitors have a score for
@@ -119,14 +118,14 @@ class Level:
 
     def _averaged(self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]) -> UnitScores:
         models = np.asarray(models, dtype=np.intp)
-        kept = np.flatnonzero(shapes & self.defined[:, models, metric].all(axis=1)) if len(models) else np.empty(0, dtype=np.intp)
-        counts = np.bincount(self.unit_of_shape[kept], minlength=self.n_units)
-        units = np.flatnonzero(counts)
-        values = np.empty((len(units), len(models)))
-        for column, model in enumerate(models):  # bincount adds shape after shape, so that equal models have equal means
-            sums = np.bincount(self.unit_of_shape[kept], self.values[kept, model, metric], self.n_units)
-            values[:, column] = sums[units] / counts[units]
-        return UnitScores(models, units, values, len(kept))
+        kept = np.flatnonzero(shapes & self.defined[:, models, metric].all(axis=1))
+        if len(kept) == 0 or len(models) == 0:
+            return UnitScores(models, np.empty(0, dtype=np.intp), np.empty((0, len(models))), 0)
+        units, unit = np.unique(self.unit_of_shape[kept], return_inverse=True)
+        k = len(models)
+        cells = (unit[:, None] * k + np.arange(k)).ravel()  # bincount adds shape after shape: another order rounds otherwise, and ties hang on it
+        sums = np.bincount(cells, self.values[kept[:, None], models, metric].ravel()).reshape(-1, k)
+        return UnitScores(models, units, sums / np.bincount(unit)[:, None], len(kept))
 
 
 def levels(scores: Scores, unit: str) -> list[Level]:
@@ -156,6 +155,17 @@ def _numbered(names: pandas.Series) -> tuple[Numbers, list[str]]:
     """Each name by its number, given out in the order of first use, and the names."""
     numbers, known = pandas.factorize(names)
     return numbers, list(known)
+
+
+def _shapes(names: pandas.Series, units: Numbers) -> tuple[Numbers, Numbers]:
+    """The number of the shape of each row, and the unit of each shape, in the order of the units, so that shapes of one stand together."""
+    shapes, _ = _numbered(names)
+    unit_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
+    unit_of_shape[shapes] = units
+    order = np.argsort(unit_of_shape, kind="stable")
+    place = np.empty_like(order)
+    place[order] = np.arange(len(order))
+    return place[shapes], unit_of_shape[order]
 
 
 def _names(rows: pandas.DataFrame, *columns: str) -> pandas.Series:
