@@ -19,9 +19,9 @@ namespace salbench {
 namespace {
 
 constexpr PackageSubcommand kSubcommands[] = {
-    {"conclude", "means, intervals, tests and ranks of the scores of a run, or of anybody's table"},
+    {"conclude", "means, intervals, tests and ranks of scores per shape, of a run or of anybody's"},
     {"power",
-     "which differences between models the scores can show, and how many meshes would show those seen"},
+     "which differences between models the scores can show, and how many units would show those seen"},
 };
 
 // Arguments: version, folder of the package or nothing, status if it is lacking, what to do then, words. No

@@ -13,7 +13,6 @@
 #include "pipeline/commands/installed.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/summary.h"
 #include "pipeline/commands/why.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/results/raw_tables.h"
@@ -90,6 +89,21 @@ std::string carry_out(Session& session, int threads) {
   if (!shard) return write_results(session, record);
   write_shard_record(setup.output, record);
   return {};
+}
+
+Json summary_of(const Session& session) {
+  const Setup& setup = session.setup;
+  return {{"meshes", setup.inputs.count(kMeshes)},
+          {"clouds", setup.inputs.count(kClouds)},
+          {"models", setup.config.models.size()},
+          {"cache", setup.cache},
+          {"computed", session.resolver.computed()},
+          {"interrupted", session.stop.load()},
+          {"failed", list_of(session.resolver.failures(), [&](const Failure& failure) {
+             return Json{{"item", setup.project.name(failure.job)},
+                         {"stage", setup.project.rule(failure.job).stage},
+                         {"why", failure.cause}};
+           })}};
 }
 
 ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,

@@ -13,6 +13,10 @@ namespace salbench {
 // Returns the digest that names them, empty if there are none: of a shard, or before the first score.
 std::string carry_out(Session& session, int threads);
 
+// What a session did, for the document that it ends with: shapes, models, artefacts computed, failures, and
+// whether a signal ended it.
+Json summary_of(const Session& session);
+
 // The same as a command of this name, with what it prints.
 ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,
                        ReportFormat format);

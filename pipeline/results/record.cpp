@@ -15,7 +15,7 @@
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
 #include "stages/core/errors.h"
-#include "stages/stats/summary.h"
+#include "stages/core/quantile.h"
 
 namespace salbench {
 namespace {

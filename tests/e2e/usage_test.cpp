@@ -69,7 +69,7 @@ TEST(Usage, AnUnknownWordGetsTheNearestKnownOne) {
 TEST(Usage, EverySubcommandHasExamples) {
   const std::string all = run_process({SALBENCH_PROGRAM, "--help"}).out;
   for (const char* name :
-       {"run", "maps", "evaluate", "pictures", "export", "conclusions", "power", "plan", "graph", "explain",
+       {"run", "maps", "evaluate", "pictures", "export", "plan", "graph", "explain",
         "status", "doctor", "config", "verify", "gc", "inspect", "submit", "leaderboard"}) {
     const Outcome help = run_process({SALBENCH_PROGRAM, name, "--help"});
     ASSERT_EQ(help.status, 0);
