@@ -63,6 +63,15 @@ Section configuration(const std::string& given) {
   throw ConfigError(fmt::format("{}: cannot be read: there is no such configuration; {}", given, hint));
 }
 
+fs::path package_folder() {
+  std::error_code error;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (fs::path folder : {bin / "python", bin.parent_path() / "lib/python3/dist-packages"})
+    if (folder.parent_path() != "/usr/lib/python3" && fs::is_directory(folder / "salbench", error))
+      return folder;
+  return {};
+}
+
 fs::path report_program() {
   std::error_code error;
   if (!fs::is_directory(share() / "report", error)) return in_checkout("scripts/report");

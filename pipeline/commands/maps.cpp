@@ -6,9 +6,9 @@
 
 #include "io/file.h"
 #include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/summary.h"
 
 namespace salbench {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/summary.h"
 
 namespace salbench {
 namespace {

@@ -90,6 +90,8 @@ class Reference(Mapping[str, NDArray[np.float64]]):
 class Results(Tables):
     """Tables of a run, from the folder that it wrote them to; of one that `run` returns also its maps and failures.
 
+    Conclusions from the scores (every table but `scores`) are drawn when the first of them is asked for, and written beside the scores.
+
     Parameters
     ----------
     folder : path
@@ -119,7 +121,21 @@ class Results(Tables):
             for name, computed, read, first, last in (run.models() if run else ())}
 
     def _text(self, name: str) -> str:
-        return (self.folder / f"{name}.csv").read_text(encoding="utf-8")
+        path = self.folder / f"{name}.csv"
+        if not path.is_file():
+            self._conclude()
+        return path.read_text(encoding="utf-8")
+
+    def _conclude(self) -> None:
+        """Draws the conclusions that are missing: a run writes scores alone, and removes conclusions from others."""
+        from salbench import conclusions
+
+        if (self.folder / conclusions.folders.CONCLUDED).is_file():
+            return
+        try:
+            conclusions.conclude(conclusions.source_of(str(self.folder)))
+        except conclusions.folders.StorageError as error:
+            raise OSError(str(error)) from None
 
     @cached_property
     def scores(self) -> "pandas.DataFrame":
@@ -169,6 +185,7 @@ class Results(Tables):
 
     def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page."""
+        self._conclude()
         roots = [pathlib.Path(__file__).parent, pathlib.Path("/usr/share/salbench")]
         root = next((root for root in roots if (root / "report").is_dir()), None)
         if root is None:

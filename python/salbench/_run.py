@@ -95,7 +95,8 @@ def run(
 
     A function runs in the thread that called, one shape at a time, while everything else goes on in other threads.
     What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. Ctrl-C ends the run
-    in order, with its tables written; the next call goes on from there.
+    in order, with its scores written; the next call goes on from there. Conclusions from the scores are drawn when a
+    table of them is first asked for.
 
     Parameters
     ----------

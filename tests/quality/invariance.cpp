@@ -22,7 +22,7 @@
 #include "io/mesh_file.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"
-#include "stages/stats/correlation.h"
+#include "tests/support/correlation.h"
 #include "tests/support/mesh_models.h"
 
 namespace salbench {
