@@ -3,6 +3,7 @@
 
 import csv
 import os
+from array import array
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
@@ -66,8 +67,7 @@ def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> Tabl
         read = _Columns(name, columns, numeric)
         for line, fields in rows:
             read.add(line, fields)
-    return Table(name, dict(read.texts), {column: np.array(cells, dtype=float) for column, cells in read.numbers}, read.lines, columns,
-                 remarks)
+    return read.table(remarks)
 
 
 def _rows(reader: Any, name: str) -> Iterator[tuple[int, list[str]]]:
@@ -101,29 +101,35 @@ class _Columns:
     """Takes up row after row: texts that repeat are kept once, numbers as such, so that a large file takes little memory."""
 
     def __init__(self, name: str, columns: list[str], numeric: Container[str]) -> None:
-        self.name, self.width = name, len(columns)
         self.lines: list[int] = []
-        self.texts: list[tuple[str, list[str]]] = [(column, []) for column in columns if column not in numeric]
-        self.numbers: list[tuple[str, list[float]]] = [(column, []) for column in columns if column in numeric]
-        self._text_places = [(place, cells) for place, (_, cells) in zip(_where(columns, numeric, False), self.texts)]
-        self._number_places = [(place, cells) for place, (_, cells) in zip(_where(columns, numeric, True), self.numbers)]
+        self._name, self._columns = name, columns
+        self._texts: dict[int, list[str]] = {place: [] for place, column in enumerate(columns) if column not in numeric}
+        self._numbers = [place for place in range(len(columns)) if place not in self._texts]
+        self._cells = array("d")  # of the numbers, row by row
         self._known: dict[str, str] = {}
 
     def add(self, line: int, fields: list[str]) -> None:
-        if len(fields) != self.width:
-            raise InputError(f"{self.name}:{line}: the line has {len(fields)} fields, the header {self.width}")
+        if len(fields) != len(self._columns):
+            raise InputError(f"{self._name}:{line}: the line has {len(fields)} fields, the header {len(self._columns)}")
         self.lines.append(line)
-        for place, cells in self._text_places:
+        for place, cells in self._texts.items():
             cells.append(self._known.setdefault(fields[place], fields[place]))
-        for place, numbers in self._number_places:
-            numbers.append(self._number(line, fields[place]))
-
-    def _number(self, line: int, cell: str) -> float:
         try:
-            return float(cell) if cell else np.nan
+            self._cells.extend([float(fields[place] or "nan") for place in self._numbers])
         except ValueError:
-            raise InputError(f"{self.name}:{line}: '{cell}' is not a number") from None
+            wrong = next(fields[place] for place in self._numbers if not _is_number(fields[place]))
+            raise InputError(f"{self._name}:{line}: '{wrong}' is not a number") from None
+
+    def table(self, remarks: list[str]) -> Table:
+        values = np.array(self._cells).reshape(len(self.lines), len(self._numbers))
+        texts = {self._columns[place]: cells for place, cells in self._texts.items()}
+        return Table(self._name, texts, {self._columns[place]: values[:, at] for at, place in enumerate(self._numbers)}, self.lines,
+                     self._columns, remarks)
 
 
-def _where(columns: list[str], numeric: Container[str], is_number: bool) -> list[int]:
-    return [place for place, column in enumerate(columns) if (column in numeric) == is_number]
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell or "nan")
+    except ValueError:
+        return False
+    return True

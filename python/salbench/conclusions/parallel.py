@@ -12,6 +12,6 @@ R = TypeVar("R")
 
 
 def mapped(function: Callable[[T], R], items: Iterable[T], threads: int | None = None) -> list[R]:
-    """function(item) of each, in at most so many threads; None: one per core."""
-    with ThreadPoolExecutor(min(_MOST, threads or len(os.sched_getaffinity(0)))) as workers:
-        return list(workers.map(function, items))
+    """function(item) of each. threads: by default one per core that the process may use."""
+    with ThreadPoolExecutor(min(_MOST, threads or len(os.sched_getaffinity(0)))) as pool:
+        return list(pool.map(function, items))

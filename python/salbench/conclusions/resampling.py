@@ -28,9 +28,8 @@ class Bootstrap:
     """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone."""
 
     def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
-        """threads: that may work on resamples; None: one per core."""
-        self._seed, self._resamples = seed, resamples
-        self.threads = threads
+        """threads: that may multiply; by default one per core."""
+        self._seed, self._resamples, self._threads = seed, resamples, threads
         self._counts: dict[int, NDArray[np.uint8]] = {}
 
     def counts(self, n: int) -> NDArray[np.uint8]:
@@ -84,7 +83,7 @@ class Bootstrap:
                 units = slice(unit, unit + _BLOCK)
                 sums[rows] += counts[rows, units].astype(float) @ values[units]
 
-        mapped(multiply, range(0, len(counts), _BLOCK), self.threads)
+        mapped(multiply, range(0, len(counts), _BLOCK), self._threads)
         return sums
 
 

@@ -53,7 +53,7 @@ class RankedMetric:
         return bootstrap.means(scores.values)
 
 
-def rank_level(level: Level, bootstrap: Bootstrap) -> list[RankedMetric]:
+def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -> list[RankedMetric]:
     """Per metric; all means are resampled together."""
     samples: list[list[UnitScores]] = []
     for number in range(len(level.metrics)):
@@ -66,7 +66,7 @@ def rank_level(level: Level, bootstrap: Bootstrap) -> list[RankedMetric]:
         first, *others = known[number]
         return RankedMetric(first, others, rank_models(first.scores.values, first.means, level.metrics[number].higher_is_better))
 
-    return mapped(rank, range(len(level.metrics)), bootstrap.threads)
+    return mapped(rank, range(len(level.metrics)), threads)
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Study:
     @cached_property
     def ranked(self) -> list[tuple[Level, list[RankedMetric]]]:
         """Each level with its models ranked by each metric."""
-        return [(level, rank_level(level, self.bootstrap)) for level in self.levels]
+        return [(level, rank_level(level, self.bootstrap, self.threads)) for level in self.levels]
 
     @cached_property
     def pairs(self) -> list[tuple[Level, list[Pairs]]]:
