@@ -152,8 +152,8 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
   impl_->access = access;
   std::error_code error;
   if (fs::exists(impl_->folder, error) && !fs::is_directory(impl_->folder, error))
-    throw StorageError(
-        fmt::format("{}: is not a folder; choose another with --cache", impl_->folder.string()));
+    throw StorageError(fmt::format("{}: is not a folder; choose another with {}", impl_->folder.string(),
+                                   as_option("cache")));
   check_format(impl_->folder);
   if (access == Access::read_write)
     visit_abandoned(impl_->folder / kScratchFolder, [&](const fs::path& file) { fs::remove(file, error); });
@@ -212,7 +212,7 @@ Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arra
   prepare();
   std::error_code error;
   if (!fs::exists(impl_->folder / kScratchFolder, error)) prepare_cache(impl_->folder);  // removed meanwhile
-  make_folder(target.parent_path(), "choose another cache with --cache");
+  make_folder(target.parent_path(), "choose another cache with " + as_option("cache"));
   UnfinishedFile file(impl_->folder / kScratchFolder);
   file.append(image);
   file.finish_unsynced(target);

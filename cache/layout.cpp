@@ -61,8 +61,8 @@ void check_format(const fs::path& folder) {
   if (format > kFormat)
     throw StorageError(
         fmt::format("{}: written by a newer salbench (cache format {}, this one knows {}); "
-                    "use that version, or another folder with --cache",
-                    folder.string(), format, kFormat));
+                    "use that version, or another folder with {}",
+                    folder.string(), format, kFormat, as_option("cache")));
 }
 
 bool is_cache(const fs::path& folder) {
@@ -73,12 +73,12 @@ bool is_cache(const fs::path& folder) {
 void require_cache(const fs::path& folder) {
   check_format(folder);
   if (!is_cache(folder))
-    throw StorageError(fmt::format("{}: not a salbench cache ({} is missing); choose one with --cache",
-                                   folder.string(), kTagName));
+    throw StorageError(fmt::format("{}: not a salbench cache ({} is missing); choose one with {}",
+                                   folder.string(), kTagName, as_option("cache")));
 }
 
 void prepare_cache(const fs::path& folder) {
-  make_folder(folder / kScratchFolder, "choose another cache with --cache");
+  make_folder(folder / kScratchFolder, "choose another cache with " + as_option("cache"));
   // Writing the tag each time is the probe for a full or read-only folder, before any work is done.
   const std::string tag = fmt::format("{}\n{}{}\n", kTagSignature, kFormatLine, kFormat);
   UnfinishedFile file(folder / kScratchFolder);

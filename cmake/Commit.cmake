@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Writes OUTPUT, a source file with the commit of the tree ROOT, when that is another than before; empty where neither an archive's
 # cmake/commit.txt nor git says it. Run by each build.
+cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${ROOT}/cmake/commit.txt commit)
 if(commit MATCHES "Format")  # no archive
   set(commit "")

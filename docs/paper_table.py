@@ -25,7 +25,8 @@ def centre(shape):
 
 # %%
 models = {"CENTRE": centre, "LS": {}, "CS": {}, "PS": {}, "MS": {}, "RS": {}}
-results = salbench.run("shrec07_meshes", data="SchellingData", models=models, cache="salbench-cache", out="salbench-out/table")
+results = salbench.run("shrec07_meshes", data="SchellingData", items="scored", models=models, cache="salbench-cache",
+                       out="salbench-out/table")
 results
 
 # %% [markdown]

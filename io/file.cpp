@@ -47,7 +47,7 @@ bool lacks_resources(int error) { return error == EMFILE || error == ENFILE || e
 // Reports a file that the user named as unusable, unless the system lacks the resources to open any file.
 [[noreturn]] void fail_input(const fs::path& path, int error) {
   if (lacks_resources(error)) fail(path, "read", error);
-  throw InputError(fmt::format("{}: cannot be read: {}", path.string(), system_reason(error)));
+  throw FileError(path, fmt::format("cannot be read: {}", system_reason(error)));
 }
 
 // Fills as much of the buffer as the file has; returns an error number, or 0.
@@ -69,9 +69,8 @@ int read_all(int fd, Buffer& buffer) {
 std::size_t check_regular(int fd, const fs::path& path) {
   struct stat status {};
   if (fd < 0 || ::fstat(fd, &status) != 0) fail_input(path, errno);
-  if (S_ISDIR(status.st_mode))
-    throw InputError(fmt::format("{}: is a folder, where a file is expected", path.string()));
-  if (!S_ISREG(status.st_mode)) throw InputError(fmt::format("{}: is not a regular file", path.string()));
+  if (S_ISDIR(status.st_mode)) throw FileError(path, "is a folder, where a file is expected");
+  if (!S_ISREG(status.st_mode)) throw FileError(path, "is not a regular file");
   return static_cast<std::size_t>(status.st_size);
 }
 
@@ -102,9 +101,8 @@ constexpr std::int64_t kTimeResolution_ns = 2'000'000'000;
 std::string zeros(std::size_t size, const fs::path& path) try {
   return std::string(size, '\0');
 } catch (const std::exception&) {  // bad_alloc, or length_error beyond what a string may be
-  throw InputError(
-      fmt::format("{}: no memory for its {} bytes; use fewer --threads, or leave it out with --items",
-                  path.string(), size));
+  throw FileError(path, fmt::format("no memory for its {} bytes; use fewer {}, or leave it out with {}", size,
+                                    as_option("threads"), as_option("items")));
 }
 
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
@@ -134,10 +132,11 @@ std::optional<struct stat> status_of(const fs::path& folder, int in, const char*
 }  // namespace
 
 std::string system_reason(int error) {
-  static const std::map<int, std::string_view> advice = {
-      {EMFILE, "use fewer --threads, or raise the limit (ulimit -n)"},
-      {ENFILE, "close other programs, or use fewer --threads"},
-      {ENOMEM, "use fewer --threads, or close other programs"},
+  static const std::string fewer = "use fewer " + as_option("threads");
+  static const std::map<int, std::string> advice = {
+      {EMFILE, fewer + ", or raise the limit (ulimit -n)"},
+      {ENFILE, "close other programs, or " + fewer},
+      {ENOMEM, fewer + ", or close other programs"},
       {ENOSPC, "free some space, or choose another folder"},
       {EDQUOT, "free some space, or choose another folder"},
       {EFBIG, "raise the limit on the size of files (ulimit -f)"},
@@ -164,8 +163,9 @@ std::string read_file(const fs::path& path, std::uint64_t most) {
   const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
   const std::size_t size = check_regular(file.get(), path);
   if (size > most)
-    throw InputError(fmt::format("{}: {}; simplify the shape, or copy the file again if it should be smaller",
-                                 path.string(), too_many_bytes(size, most)));
+    throw FileError(path,
+                    fmt::format("{}; simplify the shape, or copy the file again if it should be smaller",
+                                too_many_bytes(size, most)));
   std::string bytes = zeros(size, path);
   if (const int error = read_all(file.get(), bytes); error != 0) fail_input(path, error);
   return bytes;

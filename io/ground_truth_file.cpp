@@ -21,15 +21,6 @@ void expect_end_of_line(TextScanner& in) {
   if (!in.peek_word().empty()) in.fail("the line has more than one value");
 }
 
-ScalarField all_values(TextScanner& in) {
-  ScalarField values;
-  while (in.next_filled_line()) {
-    values.push_back(in.number());
-    expect_end_of_line(in);
-  }
-  return values;
-}
-
 // Rows of a value and the coordinates of its point.
 TruthValues values_with_points(std::string_view text, std::string_view name, const ValuesFormat& format) {
   std::vector<std::string> names = {format.column};
@@ -61,21 +52,13 @@ std::string numbering(const Elements& elements, std::int32_t base) {
 
 }  // namespace
 
-ScalarField parse_values(std::string_view text, std::string_view name) {
-  TextScanner in(text, name);
-  return all_values(in);
-}
-
-ScalarField parse_saliency(std::string_view text, std::string_view name, const Elements& elements) {
-  TextScanner in(text, name);
-  ScalarField values = all_values(in);
-  if (values.size() != elements.n) in.fail(wrong_count(values.size(), elements));
-  return values;
+ScalarField parse_values(std::string_view text, std::string_view name, const Elements& elements) {
+  return parse_columns(text, name, {""}, {}, elements)[0];
 }
 
 std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, const Elements& elements,
                                       std::int32_t base) {
-  TextScanner in(text, name);
+  TextScanner in(text, name, '#');
   std::vector<std::int32_t> picks;
   while (in.next_filled_line()) {
     const std::int64_t index = in.integer();

@@ -12,12 +12,12 @@
 
 namespace salbench {
 
-// All throw InputError, one line "PATH:LINE: what is wrong". Blank lines are skipped.
+// All throw InputError, one line "PATH:LINE: what is wrong". Blank lines and comments are skipped: lines that
+// begin with '#', and of indices what follows one.
 
-ScalarField parse_values(std::string_view text, std::string_view name);  // finite numbers, one per line
-
-// The same, exactly as many as the shape has elements (.val).
-ScalarField parse_saliency(std::string_view text, std::string_view name, const Elements& elements);
+// Finite numbers, one per line (.val), exactly as many as the shape has elements, if that is known; a header
+// may name them and a column beside them that numbers the elements (element_order.h).
+ScalarField parse_values(std::string_view text, std::string_view name, const Elements& elements = {});
 
 // Indices, one per line (.pid), the first vertex or point being number `base` in the file; 0-based here, in
 // the file's order. A participant who marked nothing is real data.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "io/element_order.h"
 #include "io/text_scanner.h"
 
 namespace salbench {
@@ -65,6 +66,7 @@ bool separates_decimal_commas(char separator, std::string_view line) {
 }
 
 char separator_of(std::string_view line) {
+  if (is_number(trimmed(line))) return kBlanks;
   for (const char separator : {';', '\t', kBlanks})
     if (separates_decimal_commas(separator, line)) return separator;
   for (const char separator : {',', ';', '\t'})
@@ -101,19 +103,51 @@ std::size_t column_number(const std::string& column) {
   return error == std::errc() && end == column.data() + column.size() ? number : 0;
 }
 
+bool are_names(const std::vector<std::string_view>& cells) {
+  return std::any_of(cells.begin(), cells.end(), [](std::string_view word) {
+    return !word.empty() && !is_number(word) && decimal_comma_in(word).empty();
+  });
+}
+
+// Skips to the next line with a word that is no comment. Comments are kept without their '#'.
+bool next_row(TextScanner& in, std::vector<std::string_view>& comments) {
+  while (in.next_filled_line()) {
+    if (!in.peek_word().starts_with('#')) return true;
+    comments.push_back(in.line().substr(in.line().find('#') + 1));
+  }
+  return false;
+}
+
+// The first line, or the last comment above it that has a name per column; empty if neither has names.
+std::vector<std::string_view> header_of(const std::vector<std::string_view>& first,
+                                        std::span<const std::string_view> comments, char separator) {
+  if (are_names(first)) return first;
+  for (auto comment = comments.rbegin(); comment != comments.rend(); ++comment)
+    if (auto names = cells_of(*comment, separator); names.size() == first.size() && are_names(names))
+      return names;
+  return {};
+}
+
 // The cells of a line that the columns name.
 class Columns {
  public:
   Columns(const TextScanner& in, const std::vector<std::string>& names,
-          const std::vector<std::string_view>& first)
-      : names_(names), size_(first.size()), filled_(count_filled(first)) {
-    has_header_ = std::any_of(first.begin(), first.end(), [](std::string_view word) {
-      return !word.empty() && !is_number(word) && decimal_comma_in(word).empty();
-    });
-    for (const std::string& name : names) places_.push_back(place_of(in, name, first));
+          const std::vector<std::string_view>& first, const std::vector<std::string_view>& header,
+          const std::optional<Elements>& elements)
+      : names_(names), size_(first.size()), filled_(count_filled(first)), has_header_(!header.empty()) {
+    for (const std::string& name : names) places_.push_back(place_of(in, name, header));
+    by_name_ = std::ranges::any_of(names, [](const std::string& name) { return column_number(name) == 0; });
+    if (elements) find_numbering(in, header, *elements);
   }
 
-  bool has_header() const { return has_header_; }
+  // Of the column that numbers the rows; nothing if there is none.
+  const std::optional<std::string>& numbering() const { return numbering_; }
+
+  // Throws if the names of the header may stand above other columns, as R writes names of rows.
+  void check_header(const TextScanner& in, const std::vector<std::string_view>& cells) const {
+    if (has_header_ && (by_name_ || numbering_) && count_filled(cells) > size_)
+      in.fail(fmt::format("{} columns, but the header names {}", count_filled(cells), size_));
+  }
 
   // Throws where a comma that separates is likely to be a decimal one.
   void check_commas(const TextScanner& in, const std::vector<std::string_view>& cells) const {
@@ -129,12 +163,19 @@ class Columns {
                       kAdvice));
   }
 
+  std::string_view numbering_cell(const TextScanner& in, const std::vector<std::string_view>& cells) const {
+    if (numbering_place_ >= cells.size())
+      in.fail(fmt::format("the line has no column {}", in_quotes(*numbering_)));
+    return cells[numbering_place_];
+  }
+
   std::string_view cell(const TextScanner& in, const std::vector<std::string_view>& cells,
                         std::size_t c) const {
-    if (names_[c].empty() && cells.size() > 1)
-      in.fail(fmt::format("the line has {} columns, and the description names none: add `column:`{}",
-                          cells.size(),
-                          is_one_number(cells) ? ", or write its decimal comma as a point" : ""));
+    if (names_[c].empty() && cells.size() > (numbering_ ? 2U : 1U))
+      in.fail(
+          fmt::format("the line has {} columns, expected one value: keep that column alone, or, of ground "
+                      "truth, name it in the description (`column:`){}",
+                      cells.size(), is_one_number(cells) ? ", or write its decimal comma as a point" : ""));
     if (places_[c] >= cells.size())
       in.fail(fmt::format("the line has {} {}, expected column {}", cells.size(),
                           cells.size() == 1 ? "column" : "columns", described(c)));
@@ -142,6 +183,18 @@ class Columns {
   }
 
  private:
+  // Beside the only column, one that numbers the rows is no other.
+  void find_numbering(const TextScanner& in, const std::vector<std::string_view>& header,
+                      const Elements& elements) {
+    const bool only = names_.size() == 1 && names_[0].empty();
+    if (only && header.size() != 2) return;
+    const auto place = numbering_column(in, header, elements, only ? std::vector<std::size_t>{} : places_);
+    if (!place) return;
+    numbering_ = header[*place];
+    numbering_place_ = *place;
+    if (only) places_ = {1 - *place};
+  }
+
   std::string described(std::size_t c) const {
     return column_number(names_[c]) > 0 ? names_[c] : in_quotes(names_[c]);
   }
@@ -164,7 +217,9 @@ class Columns {
   const std::vector<std::string>& names_;
   std::vector<std::size_t> places_;
   std::size_t size_, filled_;  // cells of the first line; without empty ones at its end
-  bool has_header_ = false;
+  bool has_header_, by_name_ = false;
+  std::optional<std::string> numbering_ = {};
+  std::size_t numbering_place_ = 0;
 };
 
 double value_of(const TextScanner& in, std::string_view cell, std::string_view unseen) {
@@ -174,6 +229,12 @@ double value_of(const TextScanner& in, std::string_view cell, std::string_view u
   if (is_same_number(number->value, unseen)) return std::numeric_limits<double>::quiet_NaN();
   if (!std::isfinite(number->value)) in.fail(fmt::format("{} is not a finite number", in_quotes(cell)));
   return number->value;
+}
+
+ScalarField in_order(const ScalarField& values, std::span<const std::size_t> row_of) {
+  ScalarField ordered;
+  for (const std::size_t row : row_of) ordered.push_back(values[row]);
+  return ordered;
 }
 
 }  // namespace
@@ -196,24 +257,36 @@ std::vector<ScalarField> parse_columns(std::string_view text, std::string_view n
                                        const std::optional<Elements>& expected,
                                        const WrongWithRow& wrong_with_row) {
   std::vector<ScalarField> values(columns.size());
-  std::vector<double> row(columns.size());
+  std::vector<double> row(columns.size()), numbers;
+  std::vector<std::size_t> lines;
+  std::optional<std::string> numbering;
   TextScanner in(text, name);
-  if (in.next_filled_line()) {
+  std::vector<std::string_view> comments;
+  if (next_row(in, comments)) {
     const char separator = separator_of(in.line());
     std::vector<std::string_view> cells = cells_of(in.line(), separator);
-    const Columns chosen(in, columns, cells);
-    for (bool more = !chosen.has_header() || in.next_filled_line(); more; more = in.next_filled_line()) {
+    const Columns chosen(in, columns, cells, header_of(cells, comments, separator), expected);
+    numbering = chosen.numbering();
+    for (bool more = !are_names(cells) || next_row(in, comments); more; more = next_row(in, comments)) {
       cells = cells_of(in.line(), separator);
       if (separator == ',') chosen.check_commas(in, cells);
+      chosen.check_header(in, cells);
       for (std::size_t c = 0; c < columns.size(); ++c)
         row[c] = value_of(in, chosen.cell(in, cells, c), c == 0 ? unseen : std::string_view());
       const std::string_view wrong = wrong_with_row ? wrong_with_row(row) : std::string_view();
       if (!wrong.empty()) in.fail(wrong);
       for (std::size_t c = 0; c < columns.size(); ++c) values[c].push_back(row[c]);
+      if (!numbering) continue;
+      numbers.push_back(value_of(in, chosen.numbering_cell(in, cells), {}));
+      lines.push_back(in.line_number());
     }
   }
-  if (expected && values[0].size() != expected->n) in.fail(wrong_count(values[0].size(), *expected));
+  if (expected && expected->n != Elements::kUnknown && values[0].size() != expected->n)
+    in.fail(wrong_count(values[0].size(), *expected));
   if (values[0].empty()) in.fail("the file has no values");
+  if (!numbering) return values;
+  const std::vector<std::size_t> row_of = rows_in_order(in, *numbering, numbers, lines, *expected);
+  for (ScalarField& column : values) column = in_order(column, row_of);
   return values;
 }
 

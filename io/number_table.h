@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,7 +16,8 @@ namespace salbench {
 
 // The elements of a shape that a file has one value for each of: their number, and their names in messages.
 struct Elements {
-  std::size_t n;
+  static constexpr std::size_t kUnknown = std::numeric_limits<std::size_t>::max();
+  std::size_t n = kUnknown;  // any number of rows will do, then
   std::string_view shape = "mesh", one = "vertex", plural = "vertices";
 };
 
@@ -24,9 +26,13 @@ using WrongWithRow = std::function<std::string_view(std::span<const double> row)
 
 // The columns named, each by its name in the header or by its number from 1, in the order of `columns`; an
 // empty name is the only column of the text. Commas, semicolons or tabs separate values, whichever the first
-// line has; else blanks do. A first line in which a word is no number is the header. Blank lines are skipped.
-// Decimal commas are refused. Where commas are all that separates, they show in lines of other numbers of
-// columns, or by zeros in front as in 0,05: a header tells such lines from whole numbers.
+// line has; else blanks do. A first line in which a word is no number is the header. Blank lines are skipped,
+// and so are lines that begin with '#', of which the last before the numbers is a header if it has a word per
+// column. Decimal commas are refused. Where commas are all that separates, they show in lines of other numbers
+// of columns, or by zeros in front as in 0,05: a header tells such lines from whole numbers.
+//
+// With `expected`, rows come in the order of the elements: a column that numbers these (element_order.h) is
+// obeyed, and is none beside which the only column would not be the only one.
 //
 // A value of the first column that is `unseen` ("nan" for one that is none) becomes NaN; all others must be
 // finite. Throws InputError, one line "NAME:LINE: what is wrong": also for another number of rows than

@@ -11,7 +11,8 @@ namespace salbench {
 namespace fs = std::filesystem;
 using Event = RunningCommand::Event;
 
-void run_command(const std::string& command, const fs::path& folder, std::chrono::duration<double> timeout) {
+CommandEnd try_command(const std::string& command, const fs::path& folder,
+                       std::chrono::duration<double> timeout) {
   if (commands_are_ended()) throw Interrupted("the program ends");
   const auto deadline = deadline_after(timeout);
   RunningCommand running(command, folder, RunningCommand::Serves::no);
@@ -19,8 +20,12 @@ void run_command(const std::string& command, const fs::path& folder, std::chrono
   if (!in_time) running.terminate();
   if (commands_are_ended()) throw Interrupted("the program ends");
   if (!in_time) throw InputError(too_late(timeout, running));
-  if (const std::string failure = running.failure(); !failure.empty())
-    throw InputError(fmt::format("{}; {}", failure, running.said()));
+  return {running.status(), running.failure(), running.printed()};
+}
+
+void run_command(const std::string& command, const fs::path& folder, std::chrono::duration<double> timeout) {
+  const CommandEnd end = try_command(command, folder, timeout);
+  if (!end.reason.empty()) throw InputError(fmt::format("{}; {}", end.reason, said_of(end.printed)));
 }
 
 std::string shell_quoted(const std::string& text) {

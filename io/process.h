@@ -21,6 +21,19 @@ void prepare_commands();
 void run_command(const std::string& command, const std::filesystem::path& folder,
                  std::chrono::duration<double> timeout);
 
+// End of a command that may fail.
+struct CommandEnd {
+  int status = 0;            // 128 + the signal that killed it, as shells have it
+  std::string reason = {};   // one line: why it failed; empty if it did not
+  std::string printed = {};  // its last lines, as one
+};
+
+// The same for a command whose failure is an answer: throws InputError only if it takes too long.
+CommandEnd try_command(const std::string& command, const std::filesystem::path& folder,
+                       std::chrono::duration<double> timeout);
+
+std::string said_of(const std::string& printed);  // as a part of a message
+
 // Sends SIGTERM to all commands at work, and from now on starts none. Safe in a signal handler.
 void end_commands();
 bool commands_are_ended();

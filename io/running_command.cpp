@@ -138,11 +138,15 @@ void RunningCommand::terminate() {
   wait(Clock::now() + kCommandGrace, false);
 }
 
-std::string RunningCommand::said() const {
+std::string said_of(const std::string& printed) {
+  return printed.empty() ? "it printed nothing" : "its last lines: " + printed;
+}
+
+std::string RunningCommand::printed() const {
   std::vector<std::string> lines = last_lines(kept_answers_, answer_);
   const std::vector<std::string> errors = last_lines(kept_output_, {});
   lines.insert(lines.end(), errors.begin(), errors.end());
-  return lines.empty() ? "it printed nothing" : fmt::format("its last lines: {}", fmt::join(lines, " | "));
+  return fmt::format("{}", fmt::join(lines, " | "));
 }
 
 std::string RunningCommand::failure() {
@@ -150,6 +154,11 @@ std::string RunningCommand::failure() {
   if (errno = error; error != 0) fail_for_lack("process");
   if (WIFSIGNALED(status)) return fmt::format("the command was killed by signal {}", WTERMSIG(status));
   return WEXITSTATUS(status) == 0 ? "" : fmt::format("the command ended with status {}", WEXITSTATUS(status));
+}
+
+int RunningCommand::status() {
+  const int status = kept_.end().value().status;
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 // Whether the answer was in it. Answers come first: what was said on standard error before one is then there.

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "io/kept_command.h"
+#include "io/process.h"
 
 namespace salbench {
 
@@ -67,10 +68,12 @@ class RunningCommand {
 
   // The last lines that it printed, as one line of text; of one that serves, those beside its answers, and
   // then those of its standard error.
-  std::string said() const;
+  std::string printed() const;
+  std::string said() const { return said_of(printed()); }
   // Why it did not succeed, empty if it did; after it has ended. Throws StorageError if the system had no
   // process for it.
   std::string failure();
+  int status();  // 128 + the signal that killed it; after it has ended
 
  private:
   void wait_for_event(Clock::time_point deadline, bool until_asked_to_end);

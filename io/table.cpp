@@ -54,10 +54,20 @@ class CsvReader {
   CsvReader(std::string_view text, std::string_view name)
       : text_(without_byte_order_mark(text)), name_(name) {}
 
+  // The lines that begin with '#', from here on: text, whatever commas and quotes are in it.
+  std::vector<std::string> remarks() {
+    std::vector<std::string> remarks;
+    for (skip_blank_lines(); text_.starts_with('#'); skip_blank_lines()) {
+      const std::string_view line = text_.substr(0, text_.find_first_of("\r\n"));
+      text_.remove_prefix(line.size());
+      remarks.emplace_back(line.substr(std::min(line.find_first_not_of("# \t"), line.size())));
+    }
+    return remarks;
+  }
+
   // The fields of the next line that is not blank; nothing at the end.
   std::optional<std::vector<std::string>> next_row() {
-    while (skip_line_end()) {
-    }
+    skip_blank_lines();
     if (text_.empty()) return {};
     row_line_ = line_;
     std::vector<std::string> fields = {field()};
@@ -76,6 +86,11 @@ class CsvReader {
   }
 
  private:
+  void skip_blank_lines() {
+    while (skip_line_end()) {
+    }
+  }
+
   bool skip_line_end() {
     const std::size_t length =
         text_.starts_with("\r\n") ? 2 : text_.starts_with('\n') || text_.starts_with('\r');
@@ -189,9 +204,8 @@ Table parse_csv(std::string_view text, std::string_view name) {
   CsvReader reader(text, name);
   Table table;
   table.name = name;
+  table.remarks = reader.remarks();
   auto header = reader.next_row();
-  for (; header && header->size() == 1 && header->front().starts_with('#'); header = reader.next_row())
-    table.remark = header->front().substr(std::min<std::size_t>(2, header->front().size()));
   if (!header)
     throw InputError(fmt::format("{}: the file is empty, where a line of column names is expected", name));
   table.columns = std::move(*header);

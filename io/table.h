@@ -21,15 +21,14 @@ struct Table {
   // For tables read from a file only:
   std::string name = {};                // the file, for messages
   std::vector<std::size_t> lines = {};  // the line on which each row begins
-  std::string remark = {};              // text above the column names, after a '#'
+  std::vector<std::string> remarks = {};  // lines above the column names, each after its '#'
 };
 
 // Lines end in '\n'; doubles in the fewest digits that read back to the same value; NaN is an empty field;
 // fields are quoted where they must be.
 std::string to_csv(const Table& table);
 
-// The first line names the columns, after any lines that begin with '#' and have one field; every cell is
-// read as text. Throws InputError, one line "PATH:LINE: what is wrong", for a line with another number of
+// The first line names the columns, after any lines that begin with '#'; every cell is read as text. Throws InputError, one line "PATH:LINE: what is wrong", for a line with another number of
 // fields, a quote that does not close, or a column named twice.
 Table read_csv(const std::filesystem::path& path);
 Table parse_csv(std::string_view text, std::string_view name);

@@ -219,11 +219,11 @@ std::vector<ZipEntry> read_zip(const std::filesystem::path& path, const ZipLimit
     }
   });
   if (!failure.empty() || sent.empty())
-    throw InputError(fmt::format("{}: damaged: the library that reads it {}", path.string(),
-                                 failure.empty() ? "ended the process" : failure));
-  if (sent[0] == kMessage) throw InputError(fmt::format("{}: {}", path.string(), sent.substr(1)));
+    throw FileError(path, fmt::format("damaged: the library that reads it {}",
+                                      failure.empty() ? "ended the process" : failure));
+  if (sent[0] == kMessage) throw FileError(path, sent.substr(1));
   auto entries = received(std::string_view(sent).substr(1));
-  if (!entries) throw InputError(fmt::format("{}: damaged: its entries were not sent whole", path.string()));
+  if (!entries) throw FileError(path, "damaged: its entries were not sent whole");
   return std::move(*entries);
 }
 

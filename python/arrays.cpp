@@ -68,6 +68,15 @@ bool has_length(const py::array& array, int axis, const std::optional<std::size_
   return !n || static_cast<std::size_t>(array.shape(axis)) == *n;
 }
 
+// Length of the first of the arguments that is given and has one.
+std::optional<std::size_t> length_of_first(std::initializer_list<Argument> arguments) {
+  for (const Argument& argument : arguments)
+    if (argument.given())
+      if (const py::array array = as_array(argument); array.ndim() > 0)
+        return static_cast<std::size_t>(array.shape(0));
+  return {};
+}
+
 // The squares of distances, which are sums of three, are finite.
 bool is_coordinate(double x) { return std::abs(x) <= std::sqrt(std::numeric_limits<double>::max()) / 4; }
 
@@ -118,10 +127,13 @@ View<double> field(const Argument& argument, std::optional<std::size_t> n) {
   return view_of(numbers(argument, array));
 }
 
-View<double> rows(const Argument& argument, std::optional<std::size_t> n) {
+View<double> rows(const Argument& argument, std::initializer_list<Argument> others) {
   const py::array array = as_array(argument);
-  const int columns = static_cast<int>(array.ndim()) - 1;
-  expect(argument, array, (columns == 0 || columns == 1) && has_length(array, columns, n),
+  const auto n = length_of_first(others);
+  const bool matrix = array.ndim() == 2;
+  const bool column = matrix && array.shape(1) == 1 && array.shape(0) > 1 && n != 1U;
+  const bool transposed = matrix && n && has_length(array, 0, n) && !has_length(array, 1, n);
+  expect(argument, array, (matrix || array.ndim() == 1) && !column && !transposed,
          fmt::format("({0},) or (k, {0})", length_text(n)));
   return view_of(numbers(argument, array));
 }
@@ -207,6 +219,17 @@ std::vector<bool> mask(const Argument& argument, std::size_t n) {
   expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", n));
   const auto values = ordered<bool>(argument, array, "b", "truth values");
   return std::vector<bool>(values.data(), values.data() + values.size());
+}
+
+std::optional<Histogram> histogram(const Argument& argument) {
+  if (!argument.given()) return {};
+  const auto bins = field(argument, kHistogramBins);
+  Histogram densities;
+  std::ranges::copy(bins.values, densities.begin());
+  if (!std::ranges::all_of(
+          densities, [](double bin) { return bin >= 0 && bin < std::numeric_limits<double>::infinity(); }))
+    argument.fail("must have finite densities >= 0");
+  return densities;
 }
 
 double real_number(const Argument& argument) {

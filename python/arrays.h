@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,8 +51,9 @@ struct View {
 
 // (n,) numbers; of a length, where it is known already.
 View<double> field(const Argument& argument, std::optional<std::size_t> n = {});
-// (k, n), or (n,) as one row. `values` has the k * n numbers.
-View<double> rows(const Argument& argument, std::optional<std::size_t> n = {});
+// (k, n), or (n,) as one row. `values` has the k * n numbers. A matrix whose columns are as long as the first
+// of `others` that is given, or one column by itself, is not read as maps of other shapes.
+View<double> rows(const Argument& argument, std::initializer_list<Argument> others);
 // (n, 3), finite, and so are their squares. None: of no point.
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n = {});
 // The same, of unit length.
@@ -68,6 +70,8 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
 // (n,) truth values.
 std::vector<bool> mask(const Argument& argument, std::size_t n);
+// (100,) densities over [0, 1], finite and >= 0. None: nothing.
+std::optional<Histogram> histogram(const Argument& argument);
 double real_number(const Argument& argument);
 // A number by itself, of any integer type.
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high);

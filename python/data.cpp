@@ -66,13 +66,6 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
   return loaded;
 }
 
-// Errors of a shape as a whole name no file.
-bool names_a_file(std::string_view what, const DatasetItem& item) {
-  const auto begins = [&](const std::string& file) { return what.starts_with(file); };
-  return begins(item.mesh) || std::ranges::any_of(item.saliency, begins) ||
-         std::ranges::any_of(item.picks, begins);
-}
-
 // Names and paths as the system has them, which may be no UTF-8.
 py::str file_text(const std::string& bytes) {
   PyObject* text = PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size()));
@@ -131,9 +124,8 @@ class Data {
     const auto loaded = computed(1, [&] {
       try {
         return python::load(source);
-      } catch (const InputError& error) {
-        if (names_a_file(error.what(), item_of(source))) throw;
-        throw InputError(fmt::format("{}: {}", item_of(source).mesh, error.what()));
+      } catch (const ShapeError& error) {
+        throw FileError(item_of(source).mesh, error.what());
       }
     });
     py::object points, faces = py::none(), normals = py::none(), saliency = py::none();
@@ -160,26 +152,13 @@ class Data {
     fail_unknown("item", name, known);
   }
 
-  // A split that there is not is a name like those of items: a KeyError.
-  static void select(salbench::Dataset& found, const std::string& selection, const std::string& split) {
-    try {
-      select_items(found, selection, split);
-    } catch (const ConfigError& error) {
-      const std::string_view what = error.what();
-      if (what.starts_with("split")) throw py::key_error(error.what());
-      throw py::value_error(error.what() + 2);  // without the dashes of the command's option
-    }
-  }
-
   static void choose(salbench::Dataset& found, const py::object& wanted, const std::string& split) {
     if (py::isinstance<py::bytes>(wanted)) {
       const auto selection = wanted.cast<std::string>();
-      for (const std::string& part : split_list(selection))
-        if (part.find('-') == std::string::npos) require_known(found.items, part);
       if (split_list(selection).empty()) throw py::value_error("items names no item");
-      return select(found, selection, split);
+      return select_items(found, selection, split);
     }
-    select(found, {}, split);
+    select_items(found, {}, split);
     if (wanted.is_none()) return;
     const auto names = wanted.cast<std::vector<std::string>>();
     for (const std::string& name : names) require_known(found.items, name);

@@ -55,17 +55,6 @@ std::vector<std::string> names_from(py::handle metrics) {
   return names;
 }
 
-std::optional<Histogram> reference_from(const Argument& argument) {
-  if (!argument.given()) return {};
-  const auto bins = field(argument, kHistogramBins);
-  Histogram reference;
-  std::ranges::copy(bins.values, reference.begin());
-  if (!std::ranges::all_of(
-          reference, [](double bin) { return bin >= 0 && bin < std::numeric_limits<double>::infinity(); }))
-    argument.fail("must have finite densities >= 0");
-  return reference;
-}
-
 // What a prediction is compared with. Points that the mask leaves out count as not seen.
 struct Truth {
   GroundTruth values;
@@ -161,7 +150,11 @@ py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle
                       py::handle metrics, py::handle reference, py::handle seed, const py::dict& keywords) {
   MetricsOptions options = options_from<ScoreOptions>(keywords, "score");
   options.names = names_from(metrics);
-  const View<double> predictions = rows({prediction, "prediction"});
+  const View<double> predictions = rows({prediction, "prediction"}, {{ground_truth, "ground_truth"},
+                                                                     {masked, "mask"},
+                                                                     {areas, "areas"},
+                                                                     {negatives, "negatives"},
+                                                                     {points_of, "points"}});
   const bool several = predictions.array.ndim() == 2;
   const auto n = static_cast<std::size_t>(predictions.array.shape(several ? 1 : 0));
   if (n == 0) throw py::value_error("prediction must have at least one point");
@@ -169,10 +162,10 @@ py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle
   const Argument places{points_of, "points"};
   const ShapeArrays shape{weights({areas, "areas"}, n), weights({negatives, "negatives"}, n),
                           places.given() ? points(places, n) : View<Vec3>{}, faces({faces_of, "faces"}, n)};
-  const auto histogram = reference_from({reference, "reference"});
+  const auto densities = histogram({reference, "reference"});
   const Stream stream = stream_from(seed);
   const std::vector<Scores> all =
-      computed([&] { return scored(predictions, n, truth, histogram, options, stream, shape); });
+      computed([&] { return scored(predictions, n, truth, densities, options, stream, shape); });
   py::dict result;
   const auto chosen = chosen_metrics(options);
   for (std::size_t m = 0; m < chosen.size(); ++m) {
@@ -201,9 +194,8 @@ void bind_metrics(py::module_& module) {
   module.def("metric_options", [] { return described<ScoreOptions>(); });
   module.def("match_histogram", [](py::handle values, py::handle reference) {
     const auto map = field({values, "values"});
-    const auto histogram = reference_from({reference, "reference"});
-    if (!histogram) throw py::value_error("reference must be a histogram, not None");
-    return moved(computed([&] { return matched(map.values, *histogram); }));
+    const auto densities = histogram(required(reference, "reference"));
+    return moved(computed([&] { return matched(map.values, *densities); }));
   });
   module.def("histogram", [](py::handle values) {
     const auto map = field({values, "values"});

@@ -91,7 +91,7 @@ Model bound(const ModelRow& row, const py::dict& keywords, const std::string& fu
   const Section section = section_of(keywords, function, known);
   try {
     return row.bind(section, Protocol::published);
-  } catch (const ConfigError& error) {
+  } catch (const SectionError& error) {
     rethrow(error, function);
   }
 }

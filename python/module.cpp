@@ -21,6 +21,8 @@ void translate(std::exception_ptr thrown) {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const InputError& error) {
     PyErr_SetString(PyExc_ValueError, error.what());
+  } catch (const UnknownNameError& error) {
+    PyErr_SetString(PyExc_KeyError, error.what());
   } catch (const ConfigError& error) {
     PyErr_SetString(PyExc_ValueError, error.what());
   } catch (const StorageError& error) {
@@ -33,7 +35,10 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 
 std::string hint(std::string_view name, const std::vector<std::string_view>& known) {
-  const std::string text = did_you_mean(name, known);
+  constexpr std::size_t kFew = 12;  // names that a message can list
+  const bool few = !known.empty() && known.size() <= kFew;
+  const std::string text =
+      did_you_mean(name, known, few ? fmt::format("there are {}", fmt::join(known, ", ")) : "");
   return text.empty() ? text : "; " + text;
 }
 
@@ -44,6 +49,7 @@ void fail_unknown(std::string_view what, std::string_view name, const std::vecto
 PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
+  options_are_arguments = true;
   keep_log();
   wait_at_exit();
   bind_cache(module);

@@ -10,7 +10,7 @@
 
 namespace salbench::python {
 
-// "; did you mean 'auc'?", or nothing.
+// "; did you mean 'auc'?", or what there is if that is little; else nothing.
 std::string hint(std::string_view name, const std::vector<std::string_view>& known);
 // KeyError: "there is no metric 'aucs'; did you mean 'auc'?"
 [[noreturn]] void fail_unknown(std::string_view what, std::string_view name,

@@ -54,11 +54,8 @@ py::list described(const std::vector<OptionRow>& options) {
   return rows;
 }
 
-void rethrow(const ConfigError& error, const std::string& function) {
-  std::string_view what = error.what();
-  const std::string place = function + ":1: ";
-  if (what.starts_with(place)) what.remove_prefix(place.size());
-  throw py::value_error(fmt::format("{}(): {}", function, what));
+void rethrow(const SectionError& error, const std::string& function) {
+  throw py::value_error(fmt::format("{}(): {}", function, error.what_is_wrong));
 }
 
 }  // namespace salbench::python

@@ -19,7 +19,7 @@ namespace salbench::python {
 Section section_of(const pybind11::dict& keywords, const std::string& function,
                    const std::vector<std::string_view>& known);
 // ValueError from what a section says of its file, which there is none of.
-[[noreturn]] void rethrow(const ConfigError& error, const std::string& function);
+[[noreturn]] void rethrow(const SectionError& error, const std::string& function);
 
 template <class Options>
 Options options_from(const pybind11::dict& keywords, const std::string& function, Options options = {}) {
@@ -30,7 +30,7 @@ Options options_from(const pybind11::dict& keywords, const std::string& function
   const Section section = section_of(keywords, function, known);
   try {
     section.read(options);
-  } catch (const ConfigError& error) {
+  } catch (const SectionError& error) {
     rethrow(error, function);
   }
   return options;

@@ -5,18 +5,23 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <optional>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "pipeline/inputs/given_reference.h"
+#include "pipeline/results/map_counts.h"
 #include "python/arrays.h"
 #include "python/caller.h"
 #include "python/computing.h"
 #include "python/log.h"
 #include "python/module.h"
+#include "python/run_values.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 
@@ -33,6 +38,7 @@ struct FunctionModel {
   Words reads;
   std::int32_t version = 1;
   std::string key;
+  mutable std::map<std::string, std::string> traces = {};  // by shape: of what it raised
 };
 
 // A copy, since the run forgets its values when it likes; None where the function does not read it.
@@ -51,20 +57,24 @@ py::object shape_of(const std::string& id, Points points, const Normals* normals
       .attr("Shape")(id, copied<Vec3>(points), of_faces, of_normals, descriptors);
 }
 
-// One line, with the user's innermost line: "ValueError: bad (model.py, line 12)".
-std::string what_was_raised(const py::error_already_set& error) {
+// One line, with the user's innermost line: "ValueError: bad (model.py, line 12)"; and the whole traceback.
+std::pair<std::string, std::string> what_was_raised(const py::error_already_set& error) {
   const py::object trace = error.trace() ? py::object(error.trace()) : py::none();
-  return py::module_::import("salbench._run").attr("_raised")(error.value(), trace).cast<std::string>();
+  return py::module_::import("salbench._run")
+      .attr("_raised")(error.value(), trace)
+      .cast<std::pair<std::string, std::string>>();
 }
 
-ScalarField call(const FunctionModel& model, const py::object& shape, std::size_t n) {
+ScalarField call(const FunctionModel& model, const std::string& id, const py::object& shape, std::size_t n) {
   try {
     const py::object values = model.function(shape);
     const auto map = field({values, "the map"}, n);
     return {map.values.begin(), map.values.end()};
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_Exception)) throw;  // Ctrl-C, and sys.exit()
-    throw InputError(fmt::format("{}() raised {}", model.name, what_was_raised(error)));
+    auto [line, trace] = what_was_raised(error);
+    model.traces[id] = std::move(trace);
+    throw InputError(fmt::format("{}() raised {}", model.name, line));
   } catch (const py::builtin_exception& error) {
     throw InputError(fmt::format("{}(): {}", model.name, error.what()));
   }
@@ -86,7 +96,8 @@ Output<Map> add_function(RuleTable& table, const ShapeOutputs& shape, const Func
                                                       const NoOptions&) {
         ScalarField map;
         caller.carry_out([&] {
-          map = call(model, shape_of(random.item, points, normals, reads_faces, faces, fpfh), points.size());
+          map = call(model, random.item, shape_of(random.item, points, normals, reads_faces, faces, fpfh),
+                     points.size());
         });
         require_finite(map, "the map");
         return map;
@@ -94,6 +105,11 @@ Output<Map> add_function(RuleTable& table, const ShapeOutputs& shape, const Func
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
       only_if(reads("fpfh"), shape.fpfh), kRandom,
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
+}
+
+// Since 1970.
+double seconds(std::chrono::system_clock::time_point time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
 // --- what is run -----------------------------------------------------------------------------------------
@@ -127,6 +143,13 @@ std::string text_or_empty(const py::dict& settings, const char* key) {
   return value.is_none() ? std::string() : std::string(py::str(value));
 }
 
+// None, a text such as "1-20,52", or a list of names.
+ItemChoice items_from(const py::object& given) {
+  if (given.is_none()) return {};
+  if (py::isinstance<py::bytes>(given)) return given.cast<std::string>();
+  return ItemChoice(given.cast<std::vector<std::string>>());
+}
+
 // What _run.py says of a configuration: `path` or `yaml`; `models`, as YAML, in place of those that it names;
 // `data`, `cache` and `out`.
 Config config_from(const py::dict& settings) {
@@ -145,10 +168,23 @@ Config config_from(const py::dict& settings) {
   for (const auto& [key, folder] :
        {std::pair{"data", &config.data}, {"cache", &config.cache}, {"out", &config.output}})
     if (const std::string given = text_or_empty(settings, key); !given.empty()) *folder = given;
+  if (!settings["split"].is_none()) config.dataset.split = text_or_empty(settings, "split");
   if (config.data.empty()) throw ConfigError("data is not given: the folder of the data set");
   if (config.cache.empty()) config.cache = "salbench-cache";
   if (config.output.empty()) config.output = (std::filesystem::path("salbench-out") / config.name).string();
   return config;
+}
+
+Selection selection_from(const py::dict& settings) {
+  Selection selection{.items = items_from(settings["items"])};
+  const py::object reference = settings["reference"];
+  if (!py::isinstance<py::str>(reference))
+    selection.reference = histogram({reference, "reference"});
+  else if (std::string(py::str(reference)) == kReferenceOfItems)
+    selection.reference_of_items = true;
+  else
+    selection.reference = read_reference(std::string(py::str(reference)));
+  return selection;
 }
 
 class Run {
@@ -161,7 +197,7 @@ class Run {
     }
     Config config = config_from(settings);
     for (const FunctionModel& model : models_) add(config, model);
-    const Selection selection{.items = text_or_empty(settings, "items")};
+    const Selection selection = selection_from(settings);
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
     const LogDelivery delivery;
@@ -176,32 +212,72 @@ class Run {
   std::string output() const { return session_->setup.output.string(); }
   std::size_t computed() const { return session_->resolver.computed(); }
 
-  // (item, stage, cause) of each.
+  // (item, stage, cause) of each; below the cause of a function's failure stands its traceback.
   py::list failures() const {
     py::list rows;
     const Project& project = session_->setup.project;
-    for (const Failure& failure : session_->resolver.failures())
-      rows.append(py::make_tuple(project.name(failure.job), project.rule(failure.job).stage, failure.cause));
+    for (const Failure& failure : session_->resolver.failures()) {
+      const Rule& rule = project.rule(failure.job);
+      std::string cause = failure.cause;
+      for (const FunctionModel& model : models_)
+        if (has_role(rule, Role::map) && model.name == rule.subject)
+          if (const auto trace = model.traces.find(project.name(failure.job)); trace != model.traces.end())
+            cause += "\n" + trace->second;
+      rows.append(py::make_tuple(project.name(failure.job), rule.stage, cause));
+    }
+    return rows;
+  }
+
+  // Names of shapes, as bytes.
+  py::list mapped(const std::string& model) const {
+    py::list names;
+    for (const std::string& name : mapped_items(*session_, model)) names.append(py::bytes(name));
+    return names;
+  }
+
+  void require_model(const std::string& model) const {
+    require_name("model with maps", model, models_with_maps(session_->setup.project));
+  }
+
+  // By metric, of a map of a shape; an empty model stands for the one whose map it is.
+  py::dict score(py::handle prediction, const std::string& item, const std::string& model) {
+    if (!model.empty()) require_model(model);
+    require_name("item in the run", item, shapes_with_maps(session_->setup.project));
+    const auto n = python::computed([&] { return point_count(*session_, item); });
+    const auto map = field({prediction, "prediction"}, n);
+    const Scores scores = python::computed([&] {
+      return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);
+    });
+    py::dict by_metric;
+    const Metrics metrics = chosen_metrics(session_->setup.config.metrics);
+    for (std::size_t m = 0; m < metrics.size(); ++m)
+      by_metric[py::str(metrics[m].name)] = py::float_(scores.values[m]);
+    return by_metric;
+  }
+
+  // (model, maps computed by this run, maps read, when the first and the last of these were stored) of each.
+  py::list models() const {
+    py::list rows;
+    for (const MapCount& count : count_maps(session_->resolver, session_->store))
+      rows.append(
+          py::make_tuple(count.model, count.computed, count.read, seconds(count.first), seconds(count.last)));
     return rows;
   }
 
   // The map of a model, or nothing if there is none of this shape.
   py::object map(const std::string& model, const std::string& item) {
-    const Project& project = session_->setup.project;
-    const ValuePtr value = python::computed([&]() -> ValuePtr {
-      for (std::size_t rule = 0; rule < project.rules.size(); ++rule)
-        if (has_role(project.rules[rule], Role::map) && project.rules[rule].subject == model)
-          for (const Unit unit : project.units.of(project.rules[rule].over))
-            if (project.units.name(unit) == item && session_->resolver.plan()[{rule, unit}].known())
-              return session_->resolver.value({rule, unit});
-      return nullptr;
-    });
+    const ValuePtr value = python::computed([&] { return map_of(*session_, model, item); });
     if (value == nullptr) return py::none();
     const auto& map = value_as<ScalarField>(*value);
     return read_only(shown(value, std::span<const double>(map)));
   }
 
  private:
+  static void require_name(std::string_view what, const std::string& name,
+                           const std::vector<std::string>& known) {
+    if (std::ranges::find(known, name) == known.end()) fail_unknown(what, name, {known.begin(), known.end()});
+  }
+
   void add(Config& config, const FunctionModel& model) {
     if (const std::string wrong = wrong_with_model_name(model.name); !wrong.empty())
       throw ConfigError(fmt::format("models: '{}' {}", model.name, wrong));
@@ -228,6 +304,10 @@ void bind_run(py::module_& module) {
       .def("carry_out", &Run::carry_out)
       .def("failures", &Run::failures)
       .def("map", &Run::map)
+      .def("mapped", &Run::mapped)
+      .def("require_model", &Run::require_model)
+      .def("score", &Run::score)
+      .def("models", &Run::models)
       .def_property_readonly("output", &Run::output)
       .def_property_readonly("computed", &Run::computed);
 }

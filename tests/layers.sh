@@ -81,4 +81,9 @@ while IFS=: read -r path line included; do  # one file reads it, one writes it
   [[ $included != pybind11/* || $path == python/* ]] || complain "$path:$line" "$included" "what is bound knows nothing of Python"
 done < <(includes)
 
+while IFS=: read -r path line _; do  # a message about a shape gets its file from whoever knows it
+  echo "$path:$line: throws InputError: stages know no files, and throw ShapeError"
+  breaches=$((breaches + 1))
+done < <(grep -rn --include='*.h' --include='*.cpp' 'throw InputError(' stages || true)
+
 [[ $breaches -eq 0 ]]

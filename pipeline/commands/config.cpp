@@ -19,9 +19,8 @@ Subcommand config_subcommand(Arguments& arguments) {
           {file, format_parameter(word)},
           [&arguments, word](const std::atomic<bool>&) {
             const ReportFormat format = format_of(word);
-            const Section written = arguments.config.empty()
-                                        ? Section::from_text("", "defaults")
-                                        : Section::from_file(configuration_path(arguments.config));
+            const Section written = arguments.config.empty() ? Section::from_text("", "defaults")
+                                                             : configuration(arguments.config);
             const std::string yaml = annotated_config_yaml(read_config(written, ""));
             print_report(format, "config", {{"yaml", yaml}}, yaml);
             return kAllDone;

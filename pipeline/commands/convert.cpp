@@ -56,8 +56,8 @@ ExitStatus run_convert(const Arguments& arguments, const std::string& layout, Re
   if (arguments.data.empty()) throw ConfigError("convert: names no data set: give --data DIR");
   const OrderlyEnd orderly;
   const auto progress = progress_of(arguments.quiet);
-  const Conversion conversion =
-      convert_data(arguments.data, layouts, arguments.items, arguments.split, arguments.to, *progress, stop);
+  const Conversion conversion = convert_data(arguments.data, layouts, arguments.items,
+                                             arguments.split.value_or(""), arguments.to, *progress, stop);
   for (const std::string& note : conversion.notes) spdlog::warn("{}", note);
   for (const ConvertedShape& shape : conversion.shapes)
     if (!shape.problem.empty()) spdlog::error("{}: {}", shape.name, shape.problem);
@@ -74,7 +74,7 @@ Subcommand convert_subcommand(Arguments& arguments) {
   return {"convert",
           "write a data set in one form, an HDF5 file per shape and an index, which is the layout hdf5",
           {layout_parameter(layout.get()),
-           {"--data", &arguments.data, "folder of the data set"},
+           data_parameter(arguments),
            {"--to", &arguments.to, "folder that the set is written to", true},
            {"--items", &arguments.items, "only these shapes, such as 1-20,52,125"},
            {"--split", &arguments.split, "only this split of the data set, such as test"},

@@ -120,7 +120,10 @@ ExitStatus examine(const Arguments& arguments, ReportFormat format) {
 
 Subcommand doctor_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
-  Parameters parameters = run_parameters(arguments, {shard_parameter(arguments), format_parameter(format)});
+  Parameters parameters = needing(
+      planning_parameters(
+          arguments, {shard_parameter(arguments), threads_parameter(arguments), format_parameter(format)}),
+      "CONFIG", {"--data", "--items", "--split", "--reference", "--shard"});
   parameters.front().required = false;  // the configuration
   parameters.front().help += ": what its run needs, if it is given";
   return {"doctor",

@@ -15,7 +15,7 @@ Subcommand evaluate_subcommand(Arguments& arguments) {
   const FormatWord word = default_format();
   return {"evaluate",
           "a run over what has ground truth that also scores maps of your own, made by any program",
-          run_parameters(
+          running_parameters(
               arguments,
               {{"--maps", &options->maps,
                 "folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; one value per line), or an "
@@ -23,6 +23,7 @@ Subcommand evaluate_subcommand(Arguments& arguments) {
                 true},
                {"--name", &options->name, "what to call them in the tables", true},
                {"--models", &arguments.models, "beside these models only, such as LS,PS"},
+               output_parameter(arguments),
                {"--matched", &options->matched, "the values are histogram-matched already"},
                format_parameter(word)}),
           [&arguments, options, word](const std::atomic<bool>& stop) {

@@ -114,7 +114,7 @@ Subcommand explain_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<ExplainOptions>();
   const FormatWord format = default_format();
   return {"explain", "tell of each artefact of an item whether it is cached, and if not what differs",
-          run_parameters(arguments, {{"ITEM", &options->item,
+          planning_parameters(arguments, {{"ITEM", &options->item,
                                       "a mesh or point cloud (52), or a scan of a mesh (52_3)", true},
                                      {"STAGE", &options->stage, "this stage only"},
                                      format_parameter(format)}),

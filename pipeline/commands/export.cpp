@@ -9,9 +9,9 @@
 #include "io/file.h"
 #include "io/shape_file.h"
 #include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/summary.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/results/export_file.h"
 #include "stages/core/errors.h"
@@ -157,8 +157,8 @@ Subcommand export_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<ExportOptions>();
   return {
       "export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
-      run_parameters(arguments,
-                     {{"--stage", &options->stages,
+      running_parameters(
+          arguments, {{"--stage", &options->stages,
                        "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
                       {"--models", &arguments.models, "only these, such as LS,PS"},
                       {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes", true},

@@ -91,7 +91,7 @@ Subcommand gc_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<GcOptions>();
   const FormatWord format = default_format();
   return {"gc", "remove from a cache what no run of these configurations needs",
-          cache_parameters(
+          maintaining_parameters(
               arguments, {{"CONFIG", &options->configs, "every configuration whose artefacts are kept", true},
                           {"--dry-run", &options->dry_run, "only say what would be removed"},
                           format_parameter(format)}),

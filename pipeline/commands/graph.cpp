@@ -25,6 +25,16 @@ std::vector<std::string> option_lines(const Rule& rule) {
   return lines;
 }
 
+// A quoted string of DOT. Labels are read for escapes and for entities of HTML, too.
+std::string dot_text(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c == '&' ? std::string("&amp;") : c == '\n' ? std::string("\\n") : std::string(1, c);
+  }
+  return quoted + '"';
+}
+
 std::string jobs_text(const GraphNode& node) {
   return node.to_do ? fmt::format(", {} to do", *node.to_do) : "";
 }
@@ -46,8 +56,7 @@ Json json_of(const Graph& graph) {
 }
 
 Graph graph_of_run(const Arguments& arguments) {
-  if (arguments.data.empty())
-    return graph_of(make_rules(read_config(Section::from_file(configuration_path(arguments.config)), "")));
+  if (arguments.data.empty()) return graph_of(make_rules(read_config(configuration(arguments.config), "")));
   const Setup setup(arguments);
   const FolderStore store(setup.cache, Access::read_only);
   const Plan plan = make_plan(setup.project, store);
@@ -104,11 +113,13 @@ std::string graph_text(const Graph& graph) {
 std::string graph_dot(const Graph& graph) {
   std::string nodes, edges;
   for (const GraphNode& node : graph.nodes) {
-    nodes += fmt::format("  \"{}\" [label=\"{}\\n{}, version {}{}\", tooltip=\"{}\"{}];\n", node.name,
-                         node.stage, node.shapes, node.version, jobs_text(node),
-                         fmt::join(node.options, "\\n"), node.per == "set" ? ", shape=ellipse" : "");
+    const std::string label =
+        fmt::format("{}\n{}, version {}{}", node.stage, node.shapes, node.version, jobs_text(node));
+    nodes += fmt::format("  {} [label={}, tooltip={}{}];\n", dot_text(node.name), dot_text(label),
+                         dot_text(fmt::format("{}", fmt::join(node.options, "\n"))),
+                         node.per == "set" ? ", shape=ellipse" : "");
     for (const std::string& input : node.inputs)
-      edges += fmt::format("  \"{}\" -> \"{}\"{};\n", input, node.name,
+      edges += fmt::format("  {} -> {}{};\n", dot_text(input), dot_text(node.name),
                            std::ranges::find(node.cuts, input) == node.cuts.end() ? "" : " [style=dashed]");
   }
   return "digraph salbench {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n" +
@@ -118,7 +129,8 @@ std::string graph_dot(const Graph& graph) {
 Subcommand graph_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
   return {"graph", "print the flow graph of a run: a node per rule, an edge per input, dashed across a cut",
-          run_parameters(arguments, {format_parameter(format, ", or dot for Graphviz")}),
+          needing(planning_parameters(arguments, {format_parameter(format, ", or dot for Graphviz")}),
+                  "--data", {"--cache", "--items", "--split", "--reference"}),
           [&arguments, format](const std::atomic<bool>&) {
             return print_graph(arguments, format_of(format, true));
           }};

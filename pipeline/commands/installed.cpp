@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/config/section.h"
+#include "pipeline/config/data_layout.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -33,43 +33,43 @@ fs::path in_checkout(const fs::path& name) {
   return {};
 }
 
-// Of the installation, or of the checkout.
-fs::path configurations() {
-  std::error_code error;
-  return fs::is_directory(share(), error) ? share() / "configs" : in_checkout("configs");
-}
-
-// Names without ending of the files beside it, and of those that are installed.
+// Names without ending of the files beside it, and of those of the program.
 std::vector<std::string> known_configurations(const fs::path& given) {
   std::vector<std::string> names;
-  const auto add = [&](const fs::path& folder, const std::string& before) {
-    std::error_code none;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
-      if (entry.path().extension() == ".yaml") names.push_back(before + entry.path().stem().string());
-  };
   const fs::path folder = given.parent_path();
-  add(folder.empty() ? fs::path(".") : folder, "");
-  if (folder.empty()) add(configurations(), "");
-  if (folder.empty() || folder == "protocols") add(configurations() / "protocols", "protocols/");
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, none))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  for (const NamedYaml& configuration : configurations())
+    if (folder.empty() || fs::path(configuration.name).parent_path() == folder)
+      names.emplace_back(configuration.name);
   std::ranges::sort(names);
   return names;
 }
 
 }  // namespace
 
-std::string configuration_path(const std::string& given) {
+Section configuration(const std::string& given) {
   std::error_code error;
-  if (fs::exists(given, error)) return given;
-  if (!fs::path(given).has_parent_path() || given.starts_with("protocols/"))
-    for (const std::string& name : {given, given + ".yaml"})
-      if (const fs::path path = configurations() / name; fs::is_regular_file(path, error))
-        return path.string();
+  if (fs::exists(given, error)) return Section::from_file(given);
+  for (const NamedYaml& configuration : configurations())
+    if (given == configuration.name || given == std::string(configuration.name) + ".yaml")
+      return Section::from_text(std::string(configuration.yaml), std::string(configuration.name) + ".yaml");
   const std::vector<std::string> known = known_configurations(given);
   const bool of_protocol = given.starts_with("protocols/");
   const std::string hint = did_you_mean((of_protocol ? "protocols/" : "") + fs::path(given).stem().string(),
                                         {known.begin(), known.end()});
-  if (hint.empty()) return given;
+  if (hint.empty()) return Section::from_file(given);  // which says why it cannot be read
   throw ConfigError(fmt::format("{}: cannot be read: there is no such configuration; {}", given, hint));
+}
+
+fs::path package_folder() {
+  std::error_code error;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (fs::path folder : {bin / "python", bin.parent_path() / "lib/python3/dist-packages"})
+    if (folder.parent_path() != "/usr/lib/python3" && fs::is_directory(folder / "salbench", error))
+      return folder;
+  return {};
 }
 
 fs::path report_program() {

@@ -15,12 +15,12 @@
 #include "io/process.h"
 #include "io/scratch_folder.h"
 #include "io/values_file.h"
+#include "pipeline/commands/conclude.h"
 #include "pipeline/commands/installed.h"
-#include "pipeline/commands/leading.h"
+#include "pipeline/commands/run.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/commands/submission.h"
-#include "pipeline/commands/summary.h"
-#include "pipeline/results/conclusions.h"
+#include "pipeline/results/record.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/core/errors.h"
 
@@ -80,13 +80,6 @@ void require_new_name(const std::vector<Entry>& entries, const Entry& entry, con
       throw InputError(fmt::format("the name {} is that of a model of the configuration", entry.card.name));
 }
 
-// Without the folder: the table is the same wherever the submissions lie.
-std::string reason_of(const std::exception& error, const fs::path& file) {
-  std::string reason = error.what();
-  for (std::string path = file.string() + ": "; reason.starts_with(path);) reason.erase(0, path.size());
-  return reason;
-}
-
 // Adds the models of the submissions that pass.
 void check_all(std::vector<Entry>& entries, const Expected& expected, const fs::path& scratch,
                Config& config) {
@@ -100,8 +93,10 @@ void check_all(std::vector<Entry>& entries, const Expected& expected, const fs::
       config.models.push_back(given_model(
           entry.card.name, unpacked(submission, entry.file, scratch / std::to_string(config.models.size()))));
       entry.refused = "";
+    } catch (const FileError& error) {
+      entry.refused = error.reason;  // without the folder: the table is the same wherever submissions lie
     } catch (const InputError& error) {
-      entry.refused = reason_of(error, entry.file);
+      entry.refused = error.what();
     }
 }
 
@@ -157,27 +152,34 @@ Table metrics_table(const Metrics& metrics) {
 }
 
 // By date, then by the name of the file: the mean of each, and whether it was the best until then.
-Table history_table(std::vector<Entry> entries, const Conclusions& conclusions) {
+Table history_table(std::vector<Entry> entries, const Table& ranking, const Metrics& metrics) {
   std::erase_if(entries, [](const Entry& entry) { return !entry.refused.empty(); });
   std::ranges::stable_sort(entries, {}, [](const Entry& entry) { return entry.card.date; });
-  Table table{.columns = conclusions.labelled({"dataset", "metric", "date", "file", "model", "mean", "best"}),
-              .rows = {}};
-  for (const auto& [scores, metrics] : conclusions.datasets)
-    for (const RankedMetric& ranked : metrics) {
-      const Metric& metric = conclusions.metrics[ranked.metric];
-      double best = metric.higher_is_better ? -INFINITY : INFINITY;
-      for (const Entry& entry : entries) {
-        const auto model = std::ranges::find(scores.models(), entry.card.name) - scores.models().begin();
-        const std::size_t place = ranked.scores.column_of(static_cast<std::size_t>(model));
-        if (place >= ranked.ranking.models.size()) continue;
-        const double mean = ranked.ranking.models[place].mean;
-        const bool is_best = metric.higher_is_better ? mean > best : mean < best;
-        if (is_best) best = mean;
-        table.rows.push_back(cells(scores.label(), metric.name, entry.card.date,
-                                   entry.file.filename().string(), entry.card.name, mean,
-                                   std::string(is_best ? "yes" : "no")));
+  const std::vector<std::string> named = text_column(ranking, "metric"),
+                                 models = text_column(ranking, "model");
+  const std::vector<double> means = number_column(ranking, "mean");
+  const auto model_at = std::ranges::find(ranking.columns, "metric") - ranking.columns.begin();
+  Table table{.columns = {ranking.columns.begin(), ranking.columns.begin() + model_at}, .rows = {}};
+  table.columns.insert(table.columns.end(), {"metric", "date", "file", "model", "mean", "best"});
+  // Rows of one data set, split and metric stand together.
+  for (std::size_t first = 0, end = 0; first < means.size(); first = end) {
+    const std::vector<Cell> label(ranking.rows[first].begin(), ranking.rows[first].begin() + model_at);
+    const auto same = [&](std::size_t row) {
+      return named[row] == named[first] && std::equal(label.begin(), label.end(), ranking.rows[row].begin());
+    };
+    while (end < means.size() && same(end)) ++end;
+    const auto metric = std::ranges::find(metrics, named[first], &Metric::name);
+    const bool higher = metric == metrics.end() || metric->higher_is_better;
+    double best = higher ? -INFINITY : INFINITY;
+    for (const Entry& entry : entries)
+      for (std::size_t row = first; row < end; ++row) {
+        if (models[row] != entry.card.name || std::isnan(means[row])) continue;
+        const bool is_best = higher ? means[row] > best : means[row] < best;
+        if (is_best) best = means[row];
+        table.rows.push_back(cells(label, named[first], entry.card.date, entry.file.filename().string(),
+                                   entry.card.name, means[row], std::string(is_best ? "yes" : "no")));
       }
-    }
+  }
   return table;
 }
 
@@ -188,13 +190,16 @@ void require_own_folder(const fs::path& site) {
         fmt::format("{}: holds something else than a leaderboard; choose another with --to", site.string()));
 }
 
-void render(const fs::path& site) try {
+// False if there are no pages.
+bool render(const fs::path& site) try {
   if (report_program().empty()) throw InputError("the report's program is not there");
   run_command(fmt::format("{} leaderboard {}", shell_quoted(report_program().string()),
                           shell_quoted(fs::absolute(site).string())),
               site, kRendering);
+  return size_of_file(site / "index.html").has_value();
 } catch (const InputError& error) {
   spdlog::warn("{}: the tables are there, but no pages: {}", site.string(), error.what());
+  return false;
 }
 
 // --- together ---------------------------------------------------------------------------------------------
@@ -219,25 +224,24 @@ class Silence {
 
 struct Site {
   std::vector<Entry> entries;
-  Table overview;
-  Json leaders = {};
-  std::string leading = {};  // the same in sentences
+  Concluded concluded;
+  bool has_pages = false;
 };
 
 void print_site(const Site& site, const Session& session, const Arguments& arguments, ReportFormat format) {
-  std::string text = aligned(site.overview) + "\n" + site.leading;
+  std::string text = site.concluded.text;
   for (const Entry& entry : site.entries)
     if (!entry.refused.empty())
       text += fmt::format("refused: {}: {}\n", entry.file.filename().string(), entry.refused);
+  text += site.has_pages
+              ? fmt::format("the leaderboard is {}\n", (fs::path(arguments.to) / "index.html").string())
+              : fmt::format("the tables are in {}\n", (fs::path(arguments.to) / "data").string());
   Json document = {{"to", arguments.to},
                    {"submissions", rows_json(submissions_table(site.entries))},
-                   {"scores", rows_json(site.overview)},
-                   {"leaders", site.leaders}};
+                   {"scores", site.concluded.scores},
+                   {"leaders", site.concluded.leaders}};
   document.update(summary_of(session));
-  print_report(format, "leaderboard", document,
-               arguments.quiet ? ""
-                               : text + fmt::format("the leaderboard is {}\n",
-                                                    (fs::path(arguments.to) / "index.html").string()));
+  print_report(format, "leaderboard", document, arguments.quiet ? "" : text);
 }
 
 Site write_site(Session& session, std::vector<Entry> entries, const fs::path& folder) {
@@ -246,18 +250,19 @@ Site write_site(Session& session, std::vector<Entry> entries, const fs::path& fo
   refuse_failed(entries, session, rows);
   compare_scores(entries, rows, metrics);
   const Config& config = session.setup.config;
-  const Conclusions conclusions = conclude(rows, metrics, config.statistics, config.seed);
   const fs::path data = folder / "data";
   make_folder(data, "choose another with --to");
   std::vector<std::string> remarks;
   if (config.simulated()) remarks.emplace_back(kSimulatedNote);
-  write_tables(data, session.state(), rows, conclusions, remarks);
+  const std::string scores = write_scores(data, session.state(), rows, remarks);
+  write_scores_record(data, config, scores);
   write_file(data / "submissions.csv", to_csv(submissions_table(entries)));
-  write_file(data / "history.csv", to_csv(history_table(entries, conclusions)));
   write_file(data / "metrics.csv", to_csv(metrics_table(metrics)));
   write_file(data / "protocol.yaml", protocol_text(config));
-  const std::vector<LevelLeaders> leaders = find_leaders(conclusions);
-  return {std::move(entries), overview_table(conclusions), json_of(leaders), leading_text(leaders)};
+  Concluded concluded = conclude_results(data, scores);
+  if (concluded)
+    write_file(data / "history.csv", to_csv(history_table(entries, read_csv(data / "ranking.csv"), metrics)));
+  return {std::move(entries), std::move(concluded)};
 }
 
 ExitStatus run_leaderboard(const Arguments& arguments, const std::string& folder, ReportFormat format,
@@ -278,9 +283,10 @@ ExitStatus run_leaderboard(const Arguments& arguments, const std::string& folder
   session.run(thread_count(arguments));
   silence.reset();
   if (stop) return interrupted_status(arguments);
-  const Site site = write_site(session, std::move(entries), arguments.to);
-  render(arguments.to);
+  Site site = write_site(session, std::move(entries), arguments.to);
+  site.has_pages = site.concluded && render(arguments.to);
   print_site(site, session, arguments, format);
+  if (report_trouble(site.concluded, fs::path(arguments.to) / "data")) return kDefect;
   const bool any_refused =
       std::ranges::any_of(site.entries, [](const Entry& entry) { return !entry.refused.empty(); });
   const ExitStatus status = finished_status(session);

@@ -6,9 +6,9 @@
 
 #include "io/file.h"
 #include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/summary.h"
 
 namespace salbench {
 namespace {
@@ -66,10 +66,10 @@ Subcommand maps_subcommand(Arguments& arguments) {
   const auto matched = std::make_shared<bool>(false);
   const FormatWord word = default_format();
   return {"maps", "compute saliency maps and write TO/MODEL/ITEM.val, one value per line",
-          run_parameters(arguments, {{"--models", &arguments.models, "only these, such as LS,PS"},
-                                     {"--to", &arguments.to, "folder that the maps are written to", true},
-                                     {"--matched", matched.get(), "after histogram matching"},
-                                     format_parameter(word)}),
+          running_parameters(arguments, {{"--models", &arguments.models, "only these, such as LS,PS"},
+                                         {"--to", &arguments.to, "folder that the maps are written to", true},
+                                         {"--matched", matched.get(), "after histogram matching"},
+                                         format_parameter(word)}),
           [&arguments, matched, word](const std::atomic<bool>& stop) {
             return run_maps(arguments, *matched, format_of(word), stop);
           }};

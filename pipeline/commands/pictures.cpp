@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/summary.h"
 
 namespace salbench {
 namespace {
@@ -37,7 +37,8 @@ ExitStatus run_pictures(const Arguments& arguments, ReportFormat format, const s
 Subcommand pictures_subcommand(Arguments& arguments) {
   const FormatWord word = default_format();
   return {"pictures", "compute pictures of all shapes for reports; export then contains them",
-          run_parameters(arguments, {format_parameter(word)}),
+          // no picture shows a matched map
+          without(running_parameters(arguments, {format_parameter(word)}), {"--reference"}),
           [&arguments, word](const std::atomic<bool>& stop) {
             return run_pictures(arguments, format_of(word), stop);
           }};

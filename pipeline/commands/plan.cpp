@@ -67,7 +67,7 @@ Subcommand plan_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
   return {
       "plan", "count what a run would compute, and why; changes nothing",
-      run_parameters(arguments, {shard_parameter(arguments), format_parameter(format)}),
+      planning_parameters(arguments, {shard_parameter(arguments), format_parameter(format)}),
       [&arguments, format](const std::atomic<bool>&) { return print_plan(arguments, format_of(format)); }};
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of subcommands, and the way from the command line to one of them.
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -13,6 +15,7 @@
 
 #include "io/file.h"
 #include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/package.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/standard_streams.h"
 #include "pipeline/commands/subcommands.h"
@@ -48,7 +51,7 @@ constexpr Example kExamples[] = {
     {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
      "all that is known of one shape"},
     {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"},
-    {"conclusions results.csv --unit class --out tables", "with classes as observations"},
+    {"conclude results.csv --unit class --out tables", "with classes as observations"},
     {"power salbench-out/shrec07", "which differences a run could show"},
     {"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"},
     {"graph configs/shrec07.yaml --format dot | dot -Tsvg", "the flow graph of a run, as a picture"},
@@ -71,11 +74,10 @@ constexpr const char* kExitStatus =
 130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
-    run_subcommand,    maps_subcommand,        evaluate_subcommand, pictures_subcommand,
-    export_subcommand, conclusions_subcommand, power_subcommand,    plan_subcommand,
-    graph_subcommand,  explain_subcommand,     status_subcommand,   doctor_subcommand,
-    submit_subcommand, leaderboard_subcommand, config_subcommand,   verify_subcommand,
-    gc_subcommand,     inspect_subcommand,     convert_subcommand,
+    run_subcommand,     maps_subcommand,        evaluate_subcommand, pictures_subcommand, export_subcommand,
+    plan_subcommand,    graph_subcommand,       explain_subcommand,  status_subcommand,   doctor_subcommand,
+    submit_subcommand,  leaderboard_subcommand, config_subcommand,   verify_subcommand,   gc_subcommand,
+    inspect_subcommand, convert_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {
@@ -98,6 +100,11 @@ std::string examples_of(const std::string& subcommand, bool all) {
   return text;
 }
 
+bool is_of_package(std::string_view name) {
+  return std::ranges::find(package_subcommands(), name, &PackageSubcommand::name) !=
+         package_subcommands().end();
+}
+
 // What is wrong with a line that names an unknown subcommand or option; empty if nothing of the kind.
 std::string unknown_word(const CLI::App& app, std::span<const char* const> words,
                          const std::vector<Subcommand>& subcommands) {
@@ -114,6 +121,7 @@ std::string unknown_word(const CLI::App& app, std::span<const char* const> words
                                         fmt::format("salbench {} --help names them", subcommand.name)));
     return {};
   }
+  for (const PackageSubcommand& subcommand : package_subcommands()) known.push_back(subcommand.name);
   if (words.size() < 2 || std::string_view(words[1]).starts_with("-")) return {};
   return fmt::format("there is no subcommand '{}'; {}", words[1],
                      did_you_mean(words[1], known, "salbench --help names them"));
@@ -125,6 +133,10 @@ struct Declare {
 
   void operator()(bool* target) const { app.add_flag(parameter.name, *target, parameter.help); }
   void operator()(int* target) const { declared(*target)->check(CLI::Range(1, parameter.max)); }
+  void operator()(std::optional<std::string>* target) const {  // an empty text is one
+    app.add_option_function<std::string>(
+        parameter.name, [target](const std::string& text) { *target = text; }, parameter.help);
+  }
   template <class Text>
   void operator()(Text* target) const {
     declared(*target);
@@ -141,6 +153,7 @@ int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> 
   CLI::App app{"Benchmark of 3D saliency models on meshes, simulated range scans and point clouds."};
   app.set_version_flag("--version", "salbench " SALBENCH_VERSION);
   app.require_subcommand(1);
+  if (words.size() > 1 && is_of_package(words[1])) become_package(words.subspan(1));
   Arguments arguments;
   arguments.command_line = joined(words);
   std::string examples;
@@ -152,8 +165,17 @@ int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> 
     examples += examples_of(subcommand.name, false);
     for (const Parameter& parameter : subcommand.parameters)
       std::visit(Declare{*declared, parameter}, parameter.target);
+    for (const Parameter& parameter : subcommand.parameters)
+      if (!parameter.needs.empty())
+        declared->get_option(parameter.name)->needs(declared->get_option(parameter.needs));
   }
-  app.footer(fmt::format("Examples:\n{}\n{}", examples, kExitStatus));
+  std::string of_package;
+  for (const auto& [name, summary] : package_subcommands()) {
+    of_package += fmt::format("  {:<26}  {}\n", name, summary);
+    examples += examples_of(std::string(name), false);
+  }
+  app.footer(fmt::format("Subcommands of the Python package (python3-salbench):\n{}\nExamples:\n{}\n{}",
+                         of_package, examples, kExitStatus));
   try {
     app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {

@@ -22,6 +22,16 @@ ReportFormat format_of(const FormatWord& word, bool graph, std::string_view opti
       fmt::format("{} {}: must be {}", option, *word, graph ? "text, json or dot" : "text or json"));
 }
 
+Json rows_json(const Table& table) {
+  const Table texts = parse_csv(to_csv(table), "table");
+  return list_of(texts.rows, [&](const std::vector<Cell>& row) {
+    Json object;
+    for (std::size_t column = 0; column < row.size(); ++column)
+      object[texts.columns[column]] = std::get<std::string>(row[column]);
+    return object;
+  });
+}
+
 void print_report(ReportFormat format, const std::string& subcommand, const Json& members,
                   const std::string& text) {
   if (format != ReportFormat::json) return fmt::print("{}", text);

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/table.h"
 #include "pipeline/commands/subcommand.h"
 #include "stages/core/options.h"
 
@@ -49,6 +50,9 @@ Parameter format_parameter(const FormatWord& word, const std::string& further_he
 
 // Throws ConfigError for another word than text and json, and dot for Graphviz if there is a graph.
 ReportFormat format_of(const FormatWord& word, bool graph = false, std::string_view option = "--format");
+
+// The rows of a table; cells are texts as its CSV file has them.
+Json rows_json(const Table& table);
 
 // Prints the document of these members, which begins with the schema and the subcommand, or else the text.
 void print_report(ReportFormat format, const std::string& subcommand, const Json& members,

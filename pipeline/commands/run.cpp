@@ -7,15 +7,16 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
+#include "io/process.h"
 #include "io/table.h"
+#include "pipeline/commands/conclude.h"
 #include "pipeline/commands/installed.h"
 #include "pipeline/commands/interrupt.h"
-#include "pipeline/commands/leading.h"
 #include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/summary.h"
 #include "pipeline/commands/why.h"
 #include "pipeline/engine/run.h"
-#include "pipeline/results/conclusions.h"
+#include "pipeline/results/map_counts.h"
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
 
@@ -33,38 +34,33 @@ std::string shard_text(const Session& session) {
       session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
 }
 
-// The last lines say who leads, and where the tables are.
-std::string summary_text(const Session& session, const Conclusions& conclusions,
-                         const std::vector<LevelLeaders>& leaders) {
+// As means.csv has them: what there is to show without conclusions.
+Table means_of(Session& session) {
+  return means_table(collect_results(session.state()), chosen_metrics(session.setup.config.metrics));
+}
+
+// The last lines say who leads, which maps are new, and where the tables are.
+std::string summary_text(Session& session, const Concluded& concluded) {
   const Setup& setup = session.setup;
-  return fmt::format(
-      "{}\n{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: {} {}\n",
-      aligned(overview_table(conclusions)),
-      setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "", leading_text(leaders),
-      name_of(setup.config.protocol), session.resolver.computed(), setup.output.string(), report_command(),
-      shell_word(setup.output.string()));
+  std::string text = concluded.text;
+  if (!concluded)
+    text = fmt::format("{}\n{}", aligned(means_of(session)),
+                       setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "");
+  return fmt::format("{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: {} {}\n",
+                     text, aligned(map_table(count_maps(session.resolver, session.store))),
+                     name_of(setup.config.protocol), session.resolver.computed(), setup.output.string(),
+                     report_command(), shell_word(setup.output.string()));
 }
 
-std::vector<ChanceRemark> remarks_on_chance(const RunState& run, std::vector<ResultRow> rows) {
-  const Config& config = run.config;
-  const std::vector<ResultRow> constant = rows_of_constant(rows, collect_constant(run), config.metrics);
-  rows.insert(rows.end(), constant.begin(), constant.end());
-  return chance_remarks(rows, chosen_metrics(config.metrics), config.statistics.unit);
-}
-
-void write_results(const Session& session, RunRecord record, const Show& show) {
+std::string write_results(const Session& session, RunRecord record) {
   const std::vector<ResultRow> rows = collect_results(record.run);
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
   if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
-  const Config& config = session.setup.config;
-  const Conclusions conclusions =
-      conclude(rows, chosen_metrics(config.metrics), config.statistics, config.seed);
   if (!record.interrupted || !rows.empty())
-    write_tables(session.setup.output, record.run, rows, conclusions, remarks);
-  record.chance = remarks_on_chance(record.run, rows);
+    record.scores = write_scores(session.setup.output, record.run, rows, remarks);
   write_record(session.setup.output, record);
-  if (show && !record.interrupted) show(conclusions);
+  return record.scores;
 }
 
 // Before hours are spent on a run that would fill the disk; it goes on, since this is an estimate.
@@ -78,21 +74,38 @@ void warn_of_space(const Session& session) {
 
 }  // namespace
 
-void carry_out(Session& session, int threads, const Show& show) {
+std::string carry_out(Session& session, int threads) {
   const Setup& setup = session.setup;
   if (has_work(session.resolver)) {
     session.store.prepare();  // before the results of an earlier run are touched
     warn_of_space(session);
   }
   const auto& shard = setup.inputs.shard;
-  shard ? make_folder(setup.output, "choose another with --out") : prepare_output(setup.output);
+  shard ? make_folder(setup.output, "choose another with " + as_option("out")) : prepare_output(setup.output);
   session.run(threads);
   const bool interrupted = session.stop;
-  if (interrupted && shard) return;
+  if (interrupted && shard) return {};
   Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
   const RunRecord record{session.state(), session.store,       threads, session.started, session.seconds(),
                          interrupted,     why_computed(causes)};
-  shard ? write_shard_record(setup.output, record) : write_results(session, record, show);
+  if (!shard) return write_results(session, record);
+  write_shard_record(setup.output, record);
+  return {};
+}
+
+Json summary_of(const Session& session) {
+  const Setup& setup = session.setup;
+  return {{"meshes", setup.inputs.count(kMeshes)},
+          {"clouds", setup.inputs.count(kClouds)},
+          {"models", setup.config.models.size()},
+          {"cache", setup.cache},
+          {"computed", session.resolver.computed()},
+          {"interrupted", session.stop.load()},
+          {"failed", list_of(session.resolver.failures(), [&](const Failure& failure) {
+             return Json{{"item", setup.project.name(failure.job)},
+                         {"stage", setup.project.rule(failure.job).stage},
+                         {"why", failure.cause}};
+           })}};
 }
 
 ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,
@@ -104,17 +117,24 @@ ExitStatus run_session(Session& session, const std::string& name, const Argument
                    {"shard", setup.inputs.shard ? Json(setup.inputs.shard->text()) : Json()},
                    {"scores", Json::array()},
                    {"leaders", Json::array()}};
+  const std::string scores = carry_out(session, thread_count(arguments));
+  allow_commands();  // after an interrupt, too: the scores of what was finished are concluded
+  const Concluded concluded = scores.empty() ? Concluded{} : conclude_results(setup.output, scores);
   std::string text;
-  carry_out(session, thread_count(arguments), [&](const Conclusions& conclusions) {
-    const std::vector<LevelLeaders> leaders = find_leaders(conclusions);
-    text = summary_text(session, conclusions, leaders);
-    document["scores"] = rows_json(overview_table(conclusions));
-    document["leaders"] = json_of(leaders);
+  if (!session.stop) {
+    text = setup.inputs.shard ? shard_text(session) : summary_text(session, concluded);
+  }
+  if (!session.stop && !setup.inputs.shard) {
+    document["scores"] = concluded ? concluded.scores : rows_json(means_of(session));
+    document["leaders"] = concluded.leaders;
+  }
+  document["maps"] = list_of(count_maps(session.resolver, session.store), [](const MapCount& count) {
+    return Json{{"model", count.model}, {"computed", count.computed}, {"read", count.read}};
   });
-  if (setup.inputs.shard && !session.stop) text = shard_text(session);
   document.update(summary_of(session));
   print_report(format, name, document, arguments.quiet ? "" : text);
-  if (!session.stop) return finished_status(session);
+  const bool in_trouble = report_trouble(concluded, setup.output);
+  if (!session.stop) return in_trouble ? kDefect : finished_status(session);
   if (!setup.inputs.shard)
     std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(),
                stderr);
@@ -124,7 +144,8 @@ ExitStatus run_session(Session& session, const std::string& name, const Argument
 Subcommand run_subcommand(Arguments& arguments) {
   const FormatWord word = default_format();
   return {"run", "compute what is missing and write the tables",
-          run_parameters(arguments, {shard_parameter(arguments), format_parameter(word)}),
+          running_parameters(
+              arguments, {output_parameter(arguments), shard_parameter(arguments), format_parameter(word)}),
           [&arguments, word](const std::atomic<bool>& stop) {
             const ReportFormat format = format_of(word);
             Session session(arguments, stop);

@@ -2,7 +2,6 @@
 // Subcommand `run`: computes what is missing and writes the tables.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "pipeline/commands/report.h"
@@ -10,11 +9,13 @@
 
 namespace salbench {
 
-// Callback with the conclusions of a finished run; a shard has none.
-using Show = std::function<void(const Conclusions&)>;
+// Computes what is missing and writes the tables of scores; when interrupted, those of what was finished.
+// Returns the digest that names them, empty if there are none: of a shard, or before the first score.
+std::string carry_out(Session& session, int threads);
 
-// Computes what is missing and writes the tables; when interrupted, those of what was finished.
-void carry_out(Session& session, int threads, const Show& show = {});
+// What a session did, for the document that it ends with: shapes, models, artefacts computed, failures, and
+// whether a signal ended it.
+Json summary_of(const Session& session);
 
 // The same as a command of this name, with what it prints.
 ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,

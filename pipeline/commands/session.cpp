@@ -44,7 +44,7 @@ Inputs inputs_of(const Config& config, const Selection& selection) {
                         : simulated                                         ? Others::simulated
                                                                             : Others::measured;
   return read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
-                     simulated && selection.items == kScoredItems ? std::string() : selection.items,
+                     simulated && selection.items.text == kScoredItems ? ItemChoice() : selection.items,
                      selection.shard, config.dataset.split, others);
 }
 
@@ -71,8 +71,7 @@ Selection selection_of(const Arguments& arguments) {
 }
 
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
-  const std::string path = configuration_path(arguments.config);
-  Config config = read_config(Section::from_file(path), fs::path(path).stem().string());
+  Config config = read_config(configuration(arguments.config), fs::path(arguments.config).stem().string());
   select_models(config, arguments.models);
   if (given) {
     for (const Model& model : config.models)
@@ -83,7 +82,7 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
   }
   config.pictures = std::max(config.pictures, pictures);
   if (!arguments.data.empty()) config.data = arguments.data;
-  if (!arguments.split.empty()) config.dataset.split = arguments.split;
+  if (arguments.split) config.dataset.split = *arguments.split;
   if (!arguments.cache.empty()) config.cache = arguments.cache;
   if (!arguments.output.empty()) config.output = arguments.output;
   if (config.data.empty())
@@ -127,8 +126,8 @@ void Session::run(int threads, const std::string& what, const std::vector<bool>&
   if (const std::size_t open = rules.empty() ? open_of_others(resolver) : 0; open > 0)
     spdlog::warn(
         "{} jobs of items that are left out come first, once: maps are matched to the mean over all items, "
-        "as in a run over all; --reference items matches to the mean over these alone",
-        open);
+        "as in a run over all; {} matches to the mean over these alone",
+        open, as_option("reference", "items"));
   const OrderlyEnd orderly;
   salbench::run(resolver, {threads, what, rules}, *progress, stop);
 }

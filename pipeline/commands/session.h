@@ -20,7 +20,7 @@ int thread_count(const Arguments& arguments);
 
 // The items of a data set that are run, and the histogram that their maps are matched to.
 struct Selection {
-  std::string items = {};  // "1-20,52,125", "scored"; empty: all
+  ItemChoice items = {};  // all
   std::optional<Shard> shard = {};
   std::optional<Histogram> reference = {};  // nothing: the data set's own mean
   bool reference_of_items = false;          // the mean over the items selected, not over all

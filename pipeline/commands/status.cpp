@@ -90,7 +90,7 @@ Subcommand status_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
   return {
       "status", "count what is in the cache; changes nothing",
-      run_parameters(arguments, {format_parameter(format)}),
+      planning_parameters(arguments, {output_parameter(arguments), format_parameter(format)}),
       [&arguments, format](const std::atomic<bool>&) { return print_status(arguments, format_of(format)); }};
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/commands/subcommand.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "pipeline/config/data_layout.h"
@@ -12,15 +14,6 @@ namespace {
 Parameters joined(Parameters parameters, const Parameters& further) {
   parameters.insert(parameters.end(), further.begin(), further.end());
   return parameters;
-}
-
-Parameter data_parameter(Arguments& arguments) {
-  return {"--data", &arguments.data, "folder of the data set"};
-}
-
-Parameter cache_parameter(Arguments& arguments) {
-  return {"--cache", &arguments.cache,
-          "folder of the artefacts (default: cache in CONFIG, or salbench-cache)"};
 }
 
 }  // namespace
@@ -56,33 +49,70 @@ void require_layout(const std::string& subcommand, const std::string& layout) {
       did_you_mean(layout, layout_names(), "name one of docs/data_sets.md, or a file NAME.yaml")));
 }
 
-Parameters run_parameters(Arguments& arguments, const Parameters& further) {
-  return joined(
-      {config_parameter(arguments),
-       data_parameter(arguments),
-       cache_parameter(arguments),
-       {"--out", &arguments.output,
-        "folder of the results (default: output in CONFIG, or salbench-out/NAME)"},
-       {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
-        1024},
-       {"--items", &arguments.items,
-        "only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth"},
-       {"--split", &arguments.split, "only this split of the data set, such as test"},
-       {"--reference", &arguments.reference,
-        "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the data set; "
-        "items: to the mean over --items"},
-       {"--quiet", &arguments.quiet, "neither progress nor tables; warnings and errors only"}},
-      further);
+Parameter data_parameter(Arguments& arguments) {
+  return {"--data", &arguments.data, "folder of the data set"};
 }
 
-Parameters cache_parameters(Arguments& arguments, const Parameters& further) {
-  return joined({data_parameter(arguments),
-                 cache_parameter(arguments),
-                 {"--items", &arguments.items, "as of the run: only these shapes and their scans"},
-                 {"--split", &arguments.split, "as of the run: only this split of the data set"},
-                 {"--reference", &arguments.reference, "as of the run: match to this histogram"},
-                 {"--quiet", &arguments.quiet, "name what is wrong, and nothing else"}},
+namespace {
+
+Parameter cache_parameter(Arguments& arguments) {
+  return {"--cache", &arguments.cache,
+          "folder of the artefacts (default: cache in CONFIG, or salbench-cache)"};
+}
+
+}  // namespace
+
+Parameter output_parameter(Arguments& arguments) {
+  return {"--out", &arguments.output,
+          "folder of the results (default: output in CONFIG, or salbench-out/NAME)"};
+}
+
+Parameter threads_parameter(Arguments& arguments) {
+  return {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
+          1024};
+}
+
+Parameters selecting_parameters(Arguments& arguments) {
+  return {{"--items", &arguments.items,
+           "only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth"},
+          {"--split", &arguments.split,
+           "only this split of the data set, such as test; '': all, where CONFIG names one"},
+          {"--reference", &arguments.reference,
+           "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the data set; "
+           "items: to the mean over --items"}};
+}
+
+Parameters planning_parameters(Arguments& arguments, const Parameters& further) {
+  return joined(joined({config_parameter(arguments), data_parameter(arguments), cache_parameter(arguments)},
+                       selecting_parameters(arguments)),
                 further);
+}
+
+Parameters running_parameters(Arguments& arguments, const Parameters& further) {
+  return planning_parameters(
+      arguments,
+      joined({threads_parameter(arguments),
+              {"--quiet", &arguments.quiet, "neither progress nor tables; warnings and errors only"}},
+             further));
+}
+
+Parameters maintaining_parameters(Arguments& arguments, const Parameters& further) {
+  return joined(
+      joined({data_parameter(arguments), cache_parameter(arguments)}, selecting_parameters(arguments)),
+      joined({{"--quiet", &arguments.quiet, "name what is wrong, and nothing else"}}, further));
+}
+
+Parameters needing(Parameters parameters, const std::string& needed, const std::vector<std::string>& names) {
+  for (Parameter& parameter : parameters)
+    if (std::ranges::find(names, parameter.name) != names.end()) parameter.needs = needed;
+  return parameters;
+}
+
+Parameters without(Parameters parameters, const std::vector<std::string>& names) {
+  std::erase_if(parameters, [&](const Parameter& parameter) {
+    return std::ranges::find(names, parameter.name) != names.end();
+  });
+  return parameters;
 }
 
 }  // namespace salbench

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -21,29 +22,30 @@ enum ExitStatus {
   kInterrupted = 130,
 };
 
-// Arguments that most subcommands share; empty or 0 if the command line does not give them.
+// Arguments that several subcommands share; empty or 0 if the command line does not give them.
 struct Arguments {
   std::string command_line;  // as typed: the line that resumes
   std::string config;
   std::string data, cache, output;
-  std::string items;      // "1-20,52,125", "scored"
-  std::string split;      // "test"
-  std::string shard;      // "2/4"
-  std::string reference;  // CSV file with a reference histogram in column GS, or kReferenceOfItems
-  std::string models;     // "LS,PS"; empty: all of the configuration
-  std::string to;         // what is written to
-  int threads = 0;        // 0: all cores
-  bool quiet = false;     // no progress, no table
+  std::string items;                 // "1-20,52,125", "scored"
+  std::optional<std::string> split;  // "test"; "": all items, whatever the configuration takes
+  std::string shard;                 // "2/4"
+  std::string reference;             // CSV file with a reference histogram in column GS, or kReferenceOfItems
+  std::string models;                // "LS,PS"; empty: all of the configuration
+  std::string to;                    // what is written to
+  int threads = 0;                   // 0: all cores
+  bool quiet = false;                // no progress, no table
 };
 
 inline constexpr std::string_view kReferenceOfItems = "items";  // in place of a file
 
 struct Parameter {
   std::string name;  // "--items", or "ITEM" for one that is known by its place
-  std::variant<std::string*, std::vector<std::string>*, int*, bool*> target;
+  std::variant<std::string*, std::optional<std::string>*, std::vector<std::string>*, int*, bool*> target;
   std::string help;
   bool required = false;
   int max = std::numeric_limits<int>::max();  // of a number, which is at least 1
+  std::string needs = {};                     // name of another one without which this one would do nothing
 };
 using Parameters = std::vector<Parameter>;
 
@@ -65,8 +67,20 @@ Parameter shard_parameter(Arguments& arguments);
 Parameter layout_parameter(std::string* layout);
 // Throws ConfigError, with the nearest name, unless the text may be a layout.
 void require_layout(const std::string& subcommand, const std::string& layout);
-Parameters run_parameters(Arguments& arguments, const Parameters& further = {});  // of what plans a run
-Parameters cache_parameters(Arguments& arguments,
-                            const Parameters& further = {});  // of what maintains a cache
+Parameter data_parameter(Arguments& arguments);
+Parameter output_parameter(Arguments& arguments);
+Parameter threads_parameter(Arguments& arguments);
+
+Parameters selecting_parameters(Arguments& arguments);  // --items, --split, --reference
+// CONFIG, --data, --cache and these: what a run is made of.
+Parameters planning_parameters(Arguments& arguments, const Parameters& further = {});
+// --threads and --quiet beside these: of what computes.
+Parameters running_parameters(Arguments& arguments, const Parameters& further = {});
+// --data, --cache, those that select, and --quiet: of what looks after a cache.
+Parameters maintaining_parameters(Arguments& arguments, const Parameters& further = {});
+
+// Parameters of which some do nothing unless `needed` is given, too; and those without some.
+Parameters needing(Parameters parameters, const std::string& needed, const std::vector<std::string>& names);
+Parameters without(Parameters parameters, const std::vector<std::string>& names);
 
 }  // namespace salbench

@@ -26,11 +26,6 @@ Subcommand leaderboard_subcommand(Arguments& arguments);
 Subcommand export_subcommand(Arguments& arguments);
 // Authors of a report that shows shapes: once, before the export.
 Subcommand pictures_subcommand(Arguments& arguments);
-// Whoever has a table of scores, of a run or a publication, for another unit of observation, or a text's
-// claims.
-Subcommand conclusions_subcommand(Arguments& arguments);
-// Planners of a study, before it; authors, where two models do not differ.
-Subcommand power_subcommand(Arguments& arguments);
 // Whoever has a data set and a description of it, before the first run.
 Subcommand inspect_subcommand(Arguments& arguments);
 // Whoever trains on data sets, or keeps them: each in the one form.

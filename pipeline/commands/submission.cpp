@@ -163,9 +163,8 @@ Parameters leaderboard_parameters(Arguments& arguments, Parameters further) {
   further.push_back(
       {"-c,--config", &arguments.config,
        fmt::format("configuration, or the name of an installed one (default: {})", kConfiguration)});
-  for (Parameter& parameter : run_parameters(arguments))
-    if (parameter.name != "CONFIG" && parameter.name != "--items" && parameter.name != "--out")
-      further.push_back(std::move(parameter));
+  Parameters common = without(running_parameters(arguments), {"CONFIG", "--items"});
+  further.insert(further.end(), common.begin(), common.end());
   return further;
 }
 

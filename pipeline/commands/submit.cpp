@@ -8,9 +8,9 @@
 #include "io/file.h"
 #include "io/values_file.h"
 #include "pipeline/commands/commit.h"
+#include "pipeline/commands/run.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/commands/submission.h"
-#include "pipeline/commands/summary.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

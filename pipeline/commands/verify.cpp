@@ -98,9 +98,8 @@ CheckedSample recomputed(const Setup& setup, std::size_t sample, const std::atom
 
 ExitStatus run_verify(Arguments arguments, const VerifyOptions& options, ReportFormat format,
                       const std::atomic<bool>& stop) {
-  if (options.configs.empty() && (arguments.cache.empty() || options.deep))
-    throw ConfigError(options.deep ? "--deep needs a configuration: it says what to compute again"
-                                   : "name a configuration, or a cache with --cache DIR");
+  if (options.configs.empty() && arguments.cache.empty())
+    throw ConfigError("name a configuration, or a cache with --cache DIR");
   VerifyReport report;
   const auto verify = [&](const fs::path& cache) {
     add(format, arguments.quiet, verified(cache, arguments.quiet, stop), report.caches);
@@ -129,14 +128,15 @@ ExitStatus run_verify(Arguments arguments, const VerifyOptions& options, ReportF
 Subcommand verify_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<VerifyOptions>();
   const FormatWord format = default_format();
+  Parameters parameters = maintaining_parameters(
+      arguments, {{"CONFIG", &options->configs, "configuration files, or none with --cache"},
+                  {"--deep", &options->deep, "also compute a sample of the cached jobs again, and compare"},
+                  {"--sample", &options->sample, "how many (default: 20)"},
+                  format_parameter(format)});
+  parameters = needing(std::move(parameters), "CONFIG", {"--data", "--deep"});
+  parameters = needing(std::move(parameters), "--deep", {"--sample", "--items", "--split", "--reference"});
   return {"verify", "read every artefact of a cache and name each bad one; changes nothing",
-          cache_parameters(
-              arguments,
-              {{"CONFIG", &options->configs, "configuration files, or none with --cache"},
-               {"--deep", &options->deep, "also compute a sample of the cached jobs again, and compare"},
-               {"--sample", &options->sample, "how many (default: 20)"},
-               format_parameter(format)}),
-          [&arguments, options, format](const std::atomic<bool>& stop) {
+          std::move(parameters), [&arguments, options, format](const std::atomic<bool>& stop) {
             return run_verify(arguments, *options, format_of(format), stop);
           }};
 }

@@ -9,14 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/inputs/inputs.h"
 #include "pipeline/rules/depended_files.h"
 #include "pipeline/rules/rules.h"
 
 namespace salbench {
 namespace {
 
-namespace fs = std::filesystem;
 using Part = RecipeDifference::Part;
 
 constexpr std::size_t kMaxNamed = 4;  // differences in one line; the others are counted
@@ -43,15 +41,11 @@ std::optional<Job> input_named(const Project& project, const Job& job, const std
   return {};
 }
 
-// "mesh file .off" -> "mesh file 52.off": keys hold no names of files.
-std::string source_text(const DatasetItem& item, const std::string& name) {
-  for (const char* kind : {"mesh file ", "point cloud file "})
-    if (name.starts_with(kind)) return kind + fs::path(item.mesh).filename().string();
-  if (name.starts_with("saliency file") && item.saliency.size() == 1)
-    return "saliency file " + fs::path(item.saliency[0]).filename().string();
-  if (name.starts_with("mask ") && item.masks.size() == 1)
-    return "mask " + fs::path(item.masks[0].path).filename().string();
-  return name;
+// "mesh file .off" -> "mesh file 52.off": keys hold no names of files. One that is read no more keeps its
+// name.
+std::string source_text(const FilesOfUnit& files, const std::string& name) {
+  const auto file = std::ranges::find(files, name, &File::name);
+  return file == files.end() || file->title.empty() ? name : file->title;
 }
 
 // Words for a difference that are the same for every unit.
@@ -116,9 +110,7 @@ std::string difference_line(Causes& causes, const Job& job, const RecipeDifferen
   if (difference.part != Part::input) return group_text(project, job, difference);
   if (project.rule(job).gathers) return fmt::format("that of {} {}", difference.name, fate(difference));
   const std::optional<Job> input = input_named(project, job, difference.name);
-  if (!input)
-    return fmt::format("{} {}", source_text(item_of(project.units, job.unit), difference.name),
-                       fate(difference));
+  if (!input) return fmt::format("{} {}", source_text(project.files(job), difference.name), fate(difference));
   std::vector<std::string> origin;
   if (project.rule(*input).given)
     origin.emplace_back("given by --reference");

@@ -180,7 +180,7 @@ DataSplits read_splits(const Section& root) {
   return splits;
 }
 
-Section section_of(const Description& description) {
+Section section_of(const NamedYaml& description) {
   return Section::from_text(std::string(description.yaml),
                             fmt::format("configs/datasets/{}{}", description.name, kExtension));
 }
@@ -188,7 +188,7 @@ Section section_of(const Description& description) {
 // Those whose key `automatic` gives them a place among the layouts to try.
 std::vector<Layout> automatic_layouts() {
   std::multimap<std::int32_t, Layout> tried;
-  for (const Description& description : descriptions()) {
+  for (const NamedYaml& description : descriptions()) {
     const Section root = section_of(description);
     std::int32_t place = 0;
     root.read_value("automatic", place);
@@ -203,7 +203,7 @@ std::vector<Layout> automatic_layouts() {
 
 std::vector<std::string_view> layout_names() {
   std::vector<std::string_view> names = {kAutomaticLayout};
-  for (const Description& description : descriptions()) names.push_back(description.name);
+  for (const NamedYaml& description : descriptions()) names.push_back(description.name);
   return names;
 }
 
@@ -214,7 +214,7 @@ bool is_layout(std::string_view text) {
 
 std::vector<Layout> layouts_of(const std::string& layout) {
   if (layout == kAutomaticLayout) return automatic_layouts();
-  for (const Description& description : descriptions())
+  for (const NamedYaml& description : descriptions())
     if (description.name == layout) return {read_layout(section_of(description), layout)};
   return {read_layout(Section::from_file(layout), std::filesystem::path(layout).stem())};
 }

@@ -13,11 +13,13 @@
 
 namespace salbench {
 
-struct Description {
+// A file that is a part of the program, which finds it wherever it lies.
+struct NamedYaml {
   std::string_view name;  // of the file, without .yaml
   std::string_view yaml;
 };
-std::span<const Description> descriptions();  // the files of configs/datasets, by name
+std::span<const NamedYaml> descriptions();    // the files of configs/datasets, by name
+std::span<const NamedYaml> configurations();  // those of configs and of configs/protocols ("protocols/3dva")
 
 inline constexpr std::string_view kAutomaticLayout = "automatic";
 

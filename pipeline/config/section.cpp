@@ -40,7 +40,7 @@ namespace {
 [[noreturn]] void fail_at(const std::string& file, int line, std::string what) {
   const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
   std::replace_if(what.begin(), what.end(), is_control, '?');
-  throw ConfigError(fmt::format("{}:{}: {}", file, line, what));
+  throw SectionError(fmt::format("{}:{}", file, line), what);
 }
 
 void check_mapping(const YAML::Node& node, const std::string& file, const std::string& path) {
@@ -67,17 +67,27 @@ YAML::Node parse(const std::string& file, const std::string& text) {
   }
 }
 
+// Letters inserted, removed, replaced, or exchanged with the next one.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> before, last, row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0U);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
+    before = std::exchange(last, row);
+    row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = std::exchange(row[j + 1], std::min({replaced, row[j] + 1, row[j + 1] + 1}));
+      row[j + 1] = std::min({last[j] + (a[i] == b[j] ? 0 : 1), row[j] + 1, last[j + 1] + 1});
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+        row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
     }
   }
   return row.back();
+}
+
+std::string in_lower_case(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
 }
 
 }  // namespace
@@ -85,9 +95,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
                          std::string_view otherwise) {
   std::string_view nearest;
-  std::size_t best = word.size() / 2 + 2;  // farther away it is another word
+  // Twice the distance, plus one where the case differs. Beyond half of the letters it is another word.
+  std::size_t best = word.size() + 2;
   for (const std::string_view candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
+    const std::size_t letters = edit_distance(in_lower_case(word), in_lower_case(candidate));
+    if (letters >= std::max(word.size(), candidate.size())) continue;
+    const std::size_t distance = 2 * letters + (edit_distance(word, candidate) > letters ? 1 : 0);
     if (distance >= best) continue;
     best = distance;
     nearest = candidate;

@@ -80,8 +80,8 @@ class Section {
   std::shared_ptr<const Impl> impl_;
 };
 
-// "did you mean 'scans'?", which of the known words is the nearest to a mistyped one by edit distance;
-// `otherwise` where none is near.
+// "did you mean 'scans'?", which of the known words is the nearest to a mistyped one by edit distance,
+// whatever the case; `otherwise` where none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
                          std::string_view otherwise = {});
 

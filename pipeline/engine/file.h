@@ -32,6 +32,7 @@ struct File {
   std::shared_ptr<const ReadFile> read = {};  // nothing: the whole file at `place`
   bool is_read = false;                       // at least once
   std::optional<Digest> digest = {};          // then, of what it held last; nothing if it is unreadable
+  std::string title = {};                     // "mesh file 52.off", in messages; empty: the name
 };
 
 using FilesOfUnit = std::vector<File>;

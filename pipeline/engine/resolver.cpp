@@ -35,9 +35,9 @@ Recipe recipe_of_remark(const std::string& stage, const Digest& key) {
 }
 
 std::string no_memory_text(const FilesOfUnit& files) {
-  return fmt::format(
-      "{}{}: no memory for what it holds; use fewer --threads, or leave the item out with --items",
-      files[0].place, files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1));
+  return fmt::format("{}{}: no memory for what it holds; use fewer {}, or leave the item out with {}",
+                     files[0].place, files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1),
+                     as_option("threads"), as_option("items"));
 }
 
 }  // namespace

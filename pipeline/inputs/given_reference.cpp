@@ -32,7 +32,7 @@ Histogram read_reference(const std::string& path) {
   if (!(sum > 0) || !std::isfinite(sum))
     throw ConfigError(fmt::format("{}:{}: column GS sums to {:.6g} from here on: no density does", path,
                                   table.lines.front(), sum));
-  if (!table.remark.empty()) spdlog::warn("{}: {}", path, table.remark);
+  for (const std::string& remark : table.remarks) spdlog::warn("{}: {}", path, remark);
   const auto bins = static_cast<double>(histogram.size());
   if (std::abs(sum / bins - 1) <= kRounded) return histogram;
   spdlog::warn("{}: column GS sums to {:.6g}, densities over {} bins to {}: it was scaled", path, sum, bins,

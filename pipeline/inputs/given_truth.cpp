@@ -62,7 +62,10 @@ std::string saliency_name(const DatasetItem& item, std::size_t k) {
   const std::string name = item.by_viewer             ? fmt::format("saliency of viewer {}", k)
                            : item.saliency.size() > 1 ? fmt::format("saliency file {}", k)
                                                       : "saliency file";
-  return name + described(format_of(item).values) + camera_text(item, k);
+  const ValuesFormat& values = format_of(item).values;
+  // Keys without this are of programs that took rows as they stood.
+  const bool may_be_numbered = !values.column.empty() && values.per != ValuePer::point;
+  return name + described(values) + (may_be_numbered ? ", rows by their numbers" : "") + camera_text(item, k);
 }
 
 // True if the saliency files may say that something was not seen.
@@ -100,6 +103,10 @@ ColumnsFormat shape_columns(const DatasetItem& item) {
 
 bool has_truth_in_columns(const DatasetItem& item) {
   return has_columns(item) && format_of(item).columns.has_truth();
+}
+
+std::string titled(std::string_view kind, const std::filesystem::path& path) {
+  return fmt::format("{} {}", kind, path.filename().string());
 }
 
 // A file that fails its item as soon as it is read.
@@ -165,20 +172,15 @@ struct Mask {
 };
 
 // What one file holds, before its mask is applied.
-ValuesAsRead read_values(const Target& target, ValuesFormat format, std::string_view bytes,
+ValuesAsRead read_values(const Target& target, const ValuesFormat& format, std::string_view bytes,
                          const std::string& path, const Mask& mask) {
   ValuesAsRead read{.file = std::filesystem::path(path).filename(), .per = name_of(format.per), .values = {}};
-  Elements elements = target.in_file();
-  format.positives = kPositivesArePicks;  // what is picked is no matter of reading
-  if (key_text(format).empty() && !is_npy(bytes) && !is_mat(bytes)) {
-    read.values = parse_saliency(bytes, path, elements);
-  } else {
-    TruthValues truth = parse_truth_values(bytes, path, format, target.described_by(format));
-    read.values = std::move(truth.values);
-    read.points = std::move(truth.points);
-    elements = format.per == ValuePer::point ? Elements{read.values.size(), "file", "point", "points"}
-                                             : target.described_by(format);
-  }
+  TruthValues truth = parse_truth_values(bytes, path, format, target.described_by(format));
+  read.values = std::move(truth.values);
+  read.points = std::move(truth.points);
+  const Elements elements = format.per == ValuePer::point
+                                ? Elements{read.values.size(), "file", "point", "points"}
+                                : target.described_by(format);
   read.mask = mask.read(elements);
   return read;
 }
@@ -290,7 +292,9 @@ GroundTruth read_truth(Target target, const Files& files, std::vector<ValuesAsRe
 }  // namespace
 
 File mesh_file_of(const DatasetItem& item) {
-  return {.name = "mesh file " + lower_case_extension(item.mesh), .place = item.mesh};
+  return {.name = "mesh file " + lower_case_extension(item.mesh),
+          .place = item.mesh,
+          .title = titled("mesh file", item.mesh)};
 }
 
 FilesOfUnit truth_files_of(const DatasetItem& item) {
@@ -306,11 +310,14 @@ FilesOfUnit truth_files_of(const DatasetItem& item) {
              .place = item.mesh}};
   if (are_in_file_order(item)) files.push_back(mesh_file_of(item));
   for (std::size_t k = 0; k < item.saliency.size(); ++k)
-    files.push_back({.name = saliency_name(item, k), .place = item.saliency[k]});
+    files.push_back({.name = saliency_name(item, k),
+                     .place = item.saliency[k],
+                     .title = titled("saliency file", item.saliency[k])});
   for (std::size_t k = 0; k < item.masks.size(); ++k) {
     const std::string name = fmt::format("mask {}", k);
     const auto& [path, missing] = item.masks[k];
-    files.push_back(missing.empty() ? File{.name = name, .place = path} : unusable(name, path, missing));
+    files.push_back(missing.empty() ? File{.name = name, .place = path, .title = titled("mask", path)}
+                                    : unusable(name, path, missing));
   }
   for (std::size_t k = 0; k < item.picks.size(); ++k)
     files.push_back({.name = fmt::format("picks {}{}{}{}", k, described(format_of(item).indices),

@@ -42,27 +42,33 @@ std::optional<Range> as_range(std::string_view text) {
 bool has_truth(const DatasetItem& item) { return !truth_files_of(item).empty(); }
 
 // A number range takes the items that exist in it: data sets have gaps. A single name must exist.
-std::set<std::string> selected_names(const std::string& selection, const std::set<std::string>& present,
+std::set<std::string> selected_names(const ItemChoice& choice, const std::set<std::string>& present,
                                      const std::set<std::string>& scored) {
   std::set<std::string> names;
-  for (const std::string& part : split_list(selection)) {
+  for (const std::string& part : choice.parts) {
     if (present.contains(part)) {
       names.insert(part);
       continue;
     }
     if (part == kScoredItems) {
-      if (scored.empty()) throw ConfigError(fmt::format("--items {}: no item has ground truth", selection));
+      if (scored.empty()) throw ConfigError(as_option("items", choice.text) + ": no item has ground truth");
       names.insert(scored.begin(), scored.end());
       continue;
     }
     const std::optional<Range> range = as_range(part);
-    if (!range) throw ConfigError(fmt::format("--items {}: the data set has no item '{}'", selection, part));
+    if (!range) {
+      const std::string hint = did_you_mean(part, {present.begin(), present.end()});
+      throw UnknownNameError(fmt::format("{}: the data set has no item '{}'{}{}",
+                                         as_option("items", choice.text), part, hint.empty() ? "" : "; ",
+                                         hint));
+    }
     const std::size_t before = names.size();
     for (const std::string& name : present)
       if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
         names.insert(name);
     if (names.size() == before)
-      throw ConfigError(fmt::format("--items {}: the data set has no item in the range {}", selection, part));
+      throw ConfigError(
+          fmt::format("{}: the data set has no item in the range {}", as_option("items", choice.text), part));
   }
   return names;
 }
@@ -74,14 +80,14 @@ void select_split(Dataset& dataset, const std::string& split) {
   for (const DatasetItem& item : items)
     if (!item.split.empty()) known.insert(item.split);
   if (known.empty())
-    throw ConfigError(fmt::format(
+    throw UnknownNameError(fmt::format(
         "split '{}': the data set has no splits{}", split,
         dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
   if (!known.contains(split)) {
     const std::string hint = did_you_mean(split, {known.begin(), known.end()});
-    throw ConfigError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})", split,
-                                  hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
-                                  dataset.splits_where));
+    throw UnknownNameError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})",
+                                       split, hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
+                                       dataset.splits_where));
   }
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
 }
@@ -101,15 +107,20 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
 // a name that says so.
 std::pair<Level, File> shape_file_of(const DatasetItem& item) {
   File file = mesh_file_of(item);
+  const std::string cloud_title = "point cloud file " + std::filesystem::path(item.mesh).filename().string();
   if (has_columns(item)) {
     file.name = column_cloud_name(item);
+    file.title = cloud_title;
     return {kClouds, std::move(file)};
   }
   const std::string extension = lower_case_extension(item.mesh);
   FileData data;
   if (extension == ".ply") look(file, &data);
   const bool is_cloud = holds_cloud(item, data.text());
-  if (is_cloud) file.name = "point cloud file " + extension;
+  if (is_cloud) {
+    file.name = "point cloud file " + extension;
+    file.title = cloud_title;
+  }
   return {is_cloud ? kClouds : kMeshes, std::move(file)};
 }
 
@@ -180,37 +191,42 @@ std::vector<std::string> split_list(const std::string& list) {
   return parts;
 }
 
-void select_items(Dataset& dataset, const std::string& selection, const std::string& split) {
+ItemChoice::ItemChoice(const std::string& list) : text(list), parts(split_list(list)) {}
+
+ItemChoice::ItemChoice(std::vector<std::string> names)
+    : text(names.empty() ? "[]" : fmt::format("{}", fmt::join(names, ", "))), parts(std::move(names)) {}
+
+void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split) {
   std::set<std::string> present, scored;
   for (const DatasetItem& item : dataset.items) {
     present.insert({item.name, item.shape_name()});
     if (has_truth(item)) scored.insert(item.name);
   }
-  const std::set<std::string> names =
-      selection.empty() ? present : selected_names(selection, present, scored);
-  if (names.empty()) throw ConfigError(fmt::format("--items {}: names no item", selection));
+  const std::set<std::string> names = choice.all() ? present : selected_names(choice, present, scored);
+  if (names.empty()) throw ConfigError(as_option("items", choice.text) + ": names no item");
 
   if (!split.empty()) select_split(dataset, split);
   std::erase_if(dataset.items, [&](const DatasetItem& item) {
     return !names.contains(item.name) && !names.contains(item.shape_name());
   });
   if (dataset.items.empty())
-    throw ConfigError(fmt::format("--items {}: none of them is in the split '{}'", selection, split));
+    throw ConfigError(
+        fmt::format("{}: none of them is in the split '{}'", as_option("items", choice.text), split));
 }
 
-Inputs read_inputs(Dataset dataset, const std::string& selection, const std::optional<Shard>& shard,
+Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optional<Shard>& shard,
                    const std::string& split, Others others) {
   std::vector<std::string> errors;
-  if (selection.empty() || selection == kScoredItems) errors = errors_of_split(dataset, split);
+  if (choice.all() || choice.text == kScoredItems) errors = errors_of_split(dataset, split);
   if (!dataset.unit.where.empty()) fail_mixed_units(dataset);
   Dataset whole = dataset;
-  select_items(dataset, selection, split);
+  select_items(dataset, choice, split);
   std::set<std::string> chosen;
   for (const DatasetItem& item : dataset.items) chosen.insert(item.name);
   std::vector<DatasetItem> items = std::move(dataset.items);
   if (shard) {
     items = share_of(items, *shard);
-  } else if (others != Others::left_out && !selection.empty()) {
+  } else if (others != Others::left_out && !choice.all()) {
     if (!split.empty()) select_split(whole, split);
     items = std::move(whole.items);
     std::erase_if(items, [&](const DatasetItem& item) {

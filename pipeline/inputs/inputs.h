@@ -51,10 +51,22 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
 
 inline constexpr std::string_view kScoredItems = "scored";  // those with ground truth
 
-// Keeps the items that `selection` names ("1-20,52,125", kScoredItems; empty: all), of one split if that is
-// named. A view that is scored by itself is named like its shape, too. Throws ConfigError for an item or a
-// split that is not there.
-void select_items(Dataset& dataset, const std::string& selection, const std::string& split = {});
+// Items as a user names them: a text such as "1-20,52,125" or kScoredItems (empty: all), or a list of names,
+// which may hold commas and blanks.
+struct ItemChoice {
+  ItemChoice() = default;
+  ItemChoice(const std::string& list);  // NOLINT(google-explicit-constructor): most are texts
+  explicit ItemChoice(std::vector<std::string> names);
+
+  bool all() const { return text.empty(); }
+
+  std::string text = {};                // for messages
+  std::vector<std::string> parts = {};  // names and ranges
+};
+
+// Keeps the items chosen, of one split if that is named. A view that is scored by itself is named like its
+// shape, too. Throws ConfigError for an item or a split that is not there.
+void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split = {});
 
 // What is done with items that are not selected.
 enum class Others {
@@ -66,7 +78,7 @@ enum class Others {
 // The selected items, or one share of them, which has no others. Reads no file but those whose name does not
 // say which kind of shape they hold, unless the description has a unit of length: then shapes of another are
 // told by all sizes. Throws ConfigError as above.
-Inputs read_inputs(Dataset dataset, const std::string& selection = {}, const std::optional<Shard>& shard = {},
+Inputs read_inputs(Dataset dataset, const ItemChoice& choice = {}, const std::optional<Shard>& shard = {},
                    const std::string& split = {}, Others others = Others::left_out);
 
 // Identity of a run's data, wherever they lie.

@@ -11,7 +11,7 @@
 #include "pipeline/inputs/given_truth.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
-#include "stages/stats/summary.h"
+#include "stages/core/quantile.h"
 
 namespace salbench {
 namespace {

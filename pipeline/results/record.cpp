@@ -15,7 +15,7 @@
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
 #include "stages/core/errors.h"
-#include "stages/stats/summary.h"
+#include "stages/core/quantile.h"
 
 namespace salbench {
 namespace {
@@ -135,12 +135,7 @@ std::string remark_lines(const RunRecord& record) {
       yaml += fmt::format("  - {{item: {}, remark: {}}}\n", yaml_quoted(run.project().name(job)),
                           yaml_quoted(remark));
   }
-  for (const ChanceRemark& remark : record.chance)
-    yaml += fmt::format("  - {{dataset: {}, metric: {}, remark: {}}}\n", remark.dataset, remark.metric,
-                        yaml_quoted(remark.text));
-  return yaml.empty()
-             ? "remarks: []\n"
-             : "remarks:  # on odd shapes, and on metrics by which chance is as good as a model\n" + yaml;
+  return yaml.empty() ? "remarks: []\n" : "remarks:  # on odd shapes\n" + yaml;
 }
 
 // The fewest and the most people that files tell apart, over the shapes of the run with ground truth; [0, 0]:
@@ -158,6 +153,13 @@ std::string participants_text(const Inputs& inputs) {
   return fmt::format("[{}, {}]", fewest.value_or(0), most);
 }
 
+std::string configuration_lines(const Config& config) {
+  std::string yaml = "configuration:\n";
+  std::istringstream lines(config_yaml(config));
+  for (std::string line; std::getline(lines, line);) yaml += "  " + line + "\n";
+  return yaml;
+}
+
 std::string run_yaml(const RunRecord& record) {
   const auto& [config, inputs, resolver] = record.run;
   std::string yaml;
@@ -167,6 +169,7 @@ std::string run_yaml(const RunRecord& record) {
   yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {:.1f}\nartefacts_computed: {}\n",
                       record.threads, record.seconds, peak_memory_mb(), resolver.computed());
   if (inputs.shard) yaml += fmt::format("shard: {}\n", inputs.shard->text());
+  if (!record.scores.empty()) yaml += fmt::format("scores_digest: {}\n", record.scores);
   yaml += fmt::format("reference: {}\n", reference_line(record.run));
   for (const Model& model : config.models)
     if (model.given)
@@ -191,10 +194,7 @@ std::string run_yaml(const RunRecord& record) {
     yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n",
                         yaml_quoted(resolver.project().name(failure.job)),
                         resolver.project().rule(failure.job).stage, yaml_quoted(failure.cause));
-  yaml += "configuration:\n";
-  std::istringstream lines(config_yaml(config));
-  for (std::string line; std::getline(lines, line);) yaml += "  " + line + "\n";
-  return yaml;
+  return yaml + configuration_lines(config);
 }
 
 }  // namespace
@@ -204,6 +204,14 @@ void write_record(const fs::path& folder, const RunRecord& record) {
              to_csv(timeline_table(record.run.project().rules, record.run.resolver.records(), record.started,
                                    record.seconds)));
   write_file(folder / "run.yaml", run_yaml(record));
+}
+
+void write_scores_record(const fs::path& folder, Config config, const std::string& scores) {
+  config.data = config.cache = config.output = "";
+  config.models.clear();
+  write_file(folder / "run.yaml",
+             fmt::format("program: salbench {}\nresults: finished\nscores_digest: {}\n{}{}", SALBENCH_VERSION,
+                         scores, metric_lines(chosen_metrics(config.metrics)), configuration_lines(config)));
 }
 
 void write_shard_record(const fs::path& folder, const RunRecord& record) {

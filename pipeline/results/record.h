@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cache/folder_store.h"
-#include "pipeline/results/chance.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/stage_counts.h"
 
@@ -22,7 +21,7 @@ struct RunRecord {
   double seconds = 0;
   bool interrupted = false;  // the tables hold what was finished
   Why why = {};              // of what was computed; empty: not recorded
-  std::vector<ChanceRemark> chance = {};
+  std::string scores = {};   // what names them; empty: none were written
 };
 
 // start, end (s since the run began), node ("fpfh of scans"), busy (core-seconds that the node computed
@@ -34,6 +33,10 @@ Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records,
 
 // run.yaml and timeline.csv. Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
+
+// A run.yaml with what conclusions from the scores need to know, and nothing of the machine and its folders.
+// Throws StorageError.
+void write_scores_record(const std::filesystem::path& folder, Config config, const std::string& scores);
 
 // The record of a run over a share: shard_2_of_4.yaml. Throws StorageError.
 void write_shard_record(const std::filesystem::path& folder, const RunRecord& record);

@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "pipeline/results/conclusions.h"
-#include "pipeline/results/human_curves.h"
-#include "pipeline/results/smoothing.h"
+#include "pipeline/results/raw_tables.h"
 #include "pipeline/results/table_rows.h"
 #include "stages/core/check.h"
 
@@ -122,35 +120,33 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) 
 }
 
 void prepare_output(const fs::path& folder) {
-  make_folder(folder, "choose another with --out");
+  make_folder(folder, "choose another with " + as_option("out"));
   visit_abandoned(folder, [](const fs::path& file) { fs::remove(file); });
   write_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
 }
 
-void write_tables(const fs::path& folder, const RunState& run, const std::vector<ResultRow>& rows,
-                  const Conclusions& conclusions, const std::vector<std::string>& remarks) {
+std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
+                                   const std::vector<std::string>& remarks) {
   std::string head;
   for (const std::string& remark : remarks) head += fmt::format("# {}\n", remark);
-  const auto write = [&](const std::string& name, const Table& table) {
-    write_file(folder / name, head + to_csv(table));
-  };
-  const Metrics& metrics = conclusions.metrics;
-  write("results.csv", results_table(rows, metrics));
-  write_conclusions(folder, rows, conclusions, head);
-  // Tables of an earlier run would pass for some of this.
+  const auto text = [&](const Table& table) { return head + to_csv(table); };
+  const MetricsOptions& options = run.config.metrics;
+  const Metrics metrics = chosen_metrics(options);
+  std::vector<TableFile> files = {
+      {"results.csv", text(results_table(rows, metrics))},
+      {"means.csv", text(means_table(rows, metrics))},
+      {"constant.csv", text(results_table(rows_of_constant(rows, collect_constant(run), options), metrics))},
+      {"people.csv"},
+      {"smoothed.csv"}};
+  if (const std::vector<MeshCurve> curves = collect_human_curves(run); !curves.empty())
+    files[3].text = text(people_table(curves, metrics));
+  if (!options.smoothing.empty()) files[4].text = text(smoothed_table(run, metrics));
   for (const Level level : kShapeLevels) {
-    const std::string name = fmt::format("mean_histograms_{}.csv", shapes_name(level));
-    if (level == kClouds && !run.inputs.has(level))
-      remove_file(folder / name);
-    else
-      write(name, mean_histogram_table(run, level));
+    TableFile& file = files.emplace_back(fmt::format("mean_histograms_{}.csv", shapes_name(level)));
+    file.is_of_scores = false;
+    if (level != kClouds || run.inputs.has(level)) file.text = text(mean_histogram_table(run, level));
   }
-  const std::vector<SmoothedRows> smoothed = smoothed_rows(run, metrics);
-  if (smoothed.empty())
-    remove_file(folder / "smoothing.csv");
-  else
-    write("smoothing.csv", smoothing_table(smoothed, metrics, conclusions.unit));
-  write_human_curves(folder, collect_human_curves(run), rows, conclusions, head);
+  return files;
 }
 
 }  // namespace salbench

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,6 @@
 #include "stages/metrics/metrics.h"
 
 namespace salbench {
-
-struct Conclusions;  // pipeline/results/conclusions.h
 
 struct ResultRow {
   std::string dataset;  // "meshes", "scans" or "clouds"
@@ -66,12 +65,15 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics =
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
-// results.csv, the tables of write_conclusions, mean_histograms_{meshes,scans}.csv,
-// mean_histograms_clouds.csv where there are point clouds, smoothing.csv where maps were smoothed and, where
-// HS was computed, those of write_human_curves. Each begins with the remarks, as comments. Throws
-// StorageError.
-void write_tables(const std::filesystem::path& folder, const RunState& run,
-                  const std::vector<ResultRow>& rows, const Conclusions& conclusions,
-                  const std::vector<std::string>& remarks);
+struct TableFile {
+  std::string name;
+  std::optional<std::string> text = {};  // nothing: the run has none, and one of an earlier run goes
+  bool is_of_scores = true;              // conclusions are drawn from it
+};
+
+// results.csv, means.csv, constant.csv, people.csv where HS was computed, smoothed.csv where maps were
+// smoothed, and mean_histograms_{meshes,scans,clouds}.csv. Each begins with the remarks, as comments.
+std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
+                                   const std::vector<std::string>& remarks);
 
 }  // namespace salbench

@@ -158,9 +158,9 @@ std::string shortage(const SpaceNeed& need, const FreeSpace& free) {
   const std::string left =
       need.bytes > free.bytes ? bytes_text(free.bytes) : fmt::format("{} files", free.files);
   return fmt::format(
-      "the run needs {}, and {} are free: free some space, choose another disk with --cache, or take fewer "
-      "shapes with --items",
-      text_of(need), left);
+      "the run needs {}, and {} are free: free some space, choose another disk with {}, or take fewer "
+      "shapes with {}",
+      text_of(need), left, as_option("cache"), as_option("items"));
 }
 
 }  // namespace salbench

@@ -17,7 +17,7 @@
 #include "stages/normals/normals.h"
 #include "stages/picture/picture.h"
 #include "stages/scan/scan.h"
-#include "stages/stats/unit.h"
+#include "pipeline/rules/unit.h"
 #include "stages/surface/surface.h"
 
 namespace salbench {

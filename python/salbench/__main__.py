@@ -131,6 +131,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(UNUSABLE_ARGUMENTS, f"{error.filename}: cannot be read: {error.strerror}")
     except KeyboardInterrupt:
         return INTERRUPTED
+    except ModuleNotFoundError:
+        raise  # the program says what to install
     except MemoryError:
         return _fail(DEFECT, "out of memory; use fewer metrics or models")
     except Exception as error:  # the last line of defence: a status that callers know, and what to report

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from numpy.typing import NDArray
-
 from salbench import _core
 from salbench._data import Path, _require_folder
+from salbench._types import NDArray
 
 Array = NDArray[Any]
 Attributes = Mapping[str, str | int | float]

@@ -2,6 +2,7 @@
 """Data sets as their authors published them."""
 
 import errno
+import html
 import operator
 import os
 from collections.abc import Iterable, Iterator
@@ -29,7 +30,8 @@ class Dataset:
     split : str, optional
         Items of one split alone, such as "test".
     items : str or sequence of str, optional
-        Items to take: "1-20,52", or their names. All by default. They keep the order of the data set.
+        Items to take: "1-20,52", "scored" for those with ground truth, or their names. All by default. They keep the
+        order of the data set.
     twins : str
         Of several shape files of one name, the extension of the one that counts, such as "off".
 
@@ -38,7 +40,7 @@ class Dataset:
     FileNotFoundError
         A folder, or a description, that there is not.
     KeyError
-        A name of a layout or an item that there is not.
+        A name of a layout, a split or an item that there is not.
     ValueError
         A folder with no shape in it, or a description that cannot be used; when a shape is read, a file that is
         damaged: the message names file and line.
@@ -139,6 +141,15 @@ class Dataset:
 
     def __repr__(self) -> str:
         return f"Dataset({self._layout!r}, {self._root!r}, {len(self)} items)"
+
+    def _repr_html_(self) -> str:
+        """The first items; reads no file."""
+        shown = 10
+        cells = [(html.escape(value) for value in self._rows[number]) for number in self._order[:shown]]
+        rows = "".join(f"<tr><td>{'</td><td>'.join(row)}</td></tr>" for row in cells)
+        more = f"<p>and {len(self) - shown} more</p>" if len(self) > shown else ""
+        return (f"<p>{html.escape(repr(self))}</p><table><thead><tr><th>item</th><th>class</th><th>split</th></tr></thead>"
+                f"<tbody>{rows}</tbody></table>{more}")
 
     def __getstate__(self) -> dict[str, object]:
         layout = self._layout if self._layout in _core.layouts() else os.path.abspath(self._layout)

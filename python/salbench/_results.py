@@ -1,37 +1,96 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a run has written, as tables."""
 
+import datetime
+import html
 import os
 import pathlib
 import subprocess
 import sys
+from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from salbench import _core
 from salbench._tables import Tables
+from salbench._types import ArrayLike, NDArray
 
 if TYPE_CHECKING:
     import pandas
 
 
-class Maps:
-    """The maps of a model by name of the shape: maps["52_3"]."""
+class Failure(NamedTuple):
+    """What could not be computed: stage of an item, and why; of a function that raised, its traceback below that."""
+
+    item: str
+    stage: str
+    cause: str
+
+
+class Maps(Mapping[str, NDArray[np.float64]]):
+    """The maps of a model by name of the shape: maps["52_3"]. Each is read when it is asked for."""
 
     def __init__(self, run: Any, model: str) -> None:
+        run.require_model(model)
         self._run, self._model = run, model
+        self._items = dict.fromkeys(map(os.fsdecode, run.mapped(model)))
 
     def __getitem__(self, item: str) -> NDArray[np.float64]:
-        values: NDArray[np.float64] | None = self._run.map(self._model, str(item))
-        if values is None:
-            raise KeyError(f"there is no map of '{item}' by {self._model}")
+        if item not in self._items:
+            names = [os.fsencode(name) for name in self._items]
+            _core.fail_unknown(f"map by {self._model} of an item called", os.fsencode(str(item)), names)
+        values: NDArray[np.float64] = self._run.map(self._model, os.fsencode(item))
         return values
+
+    def __contains__(self, item: object) -> bool:
+        return item in self._items
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __repr__(self) -> str:
+        return f"Maps of {self._model}: {len(self)} shapes"
+
+
+class Reference(Mapping[str, NDArray[np.float64]]):
+    """Histograms that maps were matched to, by data set: "meshes", "scans", "clouds". Where there is but one, it stands
+    for an array: `salbench.score(..., reference=results.reference)`."""
+
+    def __init__(self, histograms: Mapping[str, NDArray[np.float64]]) -> None:
+        self._histograms = histograms
+
+    def __getitem__(self, dataset: str) -> NDArray[np.float64]:
+        if dataset not in self._histograms:
+            _core.fail_unknown("reference of a data set called", str(dataset), list(self._histograms))
+        return self._histograms[dataset]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._histograms)
+
+    def __len__(self) -> int:
+        return len(self._histograms)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float64]:
+        if not self:
+            raise ValueError("the run has no reference: none of its shapes has ground truth")
+        if len({values.tobytes() for values in self.values()}) > 1:
+            raise ValueError(f"the run has a reference for each of {', '.join(self)}: choose one, such as "
+                             f"results.reference['{next(iter(self))}']")
+        return np.array(next(iter(self.values())), dtype)
+
+    def __repr__(self) -> str:
+        return f"Reference of {', '.join(self)}"
 
 
 class Results(Tables):
     """Tables of a run, from the folder that it wrote them to; of one that `run` returns also its maps and failures.
+
+    Conclusions from the scores (every table but `scores`) are drawn when the first of them is asked for, and written beside the scores.
 
     Parameters
     ----------
@@ -43,7 +102,10 @@ class Results(Tables):
     computed : int
         Artefacts that this run has computed; 0 where all were in the cache.
     failures : list of (item, stage, cause)
-        What could not be computed.
+        What could not be computed. The cause of a function that raised ends in its traceback.
+    models : dict of str to dict
+        By name of a model: "computed", how many maps this run has computed, "read", how many it found in the cache, and
+        "from", when the first and the last of these were stored (None if there are none). Empty for tables of a folder.
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
@@ -52,15 +114,40 @@ class Results(Tables):
             raise FileNotFoundError(f"{self.folder}: holds no results: no run has written a run.yaml there")
         self._run = run
         self.computed: int = run.computed if run else 0
-        self.failures: list[tuple[str, str, str]] = run.failures() if run else []
+        self.failures: list[Failure] = [Failure(*row) for row in run.failures()] if run else []
+        self.models: dict[str, dict[str, Any]] = {
+            name: {"computed": computed, "read": read,
+                   "from": tuple(map(datetime.datetime.fromtimestamp, (first, last))) if first <= last else None}
+            for name, computed, read, first, last in (run.models() if run else ())}
 
     def _text(self, name: str) -> str:
-        return (self.folder / f"{name}.csv").read_text(encoding="utf-8")
+        path = self.folder / f"{name}.csv"
+        if not path.is_file():
+            self._conclude()
+        return path.read_text(encoding="utf-8")
+
+    def _conclude(self) -> None:
+        """Draws the conclusions that are missing: a run writes scores alone, and removes conclusions from others."""
+        from salbench import conclusions
+
+        if (self.folder / conclusions.folders.CONCLUDED).is_file():
+            return
+        try:
+            conclusions.conclude(conclusions.source_of(str(self.folder)))
+        except conclusions.folders.StorageError as error:
+            raise OSError(str(error)) from None
 
     @cached_property
     def scores(self) -> "pandas.DataFrame":
         """A row per shape and model (results.csv)."""
         return self._table("results")
+
+    @cached_property
+    def reference(self) -> Reference:
+        """The histograms that maps were matched to, by data set: (100,) arrays (column GS of mean_histograms_*.csv)."""
+        names = [name for name in dict.fromkeys(self.scores.dataset) if (self.folder / f"mean_histograms_{name}.csv").is_file()]
+        tables = {name: self._table(f"mean_histograms_{name}") for name in names}
+        return Reference({name: table.GS.to_numpy(np.float64) for name, table in tables.items() if "GS" in table})
 
     def maps(self, model: str) -> Maps:
         """The maps of a model by name of the shape, as it made them: maps("LS")["52_3"].
@@ -71,8 +158,34 @@ class Results(Tables):
             raise ValueError("maps() is of results that run() returned; salbench.Cache(folder) has those of others")
         return Maps(self._run, model)
 
+    def score(self, prediction: ArrayLike, item: str, *, model: str | None = None) -> dict[str, float]:
+        """Scores of a map of a shape of the run, as its tables have them: by its metrics, ground truth and reference.
+
+        Parameters
+        ----------
+        prediction : (n,) array
+            One finite value per point. A map of the run, such as maps("LS")["52"], has the scores of its row.
+        item : str
+            The shape, such as "52", or "52_3" for scan 3 of mesh 52.
+        model : str, optional
+            Whose random draws the metrics that draw points are given. By default those of the model that made this map; of
+            another map those of the first model.
+
+        Raises
+        ------
+        KeyError
+            An item or a model that the run does not have.
+        ValueError
+            A map that does not fit the shape, a shape that has no scores, or results of another process.
+        """
+        if self._run is None:
+            raise ValueError("score() is of results that run() returned; salbench.score takes the reference of others")
+        scores: dict[str, float] = self._run.score(prediction, os.fsencode(item), model or "")
+        return scores
+
     def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page."""
+        self._conclude()
         roots = [pathlib.Path(__file__).parent, pathlib.Path("/usr/share/salbench")]
         root = next((root for root in roots if (root / "report").is_dir()), None)
         if root is None:
@@ -82,6 +195,24 @@ class Results(Tables):
                        env=environment, check=True)
         return pathlib.Path(folder) / "index.html"
 
+    def _repr_html_(self) -> str:
+        head = f"<pre>{html.escape(repr(self))}</pre>"
+        columns = ["dataset", "metric", "model", "mean", "rank", "group"]
+        try:
+            return head + str(self.ranking[columns].to_html(index=False, max_rows=60))
+        except (ImportError, FileNotFoundError):  # without pandas; after a run that was interrupted early
+            return head
+
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
-        return f"Results({str(self.folder)!r}): {self.computed} artefacts computed{failed}"
+        return "\n".join([f"Results({str(self.folder)!r}): {self.computed} artefacts computed{failed}",
+                          *(f"  {line}" for line in self._model_lines())])
+
+    def _model_lines(self) -> list[str]:
+        """A line per model: which of its maps are new."""
+        lines = []
+        for name, maps in self.models.items():
+            first, last = (f"{time:%Y-%m-%d %H:%M}" for time in maps["from"]) if maps["from"] else ("", "")
+            when = f" (from {first}{'' if first == last else f' to {last}'})" if first else ""
+            lines.append(f"{name}: {maps['computed']} maps computed now, {maps['read']} read{when}")
+        return lines

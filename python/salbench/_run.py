@@ -3,20 +3,22 @@
 
 import errno
 import hashlib
-import inspect
 import json
+import logging
+import operator
 import os
 import pathlib
+import secrets
+import sys
 import traceback
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
-
-from numpy.typing import ArrayLike
 
 from salbench import _core
 from salbench._results import Results
 from salbench._shape import Shape
+from salbench._types import ArrayLike
 
 Predict = Callable[[Shape], ArrayLike]
 PARTS = ("normals", "faces", "fpfh")
@@ -26,28 +28,43 @@ PARTS = ("normals", "faces", "fpfh")
 class Model:
     """A function of a shape as a model of the benchmark, with what its maps depend on.
 
+    Maps are computed again when the function changes or something that it depends on: its code, its defaults and
+    closure, globals and functions that it names, the state of an object, arrays and networks by their values, installed
+    packages by version; as they are when `run` is called. Files, the environment and clocks that it reads are not seen:
+    name files in `depends`. If something cannot be compared, such as a lock or an open file, one line names it, and the
+    maps are computed in each call.
+
     Parameters
     ----------
     predict : callable
         Takes a `Shape`, returns one finite value per point.
     version : int, optional
-        Maps are computed again when it changes, and not when the function's text does. Without one its source text
-        counts.
+        Your promise that maps are the same as long as it is: only it and `depends` count then.
     depends : sequence, optional
-        What else counts: files (by content), functions (by source text), and any value (by its `repr`).
+        What else counts: files (text or path, by content), and any other value, by content.
     reads : sequence of str
         Parts of the shape beside its points that are handed over: some of "normals", "faces", "fpfh".
+    cache : bool
+        False: maps are computed in each call.
     """
 
     predict: Predict
     version: int | None = None
-    depends: Iterable[Any] = field(default=())
+    depends: Iterable[Any] = ()
     reads: Iterable[str] = ("normals", "faces")
+    cache: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("depends", "reads"):  # a generator would be empty in the second run
+            given = getattr(self, name)
+            if isinstance(given, (str, bytes, os.PathLike)):
+                raise ValueError(f"{name} must be a sequence, such as [{given!r}]")
+            object.__setattr__(self, name, tuple(given))
 
 
-def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces")
-          ) -> Callable[[Predict], Model]:
-    """Decorator that makes a `Model` of a function; `version`, `depends` and `reads` as there.
+def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces"),
+          cache: bool = True) -> Callable[[Predict], Model]:
+    """Decorator that makes a `Model` of a function; `version`, `depends`, `reads` and `cache` as there.
 
     Examples
     --------
@@ -58,7 +75,7 @@ def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterab
     >>> height.version
     2
     """
-    return lambda predict: Model(predict, version, depends, reads)
+    return lambda predict: Model(predict, version, depends, reads, cache)
 
 
 def run(
@@ -69,6 +86,8 @@ def run(
     cache: str | os.PathLike[str] | None = None,
     out: str | os.PathLike[str] | None = None,
     items: str | Iterable[str] | None = None,
+    split: str | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
     threads: int | None = None,
     progress: bool = True,
 ) -> Results:
@@ -76,7 +95,8 @@ def run(
 
     A function runs in the thread that called, one shape at a time, while everything else goes on in other threads.
     What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. Ctrl-C ends the run
-    in order, with its tables written; the next call goes on from there.
+    in order, with its scores written; the next call goes on from there. Conclusions from the scores are drawn when a
+    table of them is first asked for.
 
     Parameters
     ----------
@@ -89,12 +109,17 @@ def run(
         By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}. In place of those of
         the configuration.
     items : str or sequence of str, optional
-        Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default. Maps are
-        matched to the mean over all items of the data set all the same.
+        Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default; an empty
+        list is a ValueError. Maps are matched to the mean over all items of the data set all the same.
+    split : str, optional
+        Items of one split alone, such as "test"; "" for all, where the configuration names one.
+    reference : path or (100,) array, optional
+        Histogram that maps are matched to, in place of the mean over the data set: of another run
+        (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are run.
     threads : int, optional
         All cores by default.
     progress : bool
-        Show a bar, where tqdm is installed.
+        Show a bar, where tqdm is installed, and print at the end how many maps of each model are new (`Results.models`).
 
     Returns
     -------
@@ -102,8 +127,10 @@ def run(
 
     Raises
     ------
+    KeyError
+        An item or a split that there is not.
     ValueError
-        A configuration, a data set or an argument that cannot be used.
+        A configuration, a data set or another argument that cannot be used.
     OSError
         A cache or a folder that cannot be written to; FileNotFoundError for data or a configuration that is not there.
     KeyboardInterrupt
@@ -123,15 +150,23 @@ def run(
         "data": data and os.fspath(data),
         "cache": cache and os.fspath(cache),
         "out": out and os.fspath(out),
-        "items": items if items is None or isinstance(items, str) else ",".join(map(str, items)),
+        "split": split,
+        "reference": os.fspath(reference) if isinstance(reference, (str, os.PathLike)) else reference,
+        "items": items if items is None else os.fsencode(items) if isinstance(items, str) else [
+            os.fsencode(str(name)) for name in items],
     }
+    if items is not None and not settings["items"]:
+        raise ValueError("items is empty: name some, or leave it out to run all")
     threads = len(os.sched_getaffinity(0)) if threads is None else threads
     if threads < 1:
         raise ValueError(f"threads must be at least 1, not {threads}")
     going = _core.Run(settings, [_row(name, given) for name, given in functions])
     with _Bar(progress) as bar:
         going.carry_out(threads, bar)
-    return Results(going.output, going)
+    results = Results(going.output, going)
+    if progress:
+        print(*results._model_lines(), sep="\n", file=sys.stderr)
+    return results
 
 
 def _configuration(given: str | os.PathLike[str] | None) -> str:
@@ -153,50 +188,45 @@ def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], in
     for part in reads:
         if part not in (*PARTS, "points"):
             raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
-    parts = [] if made.version is not None else [_source_of(made.predict)]
-    parts += [_content_of(what) for what in made.depends]
-    key = hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version"
-    return name, made.predict, [part for part in ("points", *PARTS) if part in reads], made.version or 1, key
+    version = 1 if made.version is None else operator.index(made.version)
+    return name, made.predict, [part for part in ("points", *PARTS) if part in reads], version, _key(name, made)
 
 
-def _source_of(function: Any) -> str:
-    """Text that stands for a function: its source, or where there is none its byte code."""
+def _key(name: str, made: Model) -> str:
+    """Text that stands for what maps depend on; one that no other call has where that cannot be told."""
+    from salbench._fingerprint import file_digest, fingerprint
+    from salbench._names import Unwalkable
+
+    if not made.cache:
+        return _key_of_this_call()
     try:
-        return inspect.getsource(function)
-    except (OSError, TypeError):
-        code = getattr(function, "__code__", None) or getattr(type(function).__call__, "__code__", None)
-        if code is None:
-            raise ValueError(f"{function!r} has no source text that says when its maps are stale: give a version") from None
-        return _code_text(code)
+        parts = [] if made.version is not None else [f"function {fingerprint(made.predict)}"]
+        for what in made.depends:
+            is_file = isinstance(what, (str, os.PathLike))
+            parts.append(f"file {file_digest(what)}" if is_file else f"value {fingerprint(what)}")
+    except Unwalkable as error:
+        logging.getLogger("salbench").warning(
+            "%s: its maps are computed anew in each call, since it depends on what cannot be compared: %s; "
+            "salbench.Model(..., version=1) keeps them", name, error)
+        return _key_of_this_call()
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version"
 
 
-def _code_text(value: Any) -> str:
-    """A constant of byte code, or the code itself, as text without addresses and without the order of a set."""
-    if inspect.iscode(value):
-        return f"code({value.co_code.hex()}, {_code_text(value.co_consts)}, {value.co_names!r})"
-    if isinstance(value, tuple):
-        return f"({', '.join(map(_code_text, value))})"
-    if isinstance(value, frozenset):
-        return f"{{{', '.join(sorted(map(_code_text, value)))}}}"
-    return repr(value)
+def _key_of_this_call() -> str:
+    return f"of one call: {secrets.token_hex(16)}"
 
 
-def _content_of(what: Any) -> str:
-    if isinstance(what, (str, os.PathLike)):
-        with open(what, "rb") as file:
-            return hashlib.sha256(file.read()).hexdigest()
-    return _source_of(what) if callable(what) or inspect.ismodule(what) else repr(what)
-
-
-def _raised(error: BaseException, trace: Any) -> str:
-    """An exception as one line, with the innermost line of code."""
+def _raised(error: BaseException, trace: Any) -> tuple[str, str]:
+    """An exception as one line, with the innermost line of code; and its whole traceback."""
     frames = traceback.extract_tb(trace)
     place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
     try:
         text = f"{type(error).__name__}: {error}"
     except Exception:  # of its own __str__
         text = type(error).__name__
-    return " ".join(text.split()) + place
+    lines = " ".join(text.split()) + place, "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    line, whole = (one.encode("utf-8", "backslashreplace").decode() for one in lines)
+    return line, whole
 
 
 class _Bar:

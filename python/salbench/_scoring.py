@@ -5,10 +5,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from salbench import _core
 from salbench._options import Value, with_options
+from salbench._types import ArrayLike, NDArray
 
 Seed = int | tuple[int, str, str]
 
@@ -56,7 +56,7 @@ def score(
     metrics : str or sequence of str
         Columns of the program's tables, or "all".
     reference : (100,) array, optional
-        Histogram that maps are matched to (`histogram`, or the mean of several).
+        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several.
     seed : int or (int, str, str)
         Of the metrics that draw points; (seed, model, item) are the draws of a run's table.
     **options

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from salbench._show import View, show
+from salbench._types import ArrayLike, NDArray
 
 
 @dataclass(frozen=True, eq=False)

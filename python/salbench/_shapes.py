@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from salbench import _core
 from salbench._options import Value, with_options, with_options_of
+from salbench._types import ArrayLike, NDArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+
+from salbench._types import ArrayLike, NDArray
 
 if TYPE_CHECKING:
     from salbench._shape import Shape

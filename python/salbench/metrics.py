@@ -10,10 +10,9 @@ Each takes what `salbench.score` takes but `metrics`, and returns the score alon
 
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from numpy.typing import ArrayLike
-
 from salbench import _core
 from salbench._scoring import score
+from salbench._types import ArrayLike
 
 
 class Metric(NamedTuple):

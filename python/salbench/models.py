@@ -15,12 +15,12 @@ in an underscore: `faces_`, the number of faces that a larger mesh is simplified
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from salbench import _core
 from salbench._options import Row, Value, with_options
 from salbench._shape import Shape
 from salbench._shapes import Scan
+from salbench._types import ArrayLike, NDArray
 
 
 class ModelFunction(Protocol):

@@ -82,6 +82,8 @@ start_cluster() {
   (umask 077 && head -c 128 /dev/urandom > "$cluster_folder/munge.key")
   export SLURM_CONF=$cluster_folder/slurm.conf
   write_slurm_conf "$2" > "$SLURM_CONF"
+  # Slurm of Debian 13 does not start without cgroups unless told so; that of Debian 12 does not know the word.
+  [[ $(slurmd -V) == *' 22.'* ]] || echo CgroupPlugin=disabled > "$cluster_folder/cgroup.conf"
 
   start_daemon munged munged --foreground --key-file="$cluster_folder/munge.key" --socket="$cluster_folder/munge.socket" \
     --pid-file="$cluster_folder/munged.pid" --seed-file="$cluster_folder/munge.seed" \

@@ -44,7 +44,7 @@ CentreDensity centre_density(Points points, const GroundTruth& truth) {
   const ScalarField distances = distances_from_centroid(points);
   const ScalarField marks = marks_of(truth, points.size());
   if (marks.size() != points.size())
-    throw InputError("the ground truth has " + std::to_string(marks.size()) + " values for " +
+    throw ShapeError("the ground truth has " + std::to_string(marks.size()) + " values for " +
                      std::to_string(points.size()) + " points");
   CentreDensity density;
   double total = 0, seen = 0;

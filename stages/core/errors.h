@@ -10,15 +10,51 @@
 
 namespace salbench {
 
+// How messages write options: as the program takes them or, in the Python module, as arguments of functions.
+// Set once, before anything else is done.
+inline bool options_are_arguments = false;
+
+// "--items 1-20" or "items='1-20'"; without a value "--items" or "`items`".
+inline std::string as_option(const std::string& name, const std::string& value = {}) {
+  if (!options_are_arguments) return "--" + name + (value.empty() ? "" : " " + value);
+  return value.empty() ? "`" + name + "`" : name + "='" + value + "'";
+}
+
 // An item's data cannot be used: the message names file and line, or the item, and what to do.
 // The item (or one stage of it) fails; the others go on.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A shape, or values on it, cannot be used as a whole: the message names no file. Stages, which know none,
+// throw no other InputError; whoever knows the file may add it.
+struct ShapeError : InputError {
+  using InputError::InputError;
+};
+
+// A file cannot be used: the message begins with its name, which `reason` is without.
+struct FileError : InputError {
+  FileError(const std::string& file, std::string what_is_wrong)
+      : InputError(file + ": " + what_is_wrong), reason(std::move(what_is_wrong)) {}
+  std::string reason;  // "truncated: 512 of 4096 bytes"
+};
+
 // Arguments or configuration cannot be used (exit status 2).
 struct ConfigError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+// A name, such as that of an item or a split, is not among those that there are.
+struct UnknownNameError : ConfigError {
+  using ConfigError::ConfigError;
+};
+
+// A configuration file says what cannot be used: the message begins with the file and line, which
+// `what_is_wrong` is without.
+struct SectionError : ConfigError {
+  SectionError(const std::string& where, std::string wrong)
+      : ConfigError(where + ": " + wrong), what_is_wrong(std::move(wrong)) {}
+  std::string what_is_wrong;  // "fpfh.radius must be > 0, not -1"
 };
 
 // An option has an invalid value. The reader of the option adds where it was set.
@@ -44,7 +80,8 @@ inline std::string current_defect() {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    return "out of memory; use fewer --threads, or leave large items out with --items";
+    return "out of memory; use fewer " + as_option("threads") + ", or leave large items out with " +
+           as_option("items");
   } catch (const std::exception& error) {
     return std::string("a defect of salbench, please report it: ") + error.what();
   } catch (...) {

@@ -26,7 +26,7 @@ void require_finite(std::span<const double> field, const char* what, bool may_be
   if (field.empty() || std::isfinite(as_array(field).abs().maxCoeff<Eigen::PropagateNaN>())) return;
   for (std::size_t i = 0; i < field.size(); ++i)
     if (!std::isfinite(field[i]) && !(may_be_nan && std::isnan(field[i])))
-      throw InputError(std::string(what) + " is " + std::to_string(field[i]) + " at point " +
+      throw ShapeError(std::string(what) + " is " + std::to_string(field[i]) + " at point " +
                        std::to_string(i) + " (0-based), expected a finite number");
 }
 

@@ -288,7 +288,7 @@ void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) 
   const auto bad =
       std::find_if_not(normals.begin(), normals.end(), [](const Vec3& n) { return n.allFinite(); });
   if (bad != normals.end())
-    throw InputError("the normal of point " + std::to_string(bad - normals.begin()) +
+    throw ShapeError("the normal of point " + std::to_string(bad - normals.begin()) +
                      " (0-based) is not finite");
 }
 

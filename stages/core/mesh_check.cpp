@@ -23,7 +23,7 @@ const Vec3& corner(const Mesh& mesh, const Triangle& face, std::size_t i) {
 void check_coordinates(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     if (!mesh.vertices[i].allFinite())
-      throw InputError("vertex " + std::to_string(i) + " (0-based) has a coordinate that is not finite");
+      throw ShapeError("vertex " + std::to_string(i) + " (0-based) has a coordinate that is not finite");
 }
 
 void check_indices(const Mesh& mesh) {
@@ -31,7 +31,7 @@ void check_indices(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
     for (const std::int32_t v : mesh.faces[i])
       if (v < 0 || v >= n)
-        throw InputError("face " + std::to_string(i) + " (0-based) refers to vertex " + std::to_string(v) +
+        throw ShapeError("face " + std::to_string(i) + " (0-based) refers to vertex " + std::to_string(v) +
                          ", but the vertices are 0 to " + std::to_string(n - 1));
 }
 
@@ -168,8 +168,8 @@ void count_edges(std::size_t n_vertices, std::span<const Triangle> faces, MeshRe
 }  // namespace
 
 CheckedMesh check_mesh(Mesh mesh) {
-  if (mesh.vertices.empty()) throw InputError("the mesh has no vertices");
-  if (mesh.faces.empty()) throw InputError("no faces: this is a point cloud; write it as PLY, PCD or XYZ");
+  if (mesh.vertices.empty()) throw ShapeError("the mesh has no vertices");
+  if (mesh.faces.empty()) throw ShapeError("no faces: this is a point cloud; write it as PLY, PCD or XYZ");
   check_coordinates(mesh);
   check_indices(mesh);
   MeshReport report;
@@ -178,9 +178,9 @@ CheckedMesh check_mesh(Mesh mesh) {
   count_edges(mesh.vertices.size(), mesh.faces, report);
   report.degenerate_faces += static_cast<std::int64_t>(
       std::erase_if(mesh.faces, [&](const Triangle& face) { return has_no_area(mesh, face); }));
-  if (mesh.faces.empty()) throw InputError("all faces are degenerate: each repeats a vertex or has no area");
+  if (mesh.faces.empty()) throw ShapeError("all faces are degenerate: each repeats a vertex or has no area");
   if (!std::isnormal(surface_area(mesh)))
-    throw InputError("the surface area overflows or underflows: scale the coordinates");
+    throw ShapeError("the surface area overflows or underflows: scale the coordinates");
   count_parts(mesh, report);
   return {std::move(mesh), report};
 }

@@ -55,7 +55,7 @@ double bounding_radius(std::span<const Vec3> points) {
 
 std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
   if (const std::string_view wrong = wrong_with_extent(points); !wrong.empty())
-    throw InputError(std::string(wrong));
+    throw ShapeError(std::string(wrong));
   const Vec3 centre = centroid(points);
   const double radius = bounding_radius(points);
   std::vector<Vec3> result;
@@ -68,7 +68,7 @@ void check_faces(std::size_t n_points, Surface surface) {
   for (const Triangle& face : surface)
     for (const std::int32_t v : face)
       if (v < 0 || static_cast<std::size_t>(v) >= n_points)
-        throw InputError("a face refers to point " + std::to_string(v) + " (0-based), but the shape has " +
+        throw ShapeError("a face refers to point " + std::to_string(v) + " (0-based), but the shape has " +
                          std::to_string(n_points) + " points");
 }
 

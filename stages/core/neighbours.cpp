@@ -123,7 +123,7 @@ class WithinSet {
 std::span<const Vec3> finite(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite())
-      throw InputError("point " + std::to_string(i) + " (0-based) has a coordinate that is not finite");
+      throw ShapeError("point " + std::to_string(i) + " (0-based) has a coordinate that is not finite");
   return points;
 }
 
@@ -302,7 +302,7 @@ void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& f
     NearestSet set(found, k);
     if (k > 0) impl_->search(set, query);
   }
-  if (found.size() < k) throw InputError("squared distances between points overflow: scale the coordinates");
+  if (found.size() < k) throw ShapeError("squared distances between points overflow: scale the coordinates");
 }
 
 std::int32_t KdTree::nearest(const Vec3& query) const {

@@ -35,15 +35,15 @@ void drop_points_without_position(PointCloud& cloud, std::vector<std::string>& w
 
 void check_points(const std::vector<Vec3>& points) {
   if (points.size() < kFewestPoints)
-    throw InputError("the point cloud has " + std::to_string(points.size()) +
+    throw ShapeError("the point cloud has " + std::to_string(points.size()) +
                      " points with a position: it needs at least " + std::to_string(kFewestPoints));
   if (const std::string_view wrong = wrong_with_extent(points); !wrong.empty())
-    throw InputError(std::string(wrong));
+    throw ShapeError(std::string(wrong));
 }
 
 void check_viewpoint(const PointCloud& cloud) {
   if (cloud.viewpoint && !std::isfinite(cloud.viewpoint->squaredNorm()))
-    throw InputError("squares of the viewpoint's coordinates overflow: mend it, or leave it out of the file");
+    throw ShapeError("squares of the viewpoint's coordinates overflow: mend it, or leave it out of the file");
 }
 
 std::string without_normal(const PointCloud& cloud, std::size_t first, std::size_t count) {
@@ -74,7 +74,7 @@ void check_normals(PointCloud& cloud, std::vector<std::string>& warnings) {
     else if (bad++ == 0)
       first = i;
   }
-  if (bad > 0) throw InputError(without_normal(cloud, first, bad));
+  if (bad > 0) throw ShapeError(without_normal(cloud, first, bad));
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ std::vector<std::vector<std::int32_t>> picks_left(const PointCloud& cloud,
     for (std::int32_t& pick : in_file[k]) {
       const std::int32_t left = numbers.at(static_cast<std::size_t>(pick));
       if (left < 0)
-        throw InputError("participant " + std::to_string(k) + " picked point " + std::to_string(pick) +
+        throw ShapeError("participant " + std::to_string(k) + " picked point " + std::to_string(pick) +
                          " (0-based), which has no position");
       pick = left;
     }

@@ -24,7 +24,7 @@ std::vector<std::int32_t> picked_vertices(Picks picks, std::size_t n_vertices) {
   for (std::size_t k = 0; k < picks.size(); ++k) {
     for (const std::int32_t vertex : picks[k]) {
       if (vertex < 0 || static_cast<std::size_t>(vertex) >= n_vertices)
-        throw InputError("participant " + std::to_string(k) + " picked vertex " + std::to_string(vertex) +
+        throw ShapeError("participant " + std::to_string(k) + " picked vertex " + std::to_string(vertex) +
                          " of a mesh with " + std::to_string(n_vertices) +
                          " vertices (0-based): the picks are those of another mesh");
       picked.push_back(vertex);
@@ -63,7 +63,7 @@ PickSmoother::PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions
 
 ScalarField PickSmoother::operator()(std::span<const std::size_t> participants) const {
   if (participants.empty() && per_participant_)
-    throw InputError("no participants: the ground truth, a mean over participants, cannot be computed");
+    throw ShapeError("no participants: the ground truth, a mean over participants, cannot be computed");
   std::vector<std::int32_t> counts(gaussians_.size(), 0);
   for (const std::size_t k : participants) {
     CHECK_LT(k, sites_of_.size());

@@ -73,10 +73,10 @@ class Growth {
 SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor,
                                    std::int32_t enough) {
   CHECK_GT(factor, 0.0);
-  if (points.empty()) throw InputError("the shape has no points");
+  if (points.empty()) throw ShapeError("the shape has no points");
   // The search below ends only for finite coordinates: at 2 R every point reaches every other.
   if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
-    throw InputError("the shape has a coordinate that is not finite");
+    throw ShapeError("the shape has a coordinate that is not finite");
   const double extent = bounding_radius(points);
   // Below that a tenth more may be lost in rounding, and the radius would not grow.
   const double first = extent > 0 ? std::max(factor * extent, std::numeric_limits<double>::min()) : 0;

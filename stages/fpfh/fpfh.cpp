@@ -20,9 +20,9 @@ Support support_of(std::span<const Vec3> points, const KdTree& tree, const FpfhO
 
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const FpfhOptions& options) {
   check(options);
-  if (points.empty()) throw InputError("the shape has no points");
+  if (points.empty()) throw ShapeError("the shape has no points");
   if (!centroid(points).allFinite() || !std::isfinite(bounding_radius(points)))
-    throw InputError("the shape has a coordinate that is not finite, or whose square overflows");
+    throw ShapeError("the shape has a coordinate that is not finite, or whose square overflows");
   const KdTree tree(points);
   return fpfh(points, normals, tree, support_of(points, tree, options), options.weighting);
 }

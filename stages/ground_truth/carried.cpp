@@ -21,7 +21,7 @@ constexpr double kLargest = std::numeric_limits<double>::max();
 
 ScalarField vertex_values_of_faces(Points vertices, Surface faces, std::span<const double> values) {
   if (values.size() != faces.size())
-    throw InputError("there are " + std::to_string(values.size()) + " values for " +
+    throw ShapeError("there are " + std::to_string(values.size()) + " values for " +
                      std::to_string(faces.size()) + " faces");
   const double scale = scale_against_overflow(values);
   ScalarField sums(vertices.size()), areas(vertices.size());

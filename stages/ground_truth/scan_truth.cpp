@@ -16,17 +16,17 @@ constexpr std::int32_t kHidden = -1;  // no scan point has this vertex as its ne
 void require_fits(const Mesh& mesh, const GroundTruth& truth) {
   const std::size_t n = mesh.vertices.size();
   if (!truth.saliency.empty() && truth.saliency.size() != n)
-    throw InputError("the ground truth has " + std::to_string(truth.saliency.size()) +
+    throw ShapeError("the ground truth has " + std::to_string(truth.saliency.size()) +
                      " saliency values, but the mesh has " + std::to_string(n) + " vertices");
   for (const auto& participant : truth.picks)
     for (const std::int32_t vertex : participant)
       if (vertex < 0 || index(vertex) >= n)
-        throw InputError("the ground truth has a pick at vertex " + std::to_string(vertex) +
+        throw ShapeError("the ground truth has a pick at vertex " + std::to_string(vertex) +
                          " (0-based), but the mesh has " + std::to_string(n) + " vertices");
 }
 
 std::vector<std::int32_t> nearest_vertices(const Scan& scan, const Mesh& mesh) {
-  if (!scan.points.empty() && mesh.vertices.empty()) throw InputError("the scan's mesh has no vertices");
+  if (!scan.points.empty() && mesh.vertices.empty()) throw ShapeError("the scan's mesh has no vertices");
   const KdTree tree(mesh.vertices);
   std::vector<std::int32_t> nearest;
   nearest.reserve(scan.points.size());

@@ -132,7 +132,7 @@ class Picker {
 GroundTruth simulated_ground_truth(const Mesh& mesh, const SimulationOptions& options, std::uint64_t seed,
                                    std::string_view item) {
   check(options);
-  if (mesh.vertices.empty()) throw InputError("the mesh has no vertices: picks cannot be simulated");
+  if (mesh.vertices.empty()) throw ShapeError("the mesh has no vertices: picks cannot be simulated");
   Picker picker(mesh, options);
   GroundTruth truth;
   truth.simulated = true;

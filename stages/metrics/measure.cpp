@@ -21,7 +21,7 @@ Measure area_measure(std::span<const double> areas) {
   if (std::isinf(sum()))          // that of 2^31 finite areas is finite then
     for (double& weight : measure.weight) weight *= 0x1p-40;
   if (!std::isfinite(sum()))
-    throw InputError("the area around a point is infinite: the coordinates are too large");
+    throw ShapeError("the area around a point is infinite: the coordinates are too large");
   if (const double total = sum(); std::isnormal(total) && std::abs(std::ilogb(total)) > kOrdinary) {
     const double scale = std::ldexp(1, -std::ilogb(total) / 2 * 2);
     for (double& weight : measure.weight) weight *= scale;

@@ -32,11 +32,11 @@ Draws no_draws() { return Draws(Rng(0, "", "")); }  // for what draws nothing
 
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
-    throw InputError("the ground truth has " + std::to_string(truth.saliency.size()) + " values for " +
+    throw ShapeError("the ground truth has " + std::to_string(truth.saliency.size()) + " values for " +
                      std::to_string(n) + " points");
   // Ascending: the ends tell.
   if (!picked.empty() && (picked.front() < 0 || static_cast<std::size_t>(picked.back()) >= n))
-    throw InputError("the ground truth picks point " +
+    throw ShapeError("the ground truth picks point " +
                      std::to_string(picked.front() < 0 ? picked.front() : picked.back()) + " of " +
                      std::to_string(n));
 }

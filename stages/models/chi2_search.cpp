@@ -21,7 +21,7 @@ constexpr float kMaxValue = 1e18F;  // the squares of larger values overflow
 std::vector<std::size_t> bins_of(const Descriptors& descriptors) {
   for (std::size_t i = 0; i < descriptors.values.size(); ++i)
     if (const float value = descriptors.values[i]; !(value >= 0 && value <= kMaxValue))
-      throw InputError("the descriptor of point " + std::to_string(i / kBins) + " (0-based) has the value " +
+      throw ShapeError("the descriptor of point " + std::to_string(i / kBins) + " (0-based) has the value " +
                        std::to_string(value) + ", expected a number from 0 to 1e18");
   std::vector<std::size_t> bins = used_bins(descriptors);
   if (bins.empty()) bins.push_back(0);

@@ -62,7 +62,7 @@ bool are_viewers(const GroundTruth& truth) {
 
 void require_participants(const GroundTruth& truth) {
   if (truth.picks.size() < kMinParticipants && !are_viewers(truth))
-    throw InputError("HS does not apply: it compares participants with each other, and this mesh has " +
+    throw ShapeError("HS does not apply: it compares participants with each other, and this mesh has " +
                      (truth.picks.empty() ? std::string("no picks")
                                           : std::string("one list of picks (one participant, or pooled)")));
 }

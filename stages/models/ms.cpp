@@ -203,7 +203,7 @@ ScalarField component_saliency(const Mesh& mesh, const MsOptions& options) {
 void check_input(Points points, Surface surface) {
   check_faces(points.size(), surface);
   for (const Vec3& p : points)
-    if (!p.allFinite()) throw InputError("a point has a coordinate that is not finite");
+    if (!p.allFinite()) throw ShapeError("a point has a coordinate that is not finite");
 }
 
 }  // namespace
@@ -235,7 +235,7 @@ ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options
   if (points.empty()) return {};
   const ScalarField no_answer(points.size(), 0);
   const double radius = bounding_radius(points);
-  if (!std::isfinite(radius)) throw InputError("coordinates too large: their squares overflow");
+  if (!std::isfinite(radius)) throw ShapeError("coordinates too large: their squares overflow");
   if (radius == 0) return no_answer;
   const std::vector<Vec3> places = normalised(points, radius);
   const Part part = largest_component(places, surface);

@@ -153,16 +153,16 @@ Eigenpairs spectrum_of(Points points, Surface surface, std::size_t k) {
   check_faces(n, surface);
   const std::vector<Vec3> places = in_units_of_radius(points);
   if (k < 2 || k + 2 > n)
-    throw InputError("k must be from 2 to n - 2, not " + std::to_string(k) + " of a shape of " +
+    throw ShapeError("k must be from 2 to n - 2, not " + std::to_string(k) + " of a shape of " +
                      std::to_string(n) + " points");
   const Adjacency adjacency = edge_adjacency(n, surface);
   const std::vector<std::int32_t> parts = connected_components(adjacency);
   if (const auto last = std::ranges::max_element(parts); *last > 0)
-    throw InputError("the faces connect the points to " + std::to_string(*last + 1) +
+    throw ShapeError("the faces connect the points to " + std::to_string(*last + 1) +
                      " parts, where one is expected: there is a spectrum of each");
   Eigenpairs pairs = lowest_eigenpairs(graph_laplacian(inverse_square_weights(places, adjacency)),
                                        static_cast<Eigen::Index>(k));
-  if (pairs.values.size() == 0) throw InputError("the eigenvalues of the shape cannot be computed");
+  if (pairs.values.size() == 0) throw ShapeError("the eigenvalues of the shape cannot be computed");
   return pairs;
 }
 

@@ -21,7 +21,7 @@ namespace {
 void require_finite(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!points[i].allFinite())
-      throw InputError(fmt::format("point {} (0-based) has a coordinate that is not finite", i));
+      throw ShapeError(fmt::format("point {} (0-based) has a coordinate that is not finite", i));
 }
 
 // Zero for a vertex without faces, and if the area vectors of its faces cancel.
@@ -46,7 +46,7 @@ void fill_from_nearest(const std::vector<Vec3>& points, Normals& normals) {
   std::vector<std::size_t> known, unknown;
   for (std::size_t i = 0; i < normals.size(); ++i) (normals[i].isZero(0) ? unknown : known).push_back(i);
   if (unknown.empty()) return;
-  if (known.empty()) throw InputError("no face has an area: normals cannot be computed");
+  if (known.empty()) throw ShapeError("no face has an area: normals cannot be computed");
   std::vector<Vec3> known_points;
   known_points.reserve(known.size());
   for (const std::size_t i : known) known_points.push_back(points[i]);
@@ -108,7 +108,7 @@ void check(const MeshNormalsOptions& options) {
 Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options) {
   require_finite(mesh.vertices);
   if (options.method == MeshNormalsMethod::pca) {
-    if (mesh.vertices.empty()) throw InputError("the mesh has no vertices: normals cannot be computed");
+    if (mesh.vertices.empty()) throw ShapeError("the mesh has no vertices: normals cannot be computed");
     return outward_normals(mesh.vertices, options);
   }
   Normals normals = area_weighted_normals(mesh);

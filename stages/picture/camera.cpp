@@ -71,19 +71,19 @@ Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const Pictu
   Eigen::AlignedBox3d box;
   for (const Vec3& p : points) {
     if (!p.allFinite())
-      throw InputError(fmt::format("the {} has a coordinate that is not a finite number", shape));
+      throw ShapeError(fmt::format("the {} has a coordinate that is not a finite number", shape));
     box.extend(p);
   }
-  if (points.empty()) throw InputError(fmt::format("the {} is empty: there is nothing to see", shape));
+  if (points.empty()) throw ShapeError(fmt::format("the {} is empty: there is nothing to see", shape));
   if (coincide(points))
-    throw InputError(fmt::format("all of the {} is in one place: there is nothing to see", shape));
+    throw ShapeError(fmt::format("all of the {} is in one place: there is nothing to see", shape));
   centre_ = box.center();
   unit_ = 0;
   for (const Vec3& p : points) unit_ = std::max(unit_, (p - centre_).norm());
   if (!std::isfinite(unit_))
-    throw InputError(fmt::format("the {}'s coordinates are too large: their squares overflow", shape));
+    throw ShapeError(fmt::format("the {}'s coordinates are too large: their squares overflow", shape));
   if (!(unit_ > 0))
-    throw InputError(fmt::format("the {}'s coordinates are too small: their squares underflow", shape));
+    throw ShapeError(fmt::format("the {}'s coordinates are too small: their squares underflow", shape));
 
   const double t = tan_half_ * (1 - 2 * options.margin);
   position_.setZero();

@@ -145,7 +145,7 @@ struct Developer {
 
 void require_something_seen(const Seen& seen, const char* shape) {
   if (std::all_of(seen.primitive.begin(), seen.primitive.end(), [](std::int32_t p) { return p < 0; }))
-    throw InputError(std::string("no pixel shows the ") + shape +
+    throw ShapeError(std::string("no pixel shows the ") + shape +
                      ": its surface has no area, or is seen edge-on");
 }
 

@@ -49,7 +49,7 @@ struct LocalFrame {
 LocalFrame local_frame(const Mesh& mesh) {
   const double area = surface_area(mesh);
   if (!(area > 0) || !std::isfinite(area))
-    throw InputError(fmt::format("the surface area is {}: the mesh cannot be scanned", area));
+    throw ShapeError(fmt::format("the surface area is {}: the mesh cannot be scanned", area));
   return {area_centroid(mesh), std::sqrt(area)};
 }
 
@@ -234,7 +234,7 @@ Scan ScanScene::scan(int view, const ScanOptions& options) const {
       if (nearest.face != kNoFace) scan.points.push_back(nearest.point_in_mesh());
     }
   }
-  if (scan.points.empty()) throw InputError(fmt::format("view {}: no ray meets the mesh", view));
+  if (scan.points.empty()) throw ShapeError(fmt::format("view {}: no ray meets the mesh", view));
   return scan;
 }
 

@@ -63,8 +63,10 @@ class JsonTest(unittest.TestCase):
 
     def salbench(self, subcommand, *further, status=0, preload=None):
         folders = ["--data", self.folder / "data", "--cache", self.cache]
-        if subcommand not in ("verify", "gc"):
-            folders += ["--out", self.folder / "out", "--threads", "1"]
+        if subcommand in ("run", "status"):
+            folders += ["--out", self.folder / "out"]
+        if subcommand in ("run", "doctor"):
+            folders += ["--threads", "1"]
         done = subprocess.run([PROGRAM, subcommand, self.config, *further, *folders], capture_output=True,
                               env={**os.environ, **(preload or {})})
         self.assertEqual(done.returncode, status, done.stderr)
@@ -252,17 +254,17 @@ class JsonTest(unittest.TestCase):
         config = folder / "toy.yaml"
         config.write_text(CONFIG)
         over = ["--data", data, "--cache", folder / "cache", "--threads", "1"]
-        run = [config, *over, "--out", out]
-        document = self.summary("run", *run, status=1)
+        run = [config, *over]
+        document = self.summary("run", *run, "--out", out, status=1)
         self.assertEqual([(failed["item"], failed["stage"]) for failed in document["failed"]], [("3", "mesh")])
         rows = {(row["model"], row["metric"]): row for row in document["scores"]}
         text = (out / "summary.csv").read_text()
         for (model, metric), row in rows.items():
             self.assertIn(f"\nmeshes,{model},{metric},{row['n']},{row['mean']},", text)
-        self.assertEqual(self.summary("run", *run, "--shard", "1/1", status=1)["shard"], "1/1")
+        self.assertEqual(self.summary("run", *run, "--out", out, "--shard", "1/1", status=1)["shard"], "1/1")
         self.assertEqual(self.summary("maps", *run, "--to", folder / "maps", status=1)["written"], 4)
         words = ["--maps", mine, "--name", "OWN"]
-        self.assertIn("OWN", {row["model"] for row in self.summary("evaluate", *run, *words, status=1)["scores"]})
+        self.assertIn("OWN", {row["model"] for row in self.summary("evaluate", *run, "--out", out, *words, status=1)["scores"]})
         self.assertEqual(self.summary("pictures", *run, status=1)["pictures"], 2)
         self.assertEqual(self.summary("export", *run, "--to", folder / "all.h5", status=1, option="--summary")["shapes"], 3)
         self.assertEqual(self.summary("conclusions", out / "results.csv", "--out", folder / "conclusions")["unit"], "mesh")

@@ -93,6 +93,20 @@ TEST_F(Reference, ATableOfASimulatedRunCanBeRead) {
   EXPECT_THAT(again.err, HasSubstr("simulated.csv: SIMULATED participants"));
 }
 
+// Commas in a remark had made it the header, and the last of several had been the only one.
+TEST_F(Reference, ATableOfAPartialRunWithSimulatedPeopleWarnsOfBoth) {
+  const std::string remarks = "# PARTIAL: 1 of 2, so far\n# SIMULATED: by chance, not people\n";
+  const auto warns_of_both = [](const Outcome& outcome) {
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(lines_with(outcome.err, ".csv: PARTIAL: 1 of 2, so far"), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(lines_with(outcome.err, ".csv: SIMULATED: by chance, not people"), SizeIs(1)) << outcome.err;
+  };
+  warns_of_both(run(toy_.write("reference.csv", remarks + read_file(column(1)))));
+  const std::string scores = toy_.write("scores.csv", remarks + toy_.results()).string();
+  warns_of_both(
+      run_process({SALBENCH_PROGRAM, "conclusions", scores, "--out", (toy_ / "concluded").string()}));
+}
+
 // --- of a part of the data set -----------------------------------------------------------------------------
 
 std::vector<std::string> rows_of_item(const Workspace& toy, const std::string& item) {

@@ -51,22 +51,22 @@ TEST(Results, TheSummaryIsTheMeanOfTheRows) {
   const std::vector<double> mean = number_column(summary, "mean"), n = number_column(summary, "n");
   ASSERT_EQ(text_column(summary, "metric")[3], "cc");  // of PS on meshes, the first block
   EXPECT_EQ(n[3], 2);
-  EXPECT_DOUBLE_EQ(mean[3], (cc[0] + cc[2]) / 2);
+  EXPECT_NEAR(mean[3], (cc[0] + cc[2]) / 2, 1e-10);
 }
 
 TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
   const Outcome concluded =
-      run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv", "--out", toy / "concluded"});
+      run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "results.csv", "--out", toy / "concluded"});
   ASSERT_EQ(concluded.status, 0) << concluded.err;
   for (const char* table :
        {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv", "per_class.csv",
         "human_share.csv", "compact.csv", "leaders.csv"})
     EXPECT_EQ(read_file(toy / "concluded" / table), read_file(toy.out() / table)) << table;
-  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "timeline.csv"}).status, 2);
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "timeline.csv"}).status, 2);
   EXPECT_EQ(
-      run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv", "--unit", "view"}).status, 2);
+      run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "results.csv", "--unit", "view"}).status, 2);
 }
 
 TEST(Results, StatementsStandBesideWhatTheScoresSay) {
@@ -75,7 +75,7 @@ TEST(Results, StatementsStandBesideWhatTheScoresSay) {
   write_file(
       toy / "said.csv",
       "section,claim,word,dataset,metric,check,a,b,margin\n4,as written,better,meshes,auc,above,PS,RS,\n");
-  const Outcome concluded = run_process({SALBENCH_PROGRAM, "conclusions", toy.out() / "results.csv",
+  const Outcome concluded = run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "results.csv",
                                          "--statements", toy / "said.csv", "--out", toy / "concluded"});
   ASSERT_EQ(concluded.status, 0) << concluded.err;
   EXPECT_THAT(text_column(read_csv(toy / "concluded/statements.csv"), "model_b"), ElementsAre("RS"));
@@ -90,8 +90,8 @@ TEST(Results, PowerIsReadFromTheResultsOfARun) {
   EXPECT_THAT(power.out, HasSubstr("n_to_detect"));
   const Table table = read_csv(toy / "power.csv");
   ASSERT_EQ(table.rows.size(), read_csv(toy.out() / "significance.csv").rows.size());
-  EXPECT_EQ(number_column(table, "mean_difference"),
-            number_column(read_csv(toy.out() / "significance.csv"), "mean_difference"));
+  EXPECT_EQ(text_column(table, "mean_difference"),
+            text_column(read_csv(toy.out() / "significance.csv"), "mean_difference"));
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "power", toy / "nothing"}).status, 2);
 }
 
@@ -112,7 +112,7 @@ TEST(Results, TablesOfPeopleHaveTheDocumentedColumnsAndRows) {
   EXPECT_THAT(differences.rows, SizeIs(n_metrics));
   const auto value = number_column(curves, "value");  // of mesh 1: auc of one, ..., of two; then of mesh 2
   EXPECT_NEAR(number_column(differences, "mean_difference")[0],
-              (value[n_metrics] - value[0] + value[3 * n_metrics] - value[2 * n_metrics]) / 2, 1e-12);
+              (value[n_metrics] - value[0] + value[3 * n_metrics] - value[2 * n_metrics]) / 2, 1e-9);
 
   const Table equivalents = table("human_equivalents.csv");
   EXPECT_THAT(equivalents.columns, ElementsAre("dataset", "metric", "model", "n", "n_shapes", "largest_group",

@@ -14,6 +14,7 @@
 #include "cache/digest.h"
 #include "cache/layout.h"
 #include "io/file.h"
+#include "pipeline/commands/subcommands.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
@@ -35,11 +36,20 @@ Workspace::Workspace(std::string_view yaml) {
   write_toy_item(data(), "2", shapes::bumpy_sphere(2, 0.35));
 }
 
+bool takes(const std::string& verb, const std::string& option) {
+  Arguments arguments;
+  for (const SubcommandRow row : subcommand_rows())
+    if (const Subcommand subcommand = row(arguments); subcommand.name == verb)
+      return std::ranges::find(subcommand.parameters, option, &Parameter::name) !=
+             subcommand.parameters.end();
+  return true;  // an unknown word gets all
+}
+
 std::vector<std::string> Workspace::command(const std::string& verb,
                                             const std::vector<std::string>& further) const {
   std::vector<std::string> words = {SALBENCH_PROGRAM, verb, config().string()};
   const auto add_default = [&](const char* option, const std::string& value) {
-    if (std::find(further.begin(), further.end(), option) == further.end())
+    if (takes(verb, option) && std::find(further.begin(), further.end(), option) == further.end())
       words.insert(words.end(), {option, value});
   };
   add_default("--data", data().string());

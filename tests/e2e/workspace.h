@@ -35,7 +35,8 @@ class Workspace {
   }
   void configure(std::string_view yaml) const { write("toy.yaml", yaml); }
 
-  // `salbench VERB CONFIG` over these folders, with further arguments that may name others.
+  // `salbench VERB CONFIG` over these folders, as far as it takes them, with further arguments that may name
+  // others.
   std::vector<std::string> command(const std::string& verb,
                                    const std::vector<std::string>& further = {}) const;
   Outcome salbench(const std::string& verb, const std::vector<std::string>& further = {}) const {
@@ -65,6 +66,8 @@ class Workspace {
  private:
   TemporaryFolder folder_;
 };
+
+bool takes(const std::string& verb, const std::string& option);  // by the program's own table
 
 // The lines of a text that hold `part`.
 std::vector<std::string> lines_with(std::string_view text, std::string_view part);

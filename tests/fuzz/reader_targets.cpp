@@ -129,7 +129,7 @@ void fuzz_xyz(std::string_view bytes) { check_cloud_reader(parse_xyz, bytes); }
 
 void fuzz_val(std::string_view bytes) {
   const auto read = [&](std::size_t n_vertices) {
-    return read_or_refuse([&] { return parse_saliency(bytes, kFile, {n_vertices}); });
+    return read_or_refuse([&] { return parse_values(bytes, kFile, {n_vertices}); });
   };
   const std::size_t n_vertices = count_words(bytes);  // one value a line, and no more words
   const auto values = read(n_vertices);

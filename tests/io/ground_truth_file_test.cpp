@@ -24,7 +24,7 @@ using testing::IsEmpty;
 using testing::ThrowsMessage;
 
 void expect_refused_saliency(std::string_view text, std::size_t n, std::string_view why) {
-  EXPECT_THAT([&] { parse_saliency(text, "9.val", {n}); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
+  EXPECT_THAT([&] { parse_values(text, "9.val", {n}); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
 }
 
 void expect_refused_picks(std::string_view text, std::size_t n, std::string_view why) {
@@ -34,17 +34,31 @@ void expect_refused_picks(std::string_view text, std::size_t n, std::string_view
 TEST(GroundTruthFile, ReadsOneValueALine) {
   for (const char* text :
        {"0.5\n0\n1e-3\n", "0.5\r\n0\r\n1e-3\r\n", " 0.5 \n\n0\t\n1e-3\n\n\n", "0.5\n0\n1e-3"})
-    EXPECT_THAT(parse_saliency(text, "9.val", {3}), ElementsAre(0.5, 0, 1e-3)) << text;
+    EXPECT_THAT(parse_values(text, "9.val", {3}), ElementsAre(0.5, 0, 1e-3)) << text;
 }
 
 TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
   expect_refused_saliency("1\nnan\n", 2, "9.val:2: \"nan\" is not a finite number");
   expect_refused_saliency("1\n-inf\n", 2, "9.val:2: \"-inf\" is not a finite number");
   expect_refused_saliency("1\nx\n", 2, "9.val:2: \"x\" is not a number");
-  expect_refused_saliency("1\n2 3\n", 2, "9.val:2: the line has more than one value");
+  expect_refused_saliency("1\n2 3\n", 2, "9.val:2: the line has 2 columns, expected one value");
   expect_refused_saliency("1\n2\n3\n", 2, "9.val:3: the file has 3 values, but the mesh has 2 vertices");
   expect_refused_saliency("1\n", 2, "9.val:1: the file has 1 values, but the mesh has 2 vertices");
   expect_refused_saliency("", 2, "9.val: the file has 0 values");
+}
+
+// As numpy.savetxt and pandas write it.
+TEST(GroundTruthFile, ReadsValuesBelowCommentsAndAHeader) {
+  for (const char* text : {"# saliency of vertices, mesh 9\n0.5\n0\n1e-3\n", "saliency\n0.5\n0\n1e-3\n",
+                           "#\n\n # a\n0.5\n#b\n0\n1e-3\n#"})
+    EXPECT_THAT(parse_values(text, "9.val", {3}), ElementsAre(0.5, 0, 1e-3)) << text;
+  EXPECT_THAT(parse_picks("# picks, from 0\n7\n0\n", "9_0.pid", {8}), ElementsAre(7, 0));
+}
+
+TEST(GroundTruthFile, MapsAreInTheOrderOfTheirVertices) {
+  EXPECT_THAT(parse_values("vertex,value\n2,0.2\n0,0\n1,0.1\n", "9.val"), ElementsAre(0, 0.1, 0.2));
+  EXPECT_THAT([] { parse_values("vertex,value\n2,0.2\n0,0\n0,0.1\n", "9.val"); },
+              ThrowsMessage<InputError>(HasSubstr("9.val:4: column \"vertex\" has 0 a second time")));
 }
 
 TEST(GroundTruthFile, KeepsTheOrderAndRepetitionsOfPicks) {
@@ -92,9 +106,8 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
     if (item.saliency.empty()) continue;
     SCOPED_TRACE(item.name);
     const std::size_t n = read_mesh(item.mesh).vertices.size();
-    GroundTruth truth{parse_saliency(read_file(item.saliency[0]), item.saliency[0], {n}), {}};
-    for (const auto& path : item.picks)
-      truth.picks.push_back(parse_picks(read_file(path), path, {n}));
+    GroundTruth truth{parse_values(read_file(item.saliency[0]), item.saliency[0], {n}), {}};
+    for (const auto& path : item.picks) truth.picks.push_back(parse_picks(read_file(path), path, {n}));
     ++with_truth;
     EXPECT_GE(truth.picks.size(), 22U);
     // A vertex that somebody picked has at least that person's share of saliency.

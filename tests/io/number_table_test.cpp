@@ -57,12 +57,14 @@ TEST(NumberTable, NamesFileLineAndWhatWasExpected) {
             "a.csv:1: no column \"saliency\": the first line has numbers, not names of columns");
   EXPECT_EQ(error_of("1 2\n3\n", "2"), "a.csv:2: the line has 1 column, expected column 2");
   EXPECT_EQ(error_of("x,s\n1,2\n3\n", "s"), "a.csv:3: the line has 1 column, expected column \"s\"");
+  EXPECT_EQ(error_of("1,2\n", ""),
+            "a.csv:1: the line has 2 columns, expected one value: keep that column alone, or, of ground "
+            "truth, name "
+            "it in the description (`column:`), or write its decimal comma as a point");
   EXPECT_EQ(
-      error_of("1,2\n", ""),
-      "a.csv:1: the line has 2 columns, and the description names none: add `column:`, or write its decimal "
-      "comma as a point");
-  EXPECT_EQ(error_of("1,2.5\n", ""),
-            "a.csv:1: the line has 2 columns, and the description names none: add `column:`");
+      error_of("1,2.5\n", ""),
+      "a.csv:1: the line has 2 columns, expected one value: keep that column alone, or, of ground truth, "
+      "name it in the description (`column:`)");
   EXPECT_EQ(error_of("1\nx\n", "1"), "a.csv:2: \"x\" is not a number");
   EXPECT_EQ(error_of("1,\n2,3\n", "2"), "a.csv:1: \"\" is not a number");
   EXPECT_EQ(error_of("1\n\n2\n", "1", {{3, "mesh", "face", "faces"}}),
@@ -118,6 +120,87 @@ TEST(NumberTable, OtherTextsBetweenCommasAreReadAsTheyStand) {
   EXPECT_THAT(column("x,s\n1,2,\n3,4\n", "s"), ElementsAre(2, 4)) << "an empty cell at the end";
   EXPECT_THAT(column("1,2,\n3,4\n", "2"), ElementsAre(2, 4));
   EXPECT_THAT(column("1, 2,3\n4, 5,6\n", "2"), ElementsAre(2, 5)) << "blanks behind commas";
+}
+
+// --- rows that say which element they are about -----------------------------------------------------------
+
+const Elements kVertices{4}, kFaces{4, "mesh", "face", "faces"};
+
+ScalarField of_elements(std::string_view text, const std::string& name,
+                        const Elements& elements = kVertices) {
+  return parse_columns(text, "a.csv", {name}, {}, elements)[0];
+}
+
+// Shuffled rows had been read in the order of the file.
+TEST(NumberTable, AColumnThatNumbersTheVerticesIsObeyed) {
+  for (const char* name :
+       {"vertex", "index", "id", "Vertex ID", "vertex_index", "VertexIdx", "point", "nr", "", "Unnamed: 0"}) {
+    const std::string header = std::string(name) + ",saliency\n";
+    EXPECT_THAT(of_elements(header + "2,0.2\n0,0\n3,0.3\n1,0.1\n", "saliency"), ElementsAre(0, 0.1, 0.2, 0.3))
+        << "from 0: " << name;
+    EXPECT_THAT(of_elements(header + "2,0.1\n1,0\n4,0.3\n3,0.2\n", "2"), ElementsAre(0, 0.1, 0.2, 0.3))
+        << "from 1: " << name;
+    EXPECT_THAT(of_elements(header + "2.0,0.2\n0e0,0\n3,0.3\n1,0.1\n", ""), ElementsAre(0, 0.1, 0.2, 0.3))
+        << "the only column beside it: " << name;
+  }
+  EXPECT_THAT(of_elements("s;vertex\n.2;2\n0;0\n.3;3\n.1;1\n", ""), ElementsAre(0, 0.1, 0.2, 0.3));
+}
+
+// As numpy.savetxt writes it: the names stand behind '#'.
+TEST(NumberTable, AHeaderMayBeAComment) {
+  const std::string rows = "2 0.2\n0 0\n3 0.3\n1 0.1\n";
+  EXPECT_THAT(of_elements("# vertex saliency\n" + rows, "saliency"), ElementsAre(0, 0.1, 0.2, 0.3));
+  EXPECT_THAT(of_elements("# vertex saliency\n# of mesh 52, by gaze\n" + rows, "2"),
+              ElementsAre(0, 0.1, 0.2, 0.3));
+  EXPECT_THAT(of_elements("# of mesh 52, by gaze\n" + rows, "2"), ElementsAre(0.2, 0, 0.3, 0.1))
+      << "nothing says what the first column is";
+  EXPECT_EQ(error_of("# gaze, of 52\n1 2\n", "saliency"),
+            "a.csv:2: no column \"saliency\": the first line has numbers, not names of columns");
+}
+
+TEST(NumberTable, TheColumnNamedAfterTheElementsNumbersThem) {
+  const std::string rows = "0,9,2,0.2\n1,9,0,0\n2,9,3,0.3\n3,9,1,0.1\n";
+  EXPECT_THAT(of_elements(",id,vertex,s\n" + rows, "s"), ElementsAre(0, 0.1, 0.2, 0.3));
+  EXPECT_THAT(of_elements("vertex,x,face,s\n" + rows, "s", kFaces), ElementsAre(0, 0.1, 0.2, 0.3));
+  EXPECT_THAT(of_elements("vertex,x,face,s\n" + rows, "s"), ElementsAre(0.2, 0, 0.3, 0.1));
+  EXPECT_THAT(of_elements("x,y,id,s\n" + rows, "id"), ElementsAre(2, 0, 3, 1)) << "the values themselves";
+  EXPECT_THAT(parse_columns("vertex,x\n2,9\n0,7\n1,8\n", "a.csv", {"x"})[0], ElementsAre(9, 7, 8))
+      << "of points whose coordinates stand beside them";
+}
+
+std::string refusal_of_numbers(const std::string& text, const std::string& name = "s") {
+  try {
+    of_elements(text, name);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(NumberTable, NumbersOfVerticesThatAreNoneAreRefused) {
+  const std::string rest =
+      "; it numbers the vertices, expected each number from 0 to 3, or from 1 to 4, once: correct it, or "
+      "rename "
+      "it if it is something else";
+  const auto refusal = [](const std::string& rows) { return refusal_of_numbers("vertex,s\n" + rows); };
+  EXPECT_EQ(refusal("0,1\n1,1\n1,1\n3,1\n"), "a.csv:4: column \"vertex\" has 1 a second time" + rest);
+  EXPECT_EQ(refusal("1,1\n2,1\n0,1\n4,1\n"), "a.csv:5: column \"vertex\" has 4" + rest)
+      << "0 is of numbers from 0, and 4 of those from 1";
+  EXPECT_EQ(refusal("1,1\n2,1\n3,1\n5,1\n"), "a.csv:5: column \"vertex\" has 5" + rest);
+  EXPECT_EQ(refusal("2,1\n3,1\n4,1\n5,1\n"), "a.csv:5: column \"vertex\" has 5" + rest);
+  EXPECT_EQ(refusal("0,1\n1.5,1\n2,1\n3,1\n"), "a.csv:3: column \"vertex\" has 1.5" + rest);
+  EXPECT_EQ(refusal("-1,1\n1,1\n2,1\n3,1\n"), "a.csv:2: column \"vertex\" has -1" + rest);
+  EXPECT_EQ(refusal("1e300,1\n1,1\n2,1\n3,1\n"), "a.csv:2: column \"vertex\" has 1e+300" + rest);
+  EXPECT_EQ(refusal("v0,1\n1,1\n2,1\n3,1\n"), "a.csv:2: \"v0\" is not a number");
+  EXPECT_EQ(refusal("0,1\n1,1\n2,1\n"), "a.csv:4: the file has 3 values, but the mesh has 4 vertices");
+  EXPECT_EQ(refusal_of_numbers("id,index,s\n0,0,1\n1,1,1\n2,2,1\n3,3,1\n"),
+            "a.csv:1: columns \"id\" and \"index\" both number the vertices: rename one");
+}
+
+// R writes a name of each row, and none above these names: the column of the name is another one.
+TEST(NumberTable, NamesAboveOtherColumnsAreRefused) {
+  EXPECT_EQ(refusal_of_numbers("\"s\"\n\"1\" 0.5\n"), "a.csv:2: 2 columns, but the header names 1");
+  EXPECT_EQ(refusal_of_numbers("vertex s\n1 0 0.5\n", "3"), "a.csv:2: 3 columns, but the header names 2");
 }
 
 }  // namespace

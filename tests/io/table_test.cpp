@@ -69,6 +69,18 @@ TEST(Csv, ReadsFilesOfOtherPrograms) {
   EXPECT_THAT(table.lines, ElementsAre(3, 4));
 }
 
+// One with a comma had become the header, and of several the last alone was kept.
+TEST(Csv, LinesAboveTheHeaderThatBeginWithAHashAreRemarks) {
+  const Table table = parse_csv(
+      "\xef\xbb\xbf# PARTIAL: 3 of 4, so far\r\n\n#SIMULATED, \"by chance\r\n#\na,b\n1,# 2\n", "x.csv");
+  EXPECT_THAT(table.remarks, ElementsAre("PARTIAL: 3 of 4, so far", "SIMULATED, \"by chance", ""));
+  EXPECT_THAT(table.columns, ElementsAre("a", "b"));
+  EXPECT_THAT(text_column(table, "b"), ElementsAre("# 2"));
+  EXPECT_THAT(table.lines, ElementsAre(6));
+  expect_refusal("# a, b\n", "x.csv: the file is empty");
+  expect_refusal("a,b\n# c, d, e\n", "x.csv:2: the line has 3 fields, the header 2");
+}
+
 TEST(Csv, NamesFileAndLineOfWhatIsWrong) {
   expect_refusal("", "x.csv: the file is empty");
   expect_refusal("\n\n", "x.csv: the file is empty");

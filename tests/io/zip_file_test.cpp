@@ -13,6 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::SizeIs;
+using testing::StartsWith;
 using testing::ThrowsMessage;
 
 constexpr ZipLimits kLimits = {.entries = 4, .bytes = 1000};
@@ -55,6 +56,22 @@ TEST_F(ZipFile, NamesThatLeaveTheFolderAreRefused) {
   for (const char* name : {"/etc/passwd", "../out", "a/../../b", "a//b", "./a", "C:\\x", "a\\b"})
     expect_refusal(zip_of({{name, "x"}}), "the entry ");
   expect_refusal(replaced(zip_of({{"a?b", "x"}}), "a?b", "a\nb"), "has a character in its name");
+}
+
+TEST_F(ZipFile, ReasonsGoWithoutTheNameOfTheFile) {
+  const auto reason = [&](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const FileError& error) {
+      EXPECT_EQ(error.what(), (folder_.path() / "a.zip").string() + ": " + error.reason);
+      return error.reason;
+    }
+    return {};
+  };
+  EXPECT_THAT(reason([&] { read("no archive, but as long as one"); }), StartsWith("cannot be read as a ZIP"));
+  EXPECT_THAT(reason([&] { read(std::string((1U << 20U) + 2000, 'x')); }), HasSubstr("can be read"));
+  std::filesystem::remove(folder_.path() / "a.zip");
+  EXPECT_THAT(reason([&] { read_zip(folder_.path() / "a.zip", kLimits); }), StartsWith("cannot be read: "));
 }
 
 TEST_F(ZipFile, MoreThanExpectedIsRefused) {

@@ -220,7 +220,7 @@ TEST_F(DataSets, HowFilesAreReadIsPartOfTheKeyUnlessItIsAsEver) {
   run(description(places));
   EXPECT_THAT(store_.take_saved(), IsEmpty()) << "what the program's own description led to is found";
   EXPECT_THAT(names(places + "values: {column: 1, unseen: -1}\n")[0],
-              "saliency file (column: 1, unseen: \"-1\")");
+              "saliency file (column: 1, unseen: \"-1\"), rows by their numbers");
 }
 
 }  // namespace

@@ -165,6 +165,17 @@ TEST_F(ExplainTest, AnEditedMeshIsNamedByItsFile) {
   EXPECT_THAT(planned(kOnMeshes, "mesh"), ElementsAre(Pair("mesh file .off changed", 1)));
 }
 
+TEST_F(ExplainTest, AFileThatIsReadNoMoreKeepsTheNameInItsKey) {
+  run();
+  const auto in_another_format = [](Rules& rules) {
+    File& file = rules[0].files->files[0][0];
+    file.name = "mesh file .ply";
+    file.title = "mesh file 1.ply";
+  };
+  EXPECT_EQ(asked("mesh", kOnMeshes, "1", in_another_format),
+            "to compute: mesh file 1.ply added, mesh file .off removed");
+}
+
 TEST_F(ExplainTest, AChangedInputIsTracedToWhatChangedIt) {
   run();
   edit_mesh();

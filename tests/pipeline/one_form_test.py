@@ -59,9 +59,9 @@ class Converted(protocols_twin_test.Protocols):
 
     def scored(self, protocol):
         self.archive, self.data = self.data, self.agrees_converted(protocol, self.data)
-        for subcommand, further in (("run", []), ("maps", ["--to", self.folder / "maps"])):
+        for subcommand, further in (("run", ["--out", self.folder / "out"]), ("maps", ["--to", self.folder / "maps"])):
             subprocess.run([PROGRAM, subcommand, self.configured(protocol, "hdf5"), "--data", self.data, "--cache", self.folder / "cache",
-                            "--out", self.folder / "out", "--quiet", *further], check=True)
+                            "--quiet", *further], check=True)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
         return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
 

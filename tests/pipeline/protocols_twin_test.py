@@ -163,9 +163,9 @@ class Protocols(unittest.TestCase):
             config.write_text(protocol)
         else:
             config = ROOT / f"configs/protocols/{protocol}.yaml"
-        for subcommand, further in (("run", []), ("maps", ["--to", self.folder / "maps"])):
+        for subcommand, further in (("run", ["--out", self.folder / "out"]), ("maps", ["--to", self.folder / "maps"])):
             subprocess.run([PROGRAM, subcommand, config, "--data", self.data, "--cache",
-                            self.folder / "cache", "--out", self.folder / "out", "--quiet", *further], check=True)
+                            self.folder / "cache", "--quiet", *further], check=True)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
         return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
 

@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results/conclusions.h"
-#include "pipeline/results/human_curves.h"
+#include "pipeline/commands/conclude.h"
+#include "pipeline/results/raw_tables.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
@@ -128,42 +128,36 @@ TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
   EXPECT_THAT(run(kWithPeople), IsEmpty());
 }
 
-TEST_F(RunnerTest, HumanCurvesAreAveragedOverMeshes) {
+TEST_F(RunnerTest, ScoresOfPeopleHaveTheirTable) {
   ToyRun toy(data_.path(), store_, kWithPeople);
   toy.run();
   const auto curves = collect_human_curves(toy.state());
   ASSERT_THAT(curves, SizeIs(2));
-  const Table table = human_curve_table(curves, chosen_metrics({}));
-  EXPECT_THAT(table.columns, ElementsAre("n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"));
-  const std::size_t n_metrics = chosen_metrics({}).size();
-  ASSERT_THAT(table.rows, SizeIs(2 * n_metrics));  // four participants: 1 and 2 against as many
-  const auto& cc_of_two = table.rows[n_metrics + 3];
-  EXPECT_EQ(cc_of_two[0], Cell(std::int64_t{2}));
-  EXPECT_EQ(cc_of_two[1], Cell("cc"));
-  EXPECT_EQ(cc_of_two[2], Cell(std::int64_t{2}));
-  EXPECT_DOUBLE_EQ(std::get<double>(cc_of_two[3]),
-                   (value_of(curves[0].curve[1], "cc") + value_of(curves[1].curve[1], "cc")) / 2);
-  EXPECT_EQ(curves[0].item, "1");
-  EXPECT_EQ(curves[0].category, "human");
+  EXPECT_EQ(curves[1].item, "2");
+  EXPECT_EQ(curves[1].category, "human");
+  const Table table = people_table(curves, chosen_metrics({}));
+  ASSERT_THAT(table.rows, SizeIs(4)) << "four participants per mesh: 1 and 2 against as many";
+  EXPECT_EQ(table.rows[3][2], Cell(std::int64_t{2}));
+  EXPECT_EQ(table.columns[6], "cc");
+  EXPECT_EQ(table.rows[3][6], Cell(value_of(curves[1].curve[1], "cc")));
 }
 
-TEST_F(RunnerTest, HumanCurvesOfAnEarlierRunAreNotLeftBehind) {
+TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {
   TemporaryFolder out;
   const auto run_and_write = [&](const std::string& yaml) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run();
-    const std::vector<ResultRow> rows = toy.results();
-    write_tables(out.path(), toy.state(), rows, conclude(rows, chosen_metrics({}), {}, 1), {});
+    for (const std::string_view name : files_of_conclusions()) out.write(std::string(name), "{}");
+    write_scores(out.path(), toy.state(), toy.results(), {});
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(out.path()))
-      if (entry.path().filename().string().starts_with("human_")) found.push_back(entry.path().stem());
+      found.push_back(entry.path().stem());
     return found;
   };
   EXPECT_THAT(run_and_write(kWithPeople),
-              UnorderedElementsAre("human_curve", "human_curve_by_mesh", "human_curve_differences",
-                                   "human_equivalents", "human_reliability", "human_share"));
-  EXPECT_THAT(read_file(out / "human_curve.csv"), HasSubstr("n,metric,n_meshes,mean,"));
-  EXPECT_THAT(run_and_write(kToyConfig), ElementsAre("human_share"));
+              UnorderedElementsAre("results", "means", "constant", "people", "mean_histograms_meshes",
+                                   "mean_histograms_scans"));
+  EXPECT_THAT(run_and_write(kToyConfig), Not(Contains("people")));
 }
 
 TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {

@@ -87,6 +87,26 @@ TEST(Section, ErrorsNameFileLineKeyAndTheNearestValidKey) {
   EXPECT_THAT(error_of("a: [1\nb: 2"), HasSubstr("not valid YAML"));
 }
 
+TEST(Section, AnErrorKnowsWhatIsWrongWithoutItsPlace) {
+  try {
+    Sample sample;
+    Section::from_text("sample:\n  radios: 1", "x.yaml").child("sample").read(sample);
+    FAIL();
+  } catch (const SectionError& error) {
+    EXPECT_EQ(error.what_is_wrong, "sample.radios is not a known key; did you mean 'radius'?");
+  }
+}
+
+TEST(DidYouMean, LooksPastTheCaseAndNotAtOtherWords) {
+  const std::vector<std::string_view> known = {"auc", "nss", "LS", "CS", "VIS"};
+  EXPECT_EQ(did_you_mean("AUC", known), "did you mean 'auc'?");
+  EXPECT_EQ(did_you_mean("acu", known), "did you mean 'auc'?");
+  EXPECT_EQ(did_you_mean("ls", known), "did you mean 'LS'?");
+  EXPECT_EQ(did_you_mean("SL", known), "did you mean 'LS'?");
+  EXPECT_EQ(did_you_mean("Cs", {"CS", "cs"}), "did you mean 'CS'?");
+  for (const char* word : {"XX", "X", "", "zzzzzzzz"}) EXPECT_EQ(did_you_mean(word, known, "none"), "none");
+}
+
 TEST(Section, ErrorsStayOnOneLineWhateverTheyQuote) {
   EXPECT_THAT(error_of("sample: {\"a\\nb\": 1}"), HasSubstr("x.yaml:1: sample.a?b is not a known key"));
   EXPECT_THAT(error_of("sample: {count: \"1\\n2\"}"), HasSubstr("sample.count is '1?2', not a whole number"));

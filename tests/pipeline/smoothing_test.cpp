@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scores of smoothed maps stand beside all others, and change none of them.
-#include "pipeline/results/smoothing.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results/conclusions.h"
+#include "pipeline/results/raw_tables.h"
 #include "stages/core/field.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/laplacian.h"
@@ -57,14 +55,15 @@ class Smoothing : public testing::Test {
 TEST_F(Smoothing, ScoresAreThoseOfTheSmoothedMaps) {
   ToyRun& toy = run(kSmoothing);
   const std::vector<Metric> metrics = chosen_metrics(toy.config.metrics);
-  const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), metrics);
-  ASSERT_THAT(smoothed, SizeIs(4));
   const std::vector<ResultRow> rows = toy.results();
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    EXPECT_EQ(smoothed[0].rows.at(row).scores.values, rows[row].scores.values)
-        << "no steps: the plain scores";
-    EXPECT_EQ(smoothed[1].rows.at(row).item, rows[row].item);
-  }
+  const Table table = smoothed_table(toy.state(), metrics);
+  EXPECT_THAT(std::vector(table.columns.begin(), table.columns.begin() + 3),
+              ElementsAre("smoothing", "dataset", "item"));
+  ASSERT_THAT(table.rows, SizeIs(3 * rows.size()));
+  EXPECT_EQ(table.rows[rows.size()][0], Cell("3"));
+  EXPECT_EQ(std::vector(table.rows[0].begin() + 1, table.rows[0].end()),
+            results_table(rows, metrics).rows[0]);
+  EXPECT_EQ(table.rows[rows.size()][2], Cell(rows[0].item));
   const auto value = [&](std::string_view stage) {
     return toy.resolver->value({toy.index(stage), mesh_unit(0)});
   };
@@ -79,8 +78,9 @@ TEST_F(Smoothing, ScoresAreThoseOfTheSmoothedMaps) {
                      truth, toy.config.metrics, Rng(toy.config.seed, "scores.PS", "1"),
                      barycentric_areas(mesh.vertices, mesh.faces));
       });
-  EXPECT_EQ(smoothed[2].rows.at(0).model, "PS");
-  EXPECT_EQ(smoothed[2].rows.at(0).scores.values, expected.values);
+  const std::vector<ResultRow> smoothed = collect_smoothed(toy.state(), 2);
+  EXPECT_EQ(smoothed.at(0).model, "PS");
+  EXPECT_EQ(smoothed.at(0).scores.values, expected.values);
 }
 
 TEST_F(Smoothing, OfCloudsIsOverTheirPartialMesh) {
@@ -106,52 +106,21 @@ TEST_F(Smoothing, OfCloudsIsOverTheirPartialMesh) {
   const Faces surface = value_as<Faces>(*value("surface"));
   const ScalarField map = smoothed_by_steps(value_as<ScalarField>(*value("map.RS")),
                                             edge_adjacency(sphere.vertices.size(), surface), 2);
-  const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), chosen_metrics(toy.config.metrics));
-  ASSERT_THAT(smoothed.at(1).rows, SizeIs(1));
-  EXPECT_EQ(smoothed[1].rows[0].dataset, "clouds");
-  EXPECT_NEAR(smoothed[1].rows[0].value(0),
-              cc(map, value_as<GroundTruth>(*value("cloud_ground_truth")).saliency), 1e-12);
+  const std::vector<ResultRow> smoothed = collect_smoothed(toy.state(), 1);
+  ASSERT_THAT(smoothed, SizeIs(1));
+  EXPECT_EQ(smoothed[0].dataset, "clouds");
+  EXPECT_NEAR(smoothed[0].value(0), cc(map, value_as<GroundTruth>(*value("cloud_ground_truth")).saliency),
+              1e-12);
 }
 
-TEST_F(Smoothing, TheBestIsMarkedAsABound) {
-  ToyRun& toy = run(kSmoothing);
-  const std::vector<Metric> metrics = chosen_metrics(toy.config.metrics);
-  const std::vector<SmoothedRows> smoothed = smoothed_rows(toy.state(), metrics);
-  const Table table = smoothing_table(smoothed, metrics, Observation::mesh);
-  EXPECT_THAT(table.columns, ElementsAre("dataset", "model", "metric", "steps", "n", "n_shapes", "mean",
-                                         "ci95_low", "ci95_high", "upper_bound"));
-  EXPECT_THAT(table.rows, SizeIs(2 * 2 * 4 * 4)) << "meshes and scans, models, metrics, steps";
-  for (std::size_t first = 0; first < table.rows.size(); first += 4) {
-    const bool higher = std::get<std::string>(table.rows[first][2]).starts_with("kl") == false;
-    const auto mean = [&](std::size_t k) { return std::get<double>(table.rows[first + k][6]); };
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(std::get<std::string>(table.rows[first + k][3]), toy.config.metrics.smoothing[k]);
-      EXPECT_EQ(table.rows[first + k][9], Cell(std::int64_t{0}));
-      EXPECT_TRUE(higher ? mean(3) >= mean(k) : mean(3) <= mean(k));
-      EXPECT_EQ(table.rows[first + k][4], Cell(std::int64_t{3})) << "meshes are the unit, of scans too";
-    }
-    EXPECT_EQ(std::get<std::string>(table.rows[first + 3][3]), "best");
-    EXPECT_EQ(table.rows[first + 3][9], Cell(std::int64_t{1}));
-  }
-  // Without steps, the table's mean and interval are those of the summary.
-  const std::vector<ResultRow> rows = toy.results();
-  const Table summary = summary_table(conclude(rows, metrics, {}, 1));
-  EXPECT_EQ(summary.rows[0][1], table.rows[0][1]);
-  EXPECT_EQ(summary.rows[0][4], table.rows[0][6]);
-  EXPECT_EQ(summary.rows[0][6], table.rows[0][7]);
-}
-
-TEST_F(Smoothing, WritesItsTableWhereItIsAskedFor) {
-  TemporaryFolder out;
-  const auto write = [&](const std::string& yaml) {
+TEST_F(Smoothing, HasItsTableWhereItIsAskedFor) {
+  const auto is_there = [&](const std::string& yaml) {
     ToyRun& toy = run(yaml);
-    const std::vector<ResultRow> rows = toy.results();
-    const Conclusions conclusions = conclude(rows, chosen_metrics(toy.config.metrics), {}, 1);
-    write_tables(out.path(), toy.state(), rows, conclusions, {});
-    return std::filesystem::exists(out / "smoothing.csv");
+    const std::vector<TableFile> files = table_files(toy.state(), toy.results(), {});
+    return std::ranges::find(files, "smoothed.csv", &TableFile::name)->text.has_value();
   };
-  EXPECT_TRUE(write(kSmoothing));
-  EXPECT_FALSE(write(kToyConfig)) << "that of an earlier run is gone";
+  EXPECT_TRUE(is_there(kSmoothing));
+  EXPECT_FALSE(is_there(kToyConfig));
 }
 
 TEST_F(Smoothing, WrongStepsAreNamedWithTheirLine) {

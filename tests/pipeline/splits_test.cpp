@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results/conclusions.h"
+#include "pipeline/results/raw_tables.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 
@@ -72,15 +72,14 @@ TEST_F(WithSplits, TablesHaveMeansPerSplit) {
   run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n");
   const std::vector<ResultRow> rows = toy_->results();
   const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
-  const Conclusions conclusions = conclude(rows, metrics, {}, 1);
-  const Table results = results_table(rows, metrics), summary = summary_table(conclusions);
+  const Table results = results_table(rows, metrics), table = means_table(rows, metrics);
   EXPECT_THAT(std::vector(results.columns.begin(), results.columns.begin() + 3),
               ElementsAre("dataset", "split", "item"));
   EXPECT_EQ(std::get<std::string>(results.rows.back()[1]), "test");
-  ASSERT_THAT(summary.columns.at(1), "split");
+  ASSERT_THAT(table.columns.at(1), "split");
   const auto means = [&](const std::string& split) {
-    for (const auto& row : summary.rows)
-      if (row[1] == Cell(split) && row[2] == Cell(std::string("RS")) && row[3] == Cell(std::string("cc")))
+    for (const auto& row : table.rows)
+      if (row[1] == Cell(split) && row[2] == Cell(std::string("cc")) && row[3] == Cell(std::string("RS")))
         return std::pair(std::get<std::int64_t>(row[4]), std::get<double>(row[5]));
     return std::pair(std::int64_t{-1}, 0.0);
   };
@@ -89,16 +88,15 @@ TEST_F(WithSplits, TablesHaveMeansPerSplit) {
   const auto [n_test, test] = means("test");
   EXPECT_EQ(std::tuple(n_all, n_train, n_test), std::tuple(5, 3, 2));
   EXPECT_NEAR(5 * all, 3 * train + 2 * test, 1e-12);
-  EXPECT_EQ(&conclusions.datasets[0], conclusions.of("meshes")) << "all splits together come first";
+  EXPECT_EQ(table.rows[0][1], Cell(std::string())) << "all splits together come first";
 }
 
 TEST_F(WithSplits, TablesOfOneSplitNameItAndHaveEachRowOnce) {
   run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n", "test");
-  const std::vector<ResultRow> rows = toy_->results();
-  const Conclusions conclusions = conclude(rows, chosen_metrics(toy_->config.metrics), {}, 1);
-  ASSERT_THAT(conclusions.datasets, SizeIs(1));
-  EXPECT_THAT(conclusions.datasets[0].scores.label(),
-              ElementsAre(Cell(std::string("meshes")), Cell(std::string("test"))));
+  const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
+  const Table table = means_table(toy_->results(), metrics);
+  EXPECT_THAT(table.rows, SizeIs(metrics.size() * toy_->config.models.size()));
+  for (const auto& row : table.rows) EXPECT_EQ(row[1], Cell(std::string("test")));
 }
 
 TEST_F(WithSplits, TablesOfASetWithoutSplitsHaveNoSuchColumn) {
@@ -106,7 +104,7 @@ TEST_F(WithSplits, TablesOfASetWithoutSplitsHaveNoSuchColumn) {
   const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
   const std::vector<ResultRow> rows = toy_->results();
   EXPECT_EQ(results_table(rows, metrics).columns[1], "item");
-  EXPECT_EQ(summary_table(conclude(rows, metrics, {}, 1)).columns[1], "model");
+  EXPECT_EQ(means_table(rows, metrics).columns[1], "metric");
 }
 
 TEST_F(WithSplits, AnItemInTwoSplitsFailsAlone) {
@@ -131,12 +129,13 @@ TEST_F(WithSplits, ANameThatIsNoItemIsNotedWithItsLine) {
 
 TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {
   const std::string splits = "splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n";
-  EXPECT_THAT([&] { run_splits(splits, "tets"); },
-              ThrowsMessage<ConfigError>("split 'tets': the data set has no such split; did you mean 'test'? "
-                                         "it has test, train (" +
-                                         (folder_ / "own.yaml").string() + ":4)"));
+  EXPECT_THAT(
+      [&] { run_splits(splits, "tets"); },
+      ThrowsMessage<UnknownNameError>("split 'tets': the data set has no such split; did you mean 'test'? "
+                                      "it has test, train (" +
+                                      (folder_ / "own.yaml").string() + ":4)"));
   EXPECT_THAT([&] { run_splits("", "test"); },
-              ThrowsMessage<ConfigError>(HasSubstr("split 'test': the data set has no splits")));
+              ThrowsMessage<UnknownNameError>(HasSubstr("split 'test': the data set has no splits")));
   EXPECT_THAT([&] { run_splits("splits: {file: splits.csv}\n", "test"); },
               ThrowsMessage<ConfigError>(HasSubstr(place("splits.csv") + ": is missing (")));
 }

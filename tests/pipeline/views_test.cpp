@@ -7,7 +7,7 @@
 
 #include "cache/folder_store.h"
 #include "pipeline/inputs/given_maps.h"
-#include "pipeline/results/conclusions.h"
+#include "pipeline/results/results.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 

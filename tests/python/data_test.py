@@ -290,6 +290,22 @@ class Sequence(Folder):
         for items, ids in (("1-3,10", ("1", "2", "10")), (["10", "1"], ("1", "10")), ([2], ("2",)), ([], ())):
             self.assertEqual(salbench.Dataset("folder", self.root, items=items).ids, ids)
 
+    def test_those_with_ground_truth(self):
+        self.write("Distributions/10.val", column(VALUES))
+        dataset = salbench.Dataset("folder", self.root, items="scored")
+        self.assertEqual(dataset.ids, ("10",))
+        self.assert_equal(dataset[0].ground_truth, VALUES)
+
+    def test_a_notebook_shows_its_items(self):
+        page = salbench.Dataset("folder", self.root)[1:]._repr_html_()
+        self.assertIn("<td>10</td>", page)
+        self.assertNotIn("<td>1</td>", page)
+        for number in range(11, 30):
+            self.write(f"<{number}>.off", off())
+        page = salbench.Dataset("folder", self.root)._repr_html_()
+        self.assertIn("&lt;11&gt;", page)
+        self.assertIn("and 12 more", page)
+
     def test_arrays_are_views_that_cannot_be_written_to(self):
         self.write("Distributions/1.val", column(VALUES))
         shape = salbench.Dataset("folder", self.root)[0]
@@ -367,6 +383,10 @@ class Errors(Folder):
         for index in (1.0, None, (0,)):
             with self.assertRaises(TypeError):
                 dataset[index]
+        with self.assertRaisesRegex(KeyError, "no item 'no-box'"):
+            salbench.Dataset("folder", self.root, items="no-box")
+        with self.assertRaisesRegex(ValueError, "no item has ground truth"):
+            salbench.Dataset("folder", self.root, items="scored")
         with self.assertRaisesRegex(ValueError, "no item in the range 60-70"):
             salbench.Dataset("folder", self.root, items="60-70")
         with self.assertRaisesRegex(ValueError, "names no item"):
@@ -385,6 +405,14 @@ class Errors(Folder):
                             ("word", r"word\.val:2: \"x\""), ("gone", r"gone\.off")):
             with self.assertRaisesRegex(ValueError, where):
                 dataset[name]
+
+    def test_an_error_of_any_file_of_an_item_names_that_file_alone(self):
+        self.write("3DModels-Simplif/bunny.obj", obj())
+        self.write("FixationMaps/bunny_300norm.txt", column(VALUES))
+        mask = self.write("CentricityAndVisibilityMaps/bunny_300_visibility.txt", column(VALUES * 0))
+        with self.assertRaises(ValueError) as raised:
+            salbench.Dataset("3dva", self.root)[0]
+        self.assertTrue(str(raised.exception).startswith(f"{mask}: hides everything"), raised.exception)
 
     def test_twins(self):
         self.write("a.off", off())

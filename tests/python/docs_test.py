@@ -17,9 +17,10 @@ DOCS = toy.ROOT / "docs"
 
 
 def schelling(folder):
-    """Three toy meshes named as SHREC'07's are, with saliency and the picks of two participants."""
+    """Four toy meshes named as SHREC'07's are, the first without ground truth, the others with saliency and the picks of two
+    participants."""
     rng = np.random.default_rng(1)
-    meshes = toy.meshes(folder / "toy", 3)
+    meshes = toy.meshes(folder / "toy", 4)
     for part in ("Meshes", "Distributions", "RawData"):
         (folder / "SchellingData" / part).mkdir(parents=True)
     for number, path in enumerate(sorted(meshes.glob("*.off")), 1):
@@ -27,6 +28,8 @@ def schelling(folder):
         text = path.read_text()
         (data / "Meshes" / f"{number}.off").write_text(text)
         n = int(text.split()[1])
+        if number == 1:  # most shapes of the published set have no ground truth, the first ones among them
+            continue
         np.savetxt(data / "Distributions" / f"{number}.val", rng.random(n))
         for participant in range(2):
             np.savetxt(data / "RawData" / f"{number}_{participant}.pid", rng.choice(n, 5, replace=False), fmt="%d")
@@ -56,6 +59,25 @@ class Docs(unittest.TestCase):
         self.assertIn("'auc'", printed)
         self.assertEqual(names["results"].failures, [])
         np.testing.assert_array_equal(names["results"].maps("HEIGHT")[names["shape"].id], names["shape"].points[:, 2])
+        self.assertEqual(list(names["results"].maps("HEIGHT")), ["2", "3", "4"])
+
+    def test_the_ten_lines_of_the_first_page(self):
+        source = re.search(r"^```python\n(.*?)^```$", (toy.ROOT / "README.md").read_text(), flags=re.M | re.S)[1]
+        self.assertLessEqual(len(source.strip().splitlines()), 10)
+        names, printed = self.executed(source, "first.py")
+        self.assertIn("MINE", printed)
+        self.assertEqual(list(names["results"].maps("MINE")), ["2", "3", "4"])  # nothing is computed that is not scored
+
+    def test_text_of_an_export_compares_as_the_dictionary_says(self):
+        import h5py
+
+        config = pathlib.Path("config.yaml")
+        config.write_text("dataset: {scans: false}\nmodels: {LS: {}, RS: {}}\n")
+        toy.run(config, "--data", "SchellingData", "--items", "2", "--cache", "c", "--out", "o")
+        toy.export(config, "--data", "SchellingData", "--items", "2", "--cache", "c", "--to", "all.h5")
+        expression = re.search(r"`(numpy\.char\.decode\([^`]+)`", (DOCS / "data_dictionary.md").read_text())[1]
+        with h5py.File("all.h5") as file:
+            self.assertEqual(eval(expression, {"numpy": np, "file": file}).tolist(), [True, False])  # noqa: S307
 
     def test_the_table_of_equivalents_gives_equal_numbers(self):
         import salbench  # noqa: F401: of the expressions

@@ -39,6 +39,21 @@ class Docstrings(unittest.TestCase):
                 for parameter in inspect.signature(what).parameters:
                     self.assertIn(parameter, what.__doc__, name)
 
+    def test_signatures_name_arrays_in_a_word(self):
+        self.assertIn("prediction: array_like, ground_truth: array_like | None", str(inspect.signature(salbench.score)))
+        functions = [getattr(salbench, name) for name in salbench.__all__]
+        functions += [getattr(salbench.models, name) for name in salbench.models.__all__]
+        functions += [getattr(what, name) for what in functions if inspect.isclass(what) for name in vars(what)]
+        shown = 0
+        for function in filter(callable, functions):
+            try:
+                text = str(inspect.signature(function))
+            except (TypeError, ValueError):
+                continue
+            self.assertNotRegex(text, "_SupportsArray|_NestedSequence|dtype", function)
+            shown += 1
+        self.assertGreater(shown, 50)
+
     def test_types(self):
         checked = mypy("python/salbench")
         self.assertEqual(checked.stdout, "")

@@ -42,8 +42,8 @@ class Tables(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             config = pathlib.Path(folder) / "all.yaml"
             config.write_text(f"{dataset}metrics: {{names: all}}\nmodels: {{LS: {{}}, RS: {{}}}}\n")
-            options = ["--data", data, "--cache", f"{folder}/cache", "--out", f"{folder}/out", *items]
-            toy.run(config, *options)
+            options = ["--data", data, "--cache", f"{folder}/cache", *items]
+            toy.run(config, *options, "--out", f"{folder}/out")
             toy.export(config, *options, "--to", f"{folder}/all.h5")
             with h5py.File(f"{folder}/all.h5") as file:
                 return self.compare_rows(file)
@@ -209,6 +209,14 @@ class Arguments(unittest.TestCase):
             (r"mask must have truth values", ValueError, lambda: salbench.score(self.map, mask=self.picks * 10)),
             (r"prediction must have real numbers, not complex128", ValueError, lambda: salbench.score(self.map * 1j)),
             (r"there is no metric 'aucs'; did you mean 'auc'\?", KeyError, lambda: salbench.score(self.map, metrics=["aucs"])),
+            (r"there is no metric 'AUC'; did you mean 'auc'\?", KeyError, lambda: salbench.score(self.map, metrics="AUC")),
+            (r"there is no metric 'XX'\"", KeyError, lambda: salbench.score(self.map, metrics="XX")),
+            (r"prediction must have shape \(40,\) or \(k, 40\), not \(40, 1\)", ValueError,
+             lambda: salbench.score(self.map[:, None], self.truth)),
+            (r"prediction must have shape \(40,\) or \(k, 40\), not \(40, 3\)", ValueError,
+             lambda: salbench.score(np.tile(self.map[:, None], 3), mask=self.map > 0)),
+            (r"prediction must have shape \(n,\) or \(k, n\), not \(40, 1\)", ValueError,
+             lambda: salbench.score(self.map[:, None], None, self.picks)),
             (r"did you mean 'splits'\?", TypeError, lambda: salbench.score(self.map, split=3)),
             (r"splits must be at least 1", ValueError, lambda: salbench.score(self.map, splits=0)),
             (r"reference must have shape \(100,\)", ValueError, lambda: salbench.score(self.map, reference=[1, 2])),

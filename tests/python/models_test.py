@@ -42,8 +42,8 @@ class Artefacts:
         config = cls.folder / "all.yaml"
         config.write_text(CONFIG.format(layout=layout, participants=participants, step=STEP, picture=PICTURE,
                                         models=", ".join(f"{name}: {{}}" for name in MODELS)))
-        options = ["--data", data, "--cache", cls.folder / "cache", "--out", cls.folder / "out", *items]
-        toy.run(config, *options)
+        options = ["--data", data, "--cache", cls.folder / "cache", *items]
+        toy.run(config, *options, "--out", cls.folder / "out")
         toy.export(config, *options, "--to", cls.folder / "all.h5")
         cls.file = h5py.File(cls.folder / "all.h5")
         cls.addClassCleanup(cls.file.close)
@@ -178,8 +178,8 @@ class Points(unittest.TestCase):
             (folder / "data/1.xyz").write_text("".join(f"{x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()))
             (folder / "c.yaml").write_text("dataset: {layout: folder, participants: simulated}\n"
                                            f"models: {{{', '.join(f'{name}: {{}}' for name in MODELS)}}}\n")
-            options = ["--data", folder / "data", "--cache", folder / "cache", "--out", folder / "out"]
-            toy.run(folder / "c.yaml", *options)
+            options = ["--data", folder / "data", "--cache", folder / "cache"]
+            toy.run(folder / "c.yaml", *options, "--out", folder / "out")
             toy.export(folder / "c.yaml", *options, "--to", folder / "all.h5")
             with h5py.File(folder / "all.h5") as file:
                 self.assertEqual(file["1/cloud/points"][:].tobytes(), points.tobytes())

@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark with models that are functions: tables, reruns, failures, Ctrl-C."""
 
+import collections.abc
+import contextlib
+import datetime
+import functools
+import inspect
+import io
 import os
 import pathlib
 import signal
@@ -10,6 +16,7 @@ import tempfile
 import textwrap
 import threading
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -32,7 +39,7 @@ def function(text, folder, name="predict"):
     return getattr(module, name)
 
 
-class Runs(unittest.TestCase):
+class Folders(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -43,6 +50,8 @@ class Runs(unittest.TestCase):
         keywords = {"cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
         return salbench.run(CONFIG, data=self.meshes, models=models, **keywords)
 
+
+class Runs(Folders):
     def test_a_function_and_the_same_command_have_the_same_tables(self):
         script = self.folder / "height.py"
         script.write_text(textwrap.dedent("""\
@@ -102,6 +111,29 @@ class Runs(unittest.TestCase):
             self.assertRegex(cause, r"MINE\(\) raised ValueError: no eyes \(.*module_\d+\.py, line 4\)")
         self.assertEqual(len(results.scores), 24)
 
+    def test_a_failure_has_the_whole_traceback_of_the_function(self):
+        text = """
+            def helper(shape):
+                return {}[shape.id]
+            def predict(shape):
+                try:
+                    return helper(shape)
+                except KeyError as error:
+                    raise ValueError("no eyes") from error
+            """
+        results = self.run_with({"MINE": function(text, self.folder)}, items="1")
+        failure = results.failures[0]
+        self.assertEqual((failure.item, failure.stage), ("1", "map.MINE"))
+        first, *trace = failure.cause.splitlines()
+        self.assertRegex(first, r"^MINE\(\) raised ValueError: no eyes \(.*, line 8\)$")
+        trace = "\n".join(trace)
+        for line in ("line 3, in helper", "KeyError: '1'", "direct cause", "line 8, in predict"):
+            self.assertIn(line, trace)
+        self.assertTrue(trace.endswith("ValueError: no eyes"), trace)
+        record = (self.folder / "out" / "run.yaml").read_text()
+        self.assertIn("raised ValueError: no eyes", record)
+        self.assertNotIn("Traceback", record)
+
     def test_what_is_no_map_fails_its_shape(self):
         for returned, cause in [
             ("None", r"the map must have"), ("shape.points", r"the map must have shape \(\d+,\), not \(\d+, 3\)"),
@@ -114,15 +146,6 @@ class Runs(unittest.TestCase):
                 self.assertEqual(len([1 for _, stage, _ in results.failures if stage == "map.MINE"]), 26)
                 for found in causes:
                     self.assertRegex(found, cause)
-
-    def test_a_function_without_source_has_the_same_key_in_every_process(self):
-        script = ("from salbench._run import _source_of\n"
-                  "exec('def predict(shape): return (lambda x: x in {\\'a\\', \\'b\\', \\'c\\'})(shape)')\n"
-                  "print(_source_of(predict))\n")
-        texts = {subprocess.run([sys.executable, "-c", script], env=os.environ | {"PYTHONHASHSEED": seed}, check=True,
-                                capture_output=True, text=True).stdout for seed in "1234"}
-        self.assertEqual(len(texts), 1)
-        self.assertIn("'a', 'b', 'c'", texts.pop())
 
     def test_the_function_runs_in_the_thread_that_called(self):
         threads = set()
@@ -168,6 +191,136 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "nobody"):
             again.maps("AGAIN")["nobody"]
 
+    def test_maps_are_a_mapping(self):
+        def predict(shape):
+            if shape.id == "1_3":
+                raise ValueError
+            return shape.points[:, 0]
+
+        results = self.run_with({"MINE": predict, "LS": {}})
+        maps = results.maps("MINE")
+        self.assertIsInstance(maps, collections.abc.Mapping)
+        scans = [f"{item}_{view}" for item in "12" for view in range(12)]
+        self.assertEqual(list(maps), ["1", *(name for name in scans[:12] if name != "1_3"), "2", *scans[12:]])
+        self.assertEqual((len(maps), "1_3" in maps, "2" in maps, 3 in maps), (25, False, True, False))
+        for item, values in results.maps("LS").items():
+            np.testing.assert_array_equal(results.maps("LS")[item], values)
+        self.assertIsNone(maps.get("1_3"))
+        with self.assertRaisesRegex(KeyError, "called '1_33'; did you mean '1_"):
+            maps["1_33"]
+        with self.assertRaisesRegex(KeyError, "'mine'; did you mean 'MINE'"):
+            results.maps("mine")
+        with self.assertRaisesRegex(KeyError, "no model with maps 'XX'; there are LS, MINE"):
+            results.maps("XX")
+
+    def test_scores_of_maps_are_those_of_the_tables(self):
+        config = CONFIG | {"metrics": {"names": "all"}}
+        models = {"MINE": function(HEIGHT.format(axis=0), self.folder), "TWO": function(HEIGHT.format(axis=1), self.folder), "CS": {}}
+        results = salbench.run(config, data=self.meshes, models=models, cache=self.folder / "cache", out=self.folder / "out",
+                               progress=False)
+        self.assertEqual(len(results.scores), 3 * 26)
+        for row in results.scores.to_dict("records"):
+            item = row["item"] if row["view"] != row["view"] else f"{row['item']}_{row['view']}"
+            scores = results.score(results.maps(row["model"])[item], item)
+            for metric, score in scores.items():
+                self.assertEqual(repr(score), repr(row[metric]), (item, row["model"], metric))
+        of_another = results.score(-results.maps("TWO")["1"], "1")
+        self.assertEqual(of_another, results.score(-results.maps("TWO")["1"], "1", model="CS"))
+        self.assertNotEqual(of_another["auc"], results.score(-results.maps("TWO")["1"], "1", model="TWO")["auc"])
+        # The same from arrays alone.
+        truth = salbench.Cache(self.folder / "cache")["1"]["ground_truth"]
+        picks = np.split(truth["picks"], truth["pick_offsets"][1:-1])
+        known = salbench.score(results.maps("MINE")["1"], truth["saliency"], picks, metrics=["auc", "nss", "cc"],
+                               reference=results.reference["meshes"], seed=(2016, "MINE", "1"))
+        table = results.score(results.maps("MINE")["1"], "1")
+        self.assertEqual(known, {name: table[name] for name in known})
+        for error, what, call in [
+            (KeyError, "did you mean '1_1", lambda: results.score([0], "1_111")),
+            (KeyError, "'Mine'; did you mean 'MINE'", lambda: results.score([0], "1", model="Mine")),
+            (ValueError, r"prediction must have shape \(\d+,\), not \(1,\)", lambda: results.score([0], "1")),
+            (ValueError, "prediction is .*nan", lambda: results.score(results.maps("CS")["1"] * np.nan, "1")),
+            (ValueError, "results that run\\(\\) returned", lambda: salbench.Results(self.folder / "out").score([0], "1")),
+        ]:
+            with self.subTest(what), self.assertRaisesRegex(error, what):
+                call()
+
+    def test_the_reference_is_the_histogram_that_maps_were_matched_to(self):
+        results = self.run_with({"LS": {}})
+        for read in (results, salbench.Results(self.folder / "out")):
+            self.assertEqual(list(read.reference), ["meshes", "scans"])
+            self.assertEqual(read.reference["scans"].shape, (100,))
+            np.testing.assert_array_equal(salbench.match_histogram(results.maps("LS")["1"], read.reference["meshes"]),
+                                          salbench.Cache(self.folder / "cache")["1"].matched["LS"])
+        with self.assertRaisesRegex(ValueError, "choose one, such as results.reference\\['meshes'\\]"):
+            salbench.score([0, 1], reference=results.reference)
+        with self.assertRaisesRegex(KeyError, "did you mean 'scans'"):
+            results.reference["scan"]
+        part = self.run_with({"LS": {}}, items="1", reference=results.reference["meshes"])
+        np.testing.assert_array_equal(np.asarray(part.reference), results.reference["meshes"])
+        np.testing.assert_array_equal(salbench.match_histogram(part.maps("LS")["1"], part.reference),
+                                      salbench.match_histogram(part.maps("LS")["1"], results.reference["meshes"]))
+        file = self.folder / "out" / "mean_histograms_meshes.csv"
+        kept = file.rename(self.folder / "reference.csv")
+        of_file = self.run_with({"LS": {}}, items="1", reference=kept)
+        self.assertEqual(of_file.computed, 0)
+        own = self.run_with({"LS": {}}, items="1", reference="items")
+        truth = salbench.Cache(self.folder / "cache")["1"].ground_truth
+        np.testing.assert_array_equal(own.reference["meshes"], salbench.histogram(truth))
+        with self.assertRaisesRegex(ValueError, "reference must have shape"):
+            self.run_with({"LS": {}}, reference=[1, 2])
+
+    def test_items_with_ground_truth_and_splits_are_run_alone(self):
+        data = self.folder / "split"
+        for part, name in (("", ".off"), ("Distributions", ".val")):
+            (data / part).mkdir(parents=True, exist_ok=True)
+            for number in "1234":
+                text = (self.meshes / f"{int(number) % 2 + 1}.off").read_text()
+                values = "\n".join(map(str, range(int(text.split()[1]))))
+                if part == "" or number != "1":
+                    (data / part / (number + name)).write_text(values if part else text)
+        layout = self.folder / "split.yaml"
+        layout.write_text("places: [{meshes: '*.off', truth: {saliency: 'Distributions/{item}.val'}}]\n"
+                          "splits: {items: {train: ['2', '1'], test: ['3', '4']}}\n")
+        seen = []
+
+        def predict(shape):
+            seen.append(shape.id)
+            return shape.points[:, 0]
+
+        config = {"dataset": {"layout": str(layout), "scans": False, "split": "test"}}
+        for number, (keywords, items) in enumerate([
+            ({"split": "train"}, ["1", "2"]), ({"split": "train", "items": "scored"}, ["2"]), ({}, ["3", "4"]),
+            ({"split": ""}, ["1", "2", "3", "4"]), ({"split": "", "items": "scored"}, ["2", "3", "4"]),
+        ]):
+            with self.subTest(keywords):
+                seen.clear()
+                salbench.run(config, data=data, models={f"M{number}": predict}, cache=self.folder / "cache", out=self.folder / "out",
+                             progress=False, **keywords)
+                self.assertEqual(sorted(seen), items)
+        for keywords, what in (({"split": "trian"}, "did you mean 'train'"), ({"items": "5-box"}, "no item '5-box'")):
+            with self.subTest(what), self.assertRaisesRegex(KeyError, what):
+                salbench.run(config, data=data, models={"LS": {}}, progress=False, **keywords)
+
+    def test_a_warning_recommends_arguments_of_run(self):
+        with self.assertLogs("salbench", "WARNING") as logged:
+            self.run_with({"LS": {}}, items="1")
+        text = "\n".join(logged.output)
+        self.assertIn("reference='items' matches to the mean over these alone", text)
+        self.assertNotIn("--", text)
+        self.assertIn("reference", inspect.signature(salbench.run).parameters)
+        with self.assertRaisesRegex(OSError, "choose another with `out`"):
+            (self.folder / "file").write_text("")
+            self.run_with({"LS": {}}, out=self.folder / "file" / "out")
+
+    def test_a_notebook_shows_results(self):
+        results = self.run_with({"LS": {}, "A": function(HEIGHT.format(axis=0), self.folder)})
+        page = results._repr_html_()
+        self.assertIn("artefacts computed", page)
+        self.assertIn("<td>LS</td>", page)
+        for path in (self.folder / "out").glob("ranking.csv"):
+            path.unlink()
+        self.assertNotIn("<table", salbench.Results(self.folder / "out")._repr_html_())
+
     def test_a_map_that_was_damaged_since_is_computed_again(self):
         results = self.run_with({"MINE": function(HEIGHT.format(axis=0), self.folder)})
         name = results.scores.item[0]
@@ -180,7 +333,7 @@ class Runs(unittest.TestCase):
     def test_what_cannot_be_run_is_said_at_once(self):
         for models, error, what in [
             ({"ls": {}}, ValueError, "ls"), ({"LS": {"foci": 1}}, ValueError, "foci_share"), ({"a/b": salbench.Model(len, version=1)}, ValueError, "a/b"),
-            ({"MINE": len}, ValueError, "give a version"),
+            ({"LS": {}, "MINE": salbench.Model(len, version=1.5)}, TypeError, "float"),
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 self.run_with(models)
@@ -192,6 +345,9 @@ class Runs(unittest.TestCase):
             salbench.run(CONFIG)
         with self.assertRaisesRegex(ValueError, "threads must be at least 1"):
             self.run_with({"LS": {}}, threads=0)
+        for wrong in ("weights.bin", pathlib.Path("weights.bin")):
+            with self.assertRaisesRegex(ValueError, "depends must be a sequence"):
+                salbench.Model(len, depends=wrong)
 
     def test_ctrl_c_ends_the_run_in_order_and_the_next_call_goes_on(self):
         program = self.folder / "slow.py"
@@ -247,6 +403,219 @@ class Runs(unittest.TestCase):
             finally:
                 os._exit(2)
         self.assertEqual(os.waitpid(child, 0)[1], 0)
+
+
+class Box:
+    """An object with weights; called, it is a model, and so is its method."""
+
+    def __init__(self, weight):
+        self.weight = weight
+
+    def __call__(self, shape):
+        return self.weight * shape.points[:, 2]
+
+    def predict(self, shape):
+        return self(shape)
+
+
+class Network:
+    """What PyTorch's modules look like: parameters that know their values, and a state_dict of them."""
+
+    class Tensor:
+        dtype = "torch.float32"
+
+        def __init__(self, values):
+            self.values = values
+
+        def detach(self):
+            return self
+
+        cpu = detach
+
+        def numpy(self):
+            return self.values
+
+    def __init__(self, weights):
+        self._parameters = {"weight": Network.Tensor(np.array(weights, np.float32))}
+
+    def parameters(self):
+        return iter(self._parameters.values())
+
+    def state_dict(self):
+        return dict(self._parameters)
+
+    def step(self):
+        for parameter in self.parameters():
+            parameter.values -= 0.5
+
+    def __call__(self, points):
+        return points @ self._parameters["weight"].values.astype(float)
+
+
+WEIGHT = 1
+
+
+def height(weight, shape):
+    return weight * shape.points[:, 2]
+
+
+def helped(shape):
+    return height(1, shape)
+
+
+def by_global(shape):
+    return WEIGHT * shape.points[:, 2]
+
+
+def by_closure(weight):
+    return lambda shape: weight * shape.points[:, 2]
+
+
+class StaleMaps(Folders):
+    """Two models of one name: the second has maps of its own if it differs, and those of the first if it does not."""
+
+    def assert_differs(self, before, after):
+        first = self.run_with({"MINE": before()})
+        maps = {item: first.maps("MINE")[item] for item in ("1", "1_3")}
+        self.assertEqual(first.models["MINE"]["computed"], 26)
+        self.assertEqual(self.run_with({"MINE": before()}).models["MINE"]["computed"], 0)
+        second = self.run_with({"MINE": after()})
+        self.assertEqual(second.models["MINE"]["computed"], 26)
+        self.assertTrue(any((maps[item] != second.maps("MINE")[item]).any() for item in maps))
+
+    def test_closure(self):
+        self.assert_differs(lambda: by_closure(1), lambda: by_closure(-1))
+
+    def test_global(self):
+        with mock.patch(f"{__name__}.WEIGHT", 1):
+            self.assert_differs(lambda: by_global, lambda: (globals().update(WEIGHT=-1), by_global)[1])
+
+    def test_helper_function(self):
+        original = height
+        try:
+            self.assert_differs(lambda: helped, lambda: (globals().update(height=lambda weight, shape: -shape.points[:, 2]), helped)[1])
+        finally:
+            globals().update(height=original)
+
+    def test_bound_method(self):
+        self.assert_differs(lambda: Box(1).predict, lambda: Box(-1).predict)
+
+    def test_callable_object(self):
+        self.assert_differs(lambda: Box(1), lambda: Box(-1))
+
+    def test_network_trained_further(self):
+        network = Network([0, 0, 1])
+        self.assert_differs(lambda: lambda shape: network(shape.points), lambda: (network.step(), lambda shape: network(shape.points))[1])
+
+    def test_depends_on_a_network(self):
+        network = Network([0, 0, 1])
+        model = salbench.Model(lambda shape: NETWORKS[0](shape.points), version=1, depends=[network])
+        with mock.patch.dict(globals(), NETWORKS=[network]):
+            self.assert_differs(lambda: model, lambda: (network.step(), model)[1])
+
+    def test_one_middle_element_of_a_large_array(self):
+        weights = np.ones(1_000_000)
+
+        def changed():
+            weights[500_000] = -1
+            return salbench.Model(lambda shape: weights[500_000] * shape.points[:, 0], version=1, depends=[weights])
+
+        self.assert_differs(lambda: salbench.Model(lambda shape: weights[500_000] * shape.points[:, 0], version=1, depends=[weights]), changed)
+
+    def test_partial(self):
+        self.assert_differs(lambda: functools.partial(height, 1), lambda: functools.partial(height, -1))
+
+    def test_a_new_interpreter_finds_the_maps(self):
+        program = self.folder / "program.py"
+        program.write_text(textwrap.dedent(f"""\
+            import functools, sys
+            import numpy as np
+            import salbench
+
+            NAMES = {{"a", "b", "c", "shape", "normals"}}
+
+            class Box:
+                def __init__(self, weights):
+                    self.weights, self.names = weights, set(NAMES)
+
+                def __call__(self, shape, scale):
+                    return shape.points @ self.weights * scale * len([n for n in NAMES if n in {{"a", "b", "c"}}])
+
+            def make(box):
+                def predict(shape):
+                    return box(shape, 2.0)
+                return predict
+
+            results = salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{
+                "CLOSED": make(Box(np.array([1.0, 2.0, 3.0]))), "PART": functools.partial(Box(np.eye(3)[0]), scale=3)}},
+                cache={str(self.folder / "cache")!r}, out={str(self.folder / "out")!r}, progress=False)
+            print([maps["computed"] for maps in results.models.values()], results.computed)
+            """))
+        said = [subprocess.run([sys.executable, program], env=os.environ | {"PYTHONHASHSEED": seed}, check=True, text=True,
+                               capture_output=True).stdout for seed in "123"]
+        self.assertTrue(said[0].startswith("[26, 26]"), said[0])
+        self.assertEqual(said[1:], ["[0, 0] 0\n"] * 2)
+
+    def test_what_cannot_be_walked_is_computed_anew_with_a_line(self):
+        box = Box(1.0)
+        box.lock = threading.Lock()
+        for _ in range(2):
+            with self.assertLogs("salbench", "WARNING") as said:
+                results = self.run_with({"MINE": box})
+            self.assertEqual(results.models["MINE"]["computed"], 26)
+            self.assertEqual(len(said.output), 1)
+            self.assertRegex(said.output[0], r"MINE: its maps are computed anew in each call.*: \.lock: a lock .*has no content")
+            np.testing.assert_array_equal(results.maps("MINE")["1"], salbench.Dataset("folder", self.meshes)["1"].points[:, 2])
+        with self.assertNoLogs("salbench", "WARNING"):
+            self.run_with({"MINE": salbench.Model(box, version=1)})
+            self.assertEqual(self.run_with({"MINE": salbench.Model(box, version=1)}).models["MINE"]["read"], 26)
+
+    def test_a_version_counts_alone_beside_depends(self):
+        def run(weight, **what):
+            return self.run_with({"MINE": salbench.Model(Box(weight), **what)}).models["MINE"]["computed"]
+
+        self.assertEqual([run(1, version=1), run(2, version=1), run(2, version=0), run(3, version=1, depends=[{"a": np.ones(3)}]),
+                          run(4, version=1, depends=[{"a": np.ones(3)}]), run(4, version=1, depends=[{"a": np.zeros(3)}])],
+                         [26, 0, 26, 26, 0, 26])
+        model = salbench.Model(Box(1), version=1, depends=(value for value in [1]))
+        self.assertEqual([self.run_with({"MINE": model}).models["MINE"]["computed"] for _ in range(2)], [26, 0])
+
+    def test_a_model_without_a_cache_is_computed_in_each_call_and_no_other_is(self):
+        @salbench.model(cache=False)
+        def mine(shape):
+            return shape.points[:, 0]
+
+        for read in (0, 26):
+            results = self.run_with({"MINE": mine, "KEPT": lambda shape: shape.points[:, 1]})
+            self.assertEqual(results.models["MINE"], {"computed": 26, "read": 0, "from": None})
+            self.assertEqual(results.models["KEPT"]["read"], read)
+            self.assertEqual(results.maps("MINE")["1_3"].ndim, 1)
+
+    def test_results_say_how_many_maps_are_new_and_from_when_the_others_are(self):
+        before = datetime.datetime.now() - datetime.timedelta(seconds=2)
+        first = self.run_with({"LS": {}, "MINE": Box(1)})
+        self.assertEqual(list(first.models), ["LS", "MINE"])
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            second = self.run_with({"LS": {}, "MINE": Box(2)}, progress=True)
+        maps = second.models["LS"]
+        self.assertEqual((maps["computed"], maps["read"]), (0, 26))
+        self.assertTrue(before <= maps["from"][0] <= maps["from"][1] <= datetime.datetime.now())
+        lines = said.getvalue().splitlines()[-2:]
+        self.assertRegex(lines[0], r"^LS: 0 maps computed now, 26 read \(from \d{4}-\d\d-\d\d \d\d:\d\d( to .*)?\)$")
+        self.assertEqual(lines[1], "MINE: 26 maps computed now, 0 read")
+        self.assertIn(lines[0], repr(second))
+        self.assertEqual(salbench.Results(self.folder / "out").models, {})
+
+    def test_items_are_names_or_a_text_and_not_nothing(self):
+        (self.meshes / "a, b.off").write_bytes((self.meshes / "1.off").read_bytes())
+        for items, found in (["a, b"], {"a, b"}), (["a, b", "1"], {"a, b", "1"}), ([1, 2], {"1", "2"}), ("1-2", {"1", "2"}), ("1,2", {"1", "2"}):
+            results = self.run_with({"MINE": Box(1)}, items=items)
+            self.assertEqual({name for name in results.scores.item if "_" not in name}, found)
+        for items in ([], "", ()):
+            with self.assertRaisesRegex(ValueError, "items is empty"):
+                self.run_with({"MINE": Box(1)}, items=items)
+        with self.assertRaisesRegex(ValueError, "no item 'a'"):
+            self.run_with({"MINE": Box(1)}, items="a, b")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@
 #include "io/mesh_file.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"
-#include "stages/stats/correlation.h"
+#include "tests/support/correlation.h"
 #include "tests/support/mesh_models.h"
 
 namespace salbench {
@@ -44,7 +44,7 @@ std::vector<Marked> marked_meshes(const fs::path& data) {
     marked.name = entry.path().stem().string();
     marked.mesh = read_mesh(data / "Meshes" / (marked.name + ".off"));
     const Elements elements{marked.mesh.vertices.size()};
-    marked.saliency = parse_saliency(read_file(entry.path()), entry.path().string(), elements);
+    marked.saliency = parse_values(read_file(entry.path()), entry.path().string(), elements);
     std::set<std::int32_t> picks;
     for (int k = 0;; ++k) {
       const fs::path file = data / "RawData" / fmt::format("{}_{}.pid", marked.name, k);

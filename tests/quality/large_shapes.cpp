@@ -23,7 +23,7 @@
 #include "stages/models/cs.h"
 #include "stages/models/ls.h"
 #include "stages/normals/normals.h"
-#include "stages/stats/correlation.h"
+#include "tests/support/correlation.h"
 #include "tests/support/subdivided.h"
 
 namespace salbench {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every file of scripts/ can be read by its interpreter, has a check or a reason to have none, and is mentioned where people look."""
+"""Every file of scripts/ can be read by its interpreter, is run by scripts/test or by scripts/check, and is mentioned where people look."""
 
 import ast
 import os
@@ -28,18 +28,21 @@ def language_of(path):
 
 
 def listed():
-    """Rows of scripts/check --list: name, files, needs; or "-", file, reason."""
+    """Rows of scripts/check --list: name, files, needs; or "-", file, and the file that has it run by scripts/test."""
     text = subprocess.run([SCRIPTS / "check", "--list"], check=True, capture_output=True, text=True).stdout
     return [line.split("|") for line in text.splitlines()]
 
 
 class ScriptsTest(unittest.TestCase):
-    def test_each_has_a_check_or_a_reason_to_have_none(self):
+    def test_each_is_run_by_scripts_test_or_by_scripts_check(self):
         checked = {file for name, files, _ in listed() if name != "-" for file in files.split()}
-        excused = {file: reason for name, file, reason in listed() if name == "-"}
-        self.assertEqual(sorted(checked | set(excused)), [name_of(path) for path in FILES])
-        self.assertFalse(checked & set(excused))
-        self.assertTrue(all(excused.values()))
+        tested = {file: where for name, file, where in listed() if name == "-"}
+        self.assertEqual(sorted(checked | set(tested)), [name_of(path) for path in FILES])
+        for file, where in tested.items():
+            module = Path(where).stem
+            if module.endswith("_test"):
+                self.assertRegex((ROOT / where).with_name("CMakeLists.txt").read_text(encoding="utf-8"), rf"\b{module}\b")
+            self.assertRegex((ROOT / where).read_text(encoding="utf-8"), rf"\b{re.escape(Path(file).name)}\b", f"{where} does not run {file}")
 
     def test_each_check_is_a_function_and_needs_what_is_known(self):
         text = (SCRIPTS / "check").read_text()
@@ -100,7 +103,7 @@ class CheckTest(unittest.TestCase):
         return subprocess.run([SCRIPTS / "check", *arguments], capture_output=True, text=True)
 
     def test_an_unknown_name_is_refused_before_anything_runs(self):
-        done = self.check("setup", "nonsense")
+        done = self.check("faults", "nonsense")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("no check 'nonsense'", done.stderr)
 
@@ -109,23 +112,23 @@ class CheckTest(unittest.TestCase):
         holder = tempfile.TemporaryDirectory()
         self.addCleanup(holder.cleanup)
         scripts = Path(holder.name) / "scripts"
-        (scripts / "slurm").mkdir(parents=True)
+        scripts.mkdir()
         for name in ("check", "real_data.sh"):
             shutil.copy(SCRIPTS / name, scripts)
-        for name, text in {"setup": "[[ $1 != fuzz ]]", "faults": "echo well", "slurm/test": "echo first; echo 'the end'; exit 3"}.items():
+        for name, text in {"setup": "[[ $1 != fuzz ]]", "faults": "echo well", "mutate": "echo first; echo 'the end'; exit 3"}.items():
             (scripts / name).write_text(f"#!/usr/bin/env bash\n{text}\n")
             (scripts / name).chmod(0o755)
         environment = {name: value for name, value in os.environ.items() if name != "SALBENCH_DATA"}
 
         def checked(*names):
             return subprocess.run([scripts / "check", *names], capture_output=True, text=True, env=environment)
-        done = checked("faults", "slurm", "bench", "fuzz")
+        done = checked("faults", "mutate", "fidelity", "fuzz")
         self.assertEqual((done.returncode, done.stderr), (1, ""))
         self.assertEqual([re.sub(" +", " ", re.sub(r" \d+ s\b", " N s", line)) for line in done.stdout.splitlines()], [
-            "passed faults N s", "failed slurm N s exit status 3, build/check/slurm.log: the end",
-            "skipped bench - needs real data: SALBENCH_DATA",
+            "passed faults N s", "failed mutate N s exit status 3, build/check/mutate.log: the end",
+            "skipped fidelity - needs real data: SALBENCH_DATA",
             "skipped fuzz - needs packages that cannot be installed: scripts/setup fuzz", "1 passed, 1 failed, 2 skipped in N s"])
-        self.assertEqual((Path(holder.name) / "build/check/slurm.log").read_text(), "first\nthe end\n")
+        self.assertEqual((Path(holder.name) / "build/check/mutate.log").read_text(), "first\nthe end\n")
         self.assertEqual(checked("faults", "fuzz").returncode, 0)
 
     def test_without_a_name_it_says_how_it_is_used(self):

@@ -38,6 +38,7 @@ class SlurmSubmitTest(unittest.TestCase):
         (tools / "sbatch").chmod(0o755)
         self.submitted = self.folder / "submitted"
         self.environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "SUBMITTED": str(self.submitted)}
+        del self.environment["SALBENCH_PROGRAM"]  # the program is that of the tree, unless it names one
 
     def options(self, out):
         return ["--data", "data set", "--cache", "cache", *(["--out", out] if out else [])]
@@ -73,7 +74,7 @@ class SlurmSubmitTest(unittest.TestCase):
                 self.assertFalse(os.path.exists(expected + " (finished)"))
 
     def test_the_jobs_are_an_array_and_one_that_follows_it_with_the_options_of_the_run(self):
-        done = self.submit("toy set (a).yaml", "--tasks=3", "--restarts", "7", "--time=1:00", "--", *self.options("o u t"))
+        done = self.submit("toy set (a).yaml", "--tasks=3", "--restarts", "7", "--time=1:00", "--", "--threads", "2", "--quiet", *self.options("o u t"))
         self.assertEqual(done.returncode, 0, done.stderr)
         array, merge = self.jobs()
         self.assertIn("--array=1-3", array)
@@ -81,7 +82,7 @@ class SlurmSubmitTest(unittest.TestCase):
         for job in (array, merge):
             self.assertIn("--time=1:00", job)
             task = job.index(str(self.folder / "tree/scripts/slurm/task"))
-            self.assertEqual(job[task + 2:], ["3", "7", str(self.work / "toy set (a).yaml"), *self.options("o u t")])
+            self.assertEqual(job[task + 2:], ["3", "7", "4", str(self.work / "toy set (a).yaml"), *self.options("o u t"), "--threads", "2", "--quiet"])
 
     def test_what_cannot_run_is_refused_and_nothing_is_submitted(self):
         for words, arguments in (("is not a file", ["nothing.yaml", "--tasks", "4"]),

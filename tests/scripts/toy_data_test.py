@@ -32,9 +32,13 @@ def make_data(data):
     models = ["LS", "CS", "PS", "MS"]
     bins = [{"bin_left": i / 100, **{model: 1 + chance.random() for model in ("GS", *models)}} for i in range(100)]
     pandas.DataFrame(bins).to_csv(reference / "mean_histograms_scans.csv", index=False)
+    pandas.DataFrame(bins).to_csv(reference / "mean_histograms_meshes.csv", index=False)
     rows = [{"item": item, "view": view, "model": model, "auc": chance.random(), "nss": chance.random(), "cc": chance.random()}
-            for item in (1, 2) for view in range(12) for model in models]
-    pandas.DataFrame(rows).to_csv(reference / "published_scan_by_scan.csv", index=False)
+            for item in (1, 2, 21, 22) for view in range(12) for model in [*models, "HS", "RS"]]
+    scans = pandas.DataFrame(rows)
+    scans.to_csv(reference / "published_all_scans.csv", index=False)
+    scans[scans["model"].isin(models)].to_csv(reference / "published_scan_by_scan.csv", index=False)
+    scans[scans["view"] == 0].drop(columns="view").to_csv(reference / "published_all_scores.csv", index=False)
 
 
 class ToyDataTest(unittest.TestCase):
@@ -62,15 +66,28 @@ class ToyDataTest(unittest.TestCase):
         self.assertRegex(table, r"\n *map\.[A-Z]+ of scans +[\d.]+ +[\d.]+\n")
         self.assertRegex(table, r"\npeak memory: \d+ MB\n$")
 
-    def test_perf_metrics(self):
-        table = self.printed("perf_metrics", "--items", "1", "--rounds", "1", "--build", PROGRAM.parent)
-        for group in ("people against people, curve", "maps of meshes", "maps of scans", "a full run"):
-            self.assertRegex(table, rf"\n{group} +[\d.]+ +[\d.]+ +-?[\d.]+\n")
-
-    def test_scan_readings(self):
-        table = self.printed("scan_readings", "--every", "400", "--only", "up Y", "--work", self.folder / "readings", "--program", PROGRAM)
-        self.assertRegex(table, r"reading +KS +auc +auc published +r auc +nss .*\n.*up Y +0\.\d+ +[\d.]+ +[\d.]+ +-?[\d.]+ ")
+    def test_fidelity(self):
+        out = self.folder / "scans"
+        (self.folder / "scans.yaml").write_text("dataset: {meshes: false}\nscan: {step_degrees: 2}\n")
+        subprocess.run([PROGRAM, "run", self.folder / "scans.yaml", "--data", self.data / "SchellingData", "--cache", self.folder / "cache",
+                        "--reference", self.data / "reference/mean_histograms_scans.csv", "--out", out, "--quiet"], check=True)
+        table = self.printed("fidelity", "--of", out)
+        self.assertRegex(table, r"^model +KS +auc +auc published +r auc +nss .*\n +LS +0\.\d+ +[\d.]+ +[\d.]+ +-?[\d.]+ ")
         self.assertNotIn("NaN", table)
+
+    def test_readme_table(self):
+        table = self.printed("readme_table", PROGRAM).splitlines()
+        self.assertEqual(table[0], "| model | AUC, 2 meshes | NSS | LCC | AUC, 4 meshes | NSS | LCC |")
+        self.assertEqual(len(table), 8)
+        self.assertRegex(table[2], r"^\| LS \| 0\.\d{3} \(0\.\d{3}\) \| ")
+
+    def test_paper_statements(self):
+        answers = self.folder / "statements.csv"
+        said = self.printed("paper_statements", answers)
+        rows = [line for line in answers.read_text().splitlines() if not line.startswith("#")][1:]
+        self.assertGreater(len(rows), 50)
+        for of in ("by_shapes", "by_meshes", "by_classes"):
+            self.assertRegex(said, rf"(?m)^{of}: \d+ holds, \d+ undecided, \d+ does not hold; of {len(rows)} pairs$")
 
 
 if __name__ == "__main__":

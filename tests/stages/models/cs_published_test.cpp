@@ -10,7 +10,7 @@
 #include "io/mesh_file.h"
 #include "stages/models/cs.h"
 #include "stages/normals/normals.h"
-#include "stages/stats/correlation.h"
+#include "tests/support/correlation.h"
 #include "tests/stages/metrics/published.h"
 #include "tests/support/data.h"
 

@@ -12,7 +12,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/stats/correlation.h"
+#include "tests/support/correlation.h"
 #include "tests/support/options.h"
 #include "tests/support/shapes.h"
 

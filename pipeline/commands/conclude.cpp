@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// conclusions.json is written last and removed first: where it is, all tables of conclusions are, and are of
+// the scores that it names.
+#include "pipeline/commands/conclude.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "cache/digest.h"
+#include "io/file.h"
+#include "io/process.h"
+#include "pipeline/commands/package.h"
+#include "pipeline/commands/subcommand.h"
+#include "pipeline/results/raw_tables.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kConclusions = "conclusions.json";
+constexpr int kFormat = 1;  // of this file
+constexpr std::chrono::hours kLongest(2);
+
+constexpr std::array<std::string_view, 18> kFiles = {kConclusions,
+                                                     "summary.csv",
+                                                     "ranking.csv",
+                                                     "ranking_agreement.csv",
+                                                     "significance.csv",
+                                                     "per_class.csv",
+                                                     "human_share.csv",
+                                                     "compact.csv",
+                                                     "leaders.csv",
+                                                     "smoothing.csv",
+                                                     "human_curve.csv",
+                                                     "human_curve_by_mesh.csv",
+                                                     "human_curve_differences.csv",
+                                                     "human_equivalents.csv",
+                                                     "human_reliability.csv",
+                                                     "chance.csv",
+                                                     "power.csv",
+                                                     "statements.csv"};
+
+std::string digest_of(const RunState& run, const std::vector<TableFile>& files) {
+  Hasher hasher;
+  hasher.add(SALBENCH_VERSION);
+  hasher.add(name_of(run.config.statistics.unit));
+  hasher.add(run.config.seed);
+  for (const TableFile& file : files)
+    if (file.is_of_scores && file.text) {
+      hasher.add(file.name);
+      hasher.add(*file.text);
+    }
+  return hasher.digest().hex();
+}
+
+// The document in the folder; null unless it is of this digest, and all its tables are there.
+Json conclusions_in(const fs::path& folder, const std::string& digest) {
+  if (!size_of_file(folder / kConclusions)) return {};
+  Json document = Json::parse(read_file(folder / kConclusions), nullptr, false);
+  if (!document.is_object() || document.value("format", 0) != kFormat ||
+      !document.value("of", Json()).is_string() || document["of"] != digest)
+    return {};
+  for (const Json& table : document.value("tables", Json::array()))
+    if (!table.is_string() || !size_of_file(folder / table.get<std::string>())) return {};
+  return document;
+}
+
+Concluded concluded_by(const Json& document) {
+  return {.text = document.at("text").get<std::string>(),
+          .scores = document.at("scores"),
+          .leaders = document.at("leaders")};
+}
+
+}  // namespace
+
+std::span<const std::string_view> files_of_conclusions() { return kFiles; }
+
+std::string write_scores(const fs::path& folder, const RunState& run, const std::vector<ResultRow>& rows,
+                         const std::vector<std::string>& remarks) {
+  const std::vector<TableFile> files = table_files(run, rows, remarks);
+  const std::string digest = digest_of(run, files);
+  if (conclusions_in(folder, digest).is_null())
+    for (const std::string_view name : kFiles) remove_file(folder / name);
+  for (const auto& [name, text, is_of_scores] : files)
+    text ? write_file(folder / name, *text) : remove_file(folder / name);
+  return digest;
+}
+
+Concluded conclude_results(const fs::path& folder, const std::string& digest) try {
+  if (const Json document = conclusions_in(folder, digest); !document.is_null())
+    return concluded_by(document);
+  const CommandEnd end =
+      try_command(package_command({"conclude", fs::absolute(folder).string(), "--of", digest, "--quiet"}),
+                  fs::current_path(), kLongest);
+  // As the shell says it of a program that is not there, or is none.
+  constexpr int kNotExecutable = 126, kNotFound = 127;
+  if (end.status == kNoPackage) return {.missing = end.printed};
+  if (end.status == kNotExecutable || end.status == kNotFound)
+    return {.missing = no_interpreter(end.printed)};
+  if (end.status != 0) return {.failure = fmt::format("{}; {}", end.reason, said_of(end.printed))};
+  const Json document = conclusions_in(folder, digest);
+  if (document.is_null())
+    return {.failure = fmt::format("{} is not as this version writes it", kConclusions)};
+  return concluded_by(document);
+} catch (const Json::exception& error) {
+  return {.failure = fmt::format("{}: {}", kConclusions, error.what())};
+} catch (const InputError& error) {
+  return {.failure = error.what()};
+}
+
+bool report_trouble(const Concluded& concluded, const fs::path& folder) {
+  if (!concluded.missing.empty()) spdlog::warn("no conclusions: {}", concluded.missing);
+  if (concluded.failure.empty()) return false;
+  spdlog::error(
+      "{}: the scores are there, but no conclusions from them: {}; salbench conclude {} tries again",
+      folder.string(), concluded.failure, shell_word(folder.string()));
+  return true;
+}
+
+}  // namespace salbench

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options over the program's own table: each that a subcommand takes does something there.
+#include <map>
+#include <optional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/file.h"
+#include "pipeline/commands/subcommands.h"
+#include "tests/e2e/workspace.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Options : public testing::Test {
+ protected:
+  Options() {
+    EXPECT_EQ(toy_.salbench("run").status, 0);
+    scores_ = toy_.write("scores.csv", toy_.results());
+    EXPECT_EQ(toy_.salbench("maps", {"--to", (toy_ / "maps").string()}).status, 0);
+    toy_.write("maps/PS/card.yaml",
+               "name: OWN\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n");
+    EXPECT_EQ(said("submit").status, 0);
+  }
+
+  // What a subcommand cannot do without, each in its smallest form.
+  std::vector<std::string> words(const std::string& name) const {
+    const std::string config = toy_.config().string(), own = (toy_ / "maps/PS").string();
+    const auto below = [&](const char* path) { return (toy_ / path).string(); };
+    const std::map<std::string, std::vector<std::string>> all = {
+        {"run", {config}},
+        {"maps", {config, "--to", below("maps")}},
+        {"evaluate", {config, "--maps", own, "--name", "OWN"}},
+        {"pictures", {config}},
+        {"export", {config, "--to", below("all.h5")}},
+        {"conclusions", {scores_.string()}},
+        {"power", {scores_.string()}},
+        {"plan", {config}},
+        {"graph", {config}},
+        {"explain", {config, "1"}},
+        {"status", {config}},
+        {"doctor", {config}},
+        {"submit", {own, "--to", below("archives/own.zip"), "-c", config}},
+        {"leaderboard", {below("archives"), "--to", below("site"), "-c", config}},
+        {"config", {config}},
+        {"verify", {config, "--deep"}},
+        {"gc", {config, "--dry-run"}},
+        {"inspect", {"automatic"}},
+        {"convert", {"schelling", "--to", below("one_form")}},
+    };
+    EXPECT_TRUE(all.contains(name)) << name << " is new: give its smallest form here";
+    return all.at(name);
+  }
+
+  // The subcommand over the toy's folders.
+  std::vector<std::string> command(const std::string& name,
+                                   const std::vector<std::string>& further = {}) const {
+    std::vector<std::string> command = {program_.string(), name};
+    for (const std::string& word : words(name)) command.push_back(word);
+    for (const auto& [option, folder] :
+         {std::pair("--data", toy_.data()), {"--cache", toy_.cache()}, {"--out", toy_.out()}})
+      if (takes(name, option) && std::ranges::find(further, option) == further.end())
+        command.insert(command.end(), {option, folder.string()});
+    command.insert(command.end(), further.begin(), further.end());
+    return command;
+  }
+  Outcome said(const std::string& name, const std::vector<std::string>& further = {}) const {
+    fs::create_directories(toy_ / "archives");
+    return run_process(command(name, further));
+  }
+
+  static std::vector<Subcommand> subcommands() {
+    static Arguments arguments;
+    std::vector<Subcommand> all;
+    for (const SubcommandRow row : subcommand_rows()) all.push_back(row(arguments));
+    return all;
+  }
+
+  Workspace toy_{kMeshesOnly};
+  fs::path program_ = SALBENCH_PROGRAM, scores_;
+};
+
+// One that is not looked at would be accepted with any value, and its user believe in it.
+TEST_F(Options, ThatASubcommandTakesAreUsedByIt) {
+  const std::string file = toy_.write("no_folder", "text").string();
+  const std::map<std::string, std::string> unusable = {
+      {"--data", "/no/such/data"}, {"--cache", file},      {"--out", file},
+      {"--items", "nobody"},       {"--split", "nosuch"},  {"--reference", "/no/such.csv"},
+      {"--shard", "9/8"},          {"--models", "NOSUCH"}, {"--format", "nosuch"}};
+  for (const Subcommand& subcommand : subcommands())
+    for (const Parameter& parameter : subcommand.parameters) {
+      SCOPED_TRACE(subcommand.name + " " + parameter.name);
+      if (const auto value = unusable.find(parameter.name); value != unusable.end()) {
+        const Outcome outcome = said(subcommand.name, {parameter.name, value->second});
+        EXPECT_THAT(outcome.out + outcome.err, HasSubstr(value->second));
+      }
+      if (parameter.name == "--quiet") {
+        const Outcome loud = said(subcommand.name), quiet = said(subcommand.name, {"--quiet"});
+        EXPECT_EQ(quiet.status, loud.status) << loud.err;
+        EXPECT_LT(quiet.out.size(), loud.out.size());
+      }
+    }
+}
+
+TEST_F(Options, ThatASubcommandDoesNotUseAreRefused) {
+  for (const auto& [subcommand, option] : {std::pair("plan", "--quiet"),
+                                           {"plan", "--threads"},
+                                           {"graph", "--out"},
+                                           {"explain", "--quiet"},
+                                           {"doctor", "--out"},
+                                           {"maps", "--out"},
+                                           {"pictures", "--reference"},
+                                           {"leaderboard", "--items"}}) {
+    const Outcome outcome = said(subcommand, {option, "1"});
+    EXPECT_EQ(outcome.status, 2) << subcommand << option;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("there is no option '") + option + "'")) << subcommand;
+  }
+}
+
+TEST_F(Options, ThreadsAreForWhatComputes) {
+  for (const Subcommand& subcommand : subcommands()) {
+    toy_.forget_everything();
+    EXPECT_NE(said(subcommand.name).status, 70);
+    EXPECT_EQ(takes(subcommand.name, "--threads"), !toy_.artefacts().empty() || subcommand.name == "doctor")
+        << subcommand.name;
+  }
+  EXPECT_THAT(said("doctor", {"--threads", "1013"}).out, HasSubstr("1013"));
+}
+
+TEST_F(Options, ThatDoNothingWithoutAnotherAreRefusedWithoutIt) {
+  const auto text_of = [&](const std::string& name) {
+    return name == "CONFIG" ? toy_.config().string() : name;
+  };
+  std::vector<std::string> found;
+  for (const Subcommand& subcommand : subcommands())
+    for (const Parameter& parameter : subcommand.parameters) {
+      if (parameter.needs.empty()) continue;
+      found.push_back(subcommand.name + " " + parameter.name);
+      std::vector<std::string> words = {program_.string(), subcommand.name};
+      for (const std::string& word : this->words(subcommand.name))
+        if (word != text_of(parameter.needs) && !word.starts_with("--")) words.push_back(word);
+      words.push_back(parameter.name);
+      if (!std::holds_alternative<bool*>(parameter.target)) words.emplace_back("1");
+      const Outcome outcome = run_process(words);
+      EXPECT_EQ(outcome.status, 2) << found.back();
+      EXPECT_THAT(outcome.err, HasSubstr(parameter.name + " requires " + parameter.needs)) << found.back();
+    }
+  EXPECT_THAT(found, testing::IsSupersetOf({"verify --sample", "graph --items", "doctor --shard"}));
+}
+
+TEST_F(Options, AnEmptySplitTakesAllItemsWhateverTheConfigurationTakes) {
+  toy_.write("sets.yaml",
+             "places:\n  - meshes: Meshes/*.off\n    truth: {saliency: 'Distributions/{item}.val'}\n"
+             "splits: {items: {train: ['1'], test: ['2']}}\n");
+  toy_.configure("dataset: {scans: false, layout: '" + (toy_ / "sets.yaml").string() +
+                 "', split: test}\nmodels: {PS: , RS: }\n");
+  const auto meshes = [&](const std::vector<std::string>& further) {
+    const Outcome status = toy_.salbench("status", further);
+    return lines_with(status.out, "data set: ").at(0) + status.err;
+  };
+  EXPECT_THAT(meshes({}), HasSubstr(": 1 mesh"));
+  EXPECT_THAT(meshes({"--split", "train"}), HasSubstr(": 1 mesh"));
+  EXPECT_THAT(meshes({"--split", ""}), HasSubstr(": 2 meshes"));
+}
+
+// In a folder of its own, neither installed nor in a checkout.
+TEST_F(Options, NamesOfConfigurationsAreFoundByAProgramThatLiesAnywhere) {
+  fs::create_directories(toy_ / "bin");
+  program_ = toy_ / "bin/salbench";
+  fs::copy_file(SALBENCH_PROGRAM, program_);
+  int found = 0;
+  for (const Subcommand& subcommand : subcommands()) {
+    std::vector<std::string> words = command(subcommand.name);
+    if (std::ranges::find(words, toy_.config().string()) == words.end()) continue;
+    std::ranges::replace(words, toy_.config().string(), std::string("shrec07_meshes"));
+    const Outcome outcome = run_process(words);
+    EXPECT_THAT(outcome.err, Not(HasSubstr("shrec07_meshes"))) << subcommand.name;
+    EXPECT_EQ(outcome.status, 0) << subcommand.name << outcome.err;
+    if (subcommand.name == "leaderboard") {  // which has no program to make pages with, either
+      EXPECT_FALSE(fs::exists(toy_ / "site/index.html"));
+      EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("index.html")), HasSubstr("\nthe tables are in ")));
+    }
+    ++found;
+  }
+  EXPECT_GE(found, 14);
+  EXPECT_THAT(run_process({program_.string(), "config", "protocols/3dva"}).out, HasSubstr("layout: 3dva"));
+  EXPECT_THAT(run_process({program_.string(), "config", "shrec07_mesh"}).err,
+              HasSubstr("did you mean 'shrec07_meshes'?"));
+}
+
+}  // namespace
+}  // namespace salbench

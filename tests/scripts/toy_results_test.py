@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scripts that read results, and those that make data of their own, over toys."""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SCRIPTS = ROOT / "scripts"
+PROGRAM = Path(os.environ["SALBENCH_PROGRAM"])
+PYTHON = ["/usr/bin/python3", "-B"]
+sys.path.insert(0, str(ROOT / "tests/report"))
+
+import browser  # noqa: E402
+
+
+def ran(*command):
+    """What a command prints that has to succeed."""
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, f"{command}: {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+    return done.stdout
+
+
+class ToyResultsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory(prefix="toy results ")
+        cls.addClassCleanup(holder.cleanup)
+        folder = Path(holder.name)
+        cls.out, cls.export = folder / "out", folder / "out/shapes.h5"
+        ran(SCRIPTS / "slurm/toy_meshes.py", folder / "meshes", "2", "24", "12")
+        (folder / "toy.yaml").write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\n")
+        options = [folder / "toy.yaml", "--data", folder / "meshes", "--cache", folder / "cache", "--quiet"]
+        ran(PROGRAM, "run", *options, "--out", cls.out)
+        ran(PROGRAM, "pictures", *options)
+        ran(PROGRAM, "export", *options, "--to", cls.export)
+
+    def test_report_and_report_pictures(self):
+        report = self.out / "report"
+        ran(SCRIPTS / "report", self.out)
+        self.assertIn("</html>", (report / "shapes/1.html").read_text(encoding="utf-8"))
+        if browser.AVAILABLE:
+            ran(*PYTHON, SCRIPTS / "report_pictures", report, self.out / "pictures", "1")
+            self.assertEqual([path.stat().st_size > 10_000 for path in (self.out / "pictures").glob("*.png")], [True, True])
+
+    def test_compare_exports(self):
+        compare = [*PYTHON, SCRIPTS / "compare_exports.py"]
+        self.assertRegex(ran(*compare, self.export, self.export, "0"), r"\n\| `map.\*` \| (\d+) \| \1 \| 0 \| - \|\n")
+        self.assertRegex(ran(*compare, self.out, self.out, "0"), r"\n\| the \d\d with the same bytes \| (\d+) \| \1 \| 0 \| - \|\n")
+        other = self.out.with_name("other")
+        shutil.copytree(self.out, other)
+        table = (other / "summary.csv").read_text()
+        (other / "summary.csv").write_text(table.replace("0.", "0.1", 1))
+        done = subprocess.run([*compare, self.out, other], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("| `summary.csv` |", done.stdout)
+
+
+class OwnDataTest(unittest.TestCase):
+    def test_perf_plan(self):
+        said = ran(*PYTHON, SCRIPTS / "perf_plan", "--build", PROGRAM.parent, "--meshes", "2")
+        self.assertRegex(said, r"(?m)^2 meshes, \d{3} artefacts$")
+        for command in ("plan", "run", "export"):
+            self.assertRegex(said, rf"\n  {command}: [\d.]+ s, of which [\d.]+ s on a core; \d+ MB\n")
+        self.assertIn("\n  0 jobs to do, 0 artefacts computed\n", said)
+
+    def test_perf_shapes(self):
+        said = ran(*PYTHON, SCRIPTS / "perf_shapes", PROGRAM.parent, "2", "4")
+        self.assertRegex(said, r"\nfrom 2 to 4 shapes, and 100000 on paper\n(  .*exponents: wall .*\n){7}$")
+
+
+if __name__ == "__main__":
+    unittest.main()
