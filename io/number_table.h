@@ -28,8 +28,8 @@ using WrongWithRow = std::function<std::string_view(std::span<const double> row)
 // empty name is the only column of the text. Commas, semicolons or tabs separate values, whichever the first
 // line has; else blanks do. A first line in which a word is no number is the header. Blank lines are skipped,
 // and so are lines that begin with '#', of which the last before the numbers is a header if it has a word per
-// column. Decimal commas are refused. Where commas are all that separates, they show in lines of other numbers
-// of columns, or by zeros in front as in 0,05: a header tells such lines from whole numbers.
+// column. Decimal commas are refused. Where commas are all that separates, they show in lines of other
+// numbers of columns, or by zeros in front as in 0,05: a header tells such lines from whole numbers.
 //
 // With `expected`, rows come in the order of the elements: a column that numbers these (element_order.h) is
 // obeyed, and is none beside which the only column would not be the only one.

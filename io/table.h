@@ -19,8 +19,8 @@ struct Table {
   std::vector<std::string> columns;     // names
   std::vector<std::vector<Cell>> rows;  // each as long as columns
   // For tables read from a file only:
-  std::string name = {};                // the file, for messages
-  std::vector<std::size_t> lines = {};  // the line on which each row begins
+  std::string name = {};                  // the file, for messages
+  std::vector<std::size_t> lines = {};    // the line on which each row begins
   std::vector<std::string> remarks = {};  // lines above the column names, each after its '#'
 };
 
@@ -28,8 +28,9 @@ struct Table {
 // fields are quoted where they must be.
 std::string to_csv(const Table& table);
 
-// The first line names the columns, after any lines that begin with '#'; every cell is read as text. Throws InputError, one line "PATH:LINE: what is wrong", for a line with another number of
-// fields, a quote that does not close, or a column named twice.
+// The first line names the columns, after any lines that begin with '#'; every cell is read as text. Throws
+// InputError, one line "PATH:LINE: what is wrong", for a line with another number of fields, a quote that
+// does not close, or a column named twice.
 Table read_csv(const std::filesystem::path& path);
 Table parse_csv(std::string_view text, std::string_view name);
 

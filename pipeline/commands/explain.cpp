@@ -115,9 +115,9 @@ Subcommand explain_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
   return {"explain", "tell of each artefact of an item whether it is cached, and if not what differs",
           planning_parameters(arguments, {{"ITEM", &options->item,
-                                      "a mesh or point cloud (52), or a scan of a mesh (52_3)", true},
-                                     {"STAGE", &options->stage, "this stage only"},
-                                     format_parameter(format)}),
+                                           "a mesh or point cloud (52), or a scan of a mesh (52_3)", true},
+                                          {"STAGE", &options->stage, "this stage only"},
+                                          format_parameter(format)}),
           [&arguments, options, format](const std::atomic<bool>&) {
             return print_explanation(arguments, *options, format_of(format));
           }};

@@ -141,9 +141,7 @@ Subcommand inspect_subcommand(Arguments& arguments) {
   return {
       "inspect",
       "read all files of a data set and print what its description finds: items, splits, ranges, problems",
-      {layout_parameter(layout.get()),
-       data_parameter(arguments),
-       format_parameter(format)},
+      {layout_parameter(layout.get()), data_parameter(arguments), format_parameter(format)},
       [&arguments, layout, format](const std::atomic<bool>&) {
         return print_inspection(arguments, *layout, format_of(format));
       }};

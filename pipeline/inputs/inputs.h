@@ -56,6 +56,7 @@ inline constexpr std::string_view kScoredItems = "scored";  // those with ground
 struct ItemChoice {
   ItemChoice() = default;
   ItemChoice(const std::string& list);  // NOLINT(google-explicit-constructor): most are texts
+  ItemChoice(const char* list) : ItemChoice(std::string(list)) {}  // NOLINT(google-explicit-constructor)
   explicit ItemChoice(std::vector<std::string> names);
 
   bool all() const { return text.empty(); }

@@ -11,13 +11,13 @@
 #include "pipeline/config/data_layout.h"
 #include "pipeline/config/section.h"
 #include "pipeline/rules/models.h"
+#include "pipeline/rules/unit.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/metrics/metrics.h"
 #include "stages/normals/normals.h"
 #include "stages/picture/picture.h"
 #include "stages/scan/scan.h"
-#include "pipeline/rules/unit.h"
 #include "stages/surface/surface.h"
 
 namespace salbench {

@@ -150,7 +150,8 @@ TEST(Evaluate, WhatIsWrongWithOneMapIsSaidInOneLineAndTheOthersAreScored) {
   };
   for (const Bad& bad :
        {Bad{values(kVertices - 1), {"2.val", "161", "162"}}, Bad{values(kVertices, "nan"), {"2.val:1"}},
-        Bad{values(kVertices, "0 1"), {"2.val:1", "expected one value"}}, Bad{"", {"2.val", "the file has no values"}}}) {
+        Bad{values(kVertices, "0 1"), {"2.val:1", "expected one value"}},
+        Bad{"", {"2.val", "the file has no values"}}}) {
     toy.write("own/2.val", bad.text);
     const Outcome run = evaluate(toy, toy / "own");
     EXPECT_EQ(run.status, 1);

@@ -33,14 +33,14 @@ fs::path maps_by_h5py(const Workspace& toy, const std::string& further) {
   return path;
 }
 
-Outcome evaluate(const Workspace& toy, const fs::path& maps) {
+Outcome score_maps(const Workspace& toy, const fs::path& maps) {
   return toy.salbench("evaluate", {"--maps", maps.string(), "--name", "OWN"});
 }
 
 // Before, 4096 numbers were read into the place of one.
 TEST(ForeignHdf5, WhatStandsBesideTheMapsIsNotRead) {
   const Workspace toy(kMeshesOnly);
-  ASSERT_EQ(evaluate(toy, maps_by_h5py(toy, "")).status, 0);
+  ASSERT_EQ(score_maps(toy, maps_by_h5py(toy, "")).status, 0);
   const std::string results = toy.results();
   const std::string beside[] = {
       "  map.attrs['many'] = numpy.ones(4096)\n",
@@ -56,7 +56,7 @@ TEST(ForeignHdf5, WhatStandsBesideTheMapsIsNotRead) {
       "  file['g/up'] = file['/']\n  file['soft'] = h5py.SoftLink('/nowhere')\n"
       "  file['out'] = h5py.ExternalLink('/dev/zero', '/')\n"};
   for (const std::string& further : beside) {
-    const Outcome run = evaluate(toy, maps_by_h5py(toy, further));
+    const Outcome run = score_maps(toy, maps_by_h5py(toy, further));
     EXPECT_EQ(run.status, 0) << further << run.err;
     EXPECT_EQ(toy.results(), results) << further;
   }
@@ -84,7 +84,7 @@ TEST(ForeignHdf5, AMapThatCannotBeHadIsItsItemsFailure) {
       {"file['1'] = values.astype('longdouble')", "wider than float64"},
       {"file['1'] = values.reshape(81, 2)", "its shape is (81, 2), expected one value per point"}};
   for (const Bad& bad : all) {
-    const Outcome run = evaluate(toy, maps_by_h5py(toy, "  del file['1']\n  " + bad.made_by + "\n"));
+    const Outcome run = score_maps(toy, maps_by_h5py(toy, "  del file['1']\n  " + bad.made_by + "\n"));
     EXPECT_EQ(run.status, 1) << bad.made_by << run.err;
     EXPECT_THAT(lines_with(run.err, "error: 1: "), AllOf(SizeIs(1), Each(HasSubstr(bad.said)))) << run.err;
     EXPECT_THAT(lines_with(toy.results(), ",OWN,"), SizeIs(1)) << "the other map is scored";
@@ -101,7 +101,7 @@ TEST(ForeignHdf5, FilesThatAreNoneAreRefused) {
   fs::copy_file(maps, toy / "cut.h5");
   fs::resize_file(toy / "cut.h5", fs::file_size(maps) / 2);
   for (const fs::path& path : {toy / "pipe", toy / "cut.h5", maps}) {
-    const Outcome run = evaluate(toy, path);  // a pipe without a writer would never be opened
+    const Outcome run = score_maps(toy, path);  // a pipe without a writer would never be opened
     EXPECT_EQ(run.status, 2) << run.err;
     EXPECT_THAT(lines_with(run.err, ""), AllOf(SizeIs(1), Each(HasSubstr(path.string())))) << run.err;
   }

@@ -34,6 +34,20 @@ TEST(Inputs, SelectsNamesAndRangesInTheDataSetsOrder) {
   EXPECT_THAT(names(read_inputs(dataset, "10,1")), ElementsAre("1", "10"));
 }
 
+TEST(Inputs, AListOfNamesMayHoldCommasAndBlanks) {
+  Dataset dataset;
+  for (const char* name : {"1", "a, b", " c"}) {
+    dataset.items.push_back({});
+    dataset.items.back().name = name;
+    dataset.items.back().mesh = std::string(name) + ".off";
+  }
+  const auto chosen = [&](const ItemChoice& choice) { return names(read_inputs(dataset, choice)); };
+  EXPECT_THAT(chosen(ItemChoice(std::vector<std::string>{"a, b"})), ElementsAre("a, b"));
+  EXPECT_THAT(chosen(ItemChoice(std::vector<std::string>{" c", "1"})), ElementsAre("1", " c"));
+  EXPECT_THROW(chosen("a, b"), ConfigError);
+  EXPECT_THROW(chosen(ItemChoice(std::vector<std::string>{})), ConfigError);
+}
+
 TEST(Inputs, NamesWhatASelectionDoesNotFind) {
   const TemporaryFolder folder;
   const Dataset dataset = numbered(folder);

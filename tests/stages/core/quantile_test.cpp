@@ -10,10 +10,8 @@
 namespace salbench {
 namespace {
 
-const double kNan = std::nan("");
-
 TEST(Quantile, IsLinearBetweenTheValues) {
-  const std::vector<double> values = {40, kNan, 10, 30, 20};
+  const std::vector<double> values = {40, std::nan(""), 10, 30, 20};
   EXPECT_DOUBLE_EQ(quantile(values, 0), 10);
   EXPECT_DOUBLE_EQ(quantile(values, 0.25), 17.5);
   EXPECT_DOUBLE_EQ(median(values), 25);
@@ -24,7 +22,7 @@ TEST(Quantile, IsLinearBetweenTheValues) {
 TEST(Quantile, OfOneValueOrNone) {
   EXPECT_DOUBLE_EQ(quantile(std::vector<double>{3}, 0.3), 3);
   EXPECT_TRUE(std::isnan(median(std::vector<double>{})));
-  EXPECT_TRUE(std::isnan(median(std::vector<double>{kNan})));
+  EXPECT_TRUE(std::isnan(median(std::vector<double>{std::nan("")})));
 }
 
 TEST(Quantile, TakesFractionsAndNoPercentages) {

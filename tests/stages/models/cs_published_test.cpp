@@ -10,8 +10,8 @@
 #include "io/mesh_file.h"
 #include "stages/models/cs.h"
 #include "stages/normals/normals.h"
-#include "tests/support/correlation.h"
 #include "tests/stages/metrics/published.h"
+#include "tests/support/correlation.h"
 #include "tests/support/data.h"
 
 namespace salbench {
