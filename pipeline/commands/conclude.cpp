@@ -3,8 +3,6 @@
 // the scores that it names.
 #include "pipeline/commands/conclude.h"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 
 #include <fmt/format.h>
@@ -15,6 +13,7 @@
 #include "io/process.h"
 #include "pipeline/commands/package.h"
 #include "pipeline/commands/subcommand.h"
+#include "pipeline/inputs/inputs.h"
 #include "pipeline/results/raw_tables.h"
 #include "stages/core/errors.h"
 
@@ -26,25 +25,6 @@ namespace fs = std::filesystem;
 constexpr const char* kConclusions = "conclusions.json";
 constexpr int kFormat = 1;  // of this file
 constexpr std::chrono::hours kLongest(2);
-
-constexpr std::array<std::string_view, 18> kFiles = {kConclusions,
-                                                     "summary.csv",
-                                                     "ranking.csv",
-                                                     "ranking_agreement.csv",
-                                                     "significance.csv",
-                                                     "per_class.csv",
-                                                     "human_share.csv",
-                                                     "compact.csv",
-                                                     "leaders.csv",
-                                                     "smoothing.csv",
-                                                     "human_curve.csv",
-                                                     "human_curve_by_mesh.csv",
-                                                     "human_curve_differences.csv",
-                                                     "human_equivalents.csv",
-                                                     "human_reliability.csv",
-                                                     "chance.csv",
-                                                     "power.csv",
-                                                     "statements.csv"};
 
 std::string digest_of(const RunState& run, const std::vector<TableFile>& files) {
   Hasher hasher;
@@ -79,14 +59,17 @@ Concluded concluded_by(const Json& document) {
 
 }  // namespace
 
-std::span<const std::string_view> files_of_conclusions() { return kFiles; }
+const std::vector<std::string>& files_of_conclusions() {
+  static const std::vector<std::string> files = split_list(std::string(kConclusions) + "," SALBENCH_TABLES);
+  return files;
+}
 
 std::string write_scores(const fs::path& folder, const RunState& run, const std::vector<ResultRow>& rows,
                          const std::vector<std::string>& remarks) {
   const std::vector<TableFile> files = table_files(run, rows, remarks);
   const std::string digest = digest_of(run, files);
   if (conclusions_in(folder, digest).is_null())
-    for (const std::string_view name : kFiles) remove_file(folder / name);
+    for (const std::string& name : files_of_conclusions()) remove_file(folder / name);
   for (const auto& [name, text, is_of_scores] : files)
     text ? write_file(folder / name, *text) : remove_file(folder / name);
   return digest;

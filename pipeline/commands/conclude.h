@@ -4,9 +4,7 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pipeline/commands/report.h"
@@ -14,8 +12,8 @@
 
 namespace salbench {
 
-// Every file of conclusions that may stand in a folder of results.
-std::span<const std::string_view> files_of_conclusions();
+// Every file of conclusions that may stand in a folder of results; first the one that is written last.
+const std::vector<std::string>& files_of_conclusions();
 
 // Writes the tables of a run, after conclusions from other scores are removed. Returns what names these
 // scores: a digest of them, of the unit and of the version. Throws StorageError.

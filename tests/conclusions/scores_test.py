@@ -37,6 +37,14 @@ class Csv(FileTest):
         self.assertEqual(table.lines, [5, 7, 8])
         self.assertEqual(table.column_if_any("c"), [""] * 3)
 
+    def test_remarks_are_whole_lines_and_all_of_them_are_warned_of(self):
+        path = self.write('# PARTIAL: 1 of 2, so far\n\n#SIMULATED: by "chance\nitem,model,auc\n1,A,.5\n1,B,x\n')
+        self.assertEqual(read_csv(path).remarks, ["PARTIAL: 1 of 2, so far", 'SIMULATED: by "chance'])
+        self.assertEqual(read_csv(path).lines, [5, 6])
+        self.refused("scores.csv:6: 'x' is not a number", read_csv, path, {"auc"})
+        notes = read_scores(self.write("# a, b\n# c\nitem,model,auc\n1,A,.5\n")).notes
+        self.assertEqual([note.split(": ", 1)[1] for note in notes], ["a, b", "c"])
+
     def test_any_bytes_are_a_name(self):
         self.assertEqual(read_csv(self.write(b"\xef\xbb\xbfa\n\xff\n")).column("a"), ["\udcff"])
 

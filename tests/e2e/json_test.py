@@ -100,11 +100,11 @@ class JsonTest(unittest.TestCase):
         self.conclude(table)
 
     def conclude(self, table, leaders=None):
-        said = subprocess.run([PROGRAM, "conclusions", table, "--out", self.folder / "concluded", "--format", "json"], check=True,
+        said = subprocess.run([PROGRAM, "conclude", table, "--out", self.folder / "concluded", "--format", "json"], check=True,
                               capture_output=True, text=True).stdout
         document = json.loads(said)
         for key, kind in keys_of(document):
-            self.seen.setdefault("conclusions", {}).setdefault(key, set()).add(kind)
+            self.seen.setdefault("conclude", {}).setdefault(key, set()).add(kind)
         if leaders is not None:
             self.assertEqual(document["leaders"], leaders)
 
@@ -267,7 +267,7 @@ class JsonTest(unittest.TestCase):
         self.assertIn("OWN", {row["model"] for row in self.summary("evaluate", *run, "--out", out, *words, status=1)["scores"]})
         self.assertEqual(self.summary("pictures", *run, status=1)["pictures"], 2)
         self.assertEqual(self.summary("export", *run, "--to", folder / "all.h5", status=1, option="--summary")["shapes"], 3)
-        self.assertEqual(self.summary("conclusions", out / "results.csv", "--out", folder / "conclusions")["unit"], "mesh")
+        self.assertEqual(self.summary("conclude", out / "results.csv", "--out", folder / "conclusions")["unit"], "mesh")
         self.assertEqual(len(self.summary("power", out / "results.csv")["pairs"]), 3 * len({metric for _, metric in rows}))
         self.assertIn("\nseed: 2016\n", self.summary("config")["yaml"])
         (mine / "card.yaml").write_text("name: OWN\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n")

@@ -39,8 +39,6 @@ class Options : public testing::Test {
         {"evaluate", {config, "--maps", own, "--name", "OWN"}},
         {"pictures", {config}},
         {"export", {config, "--to", below("all.h5")}},
-        {"conclusions", {scores_.string()}},
-        {"power", {scores_.string()}},
         {"plan", {config}},
         {"graph", {config}},
         {"explain", {config, "1"}},

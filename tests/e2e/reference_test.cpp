@@ -103,8 +103,7 @@ TEST_F(Reference, ATableOfAPartialRunWithSimulatedPeopleWarnsOfBoth) {
   };
   warns_of_both(run(toy_.write("reference.csv", remarks + read_file(column(1)))));
   const std::string scores = toy_.write("scores.csv", remarks + toy_.results()).string();
-  warns_of_both(
-      run_process({SALBENCH_PROGRAM, "conclusions", scores, "--out", (toy_ / "concluded").string()}));
+  warns_of_both(run_process({SALBENCH_PROGRAM, "conclude", scores, "--out", (toy_ / "concluded").string()}));
 }
 
 // --- of a part of the data set -----------------------------------------------------------------------------

@@ -147,7 +147,7 @@ TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {
   const auto run_and_write = [&](const std::string& yaml) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run();
-    for (const std::string_view name : files_of_conclusions()) out.write(std::string(name), "{}");
+    for (const std::string& name : files_of_conclusions()) out.write(name, "{}");
     write_scores(out.path(), toy.state(), toy.results(), {});
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(out.path()))

@@ -95,7 +95,7 @@ TEST_F(WithSplits, TablesOfOneSplitNameItAndHaveEachRowOnce) {
   run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n", "test");
   const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
   const Table table = means_table(toy_->results(), metrics);
-  EXPECT_THAT(table.rows, SizeIs(metrics.size() * toy_->config.models.size()));
+  EXPECT_THAT(table.rows, SizeIs(metrics.size())) << "of RS; HS needs people, which this set has not";
   for (const auto& row : table.rows) EXPECT_EQ(row[1], Cell(std::string("test")));
 }
 

@@ -4,8 +4,9 @@
 import csv
 import os
 from array import array
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any, NoReturn
 
 import numpy as np
@@ -55,25 +56,37 @@ class Table:
 
 
 def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> Table:
-    """The first line names the columns, below any lines of one field that begin with '#'. numeric: columns of numbers.
+    """The first line names the columns, below any lines that begin with '#': these are text, whatever commas and quotes are in it. numeric: columns of numbers.
 
     Throws InputError for a line with another number of fields, a quote that does not close, a column named twice, a cell of a
     column of numbers that is none; OSError for a file that cannot be read.
     """
     name = os.fspath(path)
     with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
-        rows = _rows(csv.reader(file, strict=True), name)
-        remarks, columns = _head(rows, name)
+        remarks, before, first = _remarks(file)
+        rows = _rows(csv.reader(chain([first], file), strict=True), name, before)
+        columns = _header(rows, name)
         read = _Columns(name, columns, numeric)
         for line, fields in rows:
             read.add(line, fields)
     return read.table(remarks)
 
 
-def _rows(reader: Any, name: str) -> Iterator[tuple[int, list[str]]]:
-    """The line on which each row begins, and its fields; lines without any are left out."""
+def _remarks(file: Iterable[str]) -> tuple[list[str], int, str]:
+    """The lines that begin with '#', without it; how many lines these and blank ones take, and the line below them."""
+    remarks = []
+    for before, line in enumerate(file):
+        if line.startswith("#"):
+            remarks.append(line.rstrip("\r\n").lstrip("# \t"))
+        elif line.rstrip("\r\n"):
+            return remarks, before, line
+    return remarks, 0, ""
+
+
+def _rows(reader: Any, name: str, before: int) -> Iterator[tuple[int, list[str]]]:
+    """The line on which each row begins, and its fields; lines without any are left out. before: lines above the first."""
     while True:
-        line = reader.line_num + 1
+        line = before + reader.line_num + 1
         try:
             fields = next(reader, None)
         except csv.Error as error:
@@ -84,16 +97,12 @@ def _rows(reader: Any, name: str) -> Iterator[tuple[int, list[str]]]:
             yield line, fields
 
 
-def _head(rows: Iterator[tuple[int, list[str]]], name: str) -> tuple[list[str], list[str]]:
-    remarks = []
+def _header(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
     for line, fields in rows:
-        if len(fields) == 1 and fields[0].startswith("#"):
-            remarks.append(fields[0][2:])
-            continue
         for column in fields:
             if fields.count(column) > 1:
                 raise InputError(f"{name}:{line}: two columns are named '{column}'")
-        return remarks, fields
+        return fields
     raise InputError(f"{name}: the file is empty, where a line of column names is expected")
 
 

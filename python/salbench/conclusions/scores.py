@@ -134,7 +134,8 @@ def only(scores: Scores, names: Sequence[str]) -> Scores:
 def _notes(table: Table, metrics: Iterable[Metric]) -> list[str]:
     known = {*_BESIDE_SCORES, *(metric.name for metric in metrics)}
     left_out = [name for name in table.columns if name not in known]
-    if not left_out:
-        return []
-    return [f"{table.name}: columns that are no metrics of the program were left out: {', '.join(left_out)}; name them with --higher "
-            "or --lower"]
+    notes = [f"{table.name}: {remark}" for remark in table.remarks]
+    if left_out:
+        notes.append(f"{table.name}: columns that are no metrics of the program were left out: {', '.join(left_out)}; name them with "
+                     "--higher or --lower")
+    return notes
