@@ -64,8 +64,9 @@ TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
   }
   EXPECT_THAT(rows, ElementsAre(std::pair("cat", "1"), std::pair("cat", "2")));
   for (const auto& row : means_table(toy_->results(), chosen_metrics(toy_->config.metrics)).rows)
-    if (row.at(1) == Cell(std::string("cc")))
+    if (row.at(1) == Cell(std::string("cc"))) {
       EXPECT_EQ(row.at(3), Cell(std::int64_t{1})) << "the mesh is the unit of inference";
+    }
 }
 
 // A family is claimed by its mesh: threads that come to another view of it take up other work first.
