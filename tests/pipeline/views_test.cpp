@@ -7,7 +7,7 @@
 
 #include "cache/folder_store.h"
 #include "pipeline/inputs/given_maps.h"
-#include "pipeline/results/results.h"
+#include "pipeline/results/raw_tables.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 
@@ -63,8 +63,8 @@ TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
     EXPECT_EQ(row.scores.n_points, 3);
   }
   EXPECT_THAT(rows, ElementsAre(std::pair("cat", "1"), std::pair("cat", "2")));
-  const DatasetScores scores(toy_->results(), "meshes", Observation::mesh);
-  EXPECT_EQ(scores.own(0, scores.find("RS")).units.size(), 1U) << "the mesh is the unit of inference";
+  const Table means = means_table(toy_->results(), chosen_metrics(toy_->config.metrics));
+  EXPECT_EQ(means.rows.at(0).at(3), Cell(std::int64_t{1})) << "the mesh is the unit of inference";
 }
 
 // A family is claimed by its mesh: threads that come to another view of it take up other work first.
