@@ -81,11 +81,10 @@ Concluded conclude_results(const fs::path& folder, const std::string& digest) tr
   const CommandEnd end =
       try_command(package_command({"conclude", fs::absolute(folder).string(), "--of", digest, "--quiet"}),
                   fs::current_path(), kLongest);
-  // As the shell says it of a program that is not there, or is none.
-  constexpr int kNotExecutable = 126, kNotFound = 127;
+  constexpr int kNotExecutable = 126, kNotFound = 127;  // as the shell says it of a program
   if (end.status == kNoPackage) return {.missing = end.printed};
-  if (end.status == kNotExecutable || end.status == kNotFound)
-    return {.missing = no_interpreter(end.printed)};
+  if (end.status == kNotFound) return {.missing = no_interpreter("not found")};
+  if (end.status == kNotExecutable) return {.missing = no_interpreter("cannot be executed")};
   if (end.status != 0) return {.failure = fmt::format("{}; {}", end.reason, said_of(end.printed))};
   const Json document = conclusions_in(folder, digest);
   if (document.is_null())
