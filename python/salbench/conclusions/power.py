@@ -27,6 +27,7 @@ COLUMNS = (
 POWER = 0.8
 _MOST = 10**9
 _CERTAIN = 30  # beyond the critical value, the distribution's series do not converge
+_ONE_SIDED = 7  # beyond it the other tail has less than 2e-12, and is NaN by SciPy 1.15
 
 
 def power_of_paired_test(noncentrality: Floats, n: Floats) -> Floats:
@@ -37,7 +38,8 @@ def power_of_paired_test(noncentrality: Floats, n: Floats) -> Floats:
     certain = noncentrality - critical > _CERTAIN
     shift = np.where(certain, 1, noncentrality)
     with np.errstate(all="ignore"):
-        above, below = stats.nct.sf(critical, n - 1, shift), stats.nct.cdf(-critical, n - 1, shift)
+        above = stats.nct.sf(critical, n - 1, shift)
+        below = np.where(shift > _ONE_SIDED, 0, stats.nct.cdf(-critical, n - 1, np.minimum(shift, _ONE_SIDED)))
     return np.where(certain, 1, np.where(noncentrality == 0, LEVEL, above + below))
 
 
