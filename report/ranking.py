@@ -34,14 +34,13 @@ def lacking(shop):
 
 
 def chance(shop, metrics):
-    """The remarks of run.yaml on metrics by which chance or a constant map is as good as a model."""
-    remarks = shop.results.record.get("remarks")
-    notes = []
-    for remark in remarks if isinstance(remarks, list) else []:
-        if isinstance(remark, dict) and remark.get("metric") in metrics and remark.get("dataset") in DATASETS:
-            label = shop.results.metric(remark["metric"]).label
-            notes.append(Note(f"By the means of {label} on {spoken(remark['dataset'])}, {remark.get('remark')}."))
-    return notes
+    """The remarks of chance.csv on metrics by which chance or a constant map is as good as a model."""
+    try:
+        remarks = shop.results.table("chance.csv", "dataset", "metric", "remark").to_dict("records")
+    except Missing:
+        return []
+    return [Note(f"By the means of {shop.results.metric(remark['metric']).label} on {spoken(remark['dataset'])}, {remark['remark']}.")
+            for remark in remarks if remark["metric"] in metrics and remark["dataset"] in DATASETS]
 
 
 def table(shop, identifier, metrics):

@@ -40,7 +40,7 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
 }
 
 // The document in the folder; null unless it is of this digest, and all its tables are there.
-Json conclusions_in(const fs::path& folder, const std::string& digest) {
+Json conclusions_in(const fs::path& folder, const std::string& digest) try {
   if (!size_of_file(folder / kConclusions)) return {};
   Json document = Json::parse(read_file(folder / kConclusions), nullptr, false);
   if (!document.is_object() || document.value("format", 0) != kFormat ||
@@ -49,6 +49,8 @@ Json conclusions_in(const fs::path& folder, const std::string& digest) {
   for (const Json& table : document.value("tables", Json::array()))
     if (!table.is_string() || !size_of_file(folder / table.get<std::string>())) return {};
   return document;
+} catch (const Json::exception&) {  // edited, or another's
+  return {};
 }
 
 Concluded concluded_by(const Json& document) {

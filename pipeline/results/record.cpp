@@ -84,8 +84,10 @@ std::string stage_lines(const RunRecord& record) {
   for (const StageCount& count :
        count_by_stage(record.run.project(), record.run.resolver.plan(), record.why)) {
     std::string why;
+    // Behind a question mark a key may be longer than the 1024 characters that YAML allows it elsewhere.
     for (const auto& [reason, n] : count.reasons)
-      why += fmt::format("{}{}: {}", why.empty() ? "" : ", ", yaml_quoted(reason), n);
+      why += fmt::format("{}{}{}: {}", why.empty() ? "" : ", ", reason.size() > 500 ? "? " : "",
+                         yaml_quoted(reason), n);
     yaml += fmt::format("  {}: {{version: {}, why: {{{}}}}}\n", count.stage, count.version, why);
   }
   yaml +=

@@ -12,13 +12,17 @@ ALL_DONE, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 0, 2, 3, 7
 SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
 
 
+_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07"}  # as `salbench --help` has them
+
+
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
 
 
 def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> argparse.ArgumentParser:
-    parser = _Parser(prog=f"salbench {name}", description=summary, allow_abbrev=False)
+    parser = _Parser(prog=f"salbench {name}", description=summary, allow_abbrev=False, epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
+                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
                         **of_scores)
     parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")

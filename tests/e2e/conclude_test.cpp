@@ -94,7 +94,7 @@ TEST(Conclude, ARerunWithNothingToDoStartsNoPython) {
   const Outcome again = run_process(with_python(kNoPython, toy.command("run")));
   EXPECT_EQ(again.status, 0);
   EXPECT_THAT(again.err, Not(HasSubstr("conclusions")));
-  const auto sentences = [](const std::string& text) { return text.substr(0, text.find("protocol ")); };
+  const auto sentences = [](const std::string& text) { return text.substr(0, text.find("maps of ")); };
   EXPECT_EQ(sentences(again.out), sentences(first.out));
   EXPECT_EQ(toy.summary(), summary);
 }

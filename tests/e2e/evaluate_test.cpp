@@ -230,9 +230,9 @@ TEST(Evaluate, AConstantMapIsLevelWithTheConstantMapOfTheRemarks) {
     toy.write(name, flat);
   }
   ASSERT_EQ(toy.salbench("evaluate", {"--maps", (toy / "flat").string(), "--name", "FLAT"}).status, 0);
-  const std::string record = read_file(toy.out() / "run.yaml");
+  const std::string remarks = read_file(toy.out() / "chance.csv");
   for (const Metric& metric : metric_table())
-    EXPECT_THAT(lines_with(record, fmt::format("dataset: meshes, metric: {}, ", metric.name)),
+    EXPECT_THAT(lines_with(remarks, fmt::format("meshes,{},", metric.name)),
                 testing::ElementsAre(HasSubstr("FLAT (level)")))
         << metric.name;
 }

@@ -129,7 +129,7 @@ std::vector<fs::path> Workspace::left_over() const {
   for (const auto& entry : fs::directory_iterator(cache() / "tmp", missing)) files.push_back(entry.path());
   for (const auto& entry : fs::directory_iterator(out(), missing)) {
     const fs::path end = entry.path().extension();
-    if (end != ".csv" && end != ".yaml") files.push_back(entry.path());
+    if (end != ".csv" && end != ".yaml" && end != ".json") files.push_back(entry.path());
   }
   return files;
 }

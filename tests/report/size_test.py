@@ -46,7 +46,7 @@ class Size(support.ReportTest):
         out.mkdir()
         fixture.with_metrics(table, metrics).to_csv(out / "results.csv", index=False)
         (out / "run.yaml").write_text(fixture.run_yaml(models, False, extra=fixture.metric_lines(metrics)), encoding="utf-8")
-        subprocess.run([PROGRAM, "conclusions", out / "results.csv", "--out", out, "--quiet"], check=True)
+        subprocess.run([PROGRAM, "conclude", out / "results.csv", "--out", out, "--quiet"], check=True)
         before = os.times()
         to = self.report("leaderboard")
         after = os.times()
