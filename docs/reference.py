@@ -32,7 +32,7 @@ def table(head, rows):
 
 def sections(text):
     """The parts of a help text by their head, "" for what is above the first: CLI11 writes "Options:" and indents what follows."""
-    parts = re.split(r"^([A-Z][\w ]*):(?: *\n| (?=\S))", text, flags=re.M)
+    parts = re.split(r"^([A-Z][\w ()-]*):(?: *\n| (?=\S))", text, flags=re.M)
     return {"": parts[0].strip()} | {head: part.rstrip() for head, part in zip(parts[1::2], parts[2::2])}
 
 
@@ -59,8 +59,9 @@ def command(program, name, ending):
 def commands(program):
     """The help of the program and of each subcommand, without what all of them end with."""
     whole = sections(output(program, "--help"))
-    names = [name.strip("`") for name, _ in rows(whole["Subcommands"])]
-    links = [(f"[{name}](#{name})", meaning) for name, (_, meaning) in zip(names, rows(whole["Subcommands"]))]
+    subcommands = [row for head, part in whole.items() if head.startswith("Subcommands") for row in rows(part)]
+    names = [name.strip("`") for name, _ in subcommands]
+    links = [(f"[{name}](#{name})", meaning) for name, (_, meaning) in zip(names, subcommands)]
     pages = ["# Commands\n", fenced(whole["Usage"]), table(("subcommand", "what it does"), links)]
     pages += [fenced(whole["Examples"]), f"Exit status: {whole['Exit status']}\n"]
     return "\n".join(pages + [line for name in names for line in command(program, name, whole["Examples"])])

@@ -16,12 +16,24 @@ _EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salb
 
 
 class _Parser(argparse.ArgumentParser):
+    def format_help(self) -> str:
+        """In the form of the program's own subcommands."""
+        formatter = self._get_formatter()
+        formatter.add_text(self.description)
+        formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups, "Usage: ")
+        for title, group in zip(("Positionals", "Options"), self._action_groups):
+            formatter.start_section(title)
+            formatter.add_arguments(group._group_actions)
+            formatter.end_section()
+        formatter.add_text(self.epilog)
+        return formatter.format_help()
+
     def error(self, message: str) -> NoReturn:
         self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
 
 
 def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> argparse.ArgumentParser:
-    parser = _Parser(prog=f"salbench {name}", description=summary, allow_abbrev=False, epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
+    parser = _Parser(prog=f"salbench {name}", description=summary[:1].lower() + summary[1:].rstrip("."), allow_abbrev=False, epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
                         **of_scores)
