@@ -33,7 +33,8 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> argparse.ArgumentParser:
-    parser = _Parser(prog=f"salbench {name}", description=summary[:1].lower() + summary[1:].rstrip("."), allow_abbrev=False, epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
+    parser = _Parser(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {scores}", allow_abbrev=False,
+                     description=summary[:1].lower() + summary[1:].rstrip("."), epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
                         **of_scores)
