@@ -227,7 +227,7 @@ TEST(AHandedSubcommand, GetsItsWordsAndItsEndIsThatOfTheProgram) {
   EXPECT_EQ(run_process(with_python(killed, {SALBENCH_PROGRAM, "power"})).status, 128 + SIGTERM);
   const Outcome help = run_process({SALBENCH_PROGRAM, "conclude", "--help"});
   EXPECT_EQ(help.status, 0) << help.err;
-  EXPECT_THAT(help.out, AllOf(StartsWith("usage: salbench conclude "), HasSubstr("\n  --unit ")));
+  EXPECT_THAT(help.out, AllOf(HasSubstr("\nUsage: salbench conclude "), HasSubstr("\n  --unit ")));
 }
 
 TEST(AHandedSubcommand, IsAmongTheNamesThatAreSuggested) {
