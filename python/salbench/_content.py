@@ -53,7 +53,7 @@ OF_PACKAGES = {"scipy.spatial._ckdtree.cKDTree": ("data", "leafsize", "boxsize",
 CONTENT: dict[type, Any] = {
     list: lambda value: list(list.__iter__(value)), dict: lambda value: list(dict.items(value)),
     collections.OrderedDict: lambda value: list(collections.OrderedDict.items(value)),
-    **{kind: kind.__getnewargs__ for kind in (tuple, str, bytes, int, float, complex)},  # type: ignore[attr-defined]
+    **{kind: vars(kind)["__getnewargs__"] for kind in (tuple, str, bytes, int, float, complex)},
 }
 
 # Names that say nothing about what a class or a module does, or that are made of its other names.

@@ -6,6 +6,7 @@ the pairs on which each two of many metrics agree, in every resample.
 """
 
 import warnings
+from collections.abc import Mapping
 from itertools import combinations_with_replacement
 
 import numpy as np
@@ -62,7 +63,7 @@ def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
             **{name: values[a, b] for name, values in cells.items()}}
 
 
-def _fill(cells: dict[str, Floats], study: Study, ranked: list[RankedMetric], one: list[int], other: list[int]) -> None:
+def _fill(cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric], one: list[int], other: list[int]) -> None:
     """The cells of each metric of one group with each of another one; none where these have fewer than two units or models in common."""
     x, y = (ranked[metrics[0]].competitors.scores for metrics in (one, other))
     models, units = np.intersect1d(x.models, y.models), np.intersect1d(x.units, y.units)

@@ -47,7 +47,7 @@ def _passed_by(level: Level, metric: int, reference: str) -> str:
     leads = np.full(len(models), np.nan)
     for places, scores in level.groups(metric, [[place, model] for model in models]):
         if scores.n:
-            average = dict(zip(scores.models.tolist(), means(scores.values)))
+            average = dict(zip(scores.model_of_column, means(scores.values)))
             leads[places] = [_lead(average[place], average[models[at]], level.metrics[metric].higher_is_better) for at in places]
     return ", ".join(f"{level.models[model]} ({f'by {lead:.3g}' if lead > 0 else 'level'})" for model, lead in zip(models, leads) if lead >= 0)
 

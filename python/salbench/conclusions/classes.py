@@ -42,7 +42,8 @@ def _part(name: str, level: Level) -> Part:
     for number in range(len(metrics)):
         for rows, values, n_shapes in _samples(level, number):
             found = summarise(values)
-            for column, value in zip(cells, (found.n, n_shapes, found.mean, found.low, found.high)):
+            cells["n"][rows, number], cells["n_shapes"][rows, number] = found.n, n_shapes
+            for column, value in {"mean": found.mean, "ci95_low": found.low, "ci95_high": found.high}.items():
                 cells[column][rows, number] = value
     known = cells["n"] > 0
     model, metric = np.nonzero(known)

@@ -122,7 +122,7 @@ def _equivalents(scores: UnitScores, resampled: Floats, length: int, higher_is_b
     average = means(scores.values)
     curve = average[:length]
     found = {}
-    for column, model in enumerate(scores.models[length:].tolist(), start=length):
+    for column, model in enumerate(scores.model_of_column[length:], start=length):
         k = first_reached(curve[None], average[column:column + 1], higher_is_better)[0]
         low, high = percentile_interval(first_reached(resampled[:, :length], resampled[:, column], higher_is_better), scores.n)
         found[model] = Equivalent(scores.n, scores.n_shapes, float(average[column]), float(k), low, high, crossings(curve, average[column]))

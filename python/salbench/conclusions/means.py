@@ -55,11 +55,11 @@ def _fill(cells: dict[str, Any], level: Level, metric: int, ranked: RankedMetric
         cells["n"][at], cells["n_shapes"][at] = found.n, scores.n_shapes
         for name, values in {"mean": found.mean, "sd": found.sd, "ci95_low": found.low, "ci95_high": found.high}.items():
             cells[name][at] = values
-        for column, model in enumerate(scores.models):
+        for column, model in enumerate(scores.model_of_column):
             cells["bca95_low"][model, metric], cells["bca95_high"][model, metric] = bca_interval(
                 scores.values[:, column], sample.means[:, column])
             own = scores if level.n_defined(metric, model) == scores.n_shapes else level.averaged(metric, [model])
             cells["n_own_shapes"][model, metric] = own.n_shapes
-            cells["own_mean"][model, metric] = summarise(own.values).mean[list(own.models).index(model)]
+            cells["own_mean"][model, metric] = summarise(own.values).mean[own.model_of_column.index(model)]
     at = (ranked.competitors.scores.models, metric)
     cells["rank"][at], cells["group"][at] = ranked.ranking.rank, ranked.ranking.letters

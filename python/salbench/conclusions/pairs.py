@@ -149,7 +149,7 @@ def pairs_of(level: Level, metric: int) -> Pairs:
     a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
     n, n_shapes = np.zeros(len(a), dtype=np.intp), np.zeros(len(a), dtype=np.intp)
     paired = Paired._make([np.full(len(a), np.nan) for _ in Paired._fields])
-    for places, scores in level.groups(metric, list(zip(a, b))):
+    for places, scores in level.groups(metric, list(np.column_stack([a, b]))):
         of_a, of_b = (scores.values[:, np.searchsorted(scores.models, numbers[places])] for numbers in (a, b))
         n[places], n_shapes[places] = scores.n, scores.n_shapes
         for values, found in zip(paired, compare(of_a - of_b)):

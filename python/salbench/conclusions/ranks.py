@@ -13,6 +13,7 @@ known; both are put right by the ratio of Student's quantile to the normal one, 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,7 +82,7 @@ def first_shares(resampled: Floats) -> Floats:
 def compact_letters(differ: NDArray[np.bool_], order: Sequence[int] | Numbers) -> list[str]:
     """A letter for each largest group of items of which no two differ; the first of `order` are in group "a" [piepho2004]."""
     groups = {frozenset(range(len(order)))}  # items are numbered by their place in the order
-    for i, j in zip(*np.triu_indices(len(order), 1)):
+    for i, j in combinations(range(len(order)), 2):
         if not differ[order[i], order[j]]:
             continue
         split = {part for group in groups for part in ((group - {i}, group - {j}) if i in group and j in group else (group,))}

@@ -62,7 +62,7 @@ class Bootstrap:
     def means_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
         """`means` of several samples; those of as many units share one product, which takes far less time. No resamples of fewer than
         two units."""
-        means = [np.empty((0, values.shape[1])) for values in samples]
+        means: list[Floats] = [np.empty((0, values.shape[1])) for values in samples]
         for n in sorted({len(values) for values in samples if len(values) > 1 and values.size}):
             places = [place for place, values in enumerate(samples) if len(values) == n and values.size]
             relative = [_on_grid(samples[place] - samples[place][0]) for place in places]

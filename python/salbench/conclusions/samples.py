@@ -43,7 +43,7 @@ def summarise(values: Floats, tail: float = TAIL) -> Summary:
     return Summary(n, mean / scale, sd / scale, (mean - half) / scale, (mean + half) / scale)
 
 
-def _scale(values: Floats) -> float:
+def _scale(values: Floats) -> np.float64:
     """A power of two by which squares of the values do not overflow: 1 but for values of more than 10^144."""
     _, exponent = np.frexp(np.abs(values).max(initial=0))
-    return float(np.ldexp(1.0, min(0, 480 - int(exponent))))
+    return np.float64(np.ldexp(1.0, min(0, 480 - int(exponent))))

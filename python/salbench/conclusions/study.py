@@ -42,9 +42,9 @@ class RankedMetric:
         known: dict[int, Floats] = {}
         for sample in self.samples:
             if sample.scores.n_shapes == scores.n_shapes:
-                known.update(zip(sample.scores.models.tolist(), sample.means.T))
-        if all(model in known for model in scores.models.tolist()):
-            return np.stack([known[model] for model in scores.models.tolist()], axis=1)
+                known.update(zip(sample.scores.model_of_column, sample.means.T))
+        if all(model in known for model in scores.model_of_column):
+            return np.stack([known[model] for model in scores.model_of_column], axis=1)
         return bootstrap.means(scores.values)
 
 

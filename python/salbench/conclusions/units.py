@@ -55,6 +55,10 @@ class UnitScores:
     def n(self) -> int:
         return len(self.units)
 
+    @property
+    def model_of_column(self) -> list[int]:
+        return list(map(int, self.models))
+
 
 class Level:
     """The scores of one data set, or of one split or class of it: arrays by shape, model and metric."""
