@@ -56,6 +56,8 @@ class Csv(FileTest):
                 ('a,b\n"1"x,2\n', ":2: there is text after the quote that closes a field")):
             separator = "" if message.startswith(":") else ": "
             self.refused(f"scores.csv{separator}{message}", read_csv, self.write(text), {"b"})
+        for cell in ("1_000", " 1", "1 ", "\t1", "１"):  # Python takes them for numbers
+            self.refused(f"scores.csv:2: '{cell}' is not a number", read_csv, self.write(f"a,b\n.5,{cell}\n"), {"a", "b"})
         self.refused("scores.csv: there is no column 'c'; there are 'a', 'b'", read_csv(self.write("a,b\n")).column, "c")
 
 

@@ -17,6 +17,8 @@ from salbench.conclusions.units import Floats
 _WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
           "',' expected after '\"'": "there is text after the quote that closes a field"}
 
+_OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
+
 
 class InputError(ValueError):
     """A file or table that cannot be used: the message says which, where and why."""
@@ -123,11 +125,15 @@ class _Columns:
         self.lines.append(line)
         for place, cells in self._texts.items():
             cells.append(self._known.setdefault(fields[place], fields[place]))
+        cells = [fields[place] for place in self._numbers]
         try:
-            self._cells.extend([float(fields[place] or "nan") for place in self._numbers])
+            self._cells.extend([float(cell or "nan") for cell in cells])
+            are_numbers = _are_plain(cells)
         except ValueError:
-            wrong = next(fields[place] for place in self._numbers if not _is_number(fields[place]))
-            raise InputError(f"{self._name}:{line}: '{wrong}' is not a number") from None
+            are_numbers = False
+        if not are_numbers:
+            wrong = next(cell for cell in cells if not _is_number(cell))
+            raise InputError(f"{self._name}:{line}: '{wrong}' is not a number")
 
     def table(self, remarks: list[str]) -> Table:
         values = np.array(self._cells).reshape(len(self.lines), len(self._numbers))
@@ -136,9 +142,14 @@ class _Columns:
                      self._columns, remarks)
 
 
+def _are_plain(cells: list[str]) -> bool:
+    """False for what float() takes and other readers of numbers do not: "1_000", " 1", digits of other scripts. Once per row: it is fast."""
+    return not "".join(cells).encode().translate(None, _OF_NUMBERS)
+
+
 def _is_number(cell: str) -> bool:
     try:
         float(cell or "nan")
     except ValueError:
         return False
-    return True
+    return _are_plain([cell])
