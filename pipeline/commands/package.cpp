@@ -22,6 +22,8 @@ constexpr PackageSubcommand kSubcommands[] = {
     {"conclude", "means, intervals, tests and ranks of scores per shape, of a run or of anybody's"},
     {"power",
      "which differences between models the scores can show, and how many units would show those seen"},
+    {"submit", "check maps of your own and write the file that a leaderboard takes"},
+    {"leaderboard", "check and score submissions, and make a site that ranks them"},
 };
 
 // Arguments: version, folder of the package or nothing, status if it is lacking, what to do then, words. No
@@ -57,11 +59,10 @@ std::string interpreter() {
 
 std::string remedy() {
   std::string names;
-  for (const PackageSubcommand& subcommand : kSubcommands)
-    names += fmt::format("{}{}", names.empty() ? "" : " and ", subcommand.name);
+  for (const PackageSubcommand& subcommand : kSubcommands) names += fmt::format("{}, ", subcommand.name);
   return fmt::format(
-      "install python3-salbench {}, or set SALBENCH_PYTHON to an interpreter that has it; without it, {} and "
-      "all conclusions are missing, and everything else works",
+      "install python3-salbench {}, or set SALBENCH_PYTHON to an interpreter that has it; without it, {}"
+      "and all conclusions are missing, and everything else works",
       SALBENCH_VERSION, names);
 }
 

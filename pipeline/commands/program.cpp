@@ -74,10 +74,9 @@ constexpr const char* kExitStatus =
 130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
-    run_subcommand,     maps_subcommand,        evaluate_subcommand, pictures_subcommand, export_subcommand,
-    plan_subcommand,    graph_subcommand,       explain_subcommand,  status_subcommand,   doctor_subcommand,
-    submit_subcommand,  leaderboard_subcommand, config_subcommand,   verify_subcommand,   gc_subcommand,
-    inspect_subcommand, convert_subcommand,
+    run_subcommand,    maps_subcommand,   evaluate_subcommand, pictures_subcommand, export_subcommand,
+    plan_subcommand,   graph_subcommand,  explain_subcommand,  status_subcommand,   doctor_subcommand,
+    config_subcommand, verify_subcommand, gc_subcommand,       inspect_subcommand,  convert_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {

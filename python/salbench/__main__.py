@@ -3,8 +3,10 @@
 
 import argparse
 import json
+import shlex
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -12,7 +14,8 @@ ALL_DONE, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 0, 2, 3, 7
 SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
 
 
-_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07"}  # as `salbench --help` has them
+_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07",
+             "submit": "mine --to mine.zip --data SchellingData", "leaderboard": "submissions --to site --data SchellingData"}  # as `salbench --help` has them
 
 
 class _Parser(argparse.ArgumentParser):
@@ -32,10 +35,14 @@ class _Parser(argparse.ArgumentParser):
         self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
 
 
+def _parser(name: str, summary: str, positional: str) -> argparse.ArgumentParser:
+    return _Parser(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {positional}", allow_abbrev=False,
+                   description=summary[:1].lower() + summary[1:].rstrip("."), epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
+                   formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
 def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> argparse.ArgumentParser:
-    parser = _Parser(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {scores}", allow_abbrev=False,
-                     description=summary[:1].lower() + summary[1:].rstrip("."), epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
-                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = _parser(name, summary, scores)
     parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
                         **of_scores)
     parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")
@@ -87,20 +94,62 @@ def power(arguments: Sequence[str]) -> int:
     return _print(given, "power", {"unit": unit, "pairs": tables.records(table)}, text)
 
 
-SUBCOMMANDS = {"conclude": conclude, "power": power}
+def submit(arguments: Sequence[str]) -> int:
+    """Check maps of your own and write the file that a leaderboard takes."""
+    from salbench.leaderboard import commands
+
+    parser = _parser("submit", submit.__doc__ or "", "MINE")
+    parser.add_argument("mine", metavar="MINE", help="folder with ITEM.val of every item with ground truth, and card.yaml")
+    parser.add_argument("--to", metavar="FILE", required=True, help="the file to write, such as mine.zip")
+    return _over_data("submit", parser, arguments, commands.submit)
+
+
+def leaderboard(arguments: Sequence[str]) -> int:
+    """Check and score submissions, and make a site that ranks them."""
+    from salbench.leaderboard import commands
+
+    parser = _parser("leaderboard", leaderboard.__doc__ or "", "FOLDER")
+    parser.add_argument("folder", metavar="FOLDER", help="folder of the submissions (NAME.zip)")
+    parser.add_argument("--to", metavar="DIR", required=True, help="folder of the site")
+    parser.add_argument("--models", metavar="NAMES", help="also these of the configuration, such as LS,PS (default: people and chance alone)")
+    return _over_data("leaderboard", parser, arguments, commands.leaderboard)
+
+
+def _over_data(name: str, parser: argparse.ArgumentParser, arguments: Sequence[str], carry_out: Callable[[argparse.Namespace, Any], int]) -> int:
+    """A command that runs jobs: a second call goes on where it was ended."""
+    from salbench.leaderboard import commands
+
+    commands.add_arguments(parser)
+    given = parser.parse_args(arguments)
+    _check_format(given)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        return carry_out(given, lambda document, text: _print(given, name, document, text))
+    except KeyboardInterrupt:
+        line = shlex.join(["salbench", name, *arguments])
+        print(f"\ninterrupted; everything finished so far is kept. To go on:\n  {line}", file=sys.stderr)
+        return INTERRUPTED
+
+
+SUBCOMMANDS = {"conclude": conclude, "power": power, "submit": submit, "leaderboard": leaderboard}
 
 
 def _source(given: argparse.Namespace) -> Any:
     """The scores, with a warning of columns that are left out."""
     from salbench import conclusions
-    from salbench.conclusions.csv_file import InputError
 
-    if given.format not in ("text", "json"):
-        raise InputError(f"--format {given.format}: must be text or json")
+    _check_format(given)
     source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=_names(given.higher), lower=_names(given.lower))
     for note in source.notes:
         print(f"warning: {note}", file=sys.stderr)
     return source
+
+
+def _check_format(given: argparse.Namespace) -> None:
+    from salbench.conclusions.csv_file import InputError
+
+    if given.format not in ("text", "json"):
+        raise InputError(f"--format {given.format}: must be text or json")
 
 
 def _names(text: str) -> list[str]:
@@ -120,6 +169,7 @@ def _only_results() -> str:
 def _print(given: argparse.Namespace, name: str, document: dict[str, Any], text: str) -> int:
     if given.format == "json":
         text = json.dumps({"schema": SCHEMA, "command": name, **document}, ensure_ascii=False, separators=(",", ":")) + "\n"
+        text = text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # U+FFFD in place of bytes that are not UTF-8
     elif given.quiet:
         return ALL_DONE
     try:

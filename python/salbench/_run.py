@@ -147,6 +147,8 @@ def run(
         "yaml": json.dumps(config) if isinstance(config, Mapping) else None,
         "models": json.dumps(others) if others else None,
         "only_functions": others == {},
+        "kept": None,
+        "maps": {},
         "data": data and os.fspath(data),
         "cache": cache and os.fspath(cache),
         "out": out and os.fspath(out),
@@ -157,6 +159,12 @@ def run(
     }
     if items is not None and not settings["items"]:
         raise ValueError("items is empty: name some, or leave it out to run all")
+    return carry_out(settings, functions, threads, progress)
+
+
+def carry_out(settings: dict[str, Any], functions: Iterable[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
+    """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
+    stay beside the functions; maps: folders of maps, as `salbench evaluate` takes them, by the name of the model."""
     threads = len(os.sched_getaffinity(0)) if threads is None else threads
     if threads < 1:
         raise ValueError(f"threads must be at least 1, not {threads}")

@@ -78,7 +78,11 @@ def leader_of(level: Level, ranked: RankedMetric, metric: Metric) -> Leader:
 
 def leaders(study: Study) -> pandas.DataFrame:
     """A row per data set with its sentence, then one per metric with competitors."""
-    return framed(COLUMNS, (part for level in find_leaders(study) for part in _parts(level)), study.in_splits)
+    return framed_leaders(find_leaders(study), study.in_splits)
+
+
+def framed_leaders(found: list[LevelLeaders], in_splits: bool) -> pandas.DataFrame:
+    return framed(COLUMNS, (part for level in found for part in _parts(level)), in_splits)
 
 
 def _parts(level: LevelLeaders) -> list[Part]:
