@@ -142,7 +142,7 @@ def run(
         (name, given) for name, given in models.items() if callable(given) or isinstance(given, Model)]
     others = None if models is None else {
         name: given or {} for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
-    settings = {
+    settings: dict[str, Any] = {
         "path": None if isinstance(config, Mapping) else _configuration(config),
         "yaml": json.dumps(config) if isinstance(config, Mapping) else None,
         "models": json.dumps(others) if others else None,

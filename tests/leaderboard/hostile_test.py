@@ -215,7 +215,7 @@ class Hostile(unittest.TestCase):
 
     def test_the_process_that_reads_sends_what_it_read(self):
         read = self.read(zip_of(sound().items()))
-        self.assertEqual((read.card.name, read.manifest.format, read.results), ("MINE", "salbench submission 1", "scores"))
+        self.assertEqual((read.card.name, read.program, read.results), ("MINE", "", "scores"))
         self.assertEqual({item: list(values) for item, values in read.maps.items()}, {item: list(np.arange(n) / n) for item, n in EXPECTED.points.items()})
 
     def test_a_process_that_dies_or_lies_is_a_refusal(self):

@@ -107,7 +107,7 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
             if isinstance(read, str):
                 entry.refused = read
                 continue
-            entry.card, entry.program, entry.refused = read.card, read.manifest.program, ""
+            entry.card, entry.program, entry.refused = read.card, read.program, ""
             if (holder := taken.setdefault(read.card.name.lower(), entry.file.name)) != entry.file.name:
                 entry.refused = f"the name {read.card.name} is taken by {holder}, or differs from it in capitals alone"
                 continue

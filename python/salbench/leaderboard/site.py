@@ -75,9 +75,11 @@ def rows_of(frame: pandas.DataFrame) -> list[Row]:
 
 def ranking(board: Board) -> list[Any]:
     """A table per data set and split: models x metrics, the best by the first metric first, then references, then those that stand beside."""
-    frame = pandas.concat([board.tables["compact"], board.beside])
-    blocks = []
-    for _, part in frame.groupby(["dataset", *(["split"] if "split" in frame else [lambda row: ""])], sort=False):
+    frame = pandas.concat([board.tables["compact"], board.beside], ignore_index=True)
+    splits = frame["split"] if "split" in frame else frame["dataset"].map(lambda name: "")
+    blocks: list[Any] = []
+    for dataset, split in dict.fromkeys(zip(frame["dataset"], splits)):
+        part = frame[(frame["dataset"] == dataset) & (splits == split)]
         by_cell = {(row["model"], row["metric"]): row for row in rows_of(part)}
         better = dict(zip(part["metric"], part["better"]))
         rows = [[named(board, model), *(mean_cell(by_cell.get((model, metric))) for metric in better)] for model in part["model"].unique()]

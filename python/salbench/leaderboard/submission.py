@@ -50,7 +50,7 @@ class Expected:
 @dataclass(frozen=True)
 class Submission:
     card: Card
-    manifest: Manifest
+    program: str  # version that wrote it
     results: str  # results.csv as it came
     digest: str  # of the maps
     maps: Mapping[str, NDArray[np.float64]]  # by the name of the shape, from the scratch file
@@ -63,7 +63,7 @@ def archive_of(card: bytes, manifest: Manifest, configuration: str, results: byt
 
 def npy_of(values: NDArray[np.float64]) -> bytes:
     made = io.BytesIO()
-    np.lib.format.write_array(made, np.ascontiguousarray(values, dtype="<f8"), version=(1, 0))
+    np.save(made, np.ascontiguousarray(values, dtype="<f8"), allow_pickle=False)
     return made.getvalue()
 
 
@@ -118,7 +118,7 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
         raise Refused(f"other data: their digest is {quoted(manifest.data)}, expected {expected.data}")
 
 
-def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, bytes, dict[str, NDArray[np.float64]]]:
+def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
     files = read_zip(data, expected.limits)
     maps = {name: files.pop(name) for name in list(files) if name.startswith("maps/") and name.endswith(".npy")}
     for name in files:
@@ -144,7 +144,7 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, bytes, di
     missing = [item for item in expected.points if item not in found]
     if missing:
         raise Refused(f"has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}")
-    return card, manifest, files["results.csv"], found
+    return card, manifest, files, found
 
 
 def _bytes_of(path: str, most: int) -> bytes:
@@ -168,15 +168,17 @@ def worker() -> None:
         resource.setrlimit(limit, (most, most))
     maps: dict[str, NDArray[np.float64]] = {}
     try:
-        card, manifest, results, maps = _checked(_bytes_of(given["path"], expected.limits.bytes + _OVERHEAD), expected)
-        head = {"card": asdict(card), "manifest": asdict(manifest), "results": results.decode("utf-8", "surrogateescape"), "maps": list(maps)}
+        _, manifest, files, maps = _checked(_bytes_of(given["path"], expected.limits.bytes + _OVERHEAD), expected)
+        head = {"card": files["card.yaml"].decode(), "program": manifest.program, "maps": list(maps),
+                "results": files["results.csv"].decode("utf-8", "surrogateescape")}
     except Refused as reason:
         head = {"refused": str(reason)}
     except OSError as error:
         head = {"refused": f"cannot be read: {error.strerror}"}
     except MemoryError:
         head = {"refused": f"needs more than the {memory} bytes of memory that a submission has"}
-    sys.stdout.buffer.write(json.dumps(head).encode() + b"\n")
+    line = json.dumps(head).encode()
+    sys.stdout.buffer.write(line + b" " * (-(len(line) + 1) % 8) + b"\n")  # what follows is aligned
     for values in maps.values():
         sys.stdout.buffer.write(values.tobytes())
 
@@ -186,7 +188,7 @@ def worker() -> None:
 
 def read(path: Path, expected: Expected, scratch: Path) -> Submission:
     """Reads an archive from anybody and checks all of it but its scores; scratch is a file to be written. Throws Refused."""
-    given = json.dumps({"path": str(path), "expected": asdict(expected) | {"points": dict(expected.points)}})
+    given = json.dumps({"path": str(path), "expected": asdict(expected)})
     with open(scratch, "wb") as out:
         try:
             ended = subprocess.run([sys.executable, "-P", "-B", "-c", _START, str(Path(__file__).parents[2])], input=given.encode(), stdout=out,
@@ -202,14 +204,16 @@ def read(path: Path, expected: Expected, scratch: Path) -> Submission:
         raise Refused(f"damaged: the process that reads it sent nothing{', and was ended by a limit or a fault' if ended else ''}") from None
     if "refused" in head:
         raise Refused(str(head["refused"]))
-    return _received(head, np.memmap(scratch, np.float64, "r", begin), expected)
+    return _received(head, scratch, begin, expected)
 
 
-def _received(head: dict[str, Any], values: NDArray[np.float64], expected: Expected) -> Submission:
-    """An archive may have taken the process over: what it says is looked at once more."""
-    card = Card(**{**head["card"], "test_overlap": tuple(head["card"]["test_overlap"])})
-    ends = np.cumsum([0, *(expected.points[item] for item in head["maps"])])
-    if set(head["maps"]) != set(expected.points) or ends[-1] != len(values):
+def _received(head: dict[str, Any], scratch: Path, begin: int, expected: Expected) -> Submission:
+    """An archive may have taken the process over: what it sent is looked at once more."""
+    items, n = head["maps"], sum(expected.points.values())
+    if sorted(items) != sorted(expected.points) or scratch.stat().st_size != begin + 8 * n:
         raise Refused("damaged: its maps were not sent whole")
-    maps = {item: values[begin:end] for item, begin, end in zip(head["maps"], ends, ends[1:])}
-    return Submission(card, Manifest(**head["manifest"]), head["results"], _core.digest(values.tobytes()), maps)
+    values = np.memmap(scratch, np.float64, "r", begin)
+    ends = np.cumsum([0, *(expected.points[item] for item in items)])
+    maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
+    card = texts.read_card(head["card"].encode(), "card.yaml")
+    return Submission(card, str(head["program"]), str(head["results"]), _core.digest(values.tobytes()), maps)

@@ -18,8 +18,6 @@ _DEEPEST = 20
 FORMAT = "salbench submission 1"
 FREE = ("date", "url")  # keys of a card that may be left out
 
-Values = dict[str, str | list[str]]
-
 
 @dataclass(frozen=True)
 class Card:
@@ -84,7 +82,8 @@ def read_card(text: bytes, name: str) -> Card:
 
 
 def read_manifest(text: bytes, name: str) -> Manifest:
-    return Manifest(**{"format": "", **_values(text, name, list(Manifest.__dataclass_fields__))})
+    values: dict[str, Any] = {"format": "", **_values(text, name, list(Manifest.__dataclass_fields__))}
+    return Manifest(**values)
 
 
 def require_plain(text: bytes, name: str) -> None:
@@ -142,7 +141,7 @@ def _look(node: Any, name: str, seen: set[int] | None = None, depth: int = 0) ->
                 _look(one, name, seen, depth + 1)
 
 
-def _values(text: bytes, name: str, known: Sequence[str]) -> Values:
+def _values(text: bytes, name: str, known: Sequence[str]) -> dict[str, Any]:
     """The texts and lists of texts of a mapping."""
     import yaml
 
@@ -150,7 +149,7 @@ def _values(text: bytes, name: str, known: Sequence[str]) -> Values:
     _look(root, name)
     if not isinstance(root, yaml.MappingNode):
         raise Refused(f"{name}: expected lines such as `{known[0]}: ...`")
-    values: Values = {}
+    values: dict[str, Any] = {}
     for key, value in root.value:
         where = f"{name}:{key.start_mark.line + 1}"
         if key.value not in known:
