@@ -15,13 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Found from the program, since a package is built before its files are in their place. No such folder in a
-// checkout.
-fs::path share() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share/salbench";
-}
-
 // Names without ending of the files beside it, and of those of the program.
 std::vector<std::string> known_configurations(const fs::path& given) {
   std::vector<std::string> names;
@@ -59,11 +52,6 @@ fs::path package_folder() {
     if (folder.parent_path() != "/usr/lib/python3" && fs::is_directory(folder / "salbench", error))
       return folder;
   return {};
-}
-
-std::string report_command() {
-  std::error_code error;
-  return fs::is_directory(share() / "report", error) ? "salbench-report" : "scripts/report";
 }
 
 }  // namespace salbench

@@ -17,6 +17,4 @@ Section configuration(const std::string& given);
 // where it is Debian's, which its interpreter finds anyway.
 std::filesystem::path package_folder();
 
-std::string report_command();  // that of the installation, or of the checkout
-
 }  // namespace salbench

@@ -24,6 +24,7 @@ constexpr PackageSubcommand kSubcommands[] = {
      "which differences between models the scores can show, and how many units would show those seen"},
     {"submit", "check maps of your own and write the file that a leaderboard takes"},
     {"leaderboard", "check and score submissions, and make a site that ranks them"},
+    {"report", "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes"},
 };
 
 // Arguments: version, folder of the package or nothing, status if it is lacking, what to do then, words. No

@@ -3,9 +3,11 @@
 
 import argparse
 import json
+import os
 import shlex
 import signal
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
@@ -14,7 +16,7 @@ ALL_DONE, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 0, 2, 3, 7
 SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
 
 
-_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07",
+_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07", "report": "salbench-out/shrec07",
              "submit": "mine --to mine.zip --data SchellingData", "leaderboard": "submissions --to site --data SchellingData"}  # as `salbench --help` has them
 
 
@@ -41,6 +43,11 @@ def _parser(name: str, summary: str, positional: str) -> argparse.ArgumentParser
                    formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
+def _add_output(parser: argparse.ArgumentParser, what: str) -> None:
+    parser.add_argument("--format", default="text", help="text (default), or json: one document for programs (docs/json.md)")
+    parser.add_argument("--quiet", action="store_true", help=f"no {what}; warnings and errors only")
+
+
 def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> argparse.ArgumentParser:
     parser = _parser(name, summary, scores)
     parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
@@ -49,8 +56,7 @@ def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> ar
     parser.add_argument("--unit", help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)")
     parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
     parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
-    parser.add_argument("--format", default="text", help="text (default), or json: one document for programs (docs/json.md)")
-    parser.add_argument("--quiet", action="store_true", help="no table; warnings and errors only")
+    _add_output(parser, "table")
     return parser
 
 
@@ -131,7 +137,38 @@ def _over_data(name: str, parser: argparse.ArgumentParser, arguments: Sequence[s
         return INTERRUPTED
 
 
-SUBCOMMANDS = {"conclude": conclude, "power": power, "submit": submit, "leaderboard": leaderboard}
+def report(arguments: Sequence[str]) -> int:
+    """Pages of a run that open from disk: who leads and how sure, figures, maps on the shapes."""
+    parser = _parser("report", report.__doc__ or "", "OUT")
+    parser.add_argument("results", metavar="OUT", help="results folder of salbench run or evaluate")
+    parser.add_argument("--to", metavar="DIR", help="folder of the report (default: OUT/report)")
+    parser.add_argument("--export", metavar="FILE.h5", nargs="+", action="extend", default=[],
+                        help="exports of shapes to show, with the pictures of salbench pictures (default: OUT/shapes.h5 if it exists)")
+    parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
+    parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
+    parser.add_argument("--processes", metavar="N", type=int, default=len(os.sched_getaffinity(0)),
+                        help="that draw at the same time; the report does not depend on it (default: one per core)")
+    _add_output(parser, "path")
+    given = parser.parse_args(arguments)
+    _check_format(given)
+    with tempfile.TemporaryDirectory() as scratch:  # Matplotlib's font list: nothing is written outside the folder of the report
+        os.environ["MPLCONFIGDIR"] = scratch
+        from salbench.report.write import write_report
+
+        page = write_report(Path(given.results), to=Path(given.to) if given.to else None, exports=given.export,
+                            compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
+                            processes=given.processes)
+    return _print(given, "report", {"page": str(page)}, f"{page}\n")
+
+
+SUBCOMMANDS = {"conclude": conclude, "power": power, "submit": submit, "leaderboard": leaderboard, "report": report}
+
+
+def _check_format(given: argparse.Namespace) -> None:
+    from salbench.conclusions.csv_file import InputError
+
+    if given.format not in ("text", "json"):
+        raise InputError(f"--format {given.format}: must be text or json")
 
 
 def _source(given: argparse.Namespace) -> Any:
@@ -143,13 +180,6 @@ def _source(given: argparse.Namespace) -> Any:
     for note in source.notes:
         print(f"warning: {note}", file=sys.stderr)
     return source
-
-
-def _check_format(given: argparse.Namespace) -> None:
-    from salbench.conclusions.csv_file import InputError
-
-    if given.format not in ("text", "json"):
-        raise InputError(f"--format {given.format}: must be text or json")
 
 
 def _names(text: str) -> list[str]:
