@@ -5,8 +5,8 @@ Models are compared on the items that none of them was trained on. A model that 
 """
 
 import csv
-import io
 import os
+import shutil
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -125,13 +125,13 @@ def model_of(submitted: Submission) -> tuple[str, Model]:
 def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
     """Scores what passed, and draws the conclusions. name: of the configuration."""
     results = run(functions=[model_of(one) for one in submitted])
-    _refuse_failed(entries, results, expected)
+    if failed := _refuse_failed(entries, results, expected):
+        return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name)
     _compare_scores(entries, submitted, results.folder / "results.csv")
     source = folders.read_run(results.folder)
     seen = {item for entry in entries if not entry.refused for item in entry.card.test_overlap}
-    gone = {one.card.name for one in submitted} - {entry.card.name for entry in entries if entry.status == "ranked"}
     beside = [entry.card.name for entry in entries if entry.status == "beside"]
-    study = _part(source.study, seen, lambda models: ~models.isin(list(gone)))
+    study = _part(source.study, seen, lambda models: ~models.isin(beside))
     found = [_or_too_few(level) for level in leaders.find_leaders(study)]
     sentences = [level.sentence for level in found] or ["No item is left that no model has seen: none can be ranked."]
     if seen:
@@ -142,12 +142,15 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
     return board, results
 
 
-def _refuse_failed(entries: list[Entry], results: Any, expected: Expected) -> None:
-    """A model that failed on any shape is no competitor: all are compared on the same shapes."""
+def _refuse_failed(entries: list[Entry], results: Any, expected: Expected) -> set[str]:
+    """A model that failed on any shape is no competitor: all are compared on the same shapes. Their names."""
+    failed = set()
     for entry in entries:
         for item, stage, cause in results.failures:
             if not entry.refused and item in expected.points and stage.endswith(f".{entry.card.name}"):
                 entry.refused = f"{item}: {cause.splitlines()[0]}"
+                failed.add(entry.card.name)
+    return failed
 
 
 def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path: Path) -> None:
@@ -268,31 +271,12 @@ OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean
 
 
 def write_tables(board: Board, results: Any, folder: Path) -> None:
-    """The scores as the run wrote them, without those of refused models, and all that follows from them."""
+    """The scores as the run wrote them, and all that follows from them."""
     folder.mkdir(parents=True)
-    accepted = {entry.card.name for entry in board.entries if not entry.refused}
-    refused = {entry.card.name for entry in board.entries if entry.refused} - accepted - {""}
     for name in OF_THE_RUN:
         if (results.folder / name).is_file():
-            (folder / name).write_bytes(_without(results.folder / name, refused))
+            shutil.copyfile(results.folder / name, folder / name)
     unmarked = ("submissions", "about", "metrics", "history")
     for name, frame in board.tables.items():
         folders.write(folder / f"{name}.csv", tables.csv(frame, () if name in unmarked else board.remarks))
     folders.write(folder / "protocol.yaml", board.protocol)
-
-
-def _without(path: Path, models: set[str]) -> bytes:
-    """A table of a run without the rows and columns of some models."""
-    data = path.read_bytes()
-    if not any(name.encode() in data for name in models):
-        return data
-    lines = data.decode("utf-8", "surrogateescape").splitlines(keepends=True)
-    remarks = [line for line in lines if line.startswith("#")]
-    columns, *rows = csv.reader(lines[len(remarks):])
-    kept = [place for place, column in enumerate(columns) if column not in models]
-    of_model = columns.index("model") if "model" in columns else None
-    text = io.StringIO("".join(remarks), newline="")
-    text.seek(0, io.SEEK_END)
-    csv.writer(text, lineterminator="\n").writerows(
-        [row[place] for place in kept] for row in [columns, *rows] if of_model is None or row[of_model] not in models)
-    return text.getvalue().encode("utf-8", "surrogateescape")
