@@ -56,7 +56,6 @@ PYBIND11_MODULE(_core, module) {
   bind_data(module);
   bind_metrics(module);
   bind_models(module);
-  bind_protocol(module);
   bind_run(module);
   bind_shapes(module);
 }

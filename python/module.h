@@ -20,7 +20,6 @@ void bind_cache(pybind11::module_& module);
 void bind_data(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
-void bind_protocol(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
 void bind_shapes(pybind11::module_& module);
 

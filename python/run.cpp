@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "cache/digest.h"
+#include "pipeline/commands/commit.h"
 #include "pipeline/inputs/given_maps.h"
 #include "pipeline/inputs/given_reference.h"
 #include "pipeline/results/map_counts.h"
@@ -22,7 +24,6 @@
 #include "python/computing.h"
 #include "python/log.h"
 #include "python/module.h"
-#include "python/protocol.h"
 #include "python/run_values.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
@@ -150,6 +151,15 @@ ItemChoice items_from(const py::object& given) {
   if (given.is_none()) return {};
   if (py::isinstance<py::bytes>(given)) return given.cast<std::string>();
   return ItemChoice(given.cast<std::vector<std::string>>());
+}
+
+// The configuration without models, folders and pictures: what makes scores of the same maps the same.
+std::string protocol_text(Config config) {
+  config.models.clear();
+  config.data = config.cache = config.output = "";
+  config.pictures = Pictures::none;
+  const std::string yaml = config_yaml(config);
+  return yaml.substr(0, yaml.rfind("models:\n"));
 }
 
 // Those of a list such as "LS,PS"; of an empty one people and chance.
@@ -312,6 +322,12 @@ class Run {
 }  // namespace
 
 void bind_run(py::module_& module) {
+  module.attr("commit") = std::string(commit());
+  module.def("protocol", [](const std::string& yaml, const std::string& name) {
+    return protocol_text(read_config(Section::from_text(yaml, name), ""));
+  });
+  module.def("digest", [](const py::bytes& bytes) { return file_digest(std::string_view(bytes)).hex(); });
+  module.def("wrong_with_model_name", &wrong_with_model_name);
   py::class_<Run>(module, "Run")
       .def(py::init<const py::dict&, const py::list&>())
       .def("carry_out", &Run::carry_out)

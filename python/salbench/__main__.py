@@ -8,7 +8,7 @@ import shlex
 import signal
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -102,26 +102,22 @@ def power(arguments: Sequence[str]) -> int:
 
 def submit(arguments: Sequence[str]) -> int:
     """Check maps of your own and write the file that a leaderboard takes."""
-    from salbench.leaderboard import commands
-
     parser = _parser("submit", submit.__doc__ or "", "MINE")
     parser.add_argument("mine", metavar="MINE", help="folder with ITEM.val of every item with ground truth, and card.yaml")
     parser.add_argument("--to", metavar="FILE", required=True, help="the file to write, such as mine.zip")
-    return _over_data("submit", parser, arguments, commands.submit)
+    return _over_data("submit", parser, arguments)
 
 
 def leaderboard(arguments: Sequence[str]) -> int:
     """Check and score submissions, and make a site that ranks them."""
-    from salbench.leaderboard import commands
-
     parser = _parser("leaderboard", leaderboard.__doc__ or "", "FOLDER")
     parser.add_argument("folder", metavar="FOLDER", help="folder of the submissions (NAME.zip)")
     parser.add_argument("--to", metavar="DIR", required=True, help="folder of the site")
     parser.add_argument("--models", metavar="NAMES", help="also these of the configuration, such as LS,PS (default: people and chance alone)")
-    return _over_data("leaderboard", parser, arguments, commands.leaderboard)
+    return _over_data("leaderboard", parser, arguments)
 
 
-def _over_data(name: str, parser: argparse.ArgumentParser, arguments: Sequence[str], carry_out: Callable[[argparse.Namespace, Any], int]) -> int:
+def _over_data(name: str, parser: argparse.ArgumentParser, arguments: Sequence[str]) -> int:
     """A command that runs jobs: a second call goes on where it was ended."""
     from salbench.leaderboard import commands
 
@@ -130,6 +126,7 @@ def _over_data(name: str, parser: argparse.ArgumentParser, arguments: Sequence[s
     _check_format(given)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
+        carry_out = commands.submit if name == "submit" else commands.leaderboard
         return carry_out(given, lambda document, text: _print(given, name, document, text))
     except KeyboardInterrupt:
         line = shlex.join(["salbench", name, *arguments])

@@ -7,12 +7,15 @@ import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import toy
 from toy import card, everything
 
 from salbench import _core
+from salbench.leaderboard import board
 from salbench.leaderboard import folder as sites
+from salbench.leaderboard.texts import Card
 
 NOISES = (0, 0.5, 1, 2, 4, 8, 40)
 
@@ -239,6 +242,12 @@ class Board(unittest.TestCase):
         self.rank()
         self.assertEqual((self.toy.site / "CNAME").read_text(), "example.org")
         self.assertEqual([path.name for path in (self.toy.site / "models").iterdir()], ["G1.html"])
+
+    def test_a_model_that_failed_on_a_shape_is_refused(self):
+        entries = [board.Entry(Path("a.zip"), Card(name="A"), refused=""), board.Entry(Path("b.zip"), Card(name="B"), refused="")]
+        failures = [("1", "scores.A", "overflow\nand its traceback"), ("no ground truth", "map.B", "of no matter")]
+        self.assertEqual(board._refuse_failed(entries, SimpleNamespace(failures=failures), SimpleNamespace(points={"1": 5})), {"A"})
+        self.assertEqual([entry.refused for entry in entries], ["1: overflow", ""])
 
     def test_submit_says_what_is_missing_and_writes_nothing(self):
         mine = self.toy.maps("M", 1)

@@ -12,7 +12,6 @@ import zipfile
 import zlib
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 _LONGEST_NAME = 255
 _HEADER = struct.Struct("<4s5H3I2H")  # before an entry: signature, version, flags, method, time, date, CRC, sizes, lengths of name and extra field
@@ -22,12 +21,6 @@ _ZIP64 = 0xFFFFFFFF  # the size is in the extra field
 
 class Refused(Exception):
     """Why a submission is refused: one line, without the name of its file."""
-
-
-@dataclass(frozen=True)
-class Limits:
-    entries: int
-    bytes: int  # of all entries, unpacked
 
 
 def quoted(text: str) -> str:
@@ -47,17 +40,17 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
     return made.getvalue()
 
 
-def read_zip(data: bytes, limits: Limits) -> dict[str, bytes]:
-    """The files in an archive, by name, in its order. Throws Refused."""
+def read_zip(data: bytes, most_entries: int, most_bytes: int) -> dict[str, bytes]:
+    """The files in an archive, by name, in its order. most_bytes: of all of them, unpacked. Throws Refused."""
     try:
         archive = zipfile.ZipFile(io.BytesIO(data))
     except (zipfile.BadZipFile, NotImplementedError, ValueError, OverflowError, struct.error) as error:
         raise Refused(f"cannot be read as a ZIP archive: {error}") from None
     entries = archive.infolist()
-    if len(entries) > limits.entries:
-        raise Refused(f"has {len(entries)} entries, expected at most {limits.entries}")
-    if sum(entry.file_size for entry in entries) > limits.bytes:
-        raise Refused(f"unpacks to more than {limits.bytes} bytes, the most that its shapes need")
+    if len(entries) > most_entries:
+        raise Refused(f"has {len(entries)} entries, expected at most {most_entries}")
+    if sum(entry.file_size for entry in entries) > most_bytes:
+        raise Refused(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
     names = [_checked_name(entry) for entry in entries]
     twice = [name for name, n in Counter(names).items() if n > 1]
     if twice:

@@ -65,10 +65,7 @@ class Board:
 
 
 def archives_in(folder: str) -> list[Entry]:
-    try:
-        found = sorted(entry.path for entry in os.scandir(folder) if entry.name.lower().endswith(".zip") and not entry.is_dir())
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be read: {error.strerror}") from None
+    found = sorted(entry.path for entry in os.scandir(folder) if entry.name.lower().endswith(".zip") and not entry.is_dir())
     if not found:
         raise InputError(f"{folder}: has no submission (NAME.zip, as salbench submit writes them)")
     return [Entry(Path(path)) for path in found]

@@ -93,10 +93,7 @@ def _failed(results: Results) -> int:
 def submit(given: argparse.Namespace, say: Print) -> int:
     """given: MINE and --to beside the arguments of both; say: prints a document, or a text, and returns a status other than 0 if it cannot."""
     card_file = Path(given.mine, "card.yaml")
-    try:
-        card_text = card_file.read_bytes()
-    except OSError as error:
-        raise InputError(f"{card_file}: cannot be read: {error.strerror}") from None
+    card_text = card_file.read_bytes()
     try:
         card = texts.read_card(card_text, str(card_file))
     except Refused as reason:
@@ -149,27 +146,17 @@ def leaderboard(given: argparse.Namespace, say: Print) -> int:
         made, results = board.rank(entries, passed, expected, lambda functions: session.run(kept=kept, functions=functions, silent=True),
                                    Path(given.config).stem)
         board.write_tables(made, results, scratch / "site/data")
-        has_pages = _pages(made, scratch / "site")
+        site.write_pages(made, scratch / "site")
         folder.publish(scratch / "site", to)
         document = {"to": given.to, "submissions": board.submissions(entries), "scores": tables.records(means.overview(made.study)),
                     "leaders": leaders.documents(made.leaders), **summary_of(results)}
         status = _failed(before)
     any_refused = any(entry.refused for entry in entries)
-    return say(document, _text(made, given, has_pages)) or status or (SOME_FAILED if any_refused else ALL_DONE)
+    return say(document, _text(made, given)) or status or (SOME_FAILED if any_refused else ALL_DONE)
 
 
-def _pages(made: board.Board, to: Path) -> bool:
-    try:
-        site.write_pages(made, to)
-    except ModuleNotFoundError as error:
-        print(f"warning: the tables are there, but no pages: there is no module {error.name}; install python3-jinja2", file=sys.stderr)
-        return False
-    return True
-
-
-def _text(made: board.Board, given: argparse.Namespace, has_pages: bool) -> str:
+def _text(made: board.Board, given: argparse.Namespace) -> str:
     simulated = [remark for remark in made.remarks if remark.startswith("SIMULATED")]
     lines = [tables.aligned(means.overview(made.study)), *simulated, *made.sentences]
     lines += [f"refused: {entry.file.name}: {entry.refused}" for entry in made.of_status("refused")]
-    lines.append(f"the leaderboard is {Path(given.to, 'index.html')}" if has_pages else f"the tables are in {Path(given.to, 'data')}")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, f"the leaderboard is {Path(given.to, 'index.html')}\n"])

@@ -25,7 +25,7 @@ Row = dict[str, Any]
 def write_pages(board: Board, site: Path) -> None:
     def write(path: str, title: str, sections: Sequence[tuple[str, list[Any]]], **values: Any) -> None:
         template = environment(HERE).get_template("leaderboard.html")
-        text = template.render(path=path, root="../" * path.count("/"), navigation=NAVIGATION, banners=banners(board), board=board, title=title, web=is_web,
+        text = template.render(path=path, root="../" * path.count("/"), navigation=NAVIGATION, banners=[SIMULATED] if any(remark.startswith("SIMULATED") for remark in board.remarks) else [], board=board, title=title, web=is_web,
                                sections=sections, **{"facts": {}, "card": {}, "protocol": "", **values})
         (site / path).parent.mkdir(exist_ok=True)
         (site / path).write_bytes(text.encode("utf-8", "replace"))
@@ -48,10 +48,6 @@ def write_pages(board: Board, site: Path) -> None:
 def is_web(address: str) -> bool:
     """True for what a link may lead to: no `javascript:` and the like."""
     return re.fullmatch(r"https?://\S+", address) is not None
-
-
-def banners(board: Board) -> list[str]:
-    return [SIMULATED] if any(remark.startswith("SIMULATED") for remark in board.remarks) else []
 
 
 def heading(row: Row) -> str:

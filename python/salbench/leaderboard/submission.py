@@ -23,7 +23,7 @@ import numpy as np
 from salbench import _core
 from salbench._types import NDArray
 from salbench.leaderboard import texts
-from salbench.leaderboard.archive import Limits, Refused, quoted, read_zip, zip_of
+from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
 from salbench.leaderboard.texts import Card, Manifest
 
 _SECONDS = 120  # of processor time, and five times that by the clock
@@ -43,8 +43,10 @@ class Expected:
     items: tuple[str, ...]  # that shapes are of: the meshes or point clouds
 
     @property
-    def limits(self) -> Limits:
-        return Limits(len(self.points) + len(_NAMES) + 1, texts.limit_bytes(self.points))
+    def most_bytes(self) -> int:
+        """What a submission can need, unpacked: four texts, and per shape a map with its header and a row of scores."""
+        header, row = 1024, 4096
+        return len(_NAMES) * texts.LONGEST_TEXT + sum(8 * n + header + row for n in self.points.values())
 
 
 @dataclass(frozen=True)
@@ -119,7 +121,7 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
 
 
 def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
-    files = read_zip(data, expected.limits)
+    files = read_zip(data, len(expected.points) + len(_NAMES) + 1, expected.most_bytes)
     maps = {name: files.pop(name) for name in list(files) if name.startswith("maps/") and name.endswith(".npy")}
     for name in files:
         if name not in _NAMES:
@@ -162,13 +164,13 @@ def worker() -> None:
     """Reads what to do from standard input; writes a line of JSON and the values of the maps."""
     given = json.load(sys.stdin)
     expected = Expected(**given["expected"])
-    memory = 2 * expected.limits.bytes + _MEMORY
-    for limit, most in ((resource.RLIMIT_CPU, _SECONDS), (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, 2 * expected.limits.bytes),
+    memory = 2 * expected.most_bytes + _MEMORY
+    for limit, most in ((resource.RLIMIT_CPU, _SECONDS), (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, 2 * expected.most_bytes),
                         (resource.RLIMIT_CORE, 0), (resource.RLIMIT_NPROC, 0)):
         resource.setrlimit(limit, (most, most))
     maps: dict[str, NDArray[np.float64]] = {}
     try:
-        _, manifest, files, maps = _checked(_bytes_of(given["path"], expected.limits.bytes + _OVERHEAD), expected)
+        _, manifest, files, maps = _checked(_bytes_of(given["path"], expected.most_bytes + _OVERHEAD), expected)
         head = {"card": files["card.yaml"].decode(), "program": manifest.program, "maps": list(maps),
                 "results": files["results.csv"].decode("utf-8", "surrogateescape")}
     except Refused as reason:

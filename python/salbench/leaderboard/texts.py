@@ -3,9 +3,10 @@
 refused where they stand."""
 
 import difflib
+import json
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,12 +51,7 @@ class Manifest:
     stages: Sequence[str] = ()
 
     def text(self) -> str:
-        def written(value: Any) -> str:
-            if isinstance(value, str):
-                return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-            return str(value) if isinstance(value, int) else f"[{', '.join(map(written, value))}]"
-
-        return "".join(f"{key}: {written(value)}\n" for key, value in vars(self).items())
+        return "".join(f"{key}: {json.dumps(value)}\n" for key, value in vars(self).items())
 
 
 def read_card(text: bytes, name: str) -> Card:
@@ -161,9 +157,3 @@ def _values(text: bytes, name: str, known: Sequence[str]) -> dict[str, Any]:
         texts = ["" if part.tag.endswith(":null") else part.value for part in parts]
         values[key.value] = texts if parts is value.value else texts[0]
     return values
-
-
-def limit_bytes(points: Mapping[str, int]) -> int:
-    """What a submission for shapes of so many points can need, unpacked."""
-    header, row = 1024, 4096
-    return 4 * LONGEST_TEXT + sum(8 * n + header + row for n in points.values())
