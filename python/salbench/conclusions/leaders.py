@@ -41,8 +41,8 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
     for level, ranked in study.ranked:
         leaders = [leader_of(level, of_metric, metric) for metric, of_metric in zip(level.metrics, ranked)
                    if len(of_metric.competitors.scores.models)]
-        leading = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
-        found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, leading)))
+        chosen = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
+        found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, chosen)))
     return found
 
 
