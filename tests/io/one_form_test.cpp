@@ -78,7 +78,7 @@ TEST(OneForm, HasACloudAsItWas) {
                    .normals = Normals(3, Vec3::UnitX()),
                    .viewpoint = Vec3(1, 2, 3),
                    .dropped = {1, 4}};
-  const std::string image = text_of_image(one_form_image({.cloud = cloud}));
+  const std::string image = text_of_image(one_form_image({.is_cloud = true, .cloud = cloud}));
   const PointCloud found = cloud_in_form(image, "c.h5");
   EXPECT_EQ(found.points, cloud.points);
   EXPECT_EQ(found.normals, cloud.normals);
@@ -86,7 +86,7 @@ TEST(OneForm, HasACloudAsItWas) {
   EXPECT_EQ(found.dropped, cloud.dropped);
   EXPECT_THAT(error_of(image), HasSubstr("has no data set \"shape/faces\""));
   cloud.dropped = {4, 1};
-  EXPECT_THROW(cloud_in_form(text_of_image(one_form_image({.cloud = cloud})), "c.h5"), InputError);
+  EXPECT_THROW(cloud_in_form(text_of_image(one_form_image({.is_cloud = true, .cloud = cloud})), "c.h5"), InputError);
 }
 
 TEST(OneForm, CutShortItIsAnErrorThatNamesTheFile) {
