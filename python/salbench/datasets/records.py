@@ -126,3 +126,4 @@ class Form:
     polygons: tuple[int, int] = (0, 0)  # that were split, and how many of them were concave
     truths: tuple[Truth, ...] = ()
     about: dict[str, str] = field(default_factory=dict)  # item, class, split, source, source_files, viewers, licence
+    digests: dict[str, str] = field(default_factory=dict)  # path of each file that was read -> what xxh128sum prints of it
