@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "io/hdf5_file.h"
+#include "io/hdf5_image.h"
 #include "io/mesh_parts.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
@@ -118,8 +119,9 @@ struct FormReader {
       fail(fmt::format("has no data set {}: import the set again", in_quotes(std::string(array_name))));
     const auto* values = std::get_if<std::vector<T>>(&array->values);
     if (values == nullptr)
-      fail(*array, std::is_same_v<T, double> ? std::string("expected numbers of type float64")
-                                             : fmt::format("expected whole numbers of type int{}", 8 * sizeof(T)));
+      fail(*array, std::is_same_v<T, double>
+                       ? std::string("expected numbers of type float64")
+                       : fmt::format("expected whole numbers of type int{}", 8 * sizeof(T)));
     const std::size_t dimensions = columns == 0 ? 1 : 2;
     if (array->shape.size() != dimensions || (rows != 0 && array->shape[0] != rows) ||
         (columns != 0 && array->shape[1] != columns))
@@ -253,8 +255,7 @@ std::set<std::string, std::less<>> views_in(const Arrays& arrays) {
 }
 
 // Those of a file whose attributes say that it is of this form, in the names of today's version.
-Arrays arrays_in_form(std::string_view image, std::string_view name) {
-  Hdf5Content content = foreign_hdf5_content(std::as_bytes(std::span(image)), name);
+Arrays arrays_in_form(Hdf5Content&& content, std::string_view name) {
   const FormReader in{name, content.arrays};
   const auto integer = [&](std::string_view attribute) -> std::int64_t {
     const AttributeValue* value = find_attribute(content.attributes, attribute);
@@ -275,6 +276,10 @@ Arrays arrays_in_form(std::string_view image, std::string_view name) {
     content.arrays.push_back(
         column<std::int64_t>("shape/polygons", {split, integer("polygons_concave")}, kNumber, ""));
   return std::move(content.arrays);
+}
+
+Arrays arrays_in_form(std::string_view image, std::string_view name) {
+  return arrays_in_form(foreign_hdf5_content(std::as_bytes(std::span(image)), name), name);
 }
 
 }  // namespace
@@ -307,8 +312,16 @@ ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name) {
   return shape;
 }
 
-ShapeInForm shape_in_form(std::string_view image, std::string_view name) {
-  return shape_in_arrays(arrays_in_form(image, name), name);
+std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name) {
+  auto content = hdf5::parsed_image(std::as_bytes(std::span(image)));
+  if (!content) return {};
+  TextAttributes about;
+  for (const auto& [key, value] : content->attributes)
+    if (const auto* text = std::get_if<std::string>(&value); text != nullptr && key != "form")
+      about.emplace_back(key, *text);
+  ShapeInForm shape = shape_in_arrays(arrays_in_form(std::move(*content), name), name);
+  shape.about = std::move(about);
+  return shape;
 }
 
 Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,10 +38,10 @@ struct TruthInForm {
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
 
 struct ShapeInForm {
-  Mesh mesh = {};             // as the file has it, polygons split
-  PolygonCounts polygons{};   // that were split
-  bool is_cloud = false;      // then there is no mesh
-  PointCloud cloud = {};      // as it is scored
+  Mesh mesh = {};            // as the file has it, polygons split
+  PolygonCounts polygons{};  // that were split
+  bool is_cloud = false;     // then there is no mesh
+  PointCloud cloud = {};     // as it is scored
   std::vector<TruthInForm> truths = {};
   TextAttributes about = {};  // item, source, licence and the like
 };
@@ -52,10 +53,12 @@ Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal byte
 Arrays one_form_arrays(const ShapeInForm& shape);
 ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 
-// An image, and parts of one. All throw InputError, one line that begins with `name`, for what is no such
-// file: damaged, or with arrays that are missing, of another type or size, or refer to points that there are
-// not. Bytes that no program of ours wrote are read in a child process.
-ShapeInForm shape_in_form(std::string_view image, std::string_view name);
+// The shape of an image, without `as_read`; nothing if no program of ours wrote the bytes. This and what
+// follows throw InputError, one line that begins with `name`, for what is no such file: damaged, or with
+// arrays that are missing, of another type or size, or refer to points that there are not.
+std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name);
+
+// Parts of it. Bytes that no program of ours wrote are read in a child process.
 Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts = nullptr);
 PointCloud cloud_in_form(std::string_view image, std::string_view name);
 GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view);

@@ -22,8 +22,7 @@ struct ScoreTable {
 };
 
 using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                           Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity,
-                           ShapeInForm>;
+                           Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm>;
 
 Arrays arrays_from(const Value& value);
 
