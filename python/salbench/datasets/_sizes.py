@@ -9,14 +9,11 @@ import os
 import numpy as np
 
 from salbench import _core
-from salbench.datasets._columns import read_cloud
+from salbench.datasets._columns import read_rows
 from salbench.datasets._files import read_file
 from salbench.datasets._layout import Columns
 from salbench.datasets._truth import options_of
-from salbench.datasets.records import InputError, Item, Listing
-
-MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
-
+from salbench.datasets.records import Item, Listing
 
 def _diagonal(item: Item) -> float:
     """Of the bounding box in the file; 0 if that cannot be read, which fails by itself."""
@@ -24,7 +21,7 @@ def _diagonal(item: Item) -> float:
     try:
         data = read_file(path)
         if "columns" in item.how:
-            points = read_cloud(data, path, options_of(item.how, Columns))[0].points
+            points = read_rows(data, path, options_of(item.how, Columns)).points
         else:
             points = (_core.read_cloud if item.kind == "cloud" else _core.read_mesh)(data, os.fsencode(path))[0]
     except ValueError:
@@ -40,10 +37,7 @@ def fail_mixed_units(listing: Listing) -> None:
         if item.files[0].path not in of_file:
             of_file[item.files[0].path] = _diagonal(item)
     diagonals = [of_file[item.files[0].path] for item in listing.items]
-    usual = float(np.median([diagonal for diagonal in diagonals if diagonal > 0] or [0.0]))
-    for item, diagonal in zip(listing.items, diagonals):
-        odd = diagonal > 0 and not usual / MOST <= diagonal <= usual * MOST
+    for item, odd in zip(listing.items, _core.odd_sizes(diagonals)):
         if odd and not item.problem:
             item.truth = True
-            item.problem = (f"{item.files[0].path}: its diagonal, {diagonal:.4g}, is {diagonal / usual:.3g} times the median of the data set, "
-                            f"{usual:.4g}: it is in another unit than {listing.unit_where} says: scale it, or take it out of the set")
+            item.problem = f"{item.files[0].path}: {odd}: it is in another unit than {listing.unit_where} says: scale it, or take it out of the set"

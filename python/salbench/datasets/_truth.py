@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench.datasets import _columns
+from salbench.datasets._columns import Rows, read_rows
 from salbench.datasets._files import read_file
 from salbench.datasets._layout import Columns, Indices, Values, positive_rule
 from salbench.datasets._order import Elements
@@ -35,20 +35,27 @@ class _Shape:
 
     path: str
     form: Form
-    cloud: _columns.Cloud | None = None
     surface: Ints | None = None  # what hides points: the faces, or of a cloud its partial mesh, computed when it is asked for
 
     @property
+    def left_out(self) -> Ints:
+        return np.empty(0, np.int32) if self.form.left_out is None else self.form.left_out
+
+    @property
     def in_file(self) -> Elements:
-        if self.cloud is None:
+        if self.form.faces is not None:
             return Elements(len(self.form.points))
-        return Elements(self.cloud.size_in_file, "point cloud", "point", "points")
+        return Elements(len(self.form.points) + len(self.left_out), "point cloud", "point", "points")
 
     def described_by(self, values: Values) -> Elements:
         if values.per != "face":
             return self.in_file
         assert self.form.faces is not None
         return Elements(len(self.form.faces), "mesh", "face", "faces")
+
+    def left(self, in_file: Floats) -> Floats:
+        """Values of the points that are left."""
+        return np.delete(in_file, self.left_out) if len(self.left_out) else in_file
 
     def faces(self) -> Ints:
         if self.form.faces is not None:
@@ -91,16 +98,12 @@ def read_item(item: Item) -> Form:
     reader, how = _Reader(item), item.how
     columns: Columns = options_of(how, Columns)
     path, data = reader.next()
-    if how.get("columns"):
-        cloud, density, flagged = _columns.read_cloud(data, path, columns)
-        shape = _Shape(path, Form(cloud.points, normals=cloud.normals, left_out=cloud.left_out), cloud)
-    else:
-        shape = _read_shape(path, data, item.kind)
+    rows = read_rows(data, path, columns) if columns.position else None
+    shape = _Shape(path, _shape_form(path, data, item.kind) if rows is None else
+                   _cloud_form(_core.checked_cloud(rows.points, rows.normals, os.fsencode(path))))
     truth: Truth | None = None
-    if how.get("columns") and (columns.density or columns.flag):
-        assert shape.cloud is not None
-        saliency, picks = _columns.truth_in_columns(path, shape.cloud, density, flagged)
-        truth = Truth(item.view, saliency, None, picks)
+    if rows is not None and (columns.density or columns.flag):
+        truth = _truth_in_columns(shape, rows, item.view)
     elif how.get("saliency") or how.get("picks"):
         truth = _read_truth(shape, item, reader)
     if truth is not None:
@@ -111,14 +114,25 @@ def read_item(item: Item) -> Form:
     return shape.form
 
 
-def _read_shape(path: str, data: bytes, kind: str) -> _Shape:
+def _cloud_form(read: tuple[Any, ...]) -> Form:
+    points, normals, viewpoint, left_out = read
+    return Form(points, None, normals, viewpoint, left_out)
+
+
+def _shape_form(path: str, data: bytes, kind: str) -> Form:
     name = os.fsencode(path)
     if kind == "cloud":
-        points, normals, viewpoint, left_out = _core.read_cloud(data, name)
-        cloud = _columns.Cloud(points, normals, left_out)
-        return _Shape(path, Form(points, normals=normals, viewpoint=viewpoint, left_out=left_out), cloud)
+        return _cloud_form(_core.read_cloud(data, name))
     points, faces, split, concave = _core.read_mesh(data, name)
-    return _Shape(path, Form(points, faces, polygons=(split, concave)))
+    return Form(points, faces, polygons=(split, concave))
+
+
+def _truth_in_columns(shape: _Shape, rows: Rows, view: str) -> Truth:
+    """Flags of rows that are no points do not count."""
+    picks = rows.flagged[~np.isin(rows.flagged, shape.left_out)]
+    if rows.density is None and not len(picks):
+        raise InputError(f"{shape.path}: no point has its flag set: there is nothing to compare with")
+    return Truth(view, None if rows.density is None else shape.left(rows.density), None, (picks,) if len(picks) else ())
 
 
 def _hide_unseen(values: Floats, shape: _Shape, how: dict[str, Any], k: int) -> Floats:
@@ -174,7 +188,7 @@ def _on_points(shape: _Shape, values: Values, found: Floats, points: Floats | No
     if values.per == "point":
         far = values.max_distance * _radius(shape.form.points)
         return np.asarray(_core.vertex_values_of_samples(shape.form.points, points, found, far))
-    return found if shape.cloud is None else np.delete(found, shape.cloud.left_out)
+    return shape.left(found)
 
 
 def _radius(points: Floats) -> float:
@@ -213,8 +227,9 @@ def _may_hide(how: dict[str, Any]) -> bool:
 
 def _finished(shape: _Shape, truth: Truth, how: dict[str, Any]) -> Truth:
     """Picks by the points that are left, and of what was seen; or those that a rule makes of densities."""
-    if shape.cloud is not None and truth.picks:
-        numbers = _columns.numbers_left(shape.cloud)
+    if len(shape.left_out) and truth.picks:
+        numbers = np.full(shape.in_file.n or 0, -1, np.int32)
+        numbers[np.delete(np.arange(len(numbers)), shape.left_out)] = np.arange(len(shape.form.points), dtype=np.int32)
         for k, picks in enumerate(truth.picks):
             for lost in picks[numbers[picks] < 0][:1]:
                 raise InputError(f"{shape.path}: participant {k} picked point {lost} (0-based), which has no position")
