@@ -14,6 +14,7 @@ from salbench.datasets.records import InputError
 MAX_BYTES = 1 << 20  # of a description; those at hand have 1 kB
 MAX_DEPTH = 32
 MAX_MAPPINGS = 10_000  # that lists may lead to, through aliases or not
+MAX_WORD = 100  # letters of a word that may be a known one, mistyped
 
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
@@ -220,7 +221,7 @@ def _edit_distance(a: str, b: str) -> int:
 def did_you_mean(word: str, known: Iterable[str], otherwise: str = "") -> str:
     """Names the nearest known word, whatever the case; beyond half of the letters it is another word."""
     nearest, best = "", len(word) + 2
-    for candidate in known:
+    for candidate in known if len(word) <= MAX_WORD else ():
         letters = _edit_distance(word.lower(), candidate.lower())
         if letters >= max(len(word), len(candidate)):
             continue

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int32]
+else:
+    Floats = Ints = Any
 
 
 class InputError(ValueError):
