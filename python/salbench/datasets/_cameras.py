@@ -21,7 +21,7 @@ def wrong_with_camera(place: Place, at_infinity: bool) -> str:
         return "a direction has a length"
     if not all(abs(axis) < float("inf") for axis in place):
         return "a coordinate is not a finite number"
-    return "a coordinate is larger than 1e150: scale the mesh" if max(map(abs, place)) > MAX_COORDINATE else ""
+    return "a coordinate is larger than 1e150: scale the mesh" if max(abs(axis) for axis in place) > MAX_COORDINATE else ""
 
 
 @dataclass
@@ -44,7 +44,8 @@ def find_cameras(root: str, cameras: Cameras, where: str) -> FoundCameras:
         raise InputError(f"{table.name}:1: has neither a column 'item' nor 'view' ({where})")
     axes = [table.numbers(axis) for axis in "xyz"]
     items, views = (table.column(name) if name in table.columns else [""] * len(table.rows) for name in ("item", "view"))
-    for row, place in enumerate(zip(*axes)):
+    for row, (x, y, z) in enumerate(zip(*axes)):
+        place = x, y, z
         here = f"{table.name}:{table.lines[row]}"
         if wrong := wrong_with_camera(place, cameras.at_infinity):
             raise InputError(f"{here}: {wrong}")

@@ -62,7 +62,7 @@ def read_rows(data: bytes, name: str, columns: Columns) -> Rows:
         if columns.flag:
             odd = np.flatnonzero((rows[-1] != 0) & (rows[-1] != 1))
             found += [(int(row), "the flag is neither 0 nor 1: name the column of the flag") for row in odd[:1]]
-        return min((one for one in found if one), default=None, key=lambda one: one[0])
+        return min((one for one in found if one is not None), default=None)
 
     table = np.stack(read_columns(data, name, wanted, wrong_with_rows=wrong), axis=1)
     keep = np.arange(len(table)) < _filled_rows(table, columns.padding)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import NoReturn
 
 from salbench.datasets._files import read_file
-from salbench.datasets._text import BYTE_ORDER_MARK, in_quotes, is_too_large, number_in, quoted
+from salbench.datasets._text import BYTE_ORDER_MARK, fits, in_quotes, number_in, quoted
 from salbench.datasets.records import InputError
 
 MAX_BYTES = 64 << 20
@@ -36,7 +36,7 @@ class Table:
         for line, text in zip(self.lines, self.column(name)):
             word = text.encode("utf-8", "surrogateescape")
             number = float("nan") if not word else None if word.startswith(b"+") else number_in(word)
-            if number is None or is_too_large(word, number):
+            if number is None or not (word == b"" or fits(word, number)):
                 raise InputError(f"{self.name}:{line}: {in_quotes(word)} is not a number")
             numbers.append(number)
         return numbers

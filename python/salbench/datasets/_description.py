@@ -13,8 +13,8 @@ from salbench.datasets._cameras import wrong_with_camera
 from salbench.datasets._files import read_file
 from salbench.datasets._layout import Cameras, Columns, Indices, Layout, Pattern, Place, Splits, TruthPlace, Values, number_text, positive_rule
 from salbench.datasets._patterns import has_viewers, has_views, one_file_per_item, wrong_with_mesh_pattern, wrong_with_truth_pattern
-from salbench.datasets._section import MAX_BYTES, Section, finite_number
-from salbench.datasets._text import is_number
+from salbench.datasets._section import MAX_BYTES, Section
+from salbench.datasets._text import finite_number, is_number
 from salbench.datasets.records import InputError
 
 KNOWN = ("automatic", "domain", "classes", "ground_truth", "places", "values", "indices", "columns", "splits", "units", "scale", "licence")
@@ -70,11 +70,11 @@ def _words(section: Section, key: str, default: tuple[str, ...]) -> tuple[str, .
 
 def _values(section: Section) -> Values:
     section.reject_unknown(_names(Values))
-    new = Values()
+    new, positives = Values(), section.text("positives")
     values = Values(section.choice("per", ("vertex", "face", "point"), new.per), section.text("column") or "",
                     _words(section, "points", new.points), _above_0(section, "max_distance", new.max_distance), section.text("unseen") or "",
                     section.text("variable") or "", _above_0(section, "scale", new.scale),
-                    section.text("positives") if "positives" in section else new.positives)
+                    new.positives if positives is None else positives)
     if values.per == "point" and not values.column:
         section.fail("column", "is missing; values per point stand beside coordinates: expected a column")
     if len(values.points) != 3:

@@ -7,6 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
+from salbench.datasets._text import finite_number
+
 Words = tuple[str, ...]
 
 
@@ -147,8 +149,6 @@ def _text(value: Any) -> str:
 
 def positive_rule(text: str) -> tuple[str, float] | None:
     """("picks", 0), ("mean", 0) or ("top", percent); None for what is no rule."""
-    from salbench.datasets._section import finite_number
-
     if text in ("picks", "above mean"):
         return text.removeprefix("above "), 0.0
     if text.startswith("top ") and text.endswith("%"):

@@ -15,12 +15,14 @@ from typing import NoReturn
 import numpy as np
 
 from salbench.datasets._order import Elements, numbering_column, row_of_elements
-from salbench.datasets._text import BLANKS, decimal_comma_in, in_quotes, is_number, is_same_number, is_too_large, lines_of, number_in
+from salbench.datasets._text import BLANKS, decimal_comma_in, fits, in_quotes, is_number, is_same_number, lines_of, number_in
 from salbench.datasets.records import Floats, InputError
 
 MAX_NAMED = 20  # columns in a message
 _AROUND = b' \t\r"'
-_ODD = re.compile(rb'[_#"\v\f]')  # what a number has not, and float() or split() would take
+_PLAIN = b"0123456789+-.eE,; \t\r\n"
+_TINY = re.compile(rb"[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # numbers that no double may hold
+_LONG = re.compile(rb"[0-9.]{300}")
 _ZEROS_IN_FRONT = re.compile(rb',[ \t\r"]*[-+]?0[0-9]')
 _WHOLE = re.compile(rb"[-+]?[0-9]+")
 
@@ -46,7 +48,7 @@ def separator_of(line: bytes) -> bytes:
     if is_number(line.strip(_AROUND)):
         return b" "
     of_commas = next((separator for separator in (b";", b"\t", b" ") if _separates_decimal_commas(separator, line)), None)
-    return of_commas or next((separator for separator in (b",", b";", b"\t") if separator in line), b" ")
+    return next((separator for separator in (b",", b";", b"\t") if separator in line), b" ") if of_commas is None else of_commas
 
 
 def _are_names(cells: Cells) -> bool:
@@ -139,20 +141,21 @@ class _Table:
         """The columns, and that which numbers the rows; None if a row is not plainly numbers, as many as the first line has cells."""
         rows = self.lines[self.begin:]
         body = b"\n".join(rows)
-        if _ODD.search(body) or (self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(body)):
+        if not body.strip() or body.translate(None, _PLAIN) or _TINY.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
+            return None
+        if self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(body):
             return None
         if self.columns == ("",) and self.size > (2 if self.numbering >= 0 else 1):
             return None
-        split = [row.split() for row in rows] if self.separator == b" " else [row.split(self.separator) for row in rows if row.strip(BLANKS)]
-        split = [cells for cells in split if cells]
         wanted = [*self.places, *([self.numbering] if self.numbering >= 0 else [])]
-        if set(map(len, split)) != {self.size} or max(wanted) >= self.size:
-            return None
         try:
-            columns = [np.array([float(cells[place]) for cells in split]) for place in wanted]
+            delimiter = None if self.separator == b" " else self.separator.decode()
+            table = np.loadtxt(rows, delimiter=delimiter, comments=None, ndmin=2)
         except ValueError:
             return None
-        return columns if all(np.isfinite(column).all() for column in columns) else None
+        if table.shape[1] != self.size or max(wanted) >= self.size or not np.isfinite(table).all():
+            return None
+        return [table[:, place].copy() for place in wanted]
 
     # --- line by line
 
@@ -193,7 +196,7 @@ class _Table:
         number = number_in(cell)
         if number is None:
             self.fail(f"{in_quotes(cell)} is not a number{decimal_comma_in(cell)}", line)
-        if is_too_large(cell, number):
+        if not fits(cell, number):
             self.fail(f"{in_quotes(cell)} does not fit a double", line)
         if unseen and is_same_number(number, unseen):
             return float("nan")
@@ -218,7 +221,7 @@ def read_columns(text: bytes, name: str, columns: Sequence[str], unseen: str = "
     table = _Table(name, lines_of(text), tuple(columns))
     table.read_header(expected)
     wanted = unseen.encode()
-    values = table.all_at_once() if table.begin < len(table.lines) else None
+    values = table.all_at_once()
     if values is None:
         values = _line_by_line(table, wanted, wrong_with_rows)
     elif wanted and (number := number_in(wanted)) is not None:

@@ -9,14 +9,13 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
+from salbench.datasets._text import finite_number
 from salbench.datasets.records import InputError
 
 MAX_BYTES = 1 << 20  # of a description; those at hand have 1 kB
 MAX_DEPTH = 32
 MAX_MAPPINGS = 10_000  # that lists may lead to, through aliases or not
 MAX_WORD = 100  # letters of a word that may be a known one, mistyped
-
-_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
 @dataclass
@@ -51,7 +50,7 @@ def _parse(text: str, file: str) -> Node:
     document = Node("sequence", 1)
     open_nodes = [document]
     try:
-        for event in yaml.parse(text, Loader=loader):  # type: ignore[no-untyped-call]
+        for event in yaml.parse(text, Loader=loader):
             line = event.start_mark.line + 1
             if isinstance(event, yaml.CollectionEndEvent):
                 open_nodes.pop()
@@ -196,12 +195,6 @@ class Section:
         for key in self._entries:
             if key not in names:
                 self.fail(key, "is not a known key; " + did_you_mean(key, names, f"known are: {', '.join(names)}"))
-
-
-def finite_number(text: str) -> float | None:
-    """None for what is no finite number, as every reader of this program sees it: no blanks, no underscores, no plus sign."""
-    value = float(text) if _NUMBER.fullmatch(text) else float("nan")
-    return value if abs(value) < float("inf") else None
 
 
 def _edit_distance(a: str, b: str) -> int:

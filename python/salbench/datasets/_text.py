@@ -13,15 +13,24 @@ _DECIMAL_COMMA = re.compile(rb"[-+]?[0-9]*,[0-9]+(?:[eE].*)?", re.DOTALL)
 
 
 def number_in(word: bytes) -> float | None:
-    """None for a word that is no number; an infinity also for one that no double holds."""
+    """None for a word that is no number; an infinity or 0 also for one that no double holds."""
     if not _NUMBER.fullmatch(word) or word.startswith(b"+-"):
         return None
     return float(word.split(b"(")[0])
 
 
-def is_too_large(word: bytes, value: float) -> bool:
-    """True of the value of a word such as 1e999."""
-    return abs(value) == float("inf") and word.lstrip(b"+-")[:1] not in b"iI"
+def fits(word: bytes, value: float) -> bool:
+    """False of the value of a word such as 1e999 or 1e-999."""
+    if value == 0:
+        return not re.search(b"[1-9]", re.split(b"[eE]", word)[0])
+    return abs(value) != float("inf") or word.lstrip(b"+-")[:1] in b"iI"
+
+
+def finite_number(text: str) -> float | None:
+    """None for what is no finite number, as options are written: no blanks, no underscores, no plus sign."""
+    word = text.encode("utf-8", "surrogateescape")
+    number = number_in(word)
+    return number if number is not None and abs(number) < float("inf") and fits(word, number) and word[:1] != b"+" else None
 
 
 def is_number(word: bytes) -> bool:
@@ -32,7 +41,7 @@ def is_number(word: bytes) -> bool:
 def is_same_number(value: float, word: bytes) -> bool:
     """NaN is the same as "nan"; none is the same as no number."""
     number = number_in(word)
-    return number is not None and not is_too_large(word, number) and (value == number or (value != value and number != number))
+    return number is not None and fits(word, number) and (value == number or (value != value and number != number))
 
 
 def decimal_comma_in(word: bytes) -> str:

@@ -149,7 +149,7 @@ def _read_truth(shape: _Shape, item: Item, reader: _Reader) -> Truth:
         raise InputError(f"{item.files[reader.place].path}: has values per face, but {shape.path} is a point cloud, which has none")
     read = [(path, *read_values(data, path, values, shape.described_by(values)))
             for path, data in (reader.next() for _ in range(how.get("saliency", 0)))]
-    masks = [_read_mask(reader, values, len(found), shape) for _, found, _ in read] if how.get("masks") else [None] * len(read)
+    masks = [_read_mask(reader, values, len(found), shape) if how.get("masks") else None for _, found, _ in read]
     masked = [found if mask is None else np.where(mask == 0, np.nan, found) for (_, found, _), mask in zip(read, masks)]
     maps = [_hide_unseen(_on_points(shape, values, found, points), shape, how, k)
             for k, (found, (_, _, points)) in enumerate(zip(masked, read))]
