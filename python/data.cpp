@@ -12,11 +12,11 @@
 #include <pybind11/stl.h>
 
 #include "io/cloud_file.h"
-#include "pipeline/config/data_layout.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
+#include "pipeline/package/listing.h"
 #include "python/computing.h"
 #include "python/loaded.h"
 #include "python/module.h"
@@ -38,10 +38,9 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
   std::string remark;
   if (holds_cloud(item, of_shape[0].text())) {
     const auto& cloud = loaded->shape.emplace<PointCloud>(load_cloud(shape_file, Remark{remark}));
-    const bool needs_surface =
-        !of_truth.empty() &&
-        (!item.cameras.empty() || measured_cloud_truth(cloud, {}, truth_files).saliency.empty());
-    const Faces surface = needs_surface ? surface_of(cloud) : Faces();
+    const Faces surface = !of_truth.empty() && measured_cloud_truth(cloud, truth_files).saliency.empty()
+                              ? surface_of(cloud)
+                              : Faces();
     if (!of_truth.empty()) loaded->truth = given_cloud_truth(cloud, surface, truth_files);
   } else {
     const auto& mesh = loaded->shape.emplace<Mesh>(load_mesh(shape_file, Remark{remark}));
@@ -73,7 +72,7 @@ class Data {
   Data(const std::string& layout, const std::string& root, const std::string& twins, const py::object& items,
        const std::string& split) {
     const Twins kept = twins_from(twins);
-    salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
+    salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout, kept); });
     layout_ = found.layout;
     for (const DatasetItem& item : found.items)
       if (!item.split.empty()) splits_.insert(item.split);
@@ -159,12 +158,12 @@ py::dict row_of(const DatasetItem& item) {
     return row;
   }
   row["kind"] = "";  // the file tells
-  row["truth"] = !item.saliency.empty() || !item.picks.empty();
+  row["truth"] = item.has_truth();
   row["participants"] = item.picks.size();
   row["viewers"] = 0;
   py::dict native;
   native["mesh"] = file_text(item.mesh);
-  native["saliency"] = texts(item.saliency);
+  native["saliency"] = texts(item.saliency.empty() ? std::vector<std::string>() : std::vector{item.saliency});
   native["picks"] = texts(item.picks);
   row["native"] = native;
   return row;
@@ -173,14 +172,12 @@ py::dict row_of(const DatasetItem& item) {
 // The listing of a layout that the program lists by itself, as `salbench _list` has it.
 py::dict native_items(const std::string& layout, const std::string& root, const std::string& twins) {
   const Twins kept = twins_from(twins);
-  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
+  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout, kept); });
   py::list items;
   for (const DatasetItem& item : found.items) items.append(row_of(item));
   py::dict listing;
   listing["layout"] = file_text(found.layout);
   listing["notes"] = texts(found.notes);
-  listing["read"] = texts(found.read);
-  listing["licence"] = file_text(found.licence);
   listing["items"] = items;
   return listing;
 }
@@ -189,7 +186,7 @@ py::dict native_items(const std::string& layout, const std::string& root, const 
 std::any native_item(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
                      std::vector<std::string> picks) {
   return DatasetItem{
-      .name = name, .category = {}, .mesh = mesh, .saliency = std::move(saliency), .picks = std::move(picks)};
+      .name = name, .mesh = mesh, .saliency = saliency.empty() ? "" : saliency[0], .picks = std::move(picks)};
 }
 
 py::tuple load_native(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
@@ -214,21 +211,32 @@ py::dict native_form(const std::string& name, const std::string& mesh, std::vect
     else
       shape.mesh = parsed_mesh(shape_file, &shape.polygons);
     if (!of_truth.empty())
-      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, {}, truth_files)
+      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, truth_files)
                                                       : measured_truth(shape.mesh, truth_files)});
     return shape;
   }));
 }
 
+std::vector<std::string> known_layouts() {
+  const auto package = py::module_::import("salbench.datasets");
+  auto known = package.attr("NATIVE").cast<std::vector<std::string>>();
+  for (const auto& [name, module] : package.attr("ARCHIVES").cast<py::dict>())
+    known.push_back(name.cast<std::string>());
+  std::ranges::sort(known);
+  return known;
+}
+
 // KeyError for a name that no layout has.
 void require_layout(const std::string& layout) {
-  if (!is_layout(layout)) fail_unknown("layout", layout, layout_names());
+  const std::vector<std::string> known = known_layouts();
+  if (std::ranges::find(known, layout) == known.end() && !layout.ends_with(".yaml"))
+    fail_unknown("layout", layout, {known.begin(), known.end()});
 }
 
 }  // namespace
 
 void bind_data(py::module_& module) {
-  module.def("layouts", &layout_names);
+  module.def("layouts", &known_layouts);
   module.def("require_layout", &require_layout);
   module.def("native_items", &native_items, py::arg("layout"), py::arg("root"), py::arg("twins") = "refuse");
   module.def("load_native", &load_native, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
