@@ -19,7 +19,6 @@
 #include "io/one_form.h"
 #include "io/one_form_index.h"
 #include "pipeline/inputs/loading.h"
-#include "pipeline/inputs/sizes.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/loaded.h"
@@ -326,7 +325,9 @@ py::tuple shape_facts(py::handle form, const std::string& item, const std::strin
     });
     return 0;
   });
-  return py::make_tuple(points.size(), faces, diagonal_of(points), remark);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& point : points) box.extend(point);
+  return py::make_tuple(points.size(), faces, box.diagonal().norm(), remark);
 }
 
 }  // namespace
@@ -366,9 +367,6 @@ void bind_datasets(py::module_& module) {
   module.def("read_index", &index_rows, py::arg("path"));
   module.def("index_text", &index_bytes, py::arg("rows"));
   module.def("shape_facts", &shape_facts, py::arg("form"), py::arg("item"), py::arg("file"));
-  module.def(
-      "odd_sizes", [](const std::vector<double>& diagonals) { return odd_sizes(diagonals); },
-      py::arg("diagonals"));
   module.def("finished", &finished, py::arg("form"), py::arg("view"), py::arg("item"), py::arg("file"));
 }
 
