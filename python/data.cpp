@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <any>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,29 +17,15 @@
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
-#include "pipeline/rules/config.h"
-#include "python/arrays.h"
 #include "python/computing.h"
+#include "python/loaded.h"
 #include "python/module.h"
 #include "stages/core/errors.h"
-#include "stages/normals/normals.h"
-#include "stages/surface/surface.h"
 
 namespace salbench::python {
 namespace {
 
-// The shape and the ground truth in the files of an item.
-struct Loaded {
-  std::variant<Mesh, PointCloud> shape;
-  std::optional<GroundTruth> truth;
-};
-
-// The partial mesh, which picks are smoothed over and which hides points from a camera, with the options that
-// a configuration has by itself.
-Faces surface_of(const PointCloud& cloud) {
-  const Config defaults = read_config(Section::from_text("{}", "defaults"), "python");
-  return partial_mesh(cloud.points, cloud_normals(cloud, defaults.scan_normals), defaults.surface);
-}
+namespace py = pybind11;
 
 std::shared_ptr<const Loaded> load(const std::any& source) {
   const DatasetItem& item = item_of(source);
@@ -66,23 +50,21 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
   return loaded;
 }
 
-// Names and paths as the system has them, which may be no UTF-8.
-py::str file_text(const std::string& bytes) {
-  PyObject* text = PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size()));
-  if (text == nullptr) throw py::error_already_set();
-  return py::reinterpret_steal<py::str>(text);
+// Throws FileError in place of ShapeError.
+std::shared_ptr<const Loaded> load_named(const std::any& source) {
+  try {
+    return load(source);
+  } catch (const ShapeError& error) {
+    throw FileError(item_of(source).mesh, error.what());
+  }
 }
 
-template <class T>
-py::object shown_of(const std::shared_ptr<const Loaded>& owner, const std::vector<T>& values) {
-  return read_only(shown(owner, std::span<const T>(values)));
-}
-
-template <class T>
-py::tuple all_shown(const std::shared_ptr<const Loaded>& owner, const std::vector<std::vector<T>>& all) {
-  py::tuple arrays(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) arrays[i] = shown_of(owner, all[i]);
-  return arrays;
+Twins twins_from(const std::string& word) {
+  Twins kept = Twins::refuse;
+  if (!parse_option(word, kept))
+    throw py::value_error(
+        fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), word));
+  return kept;
 }
 
 class Data {
@@ -90,10 +72,7 @@ class Data {
   // `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
   Data(const std::string& layout, const std::string& root, const std::string& twins, const py::object& items,
        const std::string& split) {
-    Twins kept = Twins::refuse;
-    if (!parse_option(twins, kept))
-      throw py::value_error(
-          fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), twins));
+    const Twins kept = twins_from(twins);
     salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
     layout_ = found.layout;
     for (const DatasetItem& item : found.items)
@@ -121,25 +100,7 @@ class Data {
   // points, faces, normals, ground truth, participants, viewers; None where the files have none.
   py::tuple load(std::size_t i) const {
     const std::any& source = items_.at(i);
-    const auto loaded = computed(1, [&] {
-      try {
-        return python::load(source);
-      } catch (const ShapeError& error) {
-        throw FileError(item_of(source).mesh, error.what());
-      }
-    });
-    py::object points, faces = py::none(), normals = py::none(), saliency = py::none();
-    if (const auto* mesh = std::get_if<Mesh>(&loaded->shape)) {
-      points = shown_of(loaded, mesh->vertices);
-      faces = shown_of(loaded, mesh->faces);
-    } else {
-      const auto& cloud = std::get<PointCloud>(loaded->shape);
-      points = shown_of(loaded, cloud.points);
-      if (!cloud.normals.empty()) normals = shown_of(loaded, cloud.normals);
-    }
-    if (!loaded->truth) return py::make_tuple(points, faces, normals, saliency, py::tuple(), py::tuple());
-    return py::make_tuple(points, faces, normals, shown_of(loaded, loaded->truth->saliency),
-                          all_shown(loaded, loaded->truth->picks), all_shown(loaded, loaded->truth->viewers));
+    return arrays_of(computed(1, [&] { return load_named(source); }));
   }
 
  private:
@@ -174,6 +135,91 @@ class Data {
   std::vector<std::any> items_;  // of DatasetItem
 };
 
+py::list texts(const std::vector<std::string>& all) {
+  py::list list;
+  for (const std::string& text : all) list.append(file_text(text));
+  return list;
+}
+
+// As `salbench _list` has an item; one of the one form has `form`, its file, in place of `native`.
+py::dict row_of(const DatasetItem& item) {
+  py::dict row;
+  row["name"] = file_text(item.name);
+  row["shape"] = file_text(item.shape_name());
+  row["view"] = file_text(item.view);
+  row["category"] = file_text(item.category);
+  row["split"] = file_text(item.split);
+  row["problem"] = file_text(item.problem);
+  if (item.indexed) {
+    row["kind"] = item.indexed->is_cloud ? "cloud" : "mesh";
+    row["truth"] = item.indexed->has_truth;
+    row["participants"] = item.indexed->participants;
+    row["viewers"] = item.indexed->viewers;
+    row["form"] = file_text(item.mesh);
+    return row;
+  }
+  row["kind"] = "";  // the file tells
+  row["truth"] = !item.saliency.empty() || !item.picks.empty();
+  row["participants"] = item.picks.size();
+  row["viewers"] = 0;
+  py::dict native;
+  native["mesh"] = file_text(item.mesh);
+  native["saliency"] = texts(item.saliency);
+  native["picks"] = texts(item.picks);
+  row["native"] = native;
+  return row;
+}
+
+// The listing of a layout that the program lists by itself, as `salbench _list` has it.
+py::dict native_items(const std::string& layout, const std::string& root, const std::string& twins) {
+  const Twins kept = twins_from(twins);
+  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
+  py::list items;
+  for (const DatasetItem& item : found.items) items.append(row_of(item));
+  py::dict listing;
+  listing["layout"] = file_text(found.layout);
+  listing["notes"] = texts(found.notes);
+  listing["read"] = texts(found.read);
+  listing["licence"] = file_text(found.licence);
+  listing["items"] = items;
+  return listing;
+}
+
+// What the program reads by itself: a mesh or a cloud, values per point, picks per participant.
+std::any native_item(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
+                     std::vector<std::string> picks) {
+  return DatasetItem{
+      .name = name, .category = {}, .mesh = mesh, .saliency = std::move(saliency), .picks = std::move(picks)};
+}
+
+py::tuple load_native(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
+                      std::vector<std::string> picks) {
+  const std::any item = native_item(name, mesh, std::move(saliency), std::move(picks));
+  return arrays_of(computed(1, [&] { return load_named(item); }));
+}
+
+// The same as fields of a Form, its mesh as the file has it, and no saliency made from picks.
+py::dict native_form(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
+                     std::vector<std::string> picks) {
+  const std::any source = native_item(name, mesh, std::move(saliency), std::move(picks));
+  return fields_of(computed(1, [&] {
+    const DatasetItem& item = item_of(source);
+    const std::vector<FileData> of_shape = read_all({mesh_file_of(item)});
+    const std::vector<FileData> of_truth = read_all(truth_files_of(item));
+    const Files shape_file{source, name, of_shape}, truth_files{source, name, of_truth};
+    ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};
+    std::string remark;
+    if (shape.is_cloud)
+      shape.cloud = load_cloud(shape_file, Remark{remark});
+    else
+      shape.mesh = parsed_mesh(shape_file, &shape.polygons);
+    if (!of_truth.empty())
+      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, {}, truth_files)
+                                                      : measured_truth(shape.mesh, truth_files)});
+    return shape;
+  }));
+}
+
 // KeyError for a name that no layout has.
 void require_layout(const std::string& layout) {
   if (!is_layout(layout)) fail_unknown("layout", layout, layout_names());
@@ -184,6 +230,11 @@ void require_layout(const std::string& layout) {
 void bind_data(py::module_& module) {
   module.def("layouts", &layout_names);
   module.def("require_layout", &require_layout);
+  module.def("native_items", &native_items, py::arg("layout"), py::arg("root"), py::arg("twins") = "refuse");
+  module.def("load_native", &load_native, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
+             py::arg("picks"));
+  module.def("native_form", &native_form, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
+             py::arg("picks"));
   py::class_<Data>(module, "Data")
       .def(py::init<const std::string&, const std::string&, const std::string&, const py::object&,
                     const std::string&>())

@@ -56,7 +56,8 @@ struct ShapeReader {
     const std::vector<FileData> data = read(inputs.shape_files->files[family]);
     const Files in{of.source, of.name, data};
     std::string remark;
-    if (of.level == kClouds)
+    shape.is_cloud = of.level == kClouds;
+    if (shape.is_cloud)
       shape.cloud = load_cloud(in, Remark{remark});
     else
       check_mesh(shape.mesh = parsed_mesh(in, &shape.polygons));
