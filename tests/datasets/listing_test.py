@@ -157,7 +157,7 @@ class Folders(WithArchive):
         self.assertEqual([item.problem for item in self.list(MAPS).items], [""] * 4)
         listed = self.list(MAPS + "units: mm\n")
         self.assertEqual((listed.scale, [bool(item.problem) for item in listed.items]), (0.001, [False, False, True, False]))
-        self.assertRegex(listed.items[2].problem, f"^{self.root}/off/cat.off: its diagonal, 1414, is 1e\\+03 times the median .* own.yaml:2 says: scale it")
+        self.assertRegex(listed.items[2].problem, f"^{self.root}/off/cat.off: its diagonal, 1732, is 1e\\+03 times the median .*/own.yaml:2 says: scale it")
 
 
 class Documents(WithArchive):

@@ -46,7 +46,15 @@ def read(item: Item) -> Form:
     """The one form of an item that `items` listed."""
     from salbench.datasets._truth import read_item
 
-    return read_item(item)
+    path = item.files[0].path if item.files else item.name
+    try:
+        return read_item(item)
+    except InputError:
+        raise
+    except ValueError as error:  # of C++, which may not know the file
+        raise InputError(str(error) if path in str(error) else f"{path}: {error}") from None
+    except MemoryError:
+        raise InputError(f"{path}: no memory for what its item's files hold; leave it out, or work on fewer items at a time") from None
 
 
 def _is_native(found: Found) -> bool:
