@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data sets (io/dataset.h, pipeline/inputs): an item's files are read when it is asked for, without the
-// interpreter's lock, and its arrays show the memory that they were read into.
+// Data sets that the program lists and reads by itself (io/dataset.h, pipeline/inputs): files are read
+// without the interpreter's lock, and arrays show the memory that they were read into.
 #include <algorithm>
 #include <any>
 #include <memory>
@@ -66,73 +66,54 @@ Twins twins_from(const std::string& word) {
   return kept;
 }
 
-class Data {
- public:
-  // `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
-  Data(const std::string& layout, const std::string& root, const std::string& twins, const py::object& items,
-       const std::string& split) {
-    const Twins kept = twins_from(twins);
-    salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout, kept); });
-    layout_ = found.layout;
-    for (const DatasetItem& item : found.items)
-      if (!item.split.empty()) splits_.insert(item.split);
-    choose(found, items, split);
-    notes_ = std::move(found.notes);
-    for (DatasetItem& item : found.items) items_.emplace_back(std::move(item));
+void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const DatasetItem& item : items) {
+    if (item.name == name || item.shape == name) return;
+    known.push_back(item.name);
   }
+  fail_unknown("item", name, known);
+}
 
-  std::string layout() const { return layout_; }
-  std::vector<std::string> notes() const { return notes_; }
-
-  std::vector<std::string> splits() const { return {splits_.begin(), splits_.end()}; }
-
-  // (name, category, split) of each.
-  py::list items() const {
-    py::list rows;
-    for (const std::any& source : items_) {
-      const DatasetItem& item = item_of(source);
-      rows.append(py::make_tuple(file_text(item.name), file_text(item.category), file_text(item.split)));
-    }
-    return rows;
+// Numbers of the items that are chosen. `rows`: name, shape, split and whether there is ground truth, of
+// each. `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
+std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wanted,
+                                      const std::string& split, const std::string& splits_where,
+                                      const std::string& no_splits) {
+  salbench::Dataset found;
+  found.splits_where = splits_where;
+  found.no_splits = no_splits;
+  for (const py::handle row : rows) {
+    const auto fields = row.cast<py::tuple>();
+    DatasetItem item{.name = file_bytes(fields[0]),
+                     .category = std::to_string(found.items.size()),  // its number
+                     .mesh = {},
+                     .saliency = {},
+                     .picks = {}};
+    item.shape = file_bytes(fields[1]);
+    item.split = file_bytes(fields[2]);
+    item.problem = file_bytes(fields[4]);
+    item.indexed = KnownItem{.has_truth = fields[3].cast<bool>()};
+    found.items.push_back(std::move(item));
   }
-
-  // points, faces, normals, ground truth, participants, viewers; None where the files have none.
-  py::tuple load(std::size_t i) const {
-    const std::any& source = items_.at(i);
-    return arrays_of(computed(1, [&] { return load_named(source); }));
-  }
-
- private:
-  static void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
-    std::vector<std::string_view> known;
-    for (const DatasetItem& item : items) {
-      if (item.name == name || item.shape_name() == name) return;
-      known.push_back(item.name);
-    }
-    fail_unknown("item", name, known);
-  }
-
-  static void choose(salbench::Dataset& found, const py::object& wanted, const std::string& split) {
-    if (py::isinstance<py::bytes>(wanted)) {
-      const auto selection = wanted.cast<std::string>();
-      if (split_list(selection).empty()) throw py::value_error("items names no item");
-      return select_items(found, selection, split);
-    }
+  if (py::isinstance<py::bytes>(wanted)) {
+    const auto selection = wanted.cast<std::string>();
+    if (split_list(selection).empty()) throw py::value_error("items names no item");
+    select_items(found, selection, split);
+  } else {
     select_items(found, {}, split);
-    if (wanted.is_none()) return;
-    const auto names = wanted.cast<std::vector<std::string>>();
-    for (const std::string& name : names) require_known(found.items, name);
-    const std::set<std::string> kept(names.begin(), names.end());
-    std::erase_if(found.items, [&](const DatasetItem& item) {
-      return !kept.contains(item.name) && !kept.contains(item.shape_name());
-    });
   }
-
-  std::string layout_;
-  std::vector<std::string> notes_;
-  std::set<std::string> splits_;
-  std::vector<std::any> items_;  // of DatasetItem
-};
+  std::set<std::string> kept;
+  if (py::isinstance<py::list>(wanted)) {
+    for (const py::handle name : wanted) kept.insert(file_bytes(name));
+    for (const std::string& name : kept) require_known(found.items, name);
+  }
+  std::vector<std::size_t> chosen;
+  for (const DatasetItem& item : found.items)
+    if (!py::isinstance<py::list>(wanted) || kept.contains(item.name) || kept.contains(item.shape))
+      chosen.push_back(std::stoul(item.category));
+  return chosen;
+}
 
 py::list texts(const std::vector<std::string>& all) {
   py::list list;
@@ -217,40 +198,17 @@ py::dict native_form(const std::string& name, const std::string& mesh, std::vect
   }));
 }
 
-std::vector<std::string> known_layouts() {
-  const auto package = py::module_::import("salbench.datasets");
-  auto known = package.attr("NATIVE").cast<std::vector<std::string>>();
-  for (const auto& [name, module] : package.attr("ARCHIVES").cast<py::dict>())
-    known.push_back(name.cast<std::string>());
-  std::ranges::sort(known);
-  return known;
-}
-
-// KeyError for a name that no layout has.
-void require_layout(const std::string& layout) {
-  const std::vector<std::string> known = known_layouts();
-  if (std::ranges::find(known, layout) == known.end() && !layout.ends_with(".yaml"))
-    fail_unknown("layout", layout, {known.begin(), known.end()});
-}
-
 }  // namespace
 
 void bind_data(py::module_& module) {
-  module.def("layouts", &known_layouts);
-  module.def("require_layout", &require_layout);
   module.def("native_items", &native_items, py::arg("layout"), py::arg("root"), py::arg("twins") = "refuse");
   module.def("load_native", &load_native, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
              py::arg("picks"));
   module.def("native_form", &native_form, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
              py::arg("picks"));
-  py::class_<Data>(module, "Data")
-      .def(py::init<const std::string&, const std::string&, const std::string&, const py::object&,
-                    const std::string&>())
-      .def("items", &Data::items)
-      .def("load", &Data::load)
-      .def_property_readonly("layout", &Data::layout)
-      .def_property_readonly("notes", &Data::notes)
-      .def_property_readonly("splits", &Data::splits);
+  module.def("chosen_items", &chosen_items, py::arg("rows"), py::arg("items"), py::arg("split"),
+             py::arg("splits_where"), py::arg("no_splits"));
+  module.def("write_options_for_the_command_line", [] { options_are_arguments = false; });
 }
 
 }  // namespace salbench::python

@@ -18,6 +18,9 @@ namespace {
 
 constexpr PackageSubcommand kSubcommands[] = {
     {"conclude", "means, intervals, tests and ranks of scores per shape, of a run or of anybody's"},
+    {"import", "write a data set in one form, an HDF5 file per shape and an index, which is the layout hdf5"},
+    {"inspect",
+     "read all files of a data set and print what its description finds: items, splits, ranges, problems"},
     {"power",
      "which differences between models the scores can show, and how many units would show those seen"},
 };

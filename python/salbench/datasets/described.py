@@ -46,7 +46,23 @@ def read(item: Item) -> Form:
     """The one form of an item that `items` listed."""
     from salbench.datasets._truth import read_item
 
-    return read_item(item)
+    if item.native is not None:
+        item = _imported(item, item.native)
+    path = item.files[0].path
+    try:
+        return read_item(item)
+    except InputError:
+        raise
+    except ValueError as error:  # of C++, which may not know the file
+        raise InputError(str(error) if path in str(error) else f"{path}: {error}") from None
+    except MemoryError:
+        raise InputError(f"{path}: no memory for what its item's files hold; leave it out, or work on fewer items at a time") from None
+
+
+def _imported(item: Item, native: Native) -> Item:
+    """A native row as any other: its files, and how many there are of each kind."""
+    paths = [native.mesh, *native.saliency, *native.picks]
+    return replace(item, files=tuple(Source("", path) for path in paths), how=_nonzero(saliency=len(native.saliency), picks=len(native.picks)))
 
 
 def _is_native(found: Found) -> bool:
