@@ -89,7 +89,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     text = _text(overview, source.remarks, found)
     concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
     folders.write_document(folder, {
-        "format": 1, "version": _version(), "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
+        "format": 1, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
         "leaders": concluded.leaders, "text": concluded.text, "tables": names})
     return concluded
 
@@ -97,9 +97,3 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
 def _text(overview: pandas.DataFrame, remarks: Sequence[str], found: Sequence[leaders.LevelLeaders]) -> str:
     simulated = [remark for remark in remarks if remark.startswith("SIMULATED")]
     return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*simulated, *(level.sentence for level in found)))
-
-
-def _version() -> str:
-    from salbench import _core
-
-    return str(_core.version)
