@@ -12,11 +12,11 @@
 #include <pybind11/stl.h>
 
 #include "io/cloud_file.h"
-#include "pipeline/config/data_layout.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
+#include "pipeline/package/listing.h"
 #include "python/computing.h"
 #include "python/loaded.h"
 #include "python/module.h"
@@ -38,10 +38,9 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
   std::string remark;
   if (holds_cloud(item, of_shape[0].text())) {
     const auto& cloud = loaded->shape.emplace<PointCloud>(load_cloud(shape_file, Remark{remark}));
-    const bool needs_surface =
-        !of_truth.empty() &&
-        (!item.cameras.empty() || measured_cloud_truth(cloud, {}, truth_files).saliency.empty());
-    const Faces surface = needs_surface ? surface_of(cloud) : Faces();
+    const Faces surface = !of_truth.empty() && measured_cloud_truth(cloud, truth_files).saliency.empty()
+                              ? surface_of(cloud)
+                              : Faces();
     if (!of_truth.empty()) loaded->truth = given_cloud_truth(cloud, surface, truth_files);
   } else {
     const auto& mesh = loaded->shape.emplace<Mesh>(load_mesh(shape_file, Remark{remark}));
@@ -94,7 +93,7 @@ std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wa
     item.shape = file_bytes(fields[1]);
     item.split = file_bytes(fields[2]);
     item.problem = file_bytes(fields[4]);
-    item.indexed = IndexedItem{.has_truth = fields[3].cast<bool>()};
+    item.indexed = KnownItem{.has_truth = fields[3].cast<bool>()};
     found.items.push_back(std::move(item));
   }
   if (py::isinstance<py::bytes>(wanted)) {
@@ -140,12 +139,12 @@ py::dict row_of(const DatasetItem& item) {
     return row;
   }
   row["kind"] = "";  // the file tells
-  row["truth"] = !item.saliency.empty() || !item.picks.empty();
+  row["truth"] = item.has_truth();
   row["participants"] = item.picks.size();
   row["viewers"] = 0;
   py::dict native;
   native["mesh"] = file_text(item.mesh);
-  native["saliency"] = texts(item.saliency);
+  native["saliency"] = texts(item.saliency.empty() ? std::vector<std::string>() : std::vector{item.saliency});
   native["picks"] = texts(item.picks);
   row["native"] = native;
   return row;
@@ -154,14 +153,12 @@ py::dict row_of(const DatasetItem& item) {
 // The listing of a layout that the program lists by itself, as `salbench _list` has it.
 py::dict native_items(const std::string& layout, const std::string& root, const std::string& twins) {
   const Twins kept = twins_from(twins);
-  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
+  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout, kept); });
   py::list items;
   for (const DatasetItem& item : found.items) items.append(row_of(item));
   py::dict listing;
   listing["layout"] = file_text(found.layout);
   listing["notes"] = texts(found.notes);
-  listing["read"] = texts(found.read);
-  listing["licence"] = file_text(found.licence);
   listing["items"] = items;
   return listing;
 }
@@ -170,7 +167,7 @@ py::dict native_items(const std::string& layout, const std::string& root, const 
 std::any native_item(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
                      std::vector<std::string> picks) {
   return DatasetItem{
-      .name = name, .category = {}, .mesh = mesh, .saliency = std::move(saliency), .picks = std::move(picks)};
+      .name = name, .mesh = mesh, .saliency = saliency.empty() ? "" : saliency[0], .picks = std::move(picks)};
 }
 
 py::tuple load_native(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
@@ -195,7 +192,7 @@ py::dict native_form(const std::string& name, const std::string& mesh, std::vect
     else
       shape.mesh = parsed_mesh(shape_file, &shape.polygons);
     if (!of_truth.empty())
-      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, {}, truth_files)
+      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, truth_files)
                                                       : measured_truth(shape.mesh, truth_files)});
     return shape;
   }));
