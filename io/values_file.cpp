@@ -101,21 +101,6 @@ ScalarField parse_npy(std::string_view bytes, std::string_view name) {
   return is_double ? numbers_in<double>(body) : numbers_in<float>(body);
 }
 
-// The header is padded so that the values lie at a multiple of 64 bytes.
-std::string npy_of(const ScalarField& values) {
-  constexpr std::size_t kBefore = 10, kAlignment = 64;
-  std::string header =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", values.size());
-  header.append(kAlignment - (kBefore + header.size() + 1) % kAlignment, ' ');
-  header += '\n';
-  std::string bytes = std::string(kNpy) + std::string("\1\0", 2);
-  bytes += static_cast<char>(header.size() & 0xffU);
-  bytes += static_cast<char>(header.size() >> 8U);
-  bytes += header;
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
-  return bytes;
-}
-
 ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n,
                               const ReadValues& read_hdf5) {
   require_regular_file(path);

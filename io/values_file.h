@@ -22,6 +22,5 @@ ScalarField read_point_values(const std::filesystem::path& path, std::string_vie
 // .npy alone, from memory: any number of values, finite or not. Throws InputError.
 bool is_npy(std::string_view bytes);
 ScalarField parse_npy(std::string_view bytes, std::string_view name);
-std::string npy_of(const ScalarField& values);  // float64, n
 
 }  // namespace salbench

@@ -57,6 +57,7 @@ PYBIND11_MODULE(_core, module) {
   bind_datasets(module);
   bind_metrics(module);
   bind_models(module);
+  bind_protocol(module);
   bind_run(module);
   bind_shapes(module);
 }

@@ -21,6 +21,7 @@ void bind_data(pybind11::module_& module);
 void bind_datasets(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
+void bind_protocol(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
 void bind_shapes(pybind11::module_& module);
 

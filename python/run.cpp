@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "pipeline/inputs/given_maps.h"
 #include "pipeline/inputs/given_reference.h"
 #include "pipeline/results/map_counts.h"
 #include "python/arrays.h"
@@ -21,6 +22,7 @@
 #include "python/computing.h"
 #include "python/log.h"
 #include "python/module.h"
+#include "python/protocol.h"
 #include "python/run_values.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
@@ -150,8 +152,14 @@ ItemChoice items_from(const py::object& given) {
   return ItemChoice(given.cast<std::vector<std::string>>());
 }
 
-// What _run.py says of a configuration: `path` or `yaml`; `models`, as YAML, in place of those that it names;
-// `data`, `cache` and `out`.
+// Those of a list such as "LS,PS"; of an empty one people and chance.
+void keep_models(Config& config, const std::string& list) {
+  if (!list.empty()) return select_models(config, list);
+  std::erase_if(config.models, [](const Model& model) { return !is_reference_model(model.name); });
+}
+
+// What _run.py says of a configuration: `path` or `yaml`; `models`, as YAML, in place of those that it names,
+// or `kept`, those of its own that stay; `data`, `cache` and `out`.
 Config config_from(const py::dict& settings) {
   const std::string path = text_or_empty(settings, "path"), models = text_or_empty(settings, "models");
   Config config = path.empty()
@@ -165,6 +173,8 @@ Config config_from(const py::dict& settings) {
             "python")
             .models;
   if (settings["only_functions"].cast<bool>()) config.models.clear();
+  if (const py::object kept = settings["kept"]; !kept.is_none())
+    keep_models(config, kept.cast<std::string>());
   for (const auto& [key, folder] :
        {std::pair{"data", &config.data}, {"cache", &config.cache}, {"out", &config.output}})
     if (const std::string given = text_or_empty(settings, key); !given.empty()) *folder = given;
@@ -197,6 +207,8 @@ class Run {
     }
     Config config = config_from(settings);
     for (const FunctionModel& model : models_) add(config, model);
+    for (const auto& [name, folder] : settings["maps"].cast<std::map<std::string, std::string>>())
+      config.models.push_back(given_model(name, find_given_maps(folder, false)));
     const Selection selection = selection_from(settings);
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
@@ -209,6 +221,7 @@ class Run {
     caller_.run([&] { salbench::carry_out(*session_, threads); }, [&] { progress(*counts_->now()); });
   }
 
+  std::string protocol() const { return protocol_text(session_->setup.config); }
   std::string output() const { return session_->setup.output.string(); }
   std::size_t computed() const { return session_->resolver.computed(); }
 
@@ -309,6 +322,7 @@ void bind_run(py::module_& module) {
       .def("score", &Run::score)
       .def("models", &Run::models)
       .def_property_readonly("output", &Run::output)
+      .def_property_readonly("protocol", &Run::protocol)
       .def_property_readonly("computed", &Run::computed);
 }
 

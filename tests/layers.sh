@@ -63,7 +63,6 @@ hides CGAL 'CGAL/'
 hides CLI11 'CLI/'
 hides Embree 'embree[34]/' stages/core/embree.cpp
 hides HDF5 'hdf5\.|H5' io/hdf5_library.h
-hides libzip 'zip\.h'
 hides PCL 'pcl/'
 hides Spectra 'Spectra/'
 hides 'the flow graph' '(tbb|oneapi/tbb)/flow_graph'

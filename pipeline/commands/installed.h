@@ -13,10 +13,5 @@ namespace salbench {
 // "protocols/3dva". Throws ConfigError if there is neither, with the nearest name.
 Section configuration(const std::string& given);
 
-// The file that makes reports, from any folder: of the installation, or of the checkout that the program was
-// built in; empty if neither is there.
-std::filesystem::path report_program();
-
-std::string report_command();  // that of the installation, or of the checkout
 
 }  // namespace salbench

@@ -23,6 +23,9 @@ constexpr PackageSubcommand kSubcommands[] = {
      "read all files of a data set and print what its description finds: items, splits, ranges, problems"},
     {"power",
      "which differences between models the scores can show, and how many units would show those seen"},
+    {"submit", "check maps of your own and write the file that a leaderboard takes"},
+    {"leaderboard", "check and score submissions, and make a site that ranks them"},
+    {"report", "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes"},
 };
 
 }  // namespace

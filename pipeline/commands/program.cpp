@@ -53,6 +53,7 @@ constexpr Example kExamples[] = {
     {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"},
     {"conclude results.csv --unit class --out tables", "with classes as observations"},
     {"power salbench-out/shrec07", "which differences a run could show"},
+    {"report salbench-out/shrec07", "salbench-out/shrec07/report/index.html"},
     {"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"},
     {"graph configs/shrec07.yaml --format dot | dot -Tsvg", "the flow graph of a run, as a picture"},
     {"explain configs/shrec07.yaml 52_3 --data SchellingData", "what differs from what the cache has"},
@@ -74,9 +75,9 @@ constexpr const char* kExitStatus =
 130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
-    run_subcommand,    maps_subcommand,        evaluate_subcommand, pictures_subcommand, export_subcommand,
-    plan_subcommand,   graph_subcommand,       explain_subcommand,  status_subcommand,   doctor_subcommand,
-    submit_subcommand, leaderboard_subcommand, config_subcommand,   verify_subcommand,   gc_subcommand,
+    run_subcommand,    maps_subcommand,   evaluate_subcommand, pictures_subcommand, export_subcommand,
+    plan_subcommand,   graph_subcommand,  explain_subcommand,  status_subcommand,   doctor_subcommand,
+    config_subcommand, verify_subcommand, gc_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {

@@ -22,22 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Keeps the models that `--models` names.
-void select_models(Config& config, const std::string& list) {
-  std::vector<std::string_view> known;
-  for (const Model& model : config.models) known.push_back(model.name);
-  const std::vector<std::string> wanted = split_list(list);
-  for (const std::string& name : wanted) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw ConfigError(fmt::format("--models {}: the configuration has no model '{}'; it has {}", list, name,
-                                  fmt::join(known, ", ")));
-  }
-  if (!wanted.empty())
-    std::erase_if(config.models, [&](const Model& model) {
-      return std::find(wanted.begin(), wanted.end(), model.name) == wanted.end();
-    });
-}
-
 // Ground truth that is made up is there for every item.
 Inputs inputs_of(const Config& config, const Selection& selection) {
   const bool simulated = config.simulated();
@@ -60,6 +44,21 @@ std::size_t open_of_others(const Resolver& resolver) {
 }
 
 }  // namespace
+
+void select_models(Config& config, const std::string& list) {
+  std::vector<std::string_view> known;
+  for (const Model& model : config.models) known.push_back(model.name);
+  const std::vector<std::string> wanted = split_list(list);
+  for (const std::string& name : wanted) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw ConfigError(fmt::format("--models {}: the configuration has no model '{}'; it has {}", list, name,
+                                  fmt::join(known, ", ")));
+  }
+  if (!wanted.empty())
+    std::erase_if(config.models, [&](const Model& model) {
+      return std::find(wanted.begin(), wanted.end(), model.name) == wanted.end();
+    });
+}
 
 Selection selection_of(const Arguments& arguments) {
   const bool of_items = arguments.reference == kReferenceOfItems;

@@ -44,6 +44,8 @@ struct Setup {
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {},
                           Pictures pictures = Pictures::none);
 Selection selection_of(const Arguments& arguments);
+// Keeps the models of a list such as "LS,PS". Throws ConfigError for a name that the configuration lacks.
+void select_models(Config& config, const std::string& list);
 
 // A setup with its cache opened, planned, and ready to run.
 struct Session {

@@ -18,10 +18,6 @@ Subcommand run_subcommand(Arguments& arguments);
 Subcommand maps_subcommand(Arguments& arguments);
 // Authors of a model whose maps are made already, for its scores beside the others'.
 Subcommand evaluate_subcommand(Arguments& arguments);
-// Authors of a model who hand their maps in to a leaderboard.
-Subcommand submit_subcommand(Arguments& arguments);
-// Maintainers of a leaderboard, whenever a submission came in.
-Subcommand leaderboard_subcommand(Arguments& arguments);
 // Whoever goes on in Python or a viewer, or archives a study: when the run is done.
 Subcommand export_subcommand(Arguments& arguments);
 // Authors of a report that shows shapes: once, before the export.

@@ -208,14 +208,6 @@ void write_record(const fs::path& folder, const RunRecord& record) {
   write_file(folder / "run.yaml", run_yaml(record));
 }
 
-void write_scores_record(const fs::path& folder, Config config, const std::string& scores) {
-  config.data = config.cache = config.output = "";
-  config.models.clear();
-  write_file(folder / "run.yaml",
-             fmt::format("program: salbench {}\nresults: finished\nscores_digest: {}\n{}{}", SALBENCH_VERSION,
-                         scores, metric_lines(chosen_metrics(config.metrics)), configuration_lines(config)));
-}
-
 void write_shard_record(const fs::path& folder, const RunRecord& record) {
   const Shard& shard = *record.run.inputs.shard;
   write_file(folder / fmt::format("shard_{}_of_{}.yaml", shard.index, shard.count), run_yaml(record));

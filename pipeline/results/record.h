@@ -34,10 +34,6 @@ Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records,
 // run.yaml and timeline.csv. Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
-// A run.yaml with what conclusions from the scores need to know, and nothing of the machine and its folders.
-// Throws StorageError.
-void write_scores_record(const std::filesystem::path& folder, Config config, const std::string& scores);
-
 // The record of a run over a share: shard_2_of_4.yaml. Throws StorageError.
 void write_shard_record(const std::filesystem::path& folder, const RunRecord& record);
 

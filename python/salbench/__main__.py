@@ -85,6 +85,75 @@ def inspect(arguments: Sequence[str]) -> int:
     return command(arguments, inspect.__doc__ or "")
 
 
+def submit(arguments: Sequence[str]) -> int:
+    """Check maps of your own and write the file that a leaderboard takes."""
+    from salbench._command_line import Parser
+
+    parser = Parser("submit", submit.__doc__ or "", "MINE")
+    parser.add_argument("mine", metavar="MINE", help="folder with ITEM.val of every item with ground truth, and card.yaml")
+    parser.add_argument("--to", metavar="FILE", required=True, help="the file to write, such as mine.zip")
+    return _over_data("submit", parser, arguments)
+
+
+def leaderboard(arguments: Sequence[str]) -> int:
+    """Check and score submissions, and make a site that ranks them."""
+    from salbench._command_line import Parser
+
+    parser = Parser("leaderboard", leaderboard.__doc__ or "", "FOLDER")
+    parser.add_argument("folder", metavar="FOLDER", help="folder of the submissions (NAME.zip)")
+    parser.add_argument("--to", metavar="DIR", required=True, help="folder of the site")
+    parser.add_argument("--models", metavar="NAMES", help="also these of the configuration, such as LS,PS (default: people and chance alone)")
+    return _over_data("leaderboard", parser, arguments)
+
+
+def _over_data(name: str, parser: Any, arguments: Sequence[str]) -> int:
+    """A command that runs jobs: a second call goes on where it was ended."""
+    import shlex
+    import signal
+
+    from salbench.leaderboard import commands
+
+    commands.add_arguments(parser)
+    given = parser.parsed(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        return (commands.submit if name == "submit" else commands.leaderboard)(given)
+    except KeyboardInterrupt:
+        line = shlex.join(["salbench", name, *arguments])
+        print(f"\ninterrupted; everything finished so far is kept. To go on:\n  {line}", file=sys.stderr)
+        return INTERRUPTED
+
+
+def report_(arguments: Sequence[str]) -> int:
+    """Pages of a run that open from disk: who leads and how sure, figures, maps on the shapes."""
+    import os
+    import tempfile
+    from pathlib import Path
+
+    from salbench._command_line import ALL_DONE, Parser, report
+
+    parser = Parser("report", report_.__doc__ or "", "OUT")
+    parser.add_argument("results", metavar="OUT", help="results folder of salbench run or evaluate")
+    parser.add_argument("--to", metavar="DIR", help="folder of the report (default: OUT/report)")
+    parser.add_argument("--export", metavar="FILE.h5", nargs="+", action="extend", default=[],
+                        help="exports of shapes to show, with the pictures of salbench pictures (default: OUT/shapes.h5 if it exists)")
+    parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
+    parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
+    parser.add_argument("--processes", metavar="N", type=int, default=len(os.sched_getaffinity(0)),
+                        help="that draw at the same time; the report does not depend on it (default: one per core)")
+    parser.add_report("no path; warnings and errors only")
+    given = parser.parsed(arguments)
+    with tempfile.TemporaryDirectory() as scratch:  # Matplotlib's font list: nothing is written outside the folder of the report
+        os.environ["MPLCONFIGDIR"] = scratch
+        from salbench.report.write import write_report
+
+        page = write_report(Path(given.results), to=Path(given.to) if given.to else None, exports=given.export,
+                            compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
+                            processes=given.processes)
+    report(given, "report", {"page": str(page)}, f"{page}\n")
+    return ALL_DONE
+
+
 def _list(arguments: Sequence[str]) -> int:
     """`_list LAYOUT --data DIR [--twins T]`, which the program asks of layouts that it does not list itself."""
     import json
@@ -103,7 +172,8 @@ def _import(arguments: Sequence[str]) -> int:
     return serve()
 
 
-SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "power": power}
+SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "power": power, "submit": submit, "leaderboard": leaderboard,
+               "report": report_}
 SERVED = {"_import": _import, "_list": _list}  # for the program alone
 
 

@@ -17,6 +17,9 @@ _EXAMPLES = {  # as `salbench --help` has them
     "import": "3dva --data 3DVA --to 3DVA-hdf5",
     "inspect": "3dva --data 3DVA",
     "power": "salbench-out/shrec07",
+    "report": "salbench-out/shrec07",
+    "submit": "mine --to mine.zip --data SchellingData",
+    "leaderboard": "submissions --to site --data SchellingData",
 }
 
 
@@ -60,7 +63,9 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
         text = json.dumps({"schema": SCHEMA, "command": name, **document}, ensure_ascii=False, separators=(",", ":")) + "\n"
     elif getattr(given, "quiet", False):
         return
-    data = text.encode("utf-8", "surrogateescape" if given.format == "text" else "replace")
+    data = text.encode("utf-8", "surrogateescape")
+    if given.format == "json":
+        data = data.decode("utf-8", "replace").encode()  # U+FFFD in place of bytes that are not UTF-8
     try:
         sys.stdout.flush()
         sys.stdout.buffer.write(data)

@@ -142,11 +142,13 @@ def run(
         (name, given) for name, given in models.items() if callable(given) or isinstance(given, Model)]
     others = None if models is None else {
         name: given or {} for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
-    settings = {
+    settings: dict[str, Any] = {
         "path": None if isinstance(config, Mapping) else _configuration(config),
         "yaml": json.dumps(config) if isinstance(config, Mapping) else None,
         "models": json.dumps(others) if others else None,
         "only_functions": others == {},
+        "kept": None,
+        "maps": {},
         "data": data and os.fspath(data),
         "cache": cache and os.fspath(cache),
         "out": out and os.fspath(out),
@@ -157,6 +159,12 @@ def run(
     }
     if items is not None and not settings["items"]:
         raise ValueError("items is empty: name some, or leave it out to run all")
+    return carry_out(settings, functions, threads, progress)
+
+
+def carry_out(settings: dict[str, Any], functions: Iterable[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
+    """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
+    stay beside the functions; maps: folders of maps, as `salbench evaluate` takes them, by the name of the model."""
     threads = len(os.sched_getaffinity(0)) if threads is None else threads
     if threads < 1:
         raise ValueError(f"threads must be at least 1, not {threads}")
@@ -174,12 +182,10 @@ def _configuration(given: str | os.PathLike[str] | None) -> str:
     name = "shrec07" if given is None else os.fspath(given)
     if os.path.exists(name):
         return name
-    here = pathlib.Path(__file__).parent
-    folders = [here / "configs", pathlib.Path("/usr/share/salbench/configs")]
-    for folder in folders:
-        if (folder / f"{name}.yaml").is_file():
-            return str(folder / f"{name}.yaml")
-    raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folders[0]} or {folders[1]}")
+    folder = pathlib.Path(__file__).parent / "configs"
+    if (folder / f"{name}.yaml").is_file():
+        return str(folder / f"{name}.yaml")
+    raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folder}")
 
 
 def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str]:

@@ -66,6 +66,7 @@ class Models(unittest.TestCase):
         for folder in MODELS:
             card = yaml.safe_load((folder / "card.yaml").read_text(encoding="utf-8"))
             self.assertEqual([key for key in CARD if not str(card.get(key) or "").strip()], [], folder.name)
+            self.assertTrue(card["test_overlap"] == "none" or isinstance(card["test_overlap"], list), folder.name)
             self.assertEqual([card["name"]], list(own(folder)))
             for section in own(folder).values():
                 named = re.findall(r"models/[\w./-]+", section["command"])

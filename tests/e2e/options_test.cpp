@@ -14,7 +14,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -24,9 +23,6 @@ class Options : public testing::Test {
     EXPECT_EQ(toy_.salbench("run").status, 0);
     scores_ = toy_.write("scores.csv", toy_.results());
     EXPECT_EQ(toy_.salbench("maps", {"--to", (toy_ / "maps").string()}).status, 0);
-    toy_.write("maps/PS/card.yaml",
-               "name: OWN\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n");
-    EXPECT_EQ(said("submit").status, 0);
   }
 
   // What a subcommand cannot do without, each in its smallest form.
@@ -44,8 +40,6 @@ class Options : public testing::Test {
         {"explain", {config, "1"}},
         {"status", {config}},
         {"doctor", {config}},
-        {"submit", {own, "--to", below("archives/own.zip"), "-c", config}},
-        {"leaderboard", {below("archives"), "--to", below("site"), "-c", config}},
         {"config", {config}},
         {"verify", {config, "--deep"}},
         {"gc", {config, "--dry-run"}},
@@ -69,7 +63,6 @@ class Options : public testing::Test {
     return command;
   }
   Outcome said(const std::string& name, const std::vector<std::string>& further = {}) const {
-    fs::create_directories(toy_ / "archives");
     return run_process(command(name, further));
   }
 
@@ -113,8 +106,7 @@ TEST_F(Options, ThatASubcommandDoesNotUseAreRefused) {
                                            {"explain", "--quiet"},
                                            {"doctor", "--out"},
                                            {"maps", "--out"},
-                                           {"pictures", "--reference"},
-                                           {"leaderboard", "--items"}}) {
+                                           {"pictures", "--reference"}}) {
     const Outcome outcome = said(subcommand, {option, "1"});
     EXPECT_EQ(outcome.status, 2) << subcommand << option;
     EXPECT_THAT(outcome.err, HasSubstr(std::string("there is no option '") + option + "'")) << subcommand;
@@ -180,13 +172,9 @@ TEST_F(Options, NamesOfConfigurationsAreFoundByAProgramThatLiesAnywhere) {
     const Outcome outcome = run_process(words);
     EXPECT_THAT(outcome.err, Not(HasSubstr("shrec07_meshes"))) << subcommand.name;
     EXPECT_EQ(outcome.status, 0) << subcommand.name << outcome.err;
-    if (subcommand.name == "leaderboard") {  // which has no program to make pages with, either
-      EXPECT_FALSE(fs::exists(toy_ / "site/index.html"));
-      EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("index.html")), HasSubstr("the tables are in ")));
-    }
     ++found;
   }
-  EXPECT_GE(found, 14);
+  EXPECT_GE(found, 12);
   EXPECT_THAT(run_process({program_.string(), "config", "protocols/3dva"}).out, HasSubstr("layout: 3dva"));
   EXPECT_THAT(run_process({program_.string(), "config", "shrec07_mesh"}).err,
               HasSubstr("did you mean 'shrec07_meshes'?"));

@@ -3,6 +3,7 @@
 
 import json
 import shutil
+import subprocess
 import unittest
 
 try:
@@ -11,6 +12,7 @@ try:
 except ImportError:
     webdriver = None
 
+AXE = "axe-core@4.10.2"  # looks for what keeps people from using a page
 DRIVER, CHROMIUM = shutil.which("chromedriver"), shutil.which("chromium")
 AVAILABLE = webdriver is not None and DRIVER is not None and CHROMIUM is not None
 needs_browser = unittest.skipUnless(AVAILABLE, "needs Debian's chromium, chromium-driver and python3-selenium")
@@ -46,3 +48,26 @@ def requests(browser):
         if message["method"] == "Network.requestWillBeSent":
             found.append(message["params"]["request"]["url"])
     return found
+
+
+def axe(folder):
+    """The script of axe-core, which comes from npm into a temporary folder. SkipTest if it cannot be had."""
+    npm = shutil.which("npm")
+    if npm is None:
+        raise unittest.SkipTest("npm is not installed")
+    try:
+        subprocess.run([npm, "install", "--no-audit", "--no-fund", "--ignore-scripts", AXE], cwd=folder, check=True, capture_output=True, timeout=120)
+    except (OSError, subprocess.SubprocessError):
+        raise unittest.SkipTest("npm cannot reach its registry") from None
+    return (folder / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")
+
+
+def findings(browser, script, page):
+    """(colour scheme, what is serious) of a page, light and dark."""
+    for scheme in ("light", "dark"):
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        browser.get(page.as_uri())
+        browser.execute_script(script)
+        found = browser.execute_async_script("axe.run().then(arguments[arguments.length - 1])")
+        yield scheme, [f"{finding['id']}: {finding['help']}: {[node['target'] for node in finding['nodes']][:3]}"
+                       for finding in found["violations"] if finding["impact"] in ("serious", "critical")]

@@ -8,12 +8,12 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.compact import within_range
-from salbench.conclusions.metrics import Metric
+from salbench.conclusions.metrics import Metric, leading
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import RankedMetric, Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, SPLIT, Part, framed, number, optional_count, text
 from salbench.conclusions.units import Level
-from salbench.conclusions.words import Leader, leading_metrics, sentence
+from salbench.conclusions.words import Leader, sentence
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, text("verdict", "of the joint intervals of the ranks; empty in the row of a whole data set"),
@@ -36,7 +36,7 @@ class LevelLeaders:
 
 def find_leaders(study: Study) -> list[LevelLeaders]:
     """One per data set and split, each with the metrics that have competitors."""
-    spoken_of = leading_metrics(study.scores.metrics)
+    spoken_of = leading(metric.name for metric in study.scores.metrics)
     found = []
     for level, ranked in study.ranked:
         leaders = [leader_of(level, of_metric, metric) for metric, of_metric in zip(level.metrics, ranked)
@@ -78,7 +78,11 @@ def leader_of(level: Level, ranked: RankedMetric, metric: Metric) -> Leader:
 
 def leaders(study: Study) -> pandas.DataFrame:
     """A row per data set with its sentence, then one per metric with competitors."""
-    return framed(COLUMNS, (part for level in find_leaders(study) for part in _parts(level)), study.in_splits)
+    return framed_leaders(find_leaders(study), study.in_splits)
+
+
+def framed_leaders(found: list[LevelLeaders], in_splits: bool) -> pandas.DataFrame:
+    return framed(COLUMNS, (part for level in found for part in _parts(level)), in_splits)
 
 
 def _parts(level: LevelLeaders) -> list[Part]:

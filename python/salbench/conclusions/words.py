@@ -7,8 +7,6 @@ from dataclasses import dataclass, field
 
 from salbench.conclusions.metrics import Metric
 
-_PAPERS = ("auc", "nss", "lcc")
-_LEADING = 3  # metrics that a sentence speaks of
 _NAMED = 4  # models that a sentence lists
 _SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "mse", "mae", "sauc")  # written as "AUC"
 _SHAPES = {"meshes": ("mesh", "meshes"), "scans": ("scan", "scans"), "clouds": ("point cloud", "point clouds")}
@@ -35,14 +33,6 @@ class Leader:
     second: str = ""  # model with the next best mean; empty: none
     lead: float = math.nan  # how far the best mean is ahead of that, positive whether higher or lower is better
     lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %, joint for all pairs of models: above 0 where the pair differs
-
-
-def leading_metrics(metrics: Sequence[Metric]) -> list[str]:
-    """Names of the metrics that the sentence of a data set speaks of: the paper's, filled up to three with the first of the others."""
-    names = [metric.name for metric in metrics]
-    papers = [name for name in _PAPERS if name in names]
-    others = [name for name in names if name not in papers]
-    return papers + others[:_LEADING - len(papers)]
 
 
 def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> str:

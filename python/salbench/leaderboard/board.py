@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a leaderboard says: every submission checked, those that pass scored in one run, as evaluate scores maps, and conclusions from their scores.
+
+Models are compared on the items that none of them was trained on. A model that has seen some stands beside the ranking.
+"""
+
+import csv
+import os
+import shutil
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import pandas
+
+from salbench import _core
+from salbench._run import Model
+from salbench.conclusions import compact, csv_file, folders, leaders, tables, tables_of
+from salbench._errors import InputError
+from salbench.conclusions.leaders import LevelLeaders
+from salbench.conclusions.study import Study
+from salbench.leaderboard import submission
+from salbench.leaderboard.archive import Refused
+from salbench.leaderboard.submission import Expected, Submission
+from salbench.leaderboard.texts import Card
+
+FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
+OTHER_SCORES = "the scores that it came with are others than those computed here"
+Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; commands.py
+
+
+@dataclass
+class Entry:
+    """An archive, as far as it could be read."""
+
+    file: Path
+    card: Card = Card()
+    program: str = ""
+    refused: str = "was not checked"  # why; empty: it was not
+    remark: str = ""
+
+    @property
+    def status(self) -> str:
+        return "refused" if self.refused else "beside" if self.card.test_overlap else "ranked"
+
+
+@dataclass(frozen=True)
+class Board:
+    """All that the site shows."""
+
+    entries: list[Entry]
+    facts: dict[str, str]  # what the ranking is of, by its label
+    study: Study  # of the models that are ranked, on the items that no model has seen
+    beside: pandas.DataFrame  # the others, on the same items
+    leaders: list[LevelLeaders]
+    sentences: list[str]
+    protocol: str
+    tables: dict[str, pandas.DataFrame]
+    remarks: list[str] = field(default_factory=list)  # at the head of every table
+
+    def of_status(self, *status: str) -> list[Entry]:
+        return [entry for entry in self.entries if entry.status in status]
+
+
+def archives_in(folder: str) -> list[Entry]:
+    try:
+        found = sorted(entry.path for entry in os.scandir(folder) if entry.name.lower().endswith(".zip") and not entry.is_dir())
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be read: {error.strerror}") from None
+    if not found:
+        raise InputError(f"{folder}: has no submission (NAME.zip, as salbench submit writes them)")
+    return [Entry(Path(path)) for path in found]
+
+
+def expected_of(results: Any, protocol: str) -> Expected:
+    """From a run over the data set without submissions."""
+    table = csv_file.read_csv(results.folder / "results.csv", {"n_points"})
+    names = [f"{item}_{view}" if view else item for item, view in zip(table.column("item"), table.column("view"))]
+    points = dict(zip(names, map(int, table.number_column("n_points"))))
+    if not points:
+        raise InputError("no item has ground truth that it could be scored by")
+    return Expected(protocol, record_of(results)["data_set"]["digest"], points, tuple(dict.fromkeys(table.column("item"))))
+
+
+def record_of(results: Any) -> dict[str, Any]:
+    """run.yaml, with every value as text."""
+    import yaml
+
+    record: dict[str, Any] = yaml.load((results.folder / "run.yaml").read_bytes(), Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+    return record
+
+
+def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: Iterable[str], threads: int | None) -> list[Submission]:
+    """Checks every archive, and returns those that pass. models: names that are taken."""
+    def check(number: int) -> Submission | str:
+        try:
+            return submission.read(entries[number].file, expected, scratch / f"{number}.maps")
+        except Refused as reason:
+            return str(reason)
+
+    taken = {name.lower(): "a model of the configuration" for name in models}
+    passed = []
+    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as workers:
+        for entry, read in zip(entries, workers.map(check, range(len(entries)))):
+            if isinstance(read, str):
+                entry.refused = read
+                continue
+            entry.card, entry.program, entry.refused = read.card, read.program, ""
+            if (holder := taken.setdefault(read.card.name.lower(), entry.file.name)) != entry.file.name:
+                entry.refused = f"the name {read.card.name} is taken by {holder}, or differs from it in capitals alone"
+                continue
+            passed.append(read)
+    return passed
+
+
+def model_of(submitted: Submission) -> tuple[str, Model]:
+    def look_up(shape: Any) -> Any:
+        return submitted.maps[shape.id]
+
+    return submitted.card.name, Model(look_up, version=1, depends=[submitted.digest.encode()], reads=())
+
+
+def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
+    """Scores what passed, and draws the conclusions. name: of the configuration."""
+    results = run(functions=[model_of(one) for one in submitted])
+    if failed := _refuse_failed(entries, results, expected):
+        return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name)
+    _compare_scores(entries, submitted, results.folder / "results.csv")
+    source = folders.read_run(results.folder)
+    seen = {item for entry in entries if not entry.refused for item in entry.card.test_overlap}
+    beside = [entry.card.name for entry in entries if entry.status == "beside"]
+    study = _part(source.study, seen, lambda models: ~models.isin(beside))
+    found = [_or_too_few(level) for level in leaders.find_leaders(study)]
+    sentences = [level.sentence for level in found] or ["No item is left that no model has seen: none can be ranked."]
+    if seen:
+        sentences.append(_left_out(entries, seen, expected))
+    board = Board(entries, _facts(entries, expected, record_of(results), study, seen, name), study,
+                  compact.compact(_part(source.study, seen, lambda models: models.isin(beside))).assign(rank=pandas.NA, group="", best=0), found, sentences, expected.protocol, {}, source.remarks)
+    board.tables.update(_tables(board, results))
+    return board, results
+
+
+def _refuse_failed(entries: list[Entry], results: Any, expected: Expected) -> set[str]:
+    """A model that failed on any shape is no competitor: all are compared on the same shapes. Their names."""
+    failed = set()
+    for entry in entries:
+        for item, stage, cause in results.failures:
+            if not entry.refused and item in expected.points and stage.endswith(f".{entry.card.name}"):
+                entry.refused = f"{item}: {cause.splitlines()[0]}"
+                failed.add(entry.card.name)
+    return failed
+
+
+def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path: Path) -> None:
+    """The scores that came with a submission decide nothing."""
+    own: dict[str, list[list[str]]] = {}
+    with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:
+        rows = csv.reader(line for line in file if not line.startswith("#"))
+        columns = next(rows)
+        for row in rows:
+            own.setdefault(row[columns.index("model")], []).append(row)
+    came = {one.card.name: one.results for one in submitted}
+    for entry in entries:
+        if not entry.refused:
+            try:
+                theirs = list(csv.reader(came[entry.card.name].splitlines(keepends=True)))
+            except csv.Error:
+                theirs = []
+            entry.remark = "" if theirs == [columns, *own.get(entry.card.name, [])] else OTHER_SCORES
+
+
+def _part(study: Study, seen: set[str], chosen: Callable[[Any], Any]) -> Study:
+    """The items that no model has seen, of some models."""
+    def unseen(frame: pandas.DataFrame | None) -> pandas.DataFrame | None:
+        return None if frame is None else frame[~frame["item"].isin(seen)]
+
+    frame = study.scores.frame
+    smoothed = unseen(study.smoothed)
+    return replace(study, scores=study.scores.part(~frame["item"].isin(seen) & chosen(frame["model"])), people=unseen(study.people),
+                   smoothed=None if smoothed is None else smoothed[chosen(smoothed["model"])], constant=unseen(study.constant))
+
+
+def _or_too_few(level: LevelLeaders) -> LevelLeaders:
+    n = max((leader.n for leader in level.leaders), default=0)
+    if n >= FEWEST_UNITS or not level.leaders:
+        return level
+    of_split = f" of split {level.split}" if level.split else ""
+    return replace(level, leaders=[], sentence=f"On {level.dataset}{of_split}, {n} units ({level.unit}) are too few to name who leads: at least "
+                   f"{FEWEST_UNITS} are needed.")
+
+
+def _left_out(entries: list[Entry], seen: set[str], expected: Expected) -> str:
+    counts = ", ".join(f"{entry.card.name} {len(set(entry.card.test_overlap))}" for entry in entries if entry.status == "beside")
+    return (f"The ranking is over {len(expected.items) - len(seen)} of {len(expected.items)} items, those that no model has seen. Beside it, and "
+            f"never named as leading, stand models that have seen some: {counts}.")
+
+
+def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], study: Study, seen: set[str], name: str) -> dict[str, str]:
+    dates = [entry.card.date for entry in entries if not entry.refused and entry.card.date]
+    data = record["data_set"]
+    return {"Data set": f"{name}, layout {data['layout']}: {len(expected.items)} items with ground truth, {len(expected.points)} shapes",
+            "Digest of the data": expected.data,
+            "Protocol": record["configuration"]["protocol"],
+            "Digest of the configuration": _core.digest(expected.protocol.encode()),
+            "Program": record["program"],
+            "Date": f"{max(dates)}, of the newest submission" if dates else "no submission has one",
+            "Unit of inference": study.unit,
+            "Items ranked over": f"{len(expected.items) - len(seen)} of {len(expected.items)}"}
+
+
+# --- tables ----------------------------------------------------------------------------------------------------------------------------------------
+
+
+def plain(cell: str) -> str:
+    """What a spreadsheet would take for a formula stands behind an apostrophe."""
+    return f"'{cell}" if cell[:1] in tuple("=+-@") else cell
+
+
+def submissions(entries: list[Entry]) -> list[dict[str, str]]:
+    return [{"file": entry.file.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused, "remark": entry.remark,
+             "date": entry.card.date, "citation": entry.card.citation, "licence": entry.card.licence, "training_data": entry.card.training_data,
+             "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.program} for entry in entries]
+
+
+_HISTORY = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.text("date", "of the submission"), tables.text("file", "name of the archive"),
+            tables.MODEL, tables.MEAN, tables.text("best", "yes if it is better than all above it, else no"))
+
+
+def history(board: Board, ranking: pandas.DataFrame) -> pandas.DataFrame:
+    """By date, then by the name of the file: the mean of each, and whether it was the best until then."""
+    higher = {metric.name: metric.higher_is_better for metric in board.study.scores.metrics}
+    label = [column for column in ("dataset", "split", "metric") if column in ranking]
+    parts = []
+    for of, rows in ranking.groupby(label, sort=False):
+        mean = dict(zip(rows["model"], rows["mean"]))
+        best = float("nan")
+        for entry in sorted(board.of_status("ranked"), key=lambda entry: entry.card.date):
+            value = mean.get(entry.card.name, float("nan"))
+            if value != value:
+                continue
+            is_best = best != best or (value > best if higher[of[-1]] else value < best)
+            best = value if is_best else best
+            parts.append({"split": "", **dict(zip(label, of)), "date": entry.card.date, "file": plain(entry.file.name), "model": entry.card.name,
+                          "mean": value, "best": "yes" if is_best else "no"})
+    return tables.framed(_HISTORY, parts, board.study.in_splits)
+
+
+def _is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
+    return (frame["dataset"] == level.dataset) & ((frame["split"] == level.split) if "split" in frame else True)
+
+
+def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
+    made = {name: frame for name, frame in tables_of(board.study) if frame is not None}
+    made["leaders"] = leaders.framed_leaders(board.leaders, board.study.in_splits)
+    for level in board.leaders:
+        if not level.leaders:
+            made["compact"].loc[_is_of(made["compact"], level), "best"] = 0
+    made["history"] = history(board, made["ranking"])
+    made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])
+    made["submissions"] = pandas.DataFrame([{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)])
+    made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
+    made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
+                                        for name, of in record_of(results)["metrics"].items()])
+    return made
+
+
+OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean_histograms_meshes.csv", "mean_histograms_scans.csv",
+              "mean_histograms_clouds.csv")
+
+
+def write_tables(board: Board, results: Any, folder: Path) -> None:
+    """The scores as the run wrote them, and all that follows from them."""
+    folder.mkdir(parents=True)
+    for name in OF_THE_RUN:
+        if (results.folder / name).is_file():
+            shutil.copyfile(results.folder / name, folder / name)
+    unmarked = ("submissions", "about", "metrics", "history")
+    for name, frame in board.tables.items():
+        folders.write(folder / f"{name}.csv", tables.csv(frame, () if name in unmarked else board.remarks))
+    folders.write(folder / "protocol.yaml", board.protocol)

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write. Both return a status."""
+
+import argparse
+import logging
+import os
+import sys
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from salbench import _core, _run
+from salbench._command_line import ALL_DONE, SOME_FAILED, Parser, report
+from salbench._errors import InputError, StorageError
+from salbench._results import Results
+from salbench.conclusions import leaders, means, tables
+from salbench.leaderboard import board, folder, site, submission, texts
+from salbench.leaderboard.archive import Refused
+from salbench.leaderboard.texts import Manifest
+
+CONFIG = "shrec07_meshes"
+
+
+def add_arguments(parser: Parser) -> None:
+    """Those that both have: of a run over what has ground truth whose configuration need not be named."""
+    parser.add_argument("-c", "--config", default=CONFIG, help=f"configuration, or the name of an installed one (default: {CONFIG})")
+    parser.add_argument("--data", metavar="DIR", help="folder of the data set")
+    parser.add_argument("--cache", metavar="DIR", help="folder of the artefacts (default: cache in CONFIG, or salbench-cache)")
+    parser.add_argument("--split", help="only this split of the data set, such as test; '': all, where CONFIG names one")
+    parser.add_argument("--reference", metavar="FILE", help="match to this histogram (CSV with a column GS of 100 bins), not to the mean over the "
+                        "data set; items: to the mean over the items with ground truth")
+    parser.add_argument("--threads", type=int, metavar="N", help="threads (default: all cores); results do not depend on it")
+    parser.add_report("neither progress nor tables; warnings and errors only")
+
+
+class _Session:
+    """Runs over the data set of a command, in a scratch folder, and says on standard error what the program would."""
+
+    def __init__(self, given: argparse.Namespace, scratch: Path) -> None:
+        self.given, self.scratch = given, scratch
+        self._runs = 0
+        self._log = logging.getLogger("salbench")
+
+    def run(self, *, kept: str | None = None, maps: dict[str, str] | None = None, functions: Iterable[Any] = (), silent: bool = False) -> Results:
+        """silent: what there is to say of the data was said before, and failures of maps are reasons in the tables."""
+        given = self.given
+        self._runs += 1
+        settings = {"path": _run._configuration(given.config), "yaml": None, "models": None, "only_functions": kept is None, "kept": kept,
+                    "maps": maps or {}, "data": given.data, "cache": given.cache, "out": str(self.scratch / f"run{self._runs}"),
+                    "split": given.split, "reference": given.reference, "items": b"scored"}
+        handler = logging.StreamHandler()
+        handler.setFormatter(_Levels())
+        self._log.addHandler(handler)
+        self._log.disabled = silent
+        try:
+            return _run.carry_out(settings, list(functions), given.threads, not given.quiet and sys.stderr.isatty())
+        except (ValueError, KeyError, FileNotFoundError) as error:
+            raise InputError(str(error.args[0] if isinstance(error, KeyError) else error)) from None
+        except OSError as error:
+            raise StorageError(str(error)) from None
+        finally:
+            self._log.disabled = False
+            self._log.removeHandler(handler)
+
+
+class _Levels(logging.Formatter):
+    def format(self, record: logging.LogRecord) -> str:
+        return f"{record.levelname.lower()}: {record.getMessage()}"
+
+
+def summary_of(results: Results) -> dict[str, Any]:
+    """What a session did, for the document of a command."""
+    record = board.record_of(results)
+    data = record["data_set"]
+    return {"meshes": int(data["meshes"]), "clouds": int(data.get("clouds", 0)), "models": results.scores["model"].nunique(),
+            "cache": record["configuration"]["cache"],
+            "computed": results.computed, "interrupted": False,
+            "failed": [{"item": item, "stage": stage, "why": cause} for item, stage, cause in results.failures]}
+
+
+def _failed(results: Results) -> int:
+    """The status, with a line that counts what failed."""
+    if not results.failures:
+        return ALL_DONE
+    print(f"\n{len(results.failures)} failed, each named above", file=sys.stderr)
+    return SOME_FAILED
+
+
+def submit(given: argparse.Namespace) -> int:
+    """given: MINE and --to beside the arguments of both."""
+    card_file = Path(given.mine, "card.yaml")
+    try:
+        card_text = card_file.read_bytes()
+    except OSError as error:
+        raise InputError(f"{card_file}: cannot be read: {error.strerror}") from None
+    try:
+        card = texts.read_card(card_text, str(card_file))
+    except Refused as reason:
+        raise InputError(str(reason)) from None
+    with tempfile.TemporaryDirectory(prefix="salbench-") as name:
+        session = _Session(given, Path(name))
+        results = session.run(maps={card.name: given.mine})
+        status = _failed(results)
+        if status == ALL_DONE:
+            _write_checked(Path(given.to), results, card_text, card.name, Path(name))
+        document = {"to": None if status else given.to, "model": card.name, **summary_of(results)}
+    text = "" if status else f"{given.to} can be handed in: it was checked as salbench leaderboard checks it\n"
+    report(given, "submit", document, text)
+    return status
+
+
+def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch: Path) -> None:
+    """What is written is read as a maintainer reads it: a file that would be refused does not stay."""
+    expected = board.expected_of(results, results._run.protocol)
+    record = board.record_of(results)
+    scores = b"".join(line for line in (results.folder / "results.csv").read_bytes().splitlines(keepends=True) if not line.startswith(b"#"))
+    maps = results.maps(model)
+    manifest = Manifest(program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
+                        configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
+                        stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items()])
+    try:
+        to.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = to.with_name(to.name + ".unfinished")
+        unfinished.write_bytes(submission.archive_of(card, manifest, expected.protocol, scores, maps))
+        submission.read(unfinished, expected, scratch / "maps")
+        os.replace(unfinished, to)
+    except OSError as error:
+        raise StorageError(f"{to}: cannot be written: {error.strerror}; choose another with --to") from None
+    except Refused as reason:
+        unfinished.unlink()
+        raise InputError(f"{to}: would be refused, and was not written: {reason}") from None
+
+
+def leaderboard(given: argparse.Namespace) -> int:
+    """given: FOLDER, --to and --models beside the arguments of both."""
+    entries = board.archives_in(given.folder)
+    to = Path(given.to)
+    folder.require_own(to)
+    with tempfile.TemporaryDirectory(prefix="salbench-") as name:
+        scratch = Path(name)
+        session = _Session(given, scratch)
+        kept = given.models or ""
+        before = session.run(kept=kept)
+        expected = board.expected_of(before, before._run.protocol)
+        passed = board.check_all(entries, expected, scratch, before.models, given.threads)
+        made, results = board.rank(entries, passed, expected, lambda functions: session.run(kept=kept, functions=functions, silent=True),
+                                   Path(given.config).stem)
+        board.write_tables(made, results, scratch / "site/data")
+        has_pages = _pages(made, scratch / "site")
+        folder.publish(scratch / "site", to)
+        document = {"to": given.to, "submissions": board.submissions(entries), "scores": tables.records(means.overview(made.study)),
+                    "leaders": leaders.documents(made.leaders), **summary_of(results)}
+        status = _failed(before)
+    any_refused = any(entry.refused for entry in entries)
+    report(given, "leaderboard", document, _text(made, given, has_pages))
+    return status or (SOME_FAILED if any_refused else ALL_DONE)
+
+
+def _pages(made: board.Board, to: Path) -> bool:
+    try:
+        site.write_pages(made, to)
+    except ModuleNotFoundError as error:
+        print(f"warning: the tables are there, but no pages: there is no module {error.name}; install python3-jinja2", file=sys.stderr)
+        return False
+    return True
+
+
+def _text(made: board.Board, given: argparse.Namespace, has_pages: bool) -> str:
+    simulated = [remark for remark in made.remarks if remark.startswith("SIMULATED")]
+    lines = [tables.aligned(means.overview(made.study)), *simulated, *made.sentences]
+    lines += [f"refused: {entry.file.name}: {entry.refused}" for entry in made.of_status("refused")]
+    lines.append(f"the leaderboard is {Path(given.to, 'index.html')}" if has_pages else f"the tables are in {Path(given.to, 'data')}")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A submission: one ZIP archive with the maps of a model, its card, and the protocol that its scores were made by.
+
+An archive is read and checked by another process (`python -c "...worker()"`) with limits on time, memory and bytes. It sends a line of JSON and
+the values of the maps, which go to a scratch file as they are: no name from inside an archive becomes that of a file.
+"""
+
+import io
+import itertools
+import json
+import os
+import resource
+import stat
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from salbench import _core
+from salbench._types import NDArray
+from salbench.leaderboard import texts
+from salbench.leaderboard.archive import Limits, Refused, quoted, read_zip, zip_of
+from salbench.leaderboard.texts import Card, Manifest
+
+_SECONDS = 120  # of processor time, and five times that by the clock
+_MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumPy, and the program's libraries
+_OVERHEAD = 1 << 20  # of an archive: its directory, and headers
+_NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
+_START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import worker; worker()"
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a submission is held against, from a run over the data set that has no maps of it."""
+
+    protocol: str  # the configuration without models and folders
+    data: str  # digest of names, shapes and ground truth
+    points: Mapping[str, int]  # of each shape with ground truth, by its name
+    items: tuple[str, ...]  # that shapes are of: the meshes or point clouds
+
+    @property
+    def limits(self) -> Limits:
+        return Limits(len(self.points) + len(_NAMES) + 1, texts.limit_bytes(self.points))
+
+
+@dataclass(frozen=True)
+class Submission:
+    card: Card
+    program: str  # version that wrote it
+    results: str  # results.csv as it came
+    digest: str  # of the maps
+    maps: Mapping[str, NDArray[np.float64]]  # by the name of the shape, from the scratch file
+
+
+def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Mapping[str, NDArray[np.float64]]) -> bytes:
+    named = zip(_NAMES, (manifest.text().encode(), card, configuration.encode(), results))
+    return zip_of([*named, *((f"maps/{item}.npy", npy_of(values)) for item, values in sorted(maps.items(), key=lambda row: os.fsencode(row[0])))])
+
+
+def npy_of(values: NDArray[np.float64]) -> bytes:
+    made = io.BytesIO()
+    np.save(made, np.ascontiguousarray(values, dtype="<f8"), allow_pickle=False)
+    return made.getvalue()
+
+
+# --- read, where nothing is trusted -----------------------------------------------------------------------------------------------------------
+
+
+def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
+    """The map in a file .npy of float32 or float64: (n), (n, 1) or (1, n)."""
+    def fail(what: str) -> Refused:
+        return Refused(f"{name}: not a .npy file that can be read: {what}")
+
+    file = io.BytesIO(data)
+    try:
+        version = np.lib.format.read_magic(file)  # type: ignore[no-untyped-call]
+        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, dtype = read(file)  # type: ignore[no-untyped-call]
+    except (ValueError, TypeError, SyntaxError, RecursionError, MemoryError) as error:
+        raise fail(" ".join(str(error).split())[:100] or "its header is damaged") from None
+    if dtype not in (np.dtype("<f8"), np.dtype("<f4")):
+        raise fail(f"its type is {quoted(str(dtype))}, neither float32 nor float64, little-endian")
+    if not 1 <= len(shape) <= 2 or any(type(extent) is not int or extent < 0 for extent in shape) or (len(shape) == 2 and 1 not in shape):
+        raise fail(f"its shape is {str(shape)[:100]}, expected one value per point")
+    n = max(shape) if min(shape) else 0
+    if len(data) - file.tell() != n * dtype.itemsize:
+        raise fail(f"its shape is {str(shape)[:100]}, and it holds {len(data) - file.tell()} bytes of values")
+    if n != points:
+        raise Refused(f"{name}: {n} values, but the shape has {points} points")
+    values = np.frombuffer(data, dtype, offset=file.tell()).astype(np.float64)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if len(bad):
+        raise Refused(f"{name}: value {bad[0]} (0-based) is {values[bad[0]]}, expected a finite number")
+    return values
+
+
+def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected) -> None:
+    name = "configuration.yaml"
+    if _core.digest(configuration) != manifest.configuration:
+        raise Refused(f"{name} is not what submission.yaml has the digest of")
+    texts.require_plain(configuration, name)
+    text = configuration.decode("utf-8")
+    if text != expected.protocol:  # another version of the program may write further options, at their defaults
+        if "models" in {line.partition(":")[0] for line in text.splitlines()}:
+            raise Refused(f"{name} has models, expected the protocol alone")
+        try:
+            text = _core.protocol(text, name)
+        except ValueError as error:
+            raise Refused(str(error)) from None
+    for mine, other in itertools.zip_longest(expected.protocol.splitlines(), text.splitlines(), fillvalue=""):
+        if mine != other:
+            raise Refused(f"another protocol: it has {quoted(other)}, the leaderboard {quoted(mine)}")
+    if manifest.data != expected.data:
+        raise Refused(f"other data: their digest is {quoted(manifest.data)}, expected {expected.data}")
+
+
+def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
+    files = read_zip(data, expected.limits)
+    maps = {name: files.pop(name) for name in list(files) if name.startswith("maps/") and name.endswith(".npy")}
+    for name in files:
+        if name not in _NAMES:
+            raise Refused(f"the file {quoted(name)} is no part of a submission")
+    for name in _NAMES:
+        if name not in files:
+            raise Refused(f"has no {name}")
+    manifest = texts.read_manifest(files["submission.yaml"], "submission.yaml")
+    if manifest.format != texts.FORMAT:
+        raise Refused(f"submission.yaml: format is {quoted(manifest.format)}, expected {texts.FORMAT}")
+    card = texts.read_card(files["card.yaml"], "card.yaml")
+    _check_protocol(files["configuration.yaml"], manifest, expected)
+    for item in card.test_overlap:
+        if item not in expected.items:
+            raise Refused(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
+    found = {}
+    for name, content in maps.items():
+        item = name[len("maps/"):-len(".npy")]
+        if item not in expected.points:
+            raise Refused(f"{quoted(name)}: there is no such item with ground truth")
+        found[item] = map_of(content, name, expected.points[item])
+    missing = [item for item in expected.points if item not in found]
+    if missing:
+        raise Refused(f"has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}")
+    return card, manifest, files, found
+
+
+def _bytes_of(path: str, most: int) -> bytes:
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    with open(descriptor, "rb") as file:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise Refused("not a regular file")
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise Refused(f"has more than {most} bytes, the most that can be read")
+    return data
+
+
+def worker() -> None:
+    """Reads what to do from standard input; writes a line of JSON and the values of the maps."""
+    given = json.load(sys.stdin)
+    expected = Expected(**given["expected"])
+    memory = 2 * expected.limits.bytes + _MEMORY
+    for limit, most in ((resource.RLIMIT_CPU, _SECONDS), (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, 2 * expected.limits.bytes),
+                        (resource.RLIMIT_CORE, 0), (resource.RLIMIT_NPROC, 0)):
+        resource.setrlimit(limit, (most, most))
+    maps: dict[str, NDArray[np.float64]] = {}
+    try:
+        _, manifest, files, maps = _checked(_bytes_of(given["path"], expected.limits.bytes + _OVERHEAD), expected)
+        head = {"card": files["card.yaml"].decode(), "program": manifest.program, "maps": list(maps),
+                "results": files["results.csv"].decode("utf-8", "surrogateescape")}
+    except Refused as reason:
+        head = {"refused": str(reason)}
+    except OSError as error:
+        head = {"refused": f"cannot be read: {error.strerror}"}
+    except MemoryError:
+        head = {"refused": f"needs more than the {memory} bytes of memory that a submission has"}
+    line = json.dumps(head).encode()
+    sys.stdout.buffer.write(line + b" " * (-(len(line) + 1) % 8) + b"\n")  # what follows is aligned
+    for values in maps.values():
+        sys.stdout.buffer.write(values.tobytes())
+
+
+# --- asked for -----------------------------------------------------------------------------------------------------------------------------------
+
+
+def read(path: Path, expected: Expected, scratch: Path) -> Submission:
+    """Reads an archive from anybody and checks all of it but its scores; scratch is a file to be written. Throws Refused."""
+    given = json.dumps({"path": str(path), "expected": asdict(expected)})
+    with open(scratch, "wb") as out:
+        try:
+            ended = subprocess.run([sys.executable, "-P", "-B", "-c", _START, str(Path(__file__).parents[2])], input=given.encode(), stdout=out,
+                                   stderr=subprocess.DEVNULL, timeout=5 * _SECONDS, check=False).returncode
+        except subprocess.TimeoutExpired:
+            ended = 1
+    with open(scratch, "rb") as file:
+        line = file.readline()
+        begin = file.tell()
+    try:
+        head: dict[str, Any] = json.loads(line)
+    except ValueError:
+        raise Refused(f"damaged: the process that reads it sent nothing{', and was ended by a limit or a fault' if ended else ''}") from None
+    if "refused" in head:
+        raise Refused(str(head["refused"]))
+    return _received(head, scratch, begin, expected)
+
+
+def _received(head: dict[str, Any], scratch: Path, begin: int, expected: Expected) -> Submission:
+    """An archive may have taken the process over: what it sent is looked at once more."""
+    items, n = head["maps"], sum(expected.points.values())
+    if sorted(items) != sorted(expected.points) or scratch.stat().st_size != begin + 8 * n:
+        raise Refused("damaged: its maps were not sent whole")
+    values = np.memmap(scratch, np.float64, "r", begin)
+    ends = np.cumsum([0, *(expected.points[item] for item in items)])
+    maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
+    card = texts.read_card(head["card"].encode(), "card.yaml")
+    return Submission(card, str(head["program"]), str(head["results"]), _core.digest(values.tobytes()), maps)

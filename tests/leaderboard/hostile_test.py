@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What strangers may send: a line per case, with what the refusal says. Nothing is written, and the process that reads is bounded."""
+
+import os
+import struct
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+from archives import (
+    CARD, EVIL, EXPECTED, ODD, Record, added, changed, npy, npy_of, npy_with, records_of, saved, sound, with_card, with_field, with_map, zip_of_records,
+)
+
+from salbench.leaderboard import submission
+from salbench.leaderboard.archive import Refused, zip_of
+
+GIGABYTE = 1 << 30
+LIMITED = "unpacks to more than "
+NO_ZIP = "cannot be read as a ZIP archive"
+NO_NPY = "maps/1.npy: not a .npy file that can be read: "
+NO_PART = "is no part of a submission"
+
+
+def zeros(n):
+    """An entry of so many zeros, which take a thousandth of that packed."""
+    return Record("maps/x.npy", bytes(n), deflated=True)
+
+
+def nested(inner):
+    """An entry that holds the whole record of another one, which the directory names too."""
+    outer = Record("maps/x.npy", inner.local())
+    head = zip_of_records(records_of(sound()))
+    begin = head.index(b"PK\1\2") + 30 + len("maps/x.npy")
+    inner.at = begin
+    return zip_of_records([*records_of(sound()), outer, inner])
+
+
+def overlapping():
+    inner = Record("maps/1.npy", sound()["maps/1.npy"])
+    entries = [record for record in records_of(sound()) if record.name != "maps/1.npy"]
+    outer = Record("card.yaml", inner.local())
+    entries[[record.name for record in entries].index("card.yaml")] = outer
+    at = sum(len(record.local()) for record in entries[:entries.index(outer)])
+    inner.at = at + len(outer.local()) - len(inner.local())
+    return zip_of_records([*entries, inner])
+
+
+def zip64(size):
+    """An entry whose real size stands in the extra field, as large as it likes."""
+    return added(Record("maps/x.npy", b"x", size=0xffffffff, packed=0xffffffff, extra=struct.pack("<HHQQ", 1, 16, size, size)))
+
+
+def million():
+    central = Record("a", b"").central(0)
+    return Record("a", b"").local() + central * 1_000_000 + b"PK\5\6" + struct.pack("<4H2IH", 0, 0, 0xffff, 0xffff, len(central) * 1_000_000, 31, 0)
+
+
+def cut(n):
+    return zip_of_records(records_of(sound()))[:n]
+
+
+ALIASES = "a0: &a0 [x, x]\n" + "".join(f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]\n" for i in range(1, 9)) + "name: *a8\n"
+
+# name of the case: how the archive is made, and what is said of it
+ARCHIVES = {
+    "gigabytes of zeros": (lambda: added(zeros(GIGABYTE // 16)), LIMITED),
+    "more than it declares": (lambda: changed("maps/1.npy", content=bytes(GIGABYTE // 16), deflated=True, size=168), "unpacks to more than it declares"),
+    "gigabytes declared": (lambda: added(Record("maps/x.npy", b"x", size=2 * GIGABYTE)), LIMITED),
+    "less than it declares": (lambda: changed("maps/1.npy", size=200), "is cut short: 168 of 200 bytes"),
+    "an archive in an archive": (lambda: with_map(zip_of([("maps/1.npy", b"x")])), NO_NPY),
+    "entries that overlap": (overlapping, "entries overlap"),
+    "entries that share bytes": (lambda: changed("maps/2.npy", at=0), "its header is not what the directory says"),
+    "path traversal": (lambda: added(Record("../evil", b"x")), '"../evil" has a path that leaves the folder'),
+    "traversal further in": (lambda: added(Record("maps/../../evil.npy", b"x")), "has a path that leaves the folder"),
+    "an absolute name": (lambda: added(Record("/etc/passwd", b"x")), "has a path that leaves the folder"),
+    "a name of Windows": (lambda: added(Record("C:\\evil", b"x")), "has a character in its name"),
+    "a line feed in a name": (lambda: added(Record("maps/\n.npy", b"x")), "has a character in its name"),
+    "a NUL in a name": (lambda: added(Record("maps/1.npy\0.exe", b"x")), "has a character in its name"),
+    "an endless name": (lambda: added(Record("maps/" + "x" * 300, b"x")), "has no name of 1 to 255 bytes"),
+    "no name": (lambda: added(Record("", b"x")), "has no name of 1 to 255 bytes"),
+    "a link": (lambda: changed("maps/1.npy", attributes=0o120777), "is a link or a device"),
+    "a device": (lambda: changed("maps/1.npy", attributes=0o020666), "is a link or a device"),
+    "an entry twice": (lambda: added(Record("maps/1.npy", b"x")), '"maps/1.npy" is there twice'),
+    "another case": (lambda: added(Record("Card.yaml", b"x")), NO_PART),
+    "another case of the ending": (lambda: added(Record("maps/1.NPY", b"x")), NO_PART),
+    "another normalisation": (lambda: added(Record(b"maps/e\xcc\x81.npy", b"x")), "there is no such item with ground truth"),
+    "a name that is not UTF-8": (lambda: added(Record(b"maps/\xff.npy", b"x", flags=0)), NO_ZIP),
+    "another checksum": (lambda: changed("maps/1.npy", crc=1), "its checksum is another"),
+    "another name before the content": (lambda: changed("maps/1.npy", local_name=b"maps/9.npy"), "its header is not what the directory says"),
+    "encrypted": (lambda: changed("maps/1.npy", flags=1), "is encrypted"),
+    "an unknown compression": (lambda: changed("maps/1.npy", method=12), "is compressed by method 12"),
+    "a stream that is none": (lambda: changed("maps/1.npy", method=8), "is cut short: 6 of 168 bytes"),
+    "zip64 that lies": (lambda: zip64(1 << 60), LIMITED),
+    "zip64 of nothing": (lambda: zip64(0), "is damaged"),
+    "beyond the end": (lambda: changed("maps/1.npy", at=1 << 30), "is damaged"),
+    "a million entries": (million, "can be read"),
+    "thousands of entries": (lambda: added(*(Record(f"x{i}", b"") for i in range(5000))), "entries, expected at most 8"),
+    "cut": (lambda: cut(1000), NO_ZIP),
+    "empty": (lambda: b"", NO_ZIP),
+    "no archive": (lambda: b"hello" * 100, NO_ZIP),
+    "a megabyte of text": (lambda: b"x" * (1 << 22), "can be read"),
+    "something else": (lambda: added(Record("run.sh", b"rm")), '"run.sh" is no part of a submission'),
+    "no card": (lambda: zip_of([*(row for row in sound().items() if row[0] != "card.yaml")]), "has no card.yaml"),
+    "no map": (lambda: zip_of([*(row for row in sound().items() if row[0] != "maps/2.npy")]), "has no map of 1 of 3 items, such as 2"),
+    "a map of nobody": (lambda: added(Record("maps/77.npy", b"x")), '"maps/77.npy": there is no such item with ground truth'),
+    # .npy
+    "objects": (lambda: with_map(saved(np.array([{}] * 5, dtype=object))), "its type is "),
+    "a pickle": (lambda: with_map(EVIL), NO_NPY),
+    "a pickle behind a header": (lambda: with_map(npy_with(descr="'|O'", body=EVIL)), "its type is "),
+    "two columns": (lambda: with_map(saved(np.asfortranarray(np.zeros((5, 2))))), "expected one value per point"),
+    "a huge shape": (lambda: with_map(npy_with(f"({10 ** 18},)")), "and it holds 40 bytes of values"),
+    "a shape beyond 64 bits": (lambda: with_map(npy_with(f"({10 ** 30},)")), "and it holds 40 bytes of values"),
+    "a negative shape": (lambda: with_map(npy_with("(-5,)")), "expected one value per point"),
+    "no shape": (lambda: with_map(npy_with("()")), "expected one value per point"),
+    "a shape of truth": (lambda: with_map(npy_with("(True, 5)")), "expected one value per point"),
+    "a shape of dimensions": (lambda: with_map(npy_with("(" + "1, " * 1000 + "5)")), NO_NPY),
+    "code in the header": (lambda: with_map(npy("__import__('os').system('touch /tmp/salbench-was-here')")), NO_NPY),
+    "brackets in the header": (lambda: with_map(npy("(" * 20000, version=(2, 0))), NO_NPY),
+    "no header": (lambda: with_map(b"\x93NUMPY\x01\x00\xff\xff"), NO_NPY),
+    "a later version": (lambda: with_map(b"\x93NUMPY\x09\x00" + bytes(100)), NO_NPY),
+    "texts": (lambda: with_map(saved(np.array(["a"] * 5))), "its type is "),
+    "whole numbers": (lambda: with_map(saved(np.arange(5))), "its type is "),
+    "big-endian": (lambda: with_map(saved(np.arange(5, dtype=">f8"))), "its type is "),
+    "bytes behind the values": (lambda: with_map(npy_of(np.zeros(5)) + b"x"), "and it holds 41 bytes of values"),
+    "another number of points": (lambda: with_map(npy_of(np.zeros(6))), "maps/1.npy: 6 values, but the shape has 5 points"),
+    "no number": (lambda: with_map(npy_of(np.full(5, np.nan))), "value 0 (0-based) is nan, expected a finite number"),
+    "infinity": (lambda: with_map(npy_of(np.array([0, np.inf, 0, 0, 0]))), "value 1 (0-based) is inf"),
+    # card
+    "aliases that multiply": (lambda: with_card(ALIASES), "card.yaml:1: an alias"),
+    "an alias of itself": (lambda: with_card("name: &a [*a]\n"), "an alias"),
+    "a tag of Python": (lambda: with_field("url", "!!python/object/apply:os.system [touch /tmp/salbench-was-here]"), "the tag "),
+    "a tag of its own": (lambda: with_field("url", "!x y"), "the tag "),
+    "brackets without end": (lambda: with_card("name: " + "[" * 60000), "card.yaml"),
+    "brackets that end": (lambda: with_card("name: " + "[" * 500 + "]" * 500 + "\n"), "nested too deeply"),
+    "megabytes of text": (lambda: with_card(CARD + "# " + "x" * (1 << 16)), "expected at most 65536"),
+    "a long value": (lambda: with_field("citation", "x" * 2001), "citation has 2001 bytes, expected at most 2000"),
+    "a key twice": (lambda: with_card(CARD + "name: OTHER\n"), '"name" is there twice'),
+    "no YAML": (lambda: with_card("name: [\n"), "card.yaml:2: "),
+    "no mapping": (lambda: with_card("just text\n"), "expected lines such as `name: ...`"),
+    "not UTF-8": (lambda: with_card(b"name: \xff\n"), "is not UTF-8"),
+    "a control character": (lambda: with_field("url", '"a\\n# b"'), "url has a control character"),
+    "a list for a name": (lambda: with_field("name", "[A, B]"), "name is a list"),
+    "a mapping for a name": (lambda: with_field("name", "{A: B}"), "expected text, or a list of texts"),
+    "a name of HTML": (lambda: with_field("name", "<script>alert(1)</script>"), 'name "<script>'),
+    "a name of a path": (lambda: with_field("name", "../index"), "must be 1 to "),
+    "a name of right-to-left": (lambda: with_field("name", "\N{RIGHT-TO-LEFT OVERRIDE}A"), "must be 1 to "),
+    "a name of 300 characters": (lambda: with_field("name", "x" * 300), "must be 1 to "),
+    "the name of people": (lambda: with_field("name", "HS"), "is the name of something else"),
+    "keys missing": (lambda: with_card("name: A\ncitation: x\nlicence: ~\n"), "lacks licence, training_data, test_overlap"),
+    "an unknown key": (lambda: with_card(CARD + "licens: x\n"), "did you mean 'licence'?"),
+    "a date of words": (lambda: with_field("date", "soon"), 'date is "soon"'),
+    "an overlap of words": (lambda: with_field("test_overlap", "13 of 19 items"), "write none, or a list of the items"),
+    "an overlap of others": (lambda: with_field("test_overlap", "[1, 77]"), 'test_overlap has "77", but there is no such item'),
+}
+
+
+class Hostile(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+
+    def read(self, data, name="a.zip"):
+        path = self.folder / name
+        path.write_bytes(data)
+        return submission.read(path, EXPECTED, self.folder / "maps")
+
+    def test_what_strangers_may_send(self):
+        for name, (make, said) in ARCHIVES.items():
+            with self.subTest(name):
+                data = make()
+                begun = time.monotonic()
+                with self.assertRaises(Refused) as refused:
+                    submission._checked(data, EXPECTED) if len(data) < 1 << 20 else self.read(data)
+                self.assertIn(said, str(refused.exception))
+                self.assertEqual(str(refused.exception).count("\n"), 0)
+                self.assertLess(time.monotonic() - begun, 60)
+        self.assertFalse(Path("/tmp/salbench-was-here").exists())
+
+    def test_what_is_odd_and_sound(self):
+        for name, data in {
+            "packed": zip_of_records([Record(name, content, deflated=True) for name, content in sound().items()]),
+            "with folders": zip_of_records([Record("maps/", b"", attributes=0o040755), *records_of(sound())]),
+            "float32": with_map(saved(np.arange(5, dtype="<f4"))),
+            "a column": with_map(saved(np.zeros((5, 1)))),
+            "a row, by columns": with_map(saved(np.asfortranarray(np.zeros((1, 5))))),
+            "an address of a script": with_field("url", "javascript:alert(1)"),
+            "a formula": with_field("citation", "'=HYPERLINK(\"http://evil\")'"),
+            "HTML": with_field("licence", "'<script>alert(1)</script>'"),
+            "an overlap": with_field("test_overlap", f"[1, {ODD}]"),
+        }.items():
+            with self.subTest(name):
+                card, _, _, maps = submission._checked(data, EXPECTED)
+                self.assertEqual({item: len(values) for item, values in maps.items()}, EXPECTED.points)
+        self.assertEqual(card.test_overlap, ("1", ODD))
+
+    def test_damage_at_every_byte_and_length_is_a_refusal_or_no_damage(self):
+        entries = sound()
+        data = zip_of_records([*records_of(entries)])
+        refused = 0
+        for place in range(0, len(data), 3):
+            bad = bytearray(data)
+            bad[place] ^= 0x55
+            try:
+                _, _, _, maps = submission._checked(bytes(bad), EXPECTED)
+                self.assertEqual([list(values) for values in maps.values()], [list(np.arange(n) / n) for n in EXPECTED.points.values()], place)
+            except Refused:
+                refused += 1
+        self.assertGreater(refused, len(data) // 3 // 2)
+        for length in range(0, len(data), 7):
+            with self.assertRaises(Refused):
+                submission._checked(data[:length], EXPECTED)
+
+    def test_the_process_that_reads_sends_what_it_read(self):
+        read = self.read(zip_of(sound().items()))
+        self.assertEqual((read.card.name, read.program, read.results), ("MINE", "", "scores"))
+        self.assertEqual({item: list(values) for item, values in read.maps.items()}, {item: list(np.arange(n) / n) for item, n in EXPECTED.points.items()})
+
+    def test_a_process_that_dies_or_lies_is_a_refusal(self):
+        start = submission._START
+        self.addCleanup(setattr, submission, "_START", start)
+        for program, said in {"import os; os.abort()": "ended by a limit or a fault",
+                              "print('{}'[:1])": "sent nothing",
+                              "x = bytearray(1 << 40)": "ended by a limit or a fault"}.items():
+            submission._START = program
+            with self.subTest(program), self.assertRaises(Refused) as refused:
+                self.read(zip_of(sound().items()))
+            self.assertIn(said, str(refused.exception))
+
+    def test_files_that_are_none(self):
+        os.mkfifo(self.folder / "pipe.zip")
+        (self.folder / "link.zip").symlink_to(self.folder / "nowhere")
+        for name, said in (("pipe.zip", "not a regular file"), ("link.zip", "cannot be read: No such file")):
+            with self.subTest(name), self.assertRaises(Refused) as refused:
+                submission.read(self.folder / name, EXPECTED, self.folder / "maps")
+            self.assertIn(said, str(refused.exception))
+
+
+if __name__ == "__main__":
+    unittest.main()

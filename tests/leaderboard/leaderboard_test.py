@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Submissions and the leaderboard that is made of them: twelve, of which five are bad in different ways, and what else may come."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import toy
+from toy import card, everything
+
+from salbench import _core
+from salbench.leaderboard import folder as sites
+
+NOISES = (0, 0.5, 1, 2, 4, 8, 40)
+
+
+def spoil_last(entries, change):
+    name = list(entries)[-1]
+    entries[name] = change(entries[name])
+
+
+class Board(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.toy = toy.Toy(Path(holder.name))
+        for number, noise in enumerate(NOISES):
+            made = cls.toy.submit(f"G{number}", noise)
+            assert made.returncode == 0, made.stderr
+        cls.good = everything(cls.toy.submissions)
+
+    def setUp(self):
+        """Each test begins with some of the good submissions, and no site."""
+        for folder in (self.toy.submissions, self.toy.site):
+            shutil.rmtree(folder, ignore_errors=True)
+        self.submissions("G0")
+
+    def submissions(self, *names):
+        self.toy.submissions.mkdir(exist_ok=True)
+        for name in names:
+            (self.toy.submissions / f"{name}.zip").write_bytes(self.good[f"{name}.zip"])
+
+    def rank(self, status=0):
+        done = self.toy.rank()
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done
+
+    def test_twelve_submissions_of_which_five_are_bad(self):
+        self.submissions(*(f"G{number}" for number in range(7)))
+        self.toy.spoil("bad_map.zip", lambda entries: spoil_last(entries, lambda data: data[:-8] + b"\xff" * 8))
+        self.toy.spoil("bad_path.zip", lambda entries: entries.update({"../evil": b"x"}))
+        self.toy.spoil("bad_missing.zip", lambda entries: entries.pop("maps/6.npy"))
+        self.toy.with_card("<b>bad_name.zip", card("<script>alert(1)</script>"))
+        (self.toy.submissions / "bad_truncated.zip").write_bytes(self.good["G0.zip"][:len(self.good["G0.zip"]) // 2])
+        first = self.rank(1)
+        self.assertEqual(first.stderr.count("meshes of SHREC'07 are here"), 1, first.stderr)
+        verdicts = self.toy.verdicts()
+        self.assertEqual(len(verdicts), 12)
+        self.assertEqual([verdicts[f"G{number}.zip"] for number in range(7)], ["ranked"] * 7)
+        self.assertRegex(verdicts["bad_map.zip"], "^refused: maps/6.npy: value .* expected a finite number")
+        self.assertIn('"../evil" has a path that leaves the folder', verdicts["bad_path.zip"])
+        self.assertEqual(verdicts["bad_missing.zip"], "refused: has no map of 1 of 6 items, such as 6")
+        self.assertIn('refused: card.yaml: name "<script>', verdicts["<b>bad_name.zip"])
+        self.assertIn("cannot be read as a ZIP archive", verdicts["bad_truncated.zip"])
+        by_auc = [row["model"] for row in self.toy.table("ranking") if row["metric"] == "auc"]
+        self.assertEqual(by_auc, [f"G{number}" for number in range(7)])
+        site = everything(self.toy.site)
+        pages = {name: data.decode() for name, data in site.items() if name.endswith(".html")}
+        for name, text in pages.items():
+            for bad in ("<script>alert", "<b>bad", "<i>A"):
+                self.assertNotIn(bad, text, name)
+        self.assertIn("&lt;b&gt;bad_name.zip", pages["index.html"])
+        self.assertIn("Somebody, &lt;i&gt;A model&lt;/i&gt;, 2026", pages["models/G0.html"])
+        self.assertEqual(sum(name.startswith("models/") for name in pages), 7)
+        refused = pages["index.html"].split("<h2")[2]
+        self.assertEqual((refused.count("<td>refused"), refused.count("G0.zip")), (5, 0))
+        self.assertFalse((self.toy.folder / "evil").exists())
+        self.rank(1)
+        self.assertEqual(everything(self.toy.site), site, "byte for byte")
+        done = self.toy.salbench("evaluate", self.toy.config, "--maps", self.toy.folder / "G3", "--name", "G3", "--out", self.toy.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        of_g3 = [[line for line in text.splitlines() if ",G3," in line]
+                 for text in ((self.toy.folder / "out/results.csv").read_text(), site["data/results.csv"].decode())]
+        self.assertEqual(*of_g3)
+        self.assertEqual(len(of_g3[0]), 6)
+
+    def test_what_else_is_refused_or_remarked(self):
+        for file, text in {"twin.zip": card("G0"), "capitals.zip": card("g0"), "of_the_program.zip": card("LS")}.items():
+            self.toy.with_card(file, text)
+        self.toy.spoil("other_data.zip", lambda entries: entries.update(
+            {"submission.yaml": entries["submission.yaml"].replace(b'\ndata: "', b'\ndata: "0')}))
+        self.toy.spoil("changed_protocol.zip", lambda entries: entries.update({"configuration.yaml": entries["configuration.yaml"] + b" "}))
+
+        def other_protocol(entries):
+            text = entries["configuration.yaml"].replace(b"seed: 2016", b"seed: 2017")
+            before = _core.digest(entries["configuration.yaml"]).encode()
+            entries.update({"configuration.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
+
+        def shorter_protocol(entries):  # what is left out has its default
+            text = entries["configuration.yaml"].replace(b"seed: 2016\n", b"")
+            before = _core.digest(entries["configuration.yaml"]).encode()
+            entries.update({"configuration.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode()),
+                            "card.yaml": card("SHORTER").encode()})
+
+        self.toy.spoil("other_protocol.zip", other_protocol)
+        self.toy.spoil("shorter_protocol.zip", shorter_protocol)
+        self.toy.spoil("map.zip", lambda entries: entries.update({"maps/1.npy": entries["maps/1.npy"][:-8] + bytes(8), "card.yaml": card("MAP").encode()}))
+        self.toy.spoil("scores.zip", lambda entries: entries.update({"results.csv": b"made up", "card.yaml": card("LIAR").encode()}))
+        self.rank(1)
+        verdicts = self.toy.verdicts()
+        self.assertEqual(verdicts.pop("G0.zip"), "ranked")
+        for file, said in {"twin.zip": "the name G0 is taken by G0.zip", "capitals.zip": "differs from it in capitals alone",
+                           "of_the_program.zip": "is the name of something else", "other_data.zip": 'other data: their digest is "0',
+                           "changed_protocol.zip": "is not what submission.yaml has the digest of",
+                           "other_protocol.zip": 'another protocol: it has "seed: 2017", the leaderboard "seed: 2016"'}.items():
+            self.assertIn(said, verdicts[file], file)
+        remarks = {row["model"]: row["remark"] for row in self.toy.table("submissions") if row["status"] == "ranked"}
+        said = "the scores that it came with are others than those computed here"
+        self.assertEqual(remarks, {"G0": "", "LIAR": said, "MAP": said, "SHORTER": said})
+        ranking, refused = self.toy.page().split("<h2")[1:3]
+        self.assertEqual((ranking.count(said), refused.count(said)), (3, 0), "a map that was tampered with has other scores, too")
+
+    def test_a_model_that_has_seen_items_stands_beside(self):
+        self.submissions("G1", "G2")
+        self.toy.with_card("G0.zip", card("SEEN", overlap="[2, 5]"))
+        done = self.rank()
+        self.assertEqual(self.toy.verdicts()["G0.zip"], "beside")
+        self.assertNotIn("SEEN", {row["model"] for name in ("ranking", "leaders", "compact", "history", "significance") for row in self.toy.table(name)
+                                  if "model" in row} | {row.get("leaders") for row in self.toy.table("leaders")})
+        self.assertEqual({row["n"] for row in self.toy.table("ranking")} | {row["n"] for row in self.toy.table("overlap")}, {"4"})
+        self.assertEqual({row["model"] for row in self.toy.table("overlap")}, {"SEEN"})
+        page = self.toy.page()
+        for said in ("are too few to name who leads: at least 6 are needed", "The ranking is over 4 of 6 items", "SEEN 2", "beside: it has seen 2 items"):
+            self.assertIn(said, page)
+        self.assertIn("4 of 6 items", done.stdout)
+        self.assertFalse(any(row["metric"] for row in self.toy.table("leaders")), "too few are left")
+        self.assertNotIn("<strong>", page.split("<tbody>")[1].split("</tbody>")[0])
+
+    def test_a_model_that_has_seen_all(self):
+        self.toy.with_card("all.zip", card("SEEN", overlap="[1, 2, 3, 4, 5, 6]"))
+        self.rank()
+        self.assertIn("No item is left that no model has seen", self.toy.page())
+        self.assertEqual(self.toy.table("ranking"), [])
+
+    def test_what_the_front_page_names(self):
+        self.toy.with_card("later.zip", card("LATER", "2026-03-01", url="https://example.org/model"))
+        self.toy.with_card("formula.zip", card("SUM", url="javascript:alert(1)", citation="'=1+1'"))
+        self.rank()
+        page, record = self.toy.page(), {row["what"]: row["is"] for row in self.toy.table("about")}
+        self.assertEqual(record["Date"], "2026-03-01, of the newest submission")
+        self.assertEqual((record["Unit of inference"], record["Program"], record["Protocol"]), ("mesh", f"salbench {_core.version}", "published"))
+        for text in record.values():
+            self.assertIn(text, page)
+        self.assertIn('<a href="https://example.org/model" rel="nofollow', self.toy.page("models/LATER.html"))
+        self.assertNotIn('href="javascript', self.toy.page("models/SUM.html"))
+        self.assertIn("'=1+1", {row["citation"] for row in self.toy.table("submissions")})
+        self.assertIn("=1+1", self.toy.page("models/SUM.html"))
+
+    def test_two_makers_of_one_site(self):
+        self.submissions("G1")
+        self.rank()
+        reference = everything(self.toy.site)
+        shutil.rmtree(self.toy.site)
+        line = [toy.PROGRAM, "leaderboard", self.toy.submissions, "--to", self.toy.site, "-c", self.toy.config, "--data", self.toy.data,
+                "--cache", self.toy.folder / "cache", "--threads", "1", "--quiet"]
+        makers = [subprocess.Popen(line, stderr=subprocess.PIPE) for _ in range(2)]
+        self.assertEqual([(maker.communicate()[1], maker.returncode)[1] for maker in makers], [0, 0])
+        self.assertEqual(everything(self.toy.site), reference)
+
+    def test_a_maker_killed_at_any_rename_is_finished_by_the_next(self):
+        made, site = self.toy.folder / "made", self.toy.folder / "killed"
+        for name in (sites.OURS, "data/ranking.csv", "index.html", "models/A.html", "static/report.css"):
+            (made / name).parent.mkdir(parents=True, exist_ok=True)
+            (made / name).write_text(f"salbench report {name}")
+        self.addCleanup(shutil.rmtree, made)
+        for at in range(10):
+            for before in (None, "older"):
+                shutil.rmtree(site, ignore_errors=True)
+                if before:
+                    sites.publish(made, site)
+                    (site / "index.html").write_text(before)
+                    (site / "models/GONE.html").write_text("salbench report")
+                child = os.fork()
+                if child == 0:
+                    self.end_at(at, made, site)
+                os.waitpid(child, 0)
+                sites.require_own(site)
+                sites.publish(made, site)
+                self.assertEqual(everything(site), everything(made), (at, before))
+        shutil.rmtree(site)
+
+    @staticmethod
+    def end_at(at, made, site):
+        """Publishes, and ends this process before the so many-th rename or removal, or behind a copy."""
+        steps = iter(range(100))
+
+        def counted(function):
+            def call(*arguments, **others):
+                if next(steps) == at:
+                    os._exit(0)
+                return function(*arguments, **others)
+            return call
+
+        os.replace, os.unlink, shutil.copyfile = map(counted, (os.replace, os.unlink, shutil.copyfile))
+        sites.publish(made, site)
+        os._exit(0)
+
+    def test_folders_that_will_not_do(self):
+        def refusal(change):
+            change()
+            done = self.toy.rank()
+            self.assertEqual(done.returncode, 2, done.stderr)
+            return done.stderr
+
+        elsewhere = self.toy.folder / "elsewhere"
+        elsewhere.mkdir()
+        self.assertIn("is a link", refusal(lambda: self.toy.site.symlink_to(elsewhere)))
+        self.toy.site.unlink()
+        self.toy.site.mkdir()
+        self.assertIn("is a link", refusal(lambda: (self.toy.site / "data").symlink_to(elsewhere)))
+        (self.toy.site / "data").unlink()
+        self.assertIn("holds something else than a leaderboard", refusal(lambda: (self.toy.site / "thesis.txt").write_text("years of work")))
+        self.assertEqual([*everything(self.toy.site), *everything(elsewhere)], ["thesis.txt"])
+        shutil.rmtree(self.toy.site)
+        self.assertIn("not a folder", refusal(lambda: self.toy.site.write_text("x")))
+        self.toy.site.unlink()
+        self.assertIn("has no submission", refusal(lambda: (self.toy.submissions / "G0.zip").unlink()))
+        elsewhere.rmdir()
+
+    def test_what_others_put_into_a_site_stays(self):
+        self.rank()
+        (self.toy.site / "CNAME").write_text("example.org")
+        self.submissions("G1")
+        (self.toy.submissions / "G0.zip").unlink()
+        self.rank()
+        self.assertEqual((self.toy.site / "CNAME").read_text(), "example.org")
+        self.assertEqual([path.name for path in (self.toy.site / "models").iterdir()], ["G1.html"])
+
+    def test_submit_says_what_is_missing_and_writes_nothing(self):
+        mine = self.toy.maps("M", 1)
+
+        def submitted():
+            return self.toy.salbench("submit", mine, "--to", self.toy.submissions / "M.zip", "-c", self.toy.config)
+
+        (mine / "3.val").unlink()
+        done = submitted()
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("3.val: missing", done.stderr)
+        self.toy.maps("M", 1)
+        (mine / "card.yaml").write_text("name: M\n")
+        done = submitted()
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("card.yaml: lacks citation, licence, training_data, test_overlap", done.stderr)
+        (mine / "card.yaml").write_text(card("M", overlap="none that we know of"))
+        self.assertIn("write none, or a list of the items", submitted().stderr)
+        self.assertFalse((self.toy.submissions / "M.zip").exists())
+        self.toy.maps("M", 1)
+        self.assertEqual(submitted().returncode, 0)
+        data = (self.toy.submissions / "M.zip").read_bytes()
+        self.assertEqual(submitted().returncode, 0)
+        self.assertEqual((self.toy.submissions / "M.zip").read_bytes(), data)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pages of a leaderboard in a browser: with names that break pages, on a narrow screen, and for people who cannot see them."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import toy
+
+from tests.report import browser
+
+NAMES = ("<img src=x onerror=alert(1)>", "\N{GRINNING FACE}" * 30, "\N{RIGHT-TO-LEFT OVERRIDE}gpj.zip", "=1+1", "x" * 250)
+LONG = "W" * 40  # a name of a model
+
+# Elements that reach beyond the screen, but for those within something that scrolls.
+CUT = """
+return Array.from(document.querySelectorAll("body *")).filter((element) => {
+  if (!element.checkVisibility() || element.closest(".unseen, .skip")) return false;
+  for (let above = element.parentElement; above; above = above.parentElement)
+    if (["auto", "scroll"].includes(getComputedStyle(above).overflowX)) return false;
+  const box = element.getBoundingClientRect();
+  return box.right > 401 || box.left < -1;
+}).map((element) => element.tagName + " " + element.textContent.slice(0, 40));
+"""
+
+
+@browser.needs_browser
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        made = toy.Toy(Path(holder.name))
+        assert made.submit("G0", 0.5).returncode == 0
+        made.with_card(f"{NAMES[0]}.zip".replace("/", ""), toy.card("SEEN", overlap="[1, 2]", url="javascript:alert(1)"))
+        made.with_card("long.zip", toy.card(LONG, citation='"' + "W" * 1900 + '"', licence='"\N{RIGHT-TO-LEFT OVERRIDE}txet"'))
+        for name in NAMES[1:]:
+            (made.submissions / f"{name}.zip").write_bytes(b"no archive")
+        done = made.rank()
+        assert done.returncode == 1, done.stderr
+        cls.site = made.site
+        cls.pages = [*sorted(cls.site.glob("*.html")), *sorted(cls.site.glob("models/*.html"))]
+        cls.folder = Path(holder.name)
+        cls.browser = browser.start()
+        cls.addClassCleanup(cls.browser.quit)
+
+    def test_nothing_is_cut_at_400_pixels(self):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True})
+        self.addCleanup(self.browser.execute_cdp_cmd, "Emulation.clearDeviceMetricsOverride", {})
+        self.assertGreaterEqual(len(self.pages), 8)
+        for page in self.pages:
+            with self.subTest(page.name):
+                self.browser.get(page.as_uri())
+                self.browser.execute_script("document.querySelectorAll('details').forEach((one) => { one.open = true; });")
+                self.assertEqual(self.browser.execute_script(CUT), [])
+                self.assertLessEqual(self.browser.execute_script("return document.documentElement.scrollWidth"), 400)
+
+    def test_names_are_text(self):
+        self.browser.get((self.site / "submissions.html").as_uri())
+        text = self.browser.find_element("tag name", "body").text
+        for name in NAMES[:2]:
+            self.assertIn(name, text)
+        for page in self.pages:
+            self.browser.get(page.as_uri())
+            self.assertEqual(self.browser.execute_script("return document.querySelectorAll('img, a[href^=javascript]').length"), 0, page.name)
+            self.assertEqual(browser.console_errors(self.browser), [], page.name)
+
+    def test_no_serious_finding(self):
+        script = browser.axe(self.folder)
+        for page in self.pages:
+            for scheme, found in browser.findings(self.browser, script, page):
+                self.assertEqual(found, [], (page.name, scheme))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A small data set in the Schelling study's form, maps that predict it well or badly, and the program over them."""
+
+import csv
+import os
+import random
+import subprocess
+from pathlib import Path
+
+from salbench.leaderboard.archive import Limits, read_zip, zip_of
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ["SALBENCH_PROGRAM"]
+ANYTHING = Limits(100, 1 << 24)
+
+
+def card(name, date="2026-01-01", overlap="none", **others):
+    fields = {"name": name, "citation": "Somebody, <i>A model</i>, 2026", "licence": "GPL", "training_data": "none", "test_overlap": overlap,
+              "date": date, **others}
+    return "".join(f"{key}: {value}\n" for key, value in fields.items())
+
+
+class Toy:
+    def __init__(self, folder, meshes=6):
+        self.folder, self.meshes = folder, range(1, meshes + 1)
+        self.submissions, self.site, self.data = folder / "submissions", folder / "site", folder / "data set"
+        self.submissions.mkdir()
+        subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", self.data / "Meshes", str(meshes), "16", "8"], check=True)
+        self.config = folder / "toy.yaml"
+        self.config.write_text("dataset: {scans: false}\nmodels: {RS: }\n")
+        self.truth = {}
+        numbers = random.Random(1)
+        for part in ("Distributions", "RawData"):
+            (self.data / part).mkdir()
+        for mesh in self.meshes:
+            n = int((self.data / f"Meshes/{mesh}.off").read_text().split()[1])
+            self.truth[mesh] = [numbers.random() ** 4 for _ in range(n)]
+            (self.data / f"Distributions/{mesh}.val").write_text("".join(f"{value}\n" for value in self.truth[mesh]))
+            for participant in range(3):
+                picks = numbers.choices(range(n), weights=self.truth[mesh], k=5)
+                (self.data / f"RawData/{mesh}_{participant}.pid").write_text("".join(f"{pick}\n" for pick in picks))
+
+    def salbench(self, command, *words, **others):
+        line = [PROGRAM, command, *words, "--data", self.data, "--cache", self.folder / "cache", "--threads", "2"]
+        return subprocess.run(line, capture_output=True, text=True, **others)
+
+    def maps(self, name, noise):
+        """Ground truth with more or less noise: the more, the worse the model."""
+        numbers = random.Random(2)
+        folder = self.folder / name
+        folder.mkdir(exist_ok=True)
+        for mesh in self.meshes:
+            (folder / f"{mesh}.val").write_text("".join(f"{value + noise * numbers.random()}\n" for value in self.truth[mesh]))
+        (folder / "card.yaml").write_text(card(name))
+        return folder
+
+    def submit(self, name, noise):
+        return self.salbench("submit", self.maps(name, noise), "--to", self.submissions / f"{name}.zip", "-c", self.config)
+
+    def spoil(self, file, change, of="G0"):
+        """A copy of a good submission with other entries."""
+        entries = read_zip((self.submissions / f"{of}.zip").read_bytes(), ANYTHING)
+        change(entries)
+        (self.submissions / file).write_bytes(zip_of(entries.items()))
+
+    def with_card(self, file, text, of="G0"):
+        self.spoil(file, lambda entries: entries.update({"card.yaml": text.encode()}), of)
+
+    def rank(self, *words, site=None):
+        return self.salbench("leaderboard", self.submissions, "--to", site or self.site, "-c", self.config, *words)
+
+    def table(self, name):
+        with open(self.site / f"data/{name}.csv", encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+    def verdicts(self):
+        """Status and reason of each file."""
+        return {row["file"]: row["status"] + (f": {row['reason']}" if row["reason"] else "") for row in self.table("submissions")}
+
+    def page(self, name="index.html"):
+        return (self.site / name).read_text(encoding="utf-8")
+
+
+def everything(site):
+    return {str(path.relative_to(site)): path.read_bytes() for path in sorted(site.rglob("*")) if path.is_file()}
