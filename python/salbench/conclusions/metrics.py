@@ -10,6 +10,7 @@ _SHARE, _CORRELATION, _DIVERGENCE = (0.0, 1.0), (-1.0, 1.0), (0.0, math.inf)
 _RANGES = {"auc": _SHARE, "cc": _CORRELATION, "lcc": _SHARE, "spearman": _CORRELATION, "kl": _DIVERGENCE, "sim": _SHARE, "mse": _SHARE,
            "mae": _SHARE, "sauc": _SHARE, "cosine": _CORRELATION, "fne": _SHARE, "fpe": _SHARE, "wme": _SHARE, "precision": _SHARE,
            "recall": _SHARE}
+_CHANCE = {"auc": .5, "sauc": .5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}  # by maps that know nothing; of others RS alone knows
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,7 @@ class Metric:
     higher_is_better: bool = True
     low: float = -math.inf
     high: float = math.inf
+    chance: float = math.nan  # the mean score of maps that know nothing; NaN: not known
 
 
 def of_program() -> dict[str, Metric]:
@@ -28,6 +30,6 @@ def of_program() -> dict[str, Metric]:
 
     metrics = {}
     for name, _, _, higher_is_better in _core.metric_rows():
-        low, high = _RANGES.get(name.split("_")[0], (-math.inf, math.inf))
-        metrics[name] = Metric(name, higher_is_better, low, high)
+        kind = name.split("_")[0]
+        metrics[name] = Metric(name, higher_is_better, *_RANGES.get(kind, (-math.inf, math.inf)), _CHANCE.get(kind, math.nan))
     return metrics

@@ -11,9 +11,12 @@ import pandas
 
 from salbench.conclusions.csv_file import InputError, Table, read_csv
 from salbench.conclusions.metrics import Metric, of_program
-from salbench.conclusions.units import DATASETS, TEXTS, Floats, Scores
+from salbench.conclusions.units import DATASETS, REFERENCES, TEXTS, Floats, Scores
 
 _BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
+_ROUNDING = 1e-9  # beyond the range of a metric
+_SMALLEST, _LARGEST = 1e-100, 1e100  # of the largest score of a metric
+_CAUSE = "is it in percent, or another metric of that name?"
 
 
 @dataclass(frozen=True)
@@ -25,8 +28,13 @@ class ScoreFile:
 
 def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> list[Metric]:
     """The program's metrics, and columns that are named by their direction."""
-    named = [*(Metric(name, True) for name in higher), *(Metric(name, False) for name in lower)]
-    return [*of_program().values(), *named]
+    metrics = of_program()
+    for name, higher_is_better in (*((name, True) for name in higher), *((name, False) for name in lower)):
+        if metrics.setdefault(name, Metric(name, higher_is_better)).higher_is_better != higher_is_better:
+            known = "both higher and lower values" if name not in of_program() else f"{'lower' if higher_is_better else 'higher'} values"
+            raise InputError(f"{'--higher' if higher_is_better else '--lower'} {name}: {known} of it would be better; name it once, or not at all "
+                             "if it is a metric of the program")
+    return list(metrics.values())
 
 
 def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower: Sequence[str] = (),
@@ -43,6 +51,7 @@ def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower:
         if name not in table.columns:
             raise InputError(f"{table.name}: no column '{name}'")
     found = scores_from(table, metrics, {} if classes is None else read_classes(classes))
+    check(table, found)
     return ScoreFile(found, _notes(table, found.metrics), table.remarks)
 
 
@@ -112,6 +121,50 @@ def _check_rows(table: Table, frame: pandas.DataFrame) -> None:
         if unknown[row]:
             table.fail(row, f"data set '{dataset}', expected one of {', '.join(DATASETS)}")
         table.fail(row, f"a second row of item '{item}'{', view ' + view if view else ''}, model '{model}'")
+
+
+def check(table: Table, scores: Scores) -> None:
+    """Throws InputError with the line of what somebody's table has by mistake, and what would make all others of its rows say nothing."""
+    frame = scores.frame
+    for name in TEXTS:
+        for row in np.flatnonzero(frame[name].str.contains(r"[\x00-\x1f\x7f]" if name != "model" else r"[\x00-\x1f\x7f,]"))[:1]:
+            table.fail(row, f"{name} {frame[name][row]!r} has a comma, a line break or another control character: lists of names could not be read")
+    for name in ("item", "model"):
+        for row in np.flatnonzero(frame[name] == "")[:1]:
+            table.fail(row, f"the row names no {name}")
+        spelled: dict[str, str] = {}
+        for row in np.flatnonzero(~frame.duplicated(name)):
+            own = frame[name][row]
+            other = spelled.setdefault(own.strip().lstrip("0") or "0", own)
+            if other != own:
+                table.fail(row, f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same")
+    of_class = frame[frame["class"] != ""].drop_duplicates(["item", "class"])
+    for row in of_class.index[of_class.duplicated("item")][:1]:
+        first = of_class.loc[of_class["item"] == frame["item"][row], "class"].iloc[0]
+        table.fail(row, f"item '{frame['item'][row]}' is of class '{frame['class'][row]}' here, and of class '{first}' above: an item has one")
+    for metric in scores.metrics:
+        _check_values(table, frame[metric.name], metric)
+        _check_coverage(table, frame, metric)
+
+
+def _check_values(table: Table, values: pandas.Series, metric: Metric) -> None:
+    beyond = (values < metric.low - _ROUNDING) | (values > metric.high + _ROUNDING)
+    for row in np.flatnonzero(beyond)[:1]:
+        table.fail(row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: {_CAUSE}")
+    largest = values.abs().max()
+    if largest > 0 and not _SMALLEST < largest < _LARGEST:
+        table.fail(int(values.abs().argmax()), f"{metric.name} is {values[values.abs().argmax()]:g}, the largest of all: squares of such numbers "
+                   "cannot be computed; give the scores in another unit")
+
+
+def _check_coverage(table: Table, frame: pandas.DataFrame, metric: Metric) -> None:
+    """A model with scores on fewer than half of the shapes of a data set and split, which would reduce the others to these."""
+    known = frame[frame[metric.name].notna() & ~frame["model"].isin(REFERENCES)]
+    for (dataset, _), part in known.groupby(["dataset", "split"], sort=False):
+        shapes, of_model = len(part.drop_duplicates(["item", "view"])), part.groupby("model", sort=False).size()
+        for model in of_model.index[2 * of_model < shapes][:1]:
+            table.fail(part.index[part["model"] == model][0], f"model '{model}' has {metric.name} on {of_model[model]} of {shapes} {dataset}, and "
+                       "models are compared on the shapes that all have: complete its rows, or take them out")
 
 
 def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
