@@ -72,7 +72,7 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
         return leader
     # How far the best is ahead of the next one, and the half of the interval that ranks are made of.
     ahead = summarise((1.0 if metric.higher_is_better else -1) * (scores.values[:, order[:1]] - scores.values[:, order[1:2]]))
-    half = float(ranking.bound * ahead.sd[0] / np.sqrt(scores.n))
+    half = float(ranking.bound * ahead.sd[0] / np.sqrt(scores.n)) if ahead.sd[0] > 0 else np.nan  # none of width 0
     leader.second, leader.lead = names[order[1]], float(ahead.mean[0])
     leader.lead_interval = leader.lead - half, leader.lead + half
     first = [column for column in order if ranking.low[column] == 1]

@@ -49,7 +49,7 @@ def rank_models(values: Floats, flipped: Floats, resampled: Floats, higher_is_be
     order = np.argsort(-sign * mean, kind="stable")
     if n < FEWEST:
         return Ranking(mean, order, unknown, unknown, unknown, unknown, [""] * k, np.zeros((k, k), dtype=bool), np.nan)
-    better, bound = _better(on_grid(values), sign * flipped)
+    better, bound = differing(on_grid(values), sign * flipped)
     return Ranking(mean, order, ranks(mean, higher_is_better), 1.0 + better.sum(axis=0), k - better.sum(axis=1).astype(float),
                    first_shares(sign * resampled), compact_letters(better | better.T, order), better, bound)
 
@@ -60,7 +60,7 @@ def ranks(mean: Floats, higher_is_better: bool) -> Floats:
     return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < 0).sum(axis=1))
 
 
-def _better(values: Floats, flipped: Floats) -> tuple[NDArray[np.bool_], float]:
+def differing(values: Floats, flipped: Floats) -> tuple[NDArray[np.bool_], float]:
     """[a, b]: higher values of a are no chance; and the standard errors that this takes. Draws are compared by the squares of the mean over
     those of the values, q, of which (n - 1) q / (1 - q) is t squared."""
     n, k = values.shape
@@ -70,7 +70,7 @@ def _better(values: Floats, flipped: Floats) -> tuple[NDArray[np.bool_], float]:
         weights = np.where(squares > 0, 1 / (n * squares), 0)  # pairs that are equal on every unit never differ
     seen = (sums[:, [0]] - sums[:, 0]) ** 2 * weights  # the first draw is the sample
     compared = np.triu(squares > 0, 1)
-    bound = np.nan
+    bound = np.float64(np.nan)
     while compared.any():
         bound = _quantile(sums, weights, compared)
         differ = compared & (seen > bound * (1 + _ROUNDING))
@@ -78,7 +78,7 @@ def _better(values: Floats, flipped: Floats) -> tuple[NDArray[np.bool_], float]:
         if not differ.any():
             break
     better = (seen > bound * (1 + _ROUNDING)) & (sums[:, [0]] > sums[:, 0])
-    return better, float(np.sqrt((n - 1) * bound / (1 - bound)))
+    return better, float(np.sqrt((n - 1) * bound / (1 - bound))) if bound < 1 else np.inf
 
 
 def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> np.float64:

@@ -2,6 +2,7 @@
 """Scores per shape from a table of anybody's: results.csv of a run, or what others have published."""
 
 import os
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,7 +17,7 @@ from salbench.conclusions.units import DATASETS, REFERENCES, TEXTS, Floats, Scor
 _BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
 _ROUNDING = 1e-9  # beyond the range of a metric
 _SMALLEST, _LARGEST = 1e-100, 1e100  # of the largest score of a metric
-_CAUSE = "is it in percent, or another metric of that name?"
+_UNREADABLE = re.compile(r"[\x00-\x1f\x7f]")
 
 
 @dataclass(frozen=True)
@@ -127,44 +128,54 @@ def check(table: Table, scores: Scores) -> None:
     """Throws InputError with the line of what somebody's table has by mistake, and what would make all others of its rows say nothing."""
     frame = scores.frame
     for name in TEXTS:
-        for row in np.flatnonzero(frame[name].str.contains(r"[\x00-\x1f\x7f]" if name != "model" else r"[\x00-\x1f\x7f,]"))[:1]:
-            table.fail(row, f"{name} {frame[name][row]!r} has a comma, a line break or another control character: lists of names could not be read")
-    for name in ("item", "model"):
-        for row in np.flatnonzero(frame[name] == "")[:1]:
-            table.fail(row, f"the row names no {name}")
         spelled: dict[str, str] = {}
         for row in np.flatnonzero(~frame.duplicated(name)):
             own = frame[name][row]
-            other = spelled.setdefault(own.strip().lstrip("0") or "0", own)
-            if other != own:
+            if _UNREADABLE.search(own) or (name == "model" and "," in own):
+                table.fail(row, f"{name} {own!r} has a {'comma, a ' if name == 'model' else ''}line break or another control character: lists of "
+                           "names could not be read")
+            if name not in ("item", "model"):
+                continue
+            if not own:
+                table.fail(row, f"the row names no {name}")
+            if (other := spelled.setdefault(own.strip().lstrip("0") or "0", own)) != own:
                 table.fail(row, f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same")
     of_class = frame[frame["class"] != ""].drop_duplicates(["item", "class"])
     for row in of_class.index[of_class.duplicated("item")][:1]:
         first = of_class.loc[of_class["item"] == frame["item"][row], "class"].iloc[0]
         table.fail(row, f"item '{frame['item'][row]}' is of class '{frame['class'][row]}' here, and of class '{first}' above: an item has one")
     for metric in scores.metrics:
-        _check_values(table, frame[metric.name], metric)
-        _check_coverage(table, frame, metric)
+        _check_values(table, frame[metric.name].to_numpy(), metric)
+    _check_coverage(table, frame, scores.metrics)
 
 
-def _check_values(table: Table, values: pandas.Series, metric: Metric) -> None:
-    beyond = (values < metric.low - _ROUNDING) | (values > metric.high + _ROUNDING)
-    for row in np.flatnonzero(beyond)[:1]:
-        table.fail(row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: {_CAUSE}")
-    largest = values.abs().max()
-    if largest > 0 and not _SMALLEST < largest < _LARGEST:
-        table.fail(int(values.abs().argmax()), f"{metric.name} is {values[values.abs().argmax()]:g}, the largest of all: squares of such numbers "
-                   "cannot be computed; give the scores in another unit")
+def _check_values(table: Table, values: Floats, metric: Metric) -> None:
+    for row in np.flatnonzero((values < metric.low - _ROUNDING) | (values > metric.high + _ROUNDING))[:1]:
+        table.fail(row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: is it in percent, or another metric of "
+                   "that name?")
+    largest = int(np.argmax(np.abs(np.nan_to_num(values)))) if len(values) else 0
+    if len(values) and values[largest] != 0 and not _SMALLEST < np.abs(values[largest]) < _LARGEST:
+        table.fail(largest, f"{metric.name} is {values[largest]:g}, the largest of all: squares of such numbers cannot be computed; give the scores "
+                   "in another unit")
 
 
-def _check_coverage(table: Table, frame: pandas.DataFrame, metric: Metric) -> None:
-    """A model with scores on fewer than half of the shapes of a data set and split, which would reduce the others to these."""
-    known = frame[frame[metric.name].notna() & ~frame["model"].isin(REFERENCES)]
-    for (dataset, _), part in known.groupby(["dataset", "split"], sort=False):
-        shapes, of_model = len(part.drop_duplicates(["item", "view"])), part.groupby("model", sort=False).size()
-        for model in of_model.index[2 * of_model < shapes][:1]:
-            table.fail(part.index[part["model"] == model][0], f"model '{model}' has {metric.name} on {of_model[model]} of {shapes} {dataset}, and "
-                       "models are compared on the shapes that all have: complete its rows, or take them out")
+def _check_coverage(table: Table, frame: pandas.DataFrame, metrics: Iterable[Metric]) -> None:
+    """A model with scores on fewer than half of the shapes of a data set and split would reduce the others to these."""
+    models, names = pandas.factorize(frame["model"])
+    parts, _ = pandas.factorize(frame["dataset"] + "\n" + frame["split"])
+    shapes, _ = pandas.factorize(frame["item"] + "\n" + frame["view"] + "\n" + frame["dataset"] + "\n" + frame["split"])
+    part_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
+    part_of_shape[shapes] = parts
+    competes = ~frame["model"].isin(REFERENCES).to_numpy()
+    for metric in metrics:
+        known = competes & frame[metric.name].notna().to_numpy()
+        n = np.bincount(part_of_shape[np.unique(shapes[known])], minlength=len(parts))
+        of_model = np.bincount(parts[known] * len(names) + models[known], minlength=1)
+        for cell in np.flatnonzero((of_model > 0) & (2 * of_model < n[np.arange(len(of_model)) // len(names)]))[:1]:
+            part, model = divmod(int(cell), len(names))
+            row = int(np.flatnonzero((parts == part) & (models == model))[0])
+            table.fail(row, f"model '{names[model]}' has {metric.name} on {of_model[cell]} of {n[part]} {frame['dataset'][row]}, and models are compared "
+                       "on the shapes that all have: complete its rows, or take them out")
 
 
 def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:

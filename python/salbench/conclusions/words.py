@@ -12,6 +12,7 @@ _PAPERS = ("auc", "nss", "lcc")
 _LEADING = 3  # metrics that a sentence speaks of
 _NAMED = 4  # models that a sentence lists
 _SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "mse", "mae", "sauc")  # written as "AUC"
+_OWN = ("by ", "one ", "no ")  # words that a clause of ours begins with; models keep their spelling
 _SHAPES = {"meshes": ("mesh", "meshes"), "scans": ("scan", "scans"), "clouds": ("point cloud", "point clouds")}
 
 
@@ -57,19 +58,20 @@ def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> 
         return f"On {_spoken(dataset)}{of_split}, no model has scores but references."
     shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
     figures = [_figures(leader, place == 0, "" if over == shapes[0] else f", on {over}") for place, (leader, over) in enumerate(zip(leaders, shapes))]
-    said = f"On {shapes[0]}{of_split}, {'; '.join(_clause(*alike) for alike in _alike(leaders, figures))}."
+    said = f"On {shapes[0]}{of_split}, {_clauses(leaders, figures)}."
     return " ".join(filter(None, (said, _at_chance(leaders), _of_new_classes(leaders))))
 
 
-def _alike(leaders: Sequence[Leader], figures: Sequence[str]) -> list[tuple[Leader, list[str], list[str]]]:
-    """Metrics by what they say: one of them, their names, and these with figures."""
-    found: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
+def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
+    """Each in a sentence; what metrics say alike in one."""
+    alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
     for leader, text in zip(leaders, figures):
         key = leader.verdict, *map(frozenset, (leader.models, leader.near, leader.behind))
-        _, labels, metrics = found.setdefault(key, (leader, [], []))
+        _, labels, metrics = alike.setdefault(key, (leader, [], []))
         labels.append(_label(leader.metric.name))
         metrics.append(f"{labels[-1]} ({text})" if text else labels[-1])
-    return list(found.values())
+    first, *others = [_clause(*of) for of in alike.values()]
+    return ". ".join([first, *(f"{text[0].upper()}{text[1:]}" if text.startswith(_OWN) else text for text in others)])
 
 
 def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
@@ -122,7 +124,7 @@ def _of_new_classes(leaders: Sequence[Leader]) -> str:
     leading = [of for of in found if of.verdict == "leads"]
     if {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *of.models) for of in leading}:
         return f"New classes: {_listed([_label(of.metric.name) for of in leading])} only."
-    return f"New classes: {'; '.join(_clause(*alike) for alike in _alike(found, [''] * len(found)))}."
+    return f"New classes: {_clauses(found, [''] * len(found))}."
 
 
 def _figures(leader: Leader, explained: bool, over: str) -> str:
