@@ -78,7 +78,16 @@ def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.S
     if unit is not None and unit not in UNITS:
         raise InputError(f"--unit {unit}: must be one of {', '.join(UNITS)}")
     path = Path(scores)
-    return folders.read_run(path, unit) if (path / "run.yaml").is_file() else folders.read_table(path, unit, **columns)
+    source = folders.read_run(path, unit) if (path / "run.yaml").is_file() else folders.read_table(path, unit, **columns)
+    check_unit(source.study)
+    return source
+
+
+def check_unit(study: Study) -> None:
+    """Throws InputError where nothing would be one observation."""
+    classes = study.scores.frame["class"]
+    if study.unit == "class" and len(classes) and not (classes != "").any():
+        raise InputError("unit class: no item has a class; name them in a column `class`, or with --classes, or take the unit mesh")
 
 
 def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
