@@ -155,7 +155,7 @@ class Dataset:
         """The first items; reads no file."""
         shown = 10
         first = [self._items[number] for number in self._order[:shown]]
-        cells = [map(html.escape, (item.name, item.category, item.split)) for item in first]
+        cells = [[html.escape(text) for text in (item.name, item.category, item.split)] for item in first]
         rows = "".join(f"<tr><td>{'</td><td>'.join(row)}</td></tr>" for row in cells)
         more = f"<p>and {len(self) - shown} more</p>" if len(self) > shown else ""
         return (f"<p>{html.escape(repr(self))}</p><table><thead><tr><th>item</th><th>class</th><th>split</th></tr></thead>"

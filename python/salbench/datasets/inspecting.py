@@ -17,7 +17,7 @@ from salbench import _core
 from salbench.datasets import described, sets
 from salbench.datasets._layout import number_text
 from salbench.datasets._patterns import natural_order
-from salbench.datasets._sizes import MOST
+from salbench.datasets._sizes import odd_sizes
 from salbench.datasets._workers import ask_all
 from salbench.datasets.records import Item, Listing
 
@@ -73,13 +73,10 @@ def _of_listing(item: Item) -> Facts:
 
 def _odd_sizes(items: list[Facts]) -> list[str]:
     """A unit that no description names may be mixed all the same. Of the views of a shape the first tells."""
-    usual = float(np.median([facts["diagonal"] for facts in items if facts["diagonal"] > 0] or [0.0]))
     lines: dict[str, str] = {}
-    for facts in items:
-        shape, diagonal = facts["shape"], facts["diagonal"]
-        if diagonal > 0 and not usual / MOST <= diagonal <= usual * MOST:
-            lines.setdefault(shape, f"{shape}: its diagonal, {diagonal:.4g}, is {diagonal / usual:.3g} times the median of the data set, "
-                             f"{usual:.4g}: if it is in another unit, scale it; `units:` in a description makes it fail")
+    for facts, odd in zip(items, odd_sizes([facts["diagonal"] for facts in items])):
+        if odd:
+            lines.setdefault(facts["shape"], f"{facts['shape']}: {odd}: if it is in another unit, scale it; `units:` in a description makes it fail")
     return list(lines.values())
 
 

@@ -36,7 +36,7 @@ def read(path: str) -> Form:
     """The shape in a file, whoever wrote it."""
     data = read_file(path)
     fields = _core.read_one_form(data, os.fsencode(path))
-    return _form(fields) if fields is not None else read_foreign(path, data)
+    return form_of_fields(fields) if fields is not None else read_foreign(path, data)
 
 
 def read_foreign(path: str, data: bytes | None = None) -> Form:
@@ -54,7 +54,7 @@ def read_foreign(path: str, data: bytes | None = None) -> Form:
     arrays |= {name: file.read(name) for name in (group + part for group in groups for part in _OF_TRUTH) if file.has(name)}
     if version == 1 and (split := file.attribute("polygons_split")):
         arrays["shape/polygons"] = np.array([split, file.attribute("polygons_concave") or 0], np.int64)
-    return _form(_core.form_of_arrays(arrays, os.fsencode(path)))
+    return form_of_fields(_core.form_of_arrays(arrays, os.fsencode(path)))
 
 
 def image(form: Form) -> bytes:
@@ -188,5 +188,8 @@ def is_name(word: str) -> bool:
     return word not in ("", ".", "..") and not {"/", "\0"} & set(word)
 
 
-def _form(fields: Mapping[str, Any]) -> Form:
-    return Form(**{**fields, "truths": tuple(Truth(**truth) for truth in fields["truths"])})
+def form_of_fields(fields: Mapping[str, Any]) -> Form:
+    """What the compiled part has read."""
+    form = Form(**fields)
+    form.truths = tuple(Truth(**truth) for truth in fields["truths"])
+    return form

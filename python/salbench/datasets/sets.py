@@ -13,8 +13,8 @@ from salbench.datasets import ARCHIVES, NATIVE, find, is_description, one_form
 from salbench.datasets import read as read_archive
 from salbench.datasets._files import read_file
 from salbench.datasets._section import did_you_mean
-from salbench.datasets._twins import TWINS
-from salbench.datasets.records import Form, InputError, Item, Listing, Truth
+from salbench.datasets._twins import TWINS as TWINS
+from salbench.datasets.records import Form, InputError, Item, Listing
 
 AUTOMATIC = "automatic"
 LAYOUTS = tuple(sorted({*ARCHIVES, *NATIVE}))
@@ -78,8 +78,7 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
         return form
     if item.native is None:
         return read_archive(layout, root, item)
-    made = _core.native_form(os.fsencode(item.name), *native_files(item))
-    form = Form(**{**made, "truths": tuple(Truth(**truth) for truth in made["truths"])})
+    form = one_form.form_of_fields(_core.native_form(os.fsencode(item.name), *native_files(item)))
     form.digests = {path: _core.xxh128(read_file(path)) for path in (item.native.mesh, *item.native.saliency, *item.native.picks)}
     lines = "".join(f"{digest}  {os.path.relpath(path, root)}\n" for path, digest in sorted(form.digests.items()))
     if layout not in NATIVE:

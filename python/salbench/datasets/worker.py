@@ -19,6 +19,7 @@ import json
 import os
 import signal
 import sys
+from collections.abc import Callable
 from typing import Any, BinaryIO
 
 from salbench.datasets import _limits
@@ -89,7 +90,9 @@ def one_map(request: dict[str, Any]) -> bytes:
     return _core.values_image(_hdf5.point_values(_hdf5.Hdf5File(request["path"]), request["name"]))
 
 
-ANSWERS = {"item": item, "shape": shape, "facts": facts, "rewrite": rewrite, "values": values, "maps": maps, "map": one_map}
+ANSWERS: dict[str, Callable[[dict[str, Any]], bytes | tuple[bytes | None, list[str]]]] = {
+    "item": item, "shape": shape, "facts": facts, "rewrite": rewrite, "values": values, "maps": maps, "map": one_map,
+}
 
 
 def message(error: BaseException) -> str:
@@ -111,9 +114,8 @@ def answer(text: bytes, out: bytes) -> None:
         request = json.loads(text)
         of_map = request["do"] in ("values", "map", "maps")
         _limits.limit(*((_limits.SECONDS_OF_A_MAP, _limits.BYTES_OF_A_MAP) if of_map else ()))
-        made = ANSWERS[request["do"]](request)
-        if isinstance(made, tuple):
-            made, problems = made
+        answered = ANSWERS[request["do"]](request)
+        made, problems = answered if isinstance(answered, tuple) else (answered, [])
     except Exception as error:  # the file of one item must not end the process that reads the others
         problems = [message(error)]
     for path, data in ((out, made), (out + ERROR.encode(), "\n".join(problems).encode("utf-8", "surrogateescape") or None)):
