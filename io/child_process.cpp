@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <fstream>
 #include <mutex>
 #include <new>
@@ -24,9 +23,8 @@
 namespace salbench {
 namespace {
 
-constexpr int kFailed = 1, kOutOfMemory = 3;    // exit status of the child
-constexpr char kNumbers = 'n', kMessage = 'm';  // first byte of what numbers_from_child has sent
-constexpr rlim_t kGrace = 5;                    // seconds from SIGXCPU, which tells why, to SIGKILL
+constexpr int kFailed = 1, kOutOfMemory = 3;  // exit status of the child
+constexpr rlim_t kGrace = 5;                  // seconds from SIGXCPU, which tells why, to SIGKILL
 
 [[noreturn]] void fail_for_lack(const char* of) {
   throw StorageError(fmt::format("no {} to read a file in: {}", of, system_reason(errno)));
@@ -130,8 +128,7 @@ std::string failure_of(int status, const ChildLimits& limits) {
 
 }  // namespace
 
-ChildResult run_in_child(const ChildLimits& limits, const std::function<void(const Send&)>& function,
-                         Fork fork) {
+ChildResult run_in_child(const ChildLimits& limits, const std::function<void(const Send&)>& function) {
   // Else a child inherits the writing end of another's pipe, and the other's result waits for both.
   static std::mutex starting;
   std::unique_lock lock(starting);
@@ -141,7 +138,7 @@ ChildResult run_in_child(const ChildLimits& limits, const std::function<void(con
   Descriptor to(ends[1]);
   const rlim_t memory = present_memory();
   const pid_t program = ::getpid();
-  const pid_t pid = fork();
+  const pid_t pid = ::fork();
   if (pid < 0) fail_for_lack("process");
   if (pid == 0) {
     follow(program);
@@ -153,31 +150,6 @@ ChildResult run_in_child(const ChildLimits& limits, const std::function<void(con
   ChildResult result{.sent = read_to_end(from.get()), .failure = {}};
   result.failure = failure_of(child.wait(), limits);
   return result;
-}
-
-ScalarField numbers_from_child(const ChildLimits& limits, std::string_view name,
-                               const std::function<ScalarField()>& read, Fork fork) {
-  const auto read_and_send = [&](const Send& send) {
-    const auto send_as = [&](const char& kind, const void* data, std::size_t size) {
-      send(std::as_bytes(std::span(&kind, 1)));
-      send({static_cast<const std::byte*>(data), size});
-    };
-    try {
-      const ScalarField numbers = read();
-      send_as(kNumbers, numbers.data(), numbers.size() * sizeof(double));
-    } catch (const InputError& error) {
-      const std::string_view message = error.what();
-      send_as(kMessage, message.data(), message.size());
-    }
-  };
-  const auto [sent, failure] = run_in_child(limits, read_and_send, fork);
-  if (!failure.empty() || sent.empty())
-    throw InputError(fmt::format("{}: damaged: the library that reads it {}; save it again", name,
-                                 failure.empty() ? "ended the process" : failure));
-  if (sent[0] == kMessage) throw InputError(fmt::format("{}: {}", name, sent.substr(1)));
-  ScalarField numbers((sent.size() - 1) / sizeof(double));
-  if (!numbers.empty()) std::memcpy(numbers.data(), sent.data() + 1, numbers.size() * sizeof(double));
-  return numbers;
 }
 
 }  // namespace salbench

@@ -8,11 +8,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
-
-#include <unistd.h>
-
-#include "stages/core/types.h"
 
 namespace salbench {
 
@@ -28,18 +23,10 @@ struct ChildResult {
 
 using Send = std::function<void(std::span<const std::byte>)>;
 
-using Fork = pid_t (*)();
-
 // Calls `function` in a copy of this process and waits for it. An exception that leaves it is a failure. The
 // function may use malloc and stdio, which glibc keeps usable in the child of a program with threads, but no
-// lock that another thread may hold, unless `fork` takes care of it. Throws StorageError if the system has no
+// lock that another thread may hold. Throws StorageError if the system has no
 // process or pipe left.
-ChildResult run_in_child(const ChildLimits& limits, const std::function<void(const Send&)>& function,
-                         Fork fork = ::fork);
-
-// The numbers that `read` returns in a child process. Throws InputError, whose message begins with `name`:
-// the one that `read` throws, or that the library which it calls did not survive the file.
-ScalarField numbers_from_child(const ChildLimits& limits, std::string_view name,
-                               const std::function<ScalarField()>& read, Fork fork = ::fork);
+ChildResult run_in_child(const ChildLimits& limits, const std::function<void(const Send&)>& function);
 
 }  // namespace salbench

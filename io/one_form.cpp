@@ -279,7 +279,11 @@ Arrays arrays_in_form(Hdf5Content&& content, std::string_view name) {
 }
 
 Arrays arrays_in_form(std::string_view image, std::string_view name) {
-  return arrays_in_form(foreign_hdf5_content(std::as_bytes(std::span(image)), name), name);
+  auto content = hdf5::parsed_image(std::as_bytes(std::span(image)));
+  if (!content)
+    throw ForeignForm(
+        fmt::format("{}: is damaged, or no program of ours wrote it: import the set again", name));
+  return arrays_in_form(std::move(*content), name);
 }
 
 }  // namespace

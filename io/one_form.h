@@ -14,6 +14,7 @@
 #include "io/arrays.h"
 #include "io/file.h"
 #include "io/polygons.h"
+#include "stages/core/errors.h"
 #include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
 
@@ -58,7 +59,10 @@ ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 // arrays that are missing, of another type or size, or refer to points that there are not.
 std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name);
 
-// Parts of it. Bytes that no program of ours wrote are read in a child process.
+// Parts of it. Bytes that no program of ours wrote are ForeignForm.
+struct ForeignForm : InputError {
+  using InputError::InputError;
+};
 Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts = nullptr);
 PointCloud cloud_in_form(std::string_view image, std::string_view name);
 GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view);

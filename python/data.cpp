@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data sets (io/dataset.h, pipeline/inputs): an item's files are read when it is asked for, without the
-// interpreter's lock, and its arrays show the memory that they were read into.
+// Data sets that the program lists and reads by itself (io/dataset.h, pipeline/inputs): files are read
+// without the interpreter's lock, and arrays show the memory that they were read into.
 #include <algorithm>
 #include <any>
 #include <memory>
@@ -12,11 +12,11 @@
 #include <pybind11/stl.h>
 
 #include "io/cloud_file.h"
-#include "pipeline/config/data_layout.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
+#include "pipeline/package/listing.h"
 #include "python/computing.h"
 #include "python/loaded.h"
 #include "python/module.h"
@@ -38,10 +38,9 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
   std::string remark;
   if (holds_cloud(item, of_shape[0].text())) {
     const auto& cloud = loaded->shape.emplace<PointCloud>(load_cloud(shape_file, Remark{remark}));
-    const bool needs_surface =
-        !of_truth.empty() &&
-        (!item.cameras.empty() || measured_cloud_truth(cloud, {}, truth_files).saliency.empty());
-    const Faces surface = needs_surface ? surface_of(cloud) : Faces();
+    const Faces surface = !of_truth.empty() && measured_cloud_truth(cloud, truth_files).saliency.empty()
+                              ? surface_of(cloud)
+                              : Faces();
     if (!of_truth.empty()) loaded->truth = given_cloud_truth(cloud, surface, truth_files);
   } else {
     const auto& mesh = loaded->shape.emplace<Mesh>(load_mesh(shape_file, Remark{remark}));
@@ -67,73 +66,54 @@ Twins twins_from(const std::string& word) {
   return kept;
 }
 
-class Data {
- public:
-  // `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
-  Data(const std::string& layout, const std::string& root, const std::string& twins, const py::object& items,
-       const std::string& split) {
-    const Twins kept = twins_from(twins);
-    salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
-    layout_ = found.layout;
-    for (const DatasetItem& item : found.items)
-      if (!item.split.empty()) splits_.insert(item.split);
-    choose(found, items, split);
-    notes_ = std::move(found.notes);
-    for (DatasetItem& item : found.items) items_.emplace_back(std::move(item));
+void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const DatasetItem& item : items) {
+    if (item.name == name || item.shape == name) return;
+    known.push_back(item.name);
   }
+  fail_unknown("item", name, known);
+}
 
-  std::string layout() const { return layout_; }
-  std::vector<std::string> notes() const { return notes_; }
-
-  std::vector<std::string> splits() const { return {splits_.begin(), splits_.end()}; }
-
-  // (name, category, split) of each.
-  py::list items() const {
-    py::list rows;
-    for (const std::any& source : items_) {
-      const DatasetItem& item = item_of(source);
-      rows.append(py::make_tuple(file_text(item.name), file_text(item.category), file_text(item.split)));
-    }
-    return rows;
+// Numbers of the items that are chosen. `rows`: name, shape, split and whether there is ground truth, of
+// each. `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
+std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wanted,
+                                      const std::string& split, const std::string& splits_where,
+                                      const std::string& no_splits) {
+  salbench::Dataset found;
+  found.splits_where = splits_where;
+  found.no_splits = no_splits;
+  for (const py::handle row : rows) {
+    const auto fields = row.cast<py::tuple>();
+    DatasetItem item{.name = file_bytes(fields[0]),
+                     .category = std::to_string(found.items.size()),  // its number
+                     .mesh = {},
+                     .saliency = {},
+                     .picks = {}};
+    item.shape = file_bytes(fields[1]);
+    item.split = file_bytes(fields[2]);
+    item.problem = file_bytes(fields[4]);
+    item.indexed = KnownItem{.has_truth = fields[3].cast<bool>()};
+    found.items.push_back(std::move(item));
   }
-
-  // points, faces, normals, ground truth, participants, viewers; None where the files have none.
-  py::tuple load(std::size_t i) const {
-    const std::any& source = items_.at(i);
-    return arrays_of(computed(1, [&] { return load_named(source); }));
-  }
-
- private:
-  static void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
-    std::vector<std::string_view> known;
-    for (const DatasetItem& item : items) {
-      if (item.name == name || item.shape_name() == name) return;
-      known.push_back(item.name);
-    }
-    fail_unknown("item", name, known);
-  }
-
-  static void choose(salbench::Dataset& found, const py::object& wanted, const std::string& split) {
-    if (py::isinstance<py::bytes>(wanted)) {
-      const auto selection = wanted.cast<std::string>();
-      if (split_list(selection).empty()) throw py::value_error("items names no item");
-      return select_items(found, selection, split);
-    }
+  if (py::isinstance<py::bytes>(wanted)) {
+    const auto selection = wanted.cast<std::string>();
+    if (split_list(selection).empty()) throw py::value_error("items names no item");
+    select_items(found, selection, split);
+  } else {
     select_items(found, {}, split);
-    if (wanted.is_none()) return;
-    const auto names = wanted.cast<std::vector<std::string>>();
-    for (const std::string& name : names) require_known(found.items, name);
-    const std::set<std::string> kept(names.begin(), names.end());
-    std::erase_if(found.items, [&](const DatasetItem& item) {
-      return !kept.contains(item.name) && !kept.contains(item.shape_name());
-    });
   }
-
-  std::string layout_;
-  std::vector<std::string> notes_;
-  std::set<std::string> splits_;
-  std::vector<std::any> items_;  // of DatasetItem
-};
+  std::set<std::string> kept;
+  if (py::isinstance<py::list>(wanted)) {
+    for (const py::handle name : wanted) kept.insert(file_bytes(name));
+    for (const std::string& name : kept) require_known(found.items, name);
+  }
+  std::vector<std::size_t> chosen;
+  for (const DatasetItem& item : found.items)
+    if (!py::isinstance<py::list>(wanted) || kept.contains(item.name) || kept.contains(item.shape))
+      chosen.push_back(std::stoul(item.category));
+  return chosen;
+}
 
 py::list texts(const std::vector<std::string>& all) {
   py::list list;
@@ -159,12 +139,12 @@ py::dict row_of(const DatasetItem& item) {
     return row;
   }
   row["kind"] = "";  // the file tells
-  row["truth"] = !item.saliency.empty() || !item.picks.empty();
+  row["truth"] = item.has_truth();
   row["participants"] = item.picks.size();
   row["viewers"] = 0;
   py::dict native;
   native["mesh"] = file_text(item.mesh);
-  native["saliency"] = texts(item.saliency);
+  native["saliency"] = texts(item.saliency.empty() ? std::vector<std::string>() : std::vector{item.saliency});
   native["picks"] = texts(item.picks);
   row["native"] = native;
   return row;
@@ -173,14 +153,12 @@ py::dict row_of(const DatasetItem& item) {
 // The listing of a layout that the program lists by itself, as `salbench _list` has it.
 py::dict native_items(const std::string& layout, const std::string& root, const std::string& twins) {
   const Twins kept = twins_from(twins);
-  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
+  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout, kept); });
   py::list items;
   for (const DatasetItem& item : found.items) items.append(row_of(item));
   py::dict listing;
   listing["layout"] = file_text(found.layout);
   listing["notes"] = texts(found.notes);
-  listing["read"] = texts(found.read);
-  listing["licence"] = file_text(found.licence);
   listing["items"] = items;
   return listing;
 }
@@ -189,7 +167,7 @@ py::dict native_items(const std::string& layout, const std::string& root, const 
 std::any native_item(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
                      std::vector<std::string> picks) {
   return DatasetItem{
-      .name = name, .category = {}, .mesh = mesh, .saliency = std::move(saliency), .picks = std::move(picks)};
+      .name = name, .mesh = mesh, .saliency = saliency.empty() ? "" : saliency[0], .picks = std::move(picks)};
 }
 
 py::tuple load_native(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
@@ -214,35 +192,23 @@ py::dict native_form(const std::string& name, const std::string& mesh, std::vect
     else
       shape.mesh = parsed_mesh(shape_file, &shape.polygons);
     if (!of_truth.empty())
-      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, {}, truth_files)
+      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, truth_files)
                                                       : measured_truth(shape.mesh, truth_files)});
     return shape;
   }));
 }
 
-// KeyError for a name that no layout has.
-void require_layout(const std::string& layout) {
-  if (!is_layout(layout)) fail_unknown("layout", layout, layout_names());
-}
-
 }  // namespace
 
 void bind_data(py::module_& module) {
-  module.def("layouts", &layout_names);
-  module.def("require_layout", &require_layout);
   module.def("native_items", &native_items, py::arg("layout"), py::arg("root"), py::arg("twins") = "refuse");
   module.def("load_native", &load_native, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
              py::arg("picks"));
   module.def("native_form", &native_form, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
              py::arg("picks"));
-  py::class_<Data>(module, "Data")
-      .def(py::init<const std::string&, const std::string&, const std::string&, const py::object&,
-                    const std::string&>())
-      .def("items", &Data::items)
-      .def("load", &Data::load)
-      .def_property_readonly("layout", &Data::layout)
-      .def_property_readonly("notes", &Data::notes)
-      .def_property_readonly("splits", &Data::splits);
+  module.def("chosen_items", &chosen_items, py::arg("rows"), py::arg("items"), py::arg("split"),
+             py::arg("splits_where"), py::arg("no_splits"));
+  module.def("write_options_for_the_command_line", [] { options_are_arguments = false; });
 }
 
 }  // namespace salbench::python

@@ -14,11 +14,11 @@
 
 #include "cache/digest.h"
 #include "io/cloud_file.h"
+#include "io/hdf5_file.h"
 #include "io/mesh_file.h"
 #include "io/one_form.h"
 #include "io/one_form_index.h"
 #include "pipeline/inputs/loading.h"
-#include "pipeline/inputs/sizes.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/loaded.h"
@@ -195,6 +195,14 @@ py::object form_of_bytes(const py::bytes& data, const std::string& name) {
   return shape ? py::object(fields_of(std::move(*shape))) : py::none();
 }
 
+// One data set, `values`, as the program reads answers about maps.
+py::bytes values_image(py::handle values) {
+  Hdf5Content content;
+  content.arrays.push_back(column("values", field_of(values, "values"), "1", ""));
+  const Bytes image = hdf5_image(content);
+  return {reinterpret_cast<const char*>(image.data()), image.size()};
+}
+
 template <class T>
 Array array_from(const std::string& name, const py::array& given) {
   const auto values = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(given);
@@ -317,7 +325,9 @@ py::tuple shape_facts(py::handle form, const std::string& item, const std::strin
     });
     return 0;
   });
-  return py::make_tuple(points.size(), faces, diagonal_of(points), remark);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& point : points) box.extend(point);
+  return py::make_tuple(points.size(), faces, box.diagonal().norm(), remark);
 }
 
 }  // namespace
@@ -353,12 +363,10 @@ void bind_datasets(py::module_& module) {
   module.def("one_form_image", &image_of, py::arg("form"));
   module.def("read_one_form", &form_of_bytes, py::arg("data"), py::arg("name"));
   module.def("form_of_arrays", &form_of_arrays, py::arg("arrays"), py::arg("name"));
+  module.def("values_image", &values_image, py::arg("values"));
   module.def("read_index", &index_rows, py::arg("path"));
   module.def("index_text", &index_bytes, py::arg("rows"));
   module.def("shape_facts", &shape_facts, py::arg("form"), py::arg("item"), py::arg("file"));
-  module.def(
-      "odd_sizes", [](const std::vector<double>& diagonals) { return odd_sizes(diagonals); },
-      py::arg("diagonals"));
   module.def("finished", &finished, py::arg("form"), py::arg("view"), py::arg("item"), py::arg("file"));
 }
 

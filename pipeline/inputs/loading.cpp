@@ -10,7 +10,6 @@
 #include "io/cloud_file.h"
 #include "io/mesh_file.h"
 #include "io/one_form.h"
-#include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "stages/core/mesh_check.h"
 #include "stages/core/scale.h"
@@ -33,9 +32,7 @@ void make(const Remark& remark, const std::string& name, const std::string& poly
 PointCloud parsed_cloud(const Files& file) {
   const DatasetItem& item = item_of(file.source);
   const std::string& bytes = file.data[0].text();
-  return item.indexed        ? cloud_in_form(bytes, item.mesh)
-         : has_columns(item) ? parse_column_cloud(bytes, item.mesh, item.format->columns)
-                             : parse_cloud(bytes, item.mesh);
+  return item.indexed ? cloud_in_form(bytes, item.mesh) : parse_cloud(bytes, item.mesh);
 }
 
 }  // namespace

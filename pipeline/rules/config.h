@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/config/data_layout.h"
 #include "pipeline/config/section.h"
 #include "pipeline/rules/models.h"
 #include "pipeline/rules/unit.h"

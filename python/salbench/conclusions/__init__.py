@@ -12,6 +12,7 @@ from typing import Any
 
 import pandas
 
+from salbench._version import __version__
 from salbench.conclusions import (
     agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, ranking, shares, significance, smoothing,
     statements, tables,

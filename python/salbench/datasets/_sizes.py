@@ -5,6 +5,7 @@ shapes, and so imports NumPy: of descriptions that name a unit."""
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,6 +15,16 @@ from salbench.datasets._files import read_file
 from salbench.datasets._layout import Columns
 from salbench.datasets._truth import options_of
 from salbench.datasets.records import Item, Listing
+
+MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
+
+
+def odd_sizes(diagonals: Sequence[float]) -> list[str]:
+    """For each diagonal how far it is from the median, where that is more than a factor of MOST; else "". One of 0 is not known."""
+    usual = float(np.median([diagonal for diagonal in diagonals if diagonal > 0] or [0.0]))
+    return [f"its diagonal, {diagonal:.4g}, is {diagonal / usual:.3g} times the median of the data set, {usual:.4g}"
+            if diagonal > 0 and not usual / MOST <= diagonal <= usual * MOST else "" for diagonal in diagonals]
+
 
 def _diagonal(item: Item) -> float:
     """Of the bounding box in the file; 0 if that cannot be read, which fails by itself."""
@@ -37,7 +48,7 @@ def fail_mixed_units(listing: Listing) -> None:
         if item.files[0].path not in of_file:
             of_file[item.files[0].path] = _diagonal(item)
     diagonals = [of_file[item.files[0].path] for item in listing.items]
-    for item, odd in zip(listing.items, _core.odd_sizes(diagonals)):
+    for item, odd in zip(listing.items, odd_sizes(diagonals)):
         if odd and not item.problem:
             item.truth = True
             item.problem = f"{item.files[0].path}: {odd}: it is in another unit than {listing.unit_where} says: scale it, or take it out of the set"

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
+from salbench._errors import InputError as InputError
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -18,10 +20,6 @@ if TYPE_CHECKING:
     Ints = NDArray[np.int32]
 else:
     Floats = Ints = Any
-
-
-class InputError(ValueError):
-    """A file or a description that cannot be used: one line that says what, where, and what to do."""
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands of one model that stay at work from shape to shape.
+// Commands that stay at work from shape to shape.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/rules/command_servers.h"
+#include "pipeline/package/command_servers.h"
 
 #include <utility>
 
@@ -47,8 +47,8 @@ void CommandServers::warn_of_end(Server& server) {
   const std::string failure = server.process.failure();
   const std::lock_guard lock(mutex_);
   if (failure.empty() || std::exchange(warned_, true)) return;
-  spdlog::warn("models.{}: {} after an answer, which counts; the next shape gets a new process; {}", name_,
-               failure, server.process.last_lines());
+  spdlog::warn("{}: {} after an answer, which counts; the next shape gets a new process; {}", name_, failure,
+               server.process.last_lines());
 }
 
 std::string CommandServers::ask(const std::string& line, const std::string& answer,

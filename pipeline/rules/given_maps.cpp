@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/inputs/given_maps.h"
+#include "pipeline/rules/given_maps.h"
 
 #include <cmath>
 
@@ -7,8 +7,8 @@
 
 #include "io/file.h"
 #include "io/ground_truth_file.h"
-#include "io/hdf5_file.h"
 #include "io/text_scanner.h"
+#include "pipeline/package/importer.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -29,16 +29,12 @@ GivenMaps maps_in_folder(const fs::path& folder) {
 
 // Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
 GivenMaps maps_in_file(const fs::path& path) try {
-  const auto file = std::make_shared<const Hdf5File>(path);
+  const auto importer = std::make_shared<Importer>();
   GivenMaps maps{.source = path};
-  for (const std::string& name : file->arrays()) maps.items.insert(name);
-  maps.read = [file, path](const std::string& item) -> FileData {
-    const Array array = file->read(item);
-    try {
-      return {content_digest({array}), point_values(array)};
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: data set {}: {}", path.string(), in_quotes(item), error.what()));
-    }
+  for (const std::string& name : importer->maps(path)) maps.items.insert(name);
+  maps.read = [importer, path](const std::string& item) -> FileData {
+    ScalarField values = importer->map(path, item);
+    return {content_digest({column(item, values, "1", "")}), std::move(values)};
   };
   return maps;
 } catch (const InputError& error) {
