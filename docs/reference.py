@@ -91,10 +91,12 @@ def models():
 
 
 def data_sets():
-    """Terms of use, which stand in the importers' records."""
-    found = [(f"`{name}`", salbench.datasets.find(name).LAYOUT.licence) for name in salbench.datasets.ARCHIVES]
+    """Terms of use, which stand in the importers."""
+    from salbench.datasets import ARCHIVES, NATIVE, find
+    terms = {name: find(name).LAYOUT.licence for name in ARCHIVES} | {name: terms for name, terms in NATIVE.items() if terms}
+    found = [(f"`{name}`", terms[name]) for name in sorted(terms)]
     return ("# Terms of data sets\n\nNone of the data is part of salbench; [Data sets](../data_sets.md) says whose it is. On which terms its\n"
-            "authors give it, as far as that is known (`licence` in `python/salbench/datasets/NAME.py`):\n\n" + table(("layout", "terms"), found))
+            "authors give it, as far as that is known:\n\n" + table(("layout", "terms"), found))
 
 
 def python():
