@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench.datasets._files import list_folder, read_file
+from salbench.datasets._files import read_file
 from salbench.datasets.records import Form, InputError, Truth
 
 INDEX = "index.csv"
@@ -133,8 +133,6 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
     for row in before:
         if row[-1] != source:
             raise InputError(f"{folder}: holds another set, of source {row[-1]}; choose another folder")
-    if not before and list_folder(os.path.join(folder, "items")):
-        raise InputError(f"{folder}: has items, but no {INDEX}: choose another folder")
     os.makedirs(os.path.join(folder, "items"), exist_ok=True)
     rows: dict[str, Row] = {}
     for number, shape in enumerate(shapes):
