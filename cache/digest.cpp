@@ -77,6 +77,11 @@ Digest file_digest(std::string_view bytes) {
   return hasher.digest();
 }
 
+Digest xxh128(std::string_view bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  return {hash.high64, hash.low64};
+}
+
 std::uint64_t checksum(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 }  // namespace salbench

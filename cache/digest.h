@@ -49,6 +49,7 @@ class Hasher {
 
 Digest content_digest(const Arrays& arrays);  // names, types, shapes and values; no units, no prose
 Digest file_digest(std::string_view bytes);   // of all bytes of a file
+Digest xxh128(std::string_view bytes);        // as `xxh128sum` prints it; keys have file_digest
 std::uint64_t checksum(std::span<const std::byte> bytes);  // 64 bits, of a whole file image
 
 }  // namespace salbench

@@ -47,24 +47,6 @@ Array column(std::string name, std::vector<T> values, std::string unit, std::str
   return {std::move(name), {n}, std::move(values), std::move(unit), std::move(description)};
 }
 
-// The array as one value per point: n numbers, n x 1 or 1 x n. Throws InputError for any other shape, and for
-// a whole number that no double is equal to.
-ScalarField point_values(const Array& array);
-bool is_one_per_point(const std::vector<std::size_t>& shape);
-
-[[noreturn]] void refuse_beyond_doubles(std::string_view number);
-
-// Throws InputError beyond 2^53, where doubles have gaps.
-template <class Number>
-double exact_double(Number number) {
-  if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {
-    constexpr Number kLargest = Number{1} << 53U;
-    if (number > kLargest || (std::is_signed_v<Number> && number < Number{0} - kLargest))
-      refuse_beyond_doubles(std::to_string(number));
-  }
-  return static_cast<double>(number);
-}
-
 const Array* find_array(const Arrays& arrays, std::string_view name);  // nullptr if there is none
 
 using AttributeValue = std::variant<std::string, double, std::int64_t>;

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "io/truth_format.h"
 #include "stages/core/point_cloud.h"
 
 namespace salbench {
@@ -34,20 +33,5 @@ PointCloud parse_cloud(std::string_view bytes, const std::filesystem::path& path
 PointCloud parse_ply_cloud(std::string_view bytes, std::string_view name);
 PointCloud parse_pcd(std::string_view bytes, std::string_view name);
 PointCloud parse_xyz(std::string_view text, std::string_view name);
-
-// True of .txt and .csv where a description says which columns hold points.
-bool is_column_cloud(const std::filesystem::path& path, const ColumnsFormat& format);
-
-// A cloud in columns. Rows that the format leaves out have NaN as their position. A normal of another length
-// than 0.5 to 2 is no normal, unless directions are to be normalised.
-PointCloud parse_column_cloud(std::string_view text, std::string_view name, const ColumnsFormat& format);
-
-// The ground truth beside the points: one value per row, and the rows whose flag is 1; empty without such a
-// column.
-struct ColumnTruth {
-  ScalarField saliency;
-  std::vector<std::int32_t> picks;
-};
-ColumnTruth parse_column_truth(std::string_view text, std::string_view name, const ColumnsFormat& format);
 
 }  // namespace salbench

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "io/hdf5_file.h"
 
@@ -45,16 +44,9 @@ void write_chunks(hid_t set, const PackedChunks& packed) {
   }
 }
 
-// A read-write lock that a child process can let go of; glibc's knows its owner by the number of the thread.
-// A thread that waits to be alone keeps the entrance.
-struct Gate {
-  std::mutex entrance;
-  std::atomic<int> inside = 0;  // threads
-};
-
-Gate& gate() {
-  static Gate the_gate;
-  return the_gate;
+std::mutex& entrance() {
+  static std::mutex the_entrance;
+  return the_entrance;
 }
 
 struct Visit {
@@ -79,14 +71,8 @@ LibraryLock::LibraryLock() {
     hbool_t safe = false;
     return H5dont_atexit() >= 0 && H5is_library_threadsafe(&safe) >= 0 && safe;
   }();
-  alone_ = std::unique_lock(gate().entrance);
-  ++gate().inside;
-  if (thread_safe) alone_.unlock();
+  if (!thread_safe) alone_ = std::unique_lock(entrance());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread: failures are exceptions, not text on stderr
-}
-
-LibraryLock::~LibraryLock() {
-  if (--gate().inside == 0) gate().inside.notify_all();
 }
 
 void must(herr_t status, const char* what) {
@@ -188,13 +174,6 @@ LibraryVersion hdf5_version() {
   hdf5::must(H5get_libversion(&major, &minor, &release), "H5get_libversion");
   return {fmt::format("{}.{}.{}", H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE),
           fmt::format("{}.{}.{}", major, minor, release)};
-}
-
-pid_t fork_beside_hdf5() {
-  auto& [entrance, inside] = hdf5::gate();
-  const std::lock_guard alone(entrance);
-  for (int threads = inside; threads > 0; threads = inside) inside.wait(threads);
-  return ::fork();
 }
 
 }  // namespace salbench

@@ -27,7 +27,6 @@ class LibraryLock {
   LibraryLock();
   LibraryLock(const LibraryLock&) = delete;
   LibraryLock& operator=(const LibraryLock&) = delete;
-  ~LibraryLock();
 
  private:
   std::unique_lock<std::mutex> alone_;

@@ -97,17 +97,13 @@ std::vector<IndexRow> read_index(const fs::path& file) {
   return rows;
 }
 
-Dataset indexed_dataset(const fs::path& root, const Layout& layout) {
-  if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
-  const fs::path file = root / layout.index;
-  Dataset dataset{.layout = layout.name, .items = {}, .notes = {}, .read = {file}, .licence = layout.licence};
-  dataset.splits_where = file.string();
+Dataset indexed_dataset(const fs::path& root) {
+  const fs::path file = root / kIndexFile;
+  Dataset dataset{.layout = std::string(kOneForm), .items = {}, .notes = {}, .splits_where = file};
   for (const IndexRow& row : read_index(file))
     dataset.items.push_back({.name = row.name(),
                              .category = row.category,
                              .mesh = root / file_of_shape(row.shape),
-                             .saliency = {},
-                             .picks = {},
                              .shape = row.view.empty() ? "" : row.shape,
                              .view = row.view,
                              .split = row.split,

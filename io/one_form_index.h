@@ -17,7 +17,7 @@ inline constexpr const char* kIndexFile = "index.csv";
 struct IndexRow {
   std::string shape, view = {};  // empty: not scored by views
   std::string category = {}, split = {};
-  IndexedItem facts = {};
+  KnownItem facts = {};
   std::string source = {};  // layout that it was read with
 
   std::string name() const { return view.empty() ? shape : shape + "_" + view; }
@@ -35,6 +35,6 @@ std::string index_text(const std::vector<IndexRow>& rows);
 std::vector<IndexRow> read_index(const std::filesystem::path& file);
 
 // The data set of a folder with an index. Throws InputError.
-Dataset indexed_dataset(const std::filesystem::path& root, const Layout& layout);
+Dataset indexed_dataset(const std::filesystem::path& root);
 
 }  // namespace salbench

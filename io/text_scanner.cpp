@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/text_scanner.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <type_traits>
@@ -11,6 +12,8 @@ namespace salbench {
 namespace {
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+bool is_ascii_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
@@ -143,6 +146,33 @@ std::string in_quotes(std::string_view word) {
   std::string text = "\"";
   for (const char c : word.substr(0, kMaxLength)) text += c >= ' ' && c <= '~' ? c : '?';
   return text + (word.size() > kMaxLength ? "...\"" : "\"");
+}
+
+bool natural_less(std::string_view a, std::string_view b) {
+  const auto digits_at = [](std::string_view text, std::size_t at) {
+    const auto begin = text.begin() + static_cast<std::ptrdiff_t>(at);
+    return std::string_view(begin, std::find_if_not(begin, text.end(), is_ascii_digit));
+  };
+  const auto significant = [](std::string_view digits) {
+    digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+    return digits;
+  };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_ascii_digit(a[i]) && is_ascii_digit(b[j])) {
+      const std::string_view run_a = digits_at(a, i), run_b = digits_at(b, j);
+      const std::string_view x = significant(run_a), y = significant(run_b);
+      if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
+      i += run_a.size();
+      j += run_b.size();
+    } else {
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+      ++i;
+      ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return j < b.size();
+  return a < b;  // equal but for leading zeros
 }
 
 }  // namespace salbench

@@ -66,6 +66,9 @@ std::string_view decimal_comma_in(std::string_view word);
 
 bool is_digits(std::string_view word);  // 0 to 9, or nothing
 
+// A strict total order that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10".
+bool natural_less(std::string_view a, std::string_view b);
+
 std::string_view without_byte_order_mark(std::string_view text);
 
 // "the file ends after 5 of 10 vertices: ..."

@@ -299,6 +299,9 @@ Value centre_density_from(const Arrays& arrays) {
   return density;
 }
 
+Arrays arrays_of(const ShapeInForm& shape) { return one_form_arrays(shape); }
+Value shape_in_form_from(const Arrays& arrays) { return shape_in_arrays(arrays, "the one form"); }
+
 struct Kind {
   std::string_view name;
   Value (*read)(const Arrays&);
@@ -320,6 +323,7 @@ constexpr std::array<Kind, std::variant_size_v<Value>> kKinds = {{
     {"point_cloud", cloud_from},
     {"score_table", score_table_from},
     {"centre_density", centre_density_from},
+    {"shape_in_form", shape_in_form_from},
 }};
 
 }  // namespace

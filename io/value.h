@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/arrays.h"
+#include "io/one_form.h"
 #include "stages/core/centre.h"
 #include "stages/core/picture.h"
 #include "stages/core/point_cloud.h"
@@ -21,7 +22,7 @@ struct ScoreTable {
 };
 
 using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                           Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity>;
+                           Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm>;
 
 Arrays arrays_from(const Value& value);
 

@@ -14,7 +14,6 @@
 
 #include "io/file.h"
 #include "io/ground_truth_file.h"
-#include "io/hdf5_file.h"
 #include "io/text_scanner.h"
 #include "stages/core/errors.h"
 
@@ -62,6 +61,10 @@ std::optional<std::vector<std::size_t>> shape_in(std::string_view text) {
   return shape;
 }
 
+bool is_one_per_point(const std::vector<std::size_t>& shape) {
+  return std::ranges::count_if(shape, [](std::size_t extent) { return extent != 1; }) <= 1;
+}
+
 }  // namespace
 
 bool is_npy(std::string_view bytes) { return bytes.starts_with(kNpy); }
@@ -98,13 +101,14 @@ ScalarField parse_npy(std::string_view bytes, std::string_view name) {
   return is_double ? numbers_in<double>(body) : numbers_in<float>(body);
 }
 
-ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n) {
+ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n,
+                              const ReadValues& read_hdf5) {
   require_regular_file(path);
   if (const auto size = size_of_file(path); size && *size > n * kBytesPerValue + kHeaderBytes)
     throw InputError(fmt::format("{}: {} bytes are too many for {} values", name, *size, n));
   const std::string bytes = read_file(path);
   ScalarField values = is_npy(bytes)              ? parse_npy(bytes, name)
-                       : bytes.starts_with(kHdf5) ? read_hdf5_values(path, name)
+                       : bytes.starts_with(kHdf5) ? read_hdf5(path)
                                                   : parse_values(bytes, name);
   if (values.size() != n)
     throw InputError(fmt::format("{}: {} values, but the shape has {} points", name, values.size(), n));

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -11,11 +12,12 @@
 
 namespace salbench {
 
-// Reads text (a number per line, as .val), NumPy's .npy (float32 or float64, n, n x 1 or 1 x n) or an HDF5
-// file with one such data set of numbers, or one called "saliency"; the content tells which. `name` stands
-// for the file in messages. Throws InputError: unreadable, another number of values than n, a value that is
-// not finite.
-ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n);
+// Reads text (a number per line, as .val), NumPy's .npy (float32 or float64, n, n x 1 or 1 x n) or, by
+// `read_hdf5`, HDF5; the content tells which. `name` stands for the file in messages. Throws InputError:
+// unreadable, another number of values than n, a value that is not finite.
+using ReadValues = std::function<ScalarField(const std::filesystem::path&)>;
+ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n,
+                              const ReadValues& read_hdf5);
 
 // .npy alone, from memory: any number of values, finite or not. Throws InputError.
 bool is_npy(std::string_view bytes);

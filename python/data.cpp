@@ -1,47 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data sets (io/dataset.h, pipeline/inputs): an item's files are read when it is asked for, without the
-// interpreter's lock, and its arrays show the memory that they were read into.
+// Data sets that the program lists and reads by itself (io/dataset.h, pipeline/inputs): files are read
+// without the interpreter's lock, and arrays show the memory that they were read into.
 #include <algorithm>
 #include <any>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "io/cloud_file.h"
-#include "pipeline/config/data_layout.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
-#include "pipeline/rules/config.h"
-#include "python/arrays.h"
+#include "pipeline/package/listing.h"
 #include "python/computing.h"
+#include "python/loaded.h"
 #include "python/module.h"
 #include "stages/core/errors.h"
-#include "stages/normals/normals.h"
-#include "stages/surface/surface.h"
 
 namespace salbench::python {
 namespace {
 
-// The shape and the ground truth in the files of an item.
-struct Loaded {
-  std::variant<Mesh, PointCloud> shape;
-  std::optional<GroundTruth> truth;
-};
-
-// The partial mesh, which picks are smoothed over and which hides points from a camera, with the options that
-// a configuration has by itself.
-Faces surface_of(const PointCloud& cloud) {
-  const Config defaults = read_config(Section::from_text("{}", "defaults"), "python");
-  return partial_mesh(cloud.points, cloud_normals(cloud, defaults.scan_normals), defaults.surface);
-}
+namespace py = pybind11;
 
 std::shared_ptr<const Loaded> load(const std::any& source) {
   const DatasetItem& item = item_of(source);
@@ -54,10 +38,9 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
   std::string remark;
   if (holds_cloud(item, of_shape[0].text())) {
     const auto& cloud = loaded->shape.emplace<PointCloud>(load_cloud(shape_file, Remark{remark}));
-    const bool needs_surface =
-        !of_truth.empty() &&
-        (!item.cameras.empty() || measured_cloud_truth(cloud, {}, truth_files).saliency.empty());
-    const Faces surface = needs_surface ? surface_of(cloud) : Faces();
+    const Faces surface = !of_truth.empty() && measured_cloud_truth(cloud, truth_files).saliency.empty()
+                              ? surface_of(cloud)
+                              : Faces();
     if (!of_truth.empty()) loaded->truth = given_cloud_truth(cloud, surface, truth_files);
   } else {
     const auto& mesh = loaded->shape.emplace<Mesh>(load_mesh(shape_file, Remark{remark}));
@@ -66,132 +49,166 @@ std::shared_ptr<const Loaded> load(const std::any& source) {
   return loaded;
 }
 
-// Names and paths as the system has them, which may be no UTF-8.
-py::str file_text(const std::string& bytes) {
-  PyObject* text = PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size()));
-  if (text == nullptr) throw py::error_already_set();
-  return py::reinterpret_steal<py::str>(text);
+// Throws FileError in place of ShapeError.
+std::shared_ptr<const Loaded> load_named(const std::any& source) {
+  try {
+    return load(source);
+  } catch (const ShapeError& error) {
+    throw FileError(item_of(source).mesh, error.what());
+  }
 }
 
-template <class T>
-py::object shown_of(const std::shared_ptr<const Loaded>& owner, const std::vector<T>& values) {
-  return read_only(shown(owner, std::span<const T>(values)));
+Twins twins_from(const std::string& word) {
+  Twins kept = Twins::refuse;
+  if (!parse_option(word, kept))
+    throw py::value_error(
+        fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), word));
+  return kept;
 }
 
-template <class T>
-py::tuple all_shown(const std::shared_ptr<const Loaded>& owner, const std::vector<std::vector<T>>& all) {
-  py::tuple arrays(all.size());
-  for (std::size_t i = 0; i < all.size(); ++i) arrays[i] = shown_of(owner, all[i]);
-  return arrays;
+void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const DatasetItem& item : items) {
+    if (item.name == name || item.shape == name) return;
+    known.push_back(item.name);
+  }
+  fail_unknown("item", name, known);
 }
 
-class Data {
- public:
-  // `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
-  Data(const std::string& layout, const std::string& root, const std::string& twins, const py::object& items,
-       const std::string& split) {
-    Twins kept = Twins::refuse;
-    if (!parse_option(twins, kept))
-      throw py::value_error(
-          fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), twins));
-    salbench::Dataset found = computed(1, [&] { return find_dataset(root, layouts_of(layout), kept); });
-    layout_ = found.layout;
-    for (const DatasetItem& item : found.items)
-      if (!item.split.empty()) splits_.insert(item.split);
-    choose(found, items, split);
-    notes_ = std::move(found.notes);
-    for (DatasetItem& item : found.items) items_.emplace_back(std::move(item));
+// Numbers of the items that are chosen. `rows`: name, shape, split and whether there is ground truth, of
+// each. `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
+std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wanted,
+                                      const std::string& split, const std::string& splits_where,
+                                      const std::string& no_splits) {
+  salbench::Dataset found;
+  found.splits_where = splits_where;
+  found.no_splits = no_splits;
+  for (const py::handle row : rows) {
+    const auto fields = row.cast<py::tuple>();
+    DatasetItem item{.name = file_bytes(fields[0]),
+                     .category = std::to_string(found.items.size()),  // its number
+                     .mesh = {},
+                     .saliency = {},
+                     .picks = {}};
+    item.shape = file_bytes(fields[1]);
+    item.split = file_bytes(fields[2]);
+    item.problem = file_bytes(fields[4]);
+    item.indexed = KnownItem{.has_truth = fields[3].cast<bool>()};
+    found.items.push_back(std::move(item));
   }
-
-  std::string layout() const { return layout_; }
-  std::vector<std::string> notes() const { return notes_; }
-
-  std::vector<std::string> splits() const { return {splits_.begin(), splits_.end()}; }
-
-  // (name, category, split) of each.
-  py::list items() const {
-    py::list rows;
-    for (const std::any& source : items_) {
-      const DatasetItem& item = item_of(source);
-      rows.append(py::make_tuple(file_text(item.name), file_text(item.category), file_text(item.split)));
-    }
-    return rows;
-  }
-
-  // points, faces, normals, ground truth, participants, viewers; None where the files have none.
-  py::tuple load(std::size_t i) const {
-    const std::any& source = items_.at(i);
-    const auto loaded = computed(1, [&] {
-      try {
-        return python::load(source);
-      } catch (const ShapeError& error) {
-        throw FileError(item_of(source).mesh, error.what());
-      }
-    });
-    py::object points, faces = py::none(), normals = py::none(), saliency = py::none();
-    if (const auto* mesh = std::get_if<Mesh>(&loaded->shape)) {
-      points = shown_of(loaded, mesh->vertices);
-      faces = shown_of(loaded, mesh->faces);
-    } else {
-      const auto& cloud = std::get<PointCloud>(loaded->shape);
-      points = shown_of(loaded, cloud.points);
-      if (!cloud.normals.empty()) normals = shown_of(loaded, cloud.normals);
-    }
-    if (!loaded->truth) return py::make_tuple(points, faces, normals, saliency, py::tuple(), py::tuple());
-    return py::make_tuple(points, faces, normals, shown_of(loaded, loaded->truth->saliency),
-                          all_shown(loaded, loaded->truth->picks), all_shown(loaded, loaded->truth->viewers));
-  }
-
- private:
-  static void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
-    std::vector<std::string_view> known;
-    for (const DatasetItem& item : items) {
-      if (item.name == name || item.shape_name() == name) return;
-      known.push_back(item.name);
-    }
-    fail_unknown("item", name, known);
-  }
-
-  static void choose(salbench::Dataset& found, const py::object& wanted, const std::string& split) {
-    if (py::isinstance<py::bytes>(wanted)) {
-      const auto selection = wanted.cast<std::string>();
-      if (split_list(selection).empty()) throw py::value_error("items names no item");
-      return select_items(found, selection, split);
-    }
+  if (py::isinstance<py::bytes>(wanted)) {
+    const auto selection = wanted.cast<std::string>();
+    if (split_list(selection).empty()) throw py::value_error("items names no item");
+    select_items(found, selection, split);
+  } else {
     select_items(found, {}, split);
-    if (wanted.is_none()) return;
-    const auto names = wanted.cast<std::vector<std::string>>();
-    for (const std::string& name : names) require_known(found.items, name);
-    const std::set<std::string> kept(names.begin(), names.end());
-    std::erase_if(found.items, [&](const DatasetItem& item) {
-      return !kept.contains(item.name) && !kept.contains(item.shape_name());
-    });
   }
+  std::set<std::string> kept;
+  if (py::isinstance<py::list>(wanted)) {
+    for (const py::handle name : wanted) kept.insert(file_bytes(name));
+    for (const std::string& name : kept) require_known(found.items, name);
+  }
+  std::vector<std::size_t> chosen;
+  for (const DatasetItem& item : found.items)
+    if (!py::isinstance<py::list>(wanted) || kept.contains(item.name) || kept.contains(item.shape))
+      chosen.push_back(std::stoul(item.category));
+  return chosen;
+}
 
-  std::string layout_;
-  std::vector<std::string> notes_;
-  std::set<std::string> splits_;
-  std::vector<std::any> items_;  // of DatasetItem
-};
+py::list texts(const std::vector<std::string>& all) {
+  py::list list;
+  for (const std::string& text : all) list.append(file_text(text));
+  return list;
+}
 
-// KeyError for a name that no layout has.
-void require_layout(const std::string& layout) {
-  if (!is_layout(layout)) fail_unknown("layout", layout, layout_names());
+// As `salbench _list` has an item; one of the one form has `form`, its file, in place of `native`.
+py::dict row_of(const DatasetItem& item) {
+  py::dict row;
+  row["name"] = file_text(item.name);
+  row["shape"] = file_text(item.shape_name());
+  row["view"] = file_text(item.view);
+  row["category"] = file_text(item.category);
+  row["split"] = file_text(item.split);
+  row["problem"] = file_text(item.problem);
+  if (item.indexed) {
+    row["kind"] = item.indexed->is_cloud ? "cloud" : "mesh";
+    row["truth"] = item.indexed->has_truth;
+    row["participants"] = item.indexed->participants;
+    row["viewers"] = item.indexed->viewers;
+    row["form"] = file_text(item.mesh);
+    return row;
+  }
+  row["kind"] = "";  // the file tells
+  row["truth"] = item.has_truth();
+  row["participants"] = item.picks.size();
+  row["viewers"] = 0;
+  py::dict native;
+  native["mesh"] = file_text(item.mesh);
+  native["saliency"] = texts(item.saliency.empty() ? std::vector<std::string>() : std::vector{item.saliency});
+  native["picks"] = texts(item.picks);
+  row["native"] = native;
+  return row;
+}
+
+// The listing of a layout that the program lists by itself, as `salbench _list` has it.
+py::dict native_items(const std::string& layout, const std::string& root, const std::string& twins) {
+  const Twins kept = twins_from(twins);
+  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout, kept); });
+  py::list items;
+  for (const DatasetItem& item : found.items) items.append(row_of(item));
+  py::dict listing;
+  listing["layout"] = file_text(found.layout);
+  listing["notes"] = texts(found.notes);
+  listing["items"] = items;
+  return listing;
+}
+
+// What the program reads by itself: a mesh or a cloud, values per point, picks per participant.
+std::any native_item(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
+                     std::vector<std::string> picks) {
+  return DatasetItem{
+      .name = name, .mesh = mesh, .saliency = saliency.empty() ? "" : saliency[0], .picks = std::move(picks)};
+}
+
+py::tuple load_native(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
+                      std::vector<std::string> picks) {
+  const std::any item = native_item(name, mesh, std::move(saliency), std::move(picks));
+  return arrays_of(computed(1, [&] { return load_named(item); }));
+}
+
+// The same as fields of a Form, its mesh as the file has it, and no saliency made from picks.
+py::dict native_form(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
+                     std::vector<std::string> picks) {
+  const std::any source = native_item(name, mesh, std::move(saliency), std::move(picks));
+  return fields_of(computed(1, [&] {
+    const DatasetItem& item = item_of(source);
+    const std::vector<FileData> of_shape = read_all({mesh_file_of(item)});
+    const std::vector<FileData> of_truth = read_all(truth_files_of(item));
+    const Files shape_file{source, name, of_shape}, truth_files{source, name, of_truth};
+    ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};
+    std::string remark;
+    if (shape.is_cloud)
+      shape.cloud = load_cloud(shape_file, Remark{remark});
+    else
+      shape.mesh = parsed_mesh(shape_file, &shape.polygons);
+    if (!of_truth.empty())
+      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, truth_files)
+                                                      : measured_truth(shape.mesh, truth_files)});
+    return shape;
+  }));
 }
 
 }  // namespace
 
 void bind_data(py::module_& module) {
-  module.def("layouts", &layout_names);
-  module.def("require_layout", &require_layout);
-  py::class_<Data>(module, "Data")
-      .def(py::init<const std::string&, const std::string&, const std::string&, const py::object&,
-                    const std::string&>())
-      .def("items", &Data::items)
-      .def("load", &Data::load)
-      .def_property_readonly("layout", &Data::layout)
-      .def_property_readonly("notes", &Data::notes)
-      .def_property_readonly("splits", &Data::splits);
+  module.def("native_items", &native_items, py::arg("layout"), py::arg("root"), py::arg("twins") = "refuse");
+  module.def("load_native", &load_native, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
+             py::arg("picks"));
+  module.def("native_form", &native_form, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
+             py::arg("picks"));
+  module.def("chosen_items", &chosen_items, py::arg("rows"), py::arg("items"), py::arg("split"),
+             py::arg("splits_where"), py::arg("no_splits"));
+  module.def("write_options_for_the_command_line", [] { options_are_arguments = false; });
 }
 
 }  // namespace salbench::python

@@ -97,10 +97,10 @@ Model bound(const ModelRow& row, const py::dict& keywords, const std::string& fu
   }
 }
 
-py::array map_of(const std::string& name, const std::string& function, py::handle points_of,
-                 py::handle faces_of, py::handle normals_of, py::handle fpfh_of, py::handle camera,
-                 bool is_scan, py::handle seed, const std::string& item, py::handle threads,
-                 const py::dict& keywords) {
+py::array map_in_memory(const std::string& name, const std::string& function, py::handle points_of,
+                        py::handle faces_of, py::handle normals_of, py::handle fpfh_of, py::handle camera,
+                        bool is_scan, py::handle seed, const std::string& item, py::handle threads,
+                        const py::dict& keywords) {
   const Model model = bound(row_of(name), keywords, function);
   const auto place_of = points(required(points_of, "points"));
   const std::size_t n = place_of.size();
@@ -145,7 +145,7 @@ py::list model_table() {
 }  // namespace
 
 void bind_models(py::module_& module) {
-  module.def("map", &map_of);
+  module.def("map", &map_in_memory);
   module.def("model_table", &model_table);
   module.def("protocol_configuration", [](const std::string& protocol) {
     return annotated_config_yaml(read_config(Section::from_text("protocol: " + protocol, protocol), ""));

@@ -54,6 +54,7 @@ PYBIND11_MODULE(_core, module) {
   wait_at_exit();
   bind_cache(module);
   bind_data(module);
+  bind_datasets(module);
   bind_metrics(module);
   bind_models(module);
   bind_run(module);

@@ -18,6 +18,7 @@ std::string hint(std::string_view name, const std::vector<std::string_view>& kno
 
 void bind_cache(pybind11::module_& module);
 void bind_data(pybind11::module_& module);
+void bind_datasets(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
 void bind_run(pybind11::module_& module);

@@ -46,7 +46,7 @@ done
 keeps io 'io|stages/core'
 keeps cache 'cache|io|stages/core'
 below='cache|io|stages/[a-z_]+'
-for room in config engine inputs rules results commands; do
+for room in config engine inputs package rules results commands; do
   below+="|pipeline/$room"
   keeps "pipeline/$room" "$below"
 done
@@ -63,7 +63,6 @@ hides CGAL 'CGAL/'
 hides CLI11 'CLI/'
 hides Embree 'embree[34]/' stages/core/embree.cpp
 hides HDF5 'hdf5\.|H5' io/hdf5_library.h
-hides matio 'matio'
 hides PCL 'pcl/'
 hides Spectra 'Spectra/'
 hides 'the flow graph' '(tbb|oneapi/tbb)/flow_graph'

@@ -11,9 +11,9 @@
 #include "cache/digest.h"
 #include "io/file.h"
 #include "io/process.h"
-#include "pipeline/commands/package.h"
 #include "pipeline/commands/subcommand.h"
 #include "pipeline/inputs/inputs.h"
+#include "pipeline/package/package.h"
 #include "pipeline/results/raw_tables.h"
 #include "stages/core/errors.h"
 
@@ -83,10 +83,8 @@ Concluded conclude_results(const fs::path& folder, const std::string& digest) tr
   const CommandEnd end =
       try_command(package_command({"conclude", fs::absolute(folder).string(), "--of", digest, "--quiet"}),
                   fs::current_path(), kLongest);
-  constexpr int kNotExecutable = 126, kNotFound = 127;  // as the shell says it of a program
   if (end.status == kNoPackage) return {.missing = end.printed};
-  if (end.status == kNotFound) return {.missing = no_interpreter("not found")};
-  if (end.status == kNotExecutable) return {.missing = no_interpreter("cannot be executed")};
+  if (const std::string none = no_interpreter(end.status); !none.empty()) return {.missing = none};
   if (end.status != 0) return {.failure = fmt::format("{}; {}", end.reason, said_of(end.printed))};
   const Json document = conclusions_in(folder, digest);
   if (document.is_null())

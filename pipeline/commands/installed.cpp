@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/config/data_layout.h"
+#include "pipeline/config/program_files.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -45,13 +45,6 @@ Section configuration(const std::string& given) {
   throw ConfigError(fmt::format("{}: cannot be read: there is no such configuration; {}", given, hint));
 }
 
-fs::path package_folder() {
-  std::error_code error;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (fs::path folder : {bin / "python", bin.parent_path() / "lib/python3/dist-packages"})
-    if (folder.parent_path() != "/usr/lib/python3" && fs::is_directory(folder / "salbench", error))
-      return folder;
-  return {};
 }
 
 }  // namespace salbench

@@ -13,8 +13,5 @@ namespace salbench {
 // "protocols/3dva". Throws ConfigError if there is neither, with the nearest name.
 Section configuration(const std::string& given);
 
-// The folder of the Python package that was built or installed with the program, and of nothing else; empty
-// where it is Debian's, which its interpreter finds anyway.
-std::filesystem::path package_folder();
 
 }  // namespace salbench

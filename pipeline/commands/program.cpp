@@ -66,7 +66,7 @@ constexpr Example kExamples[] = {
     {"verify --cache salbench-cache", "read every artefact of a cache"},
     {"gc configs/shrec07.yaml --data SchellingData --dry-run", "what no run of it needs"},
     {"inspect 3dva --data 3DVA", "what a description finds in a folder"},
-    {"convert 3dva --data 3DVA --to 3DVA-hdf5", "the same set in one form, an HDF5 file per shape"},
+    {"import 3dva --data 3DVA --to 3DVA-hdf5", "the same set in one form, an HDF5 file per shape"},
 };
 
 constexpr const char* kExitStatus =
@@ -77,7 +77,7 @@ constexpr const char* kExitStatus =
 constexpr std::array kSubcommands = {
     run_subcommand,    maps_subcommand,   evaluate_subcommand, pictures_subcommand, export_subcommand,
     plan_subcommand,   graph_subcommand,  explain_subcommand,  status_subcommand,   doctor_subcommand,
-    config_subcommand, verify_subcommand, gc_subcommand,       inspect_subcommand,  convert_subcommand,
+    config_subcommand, verify_subcommand, gc_subcommand,
 };
 
 std::string joined(std::span<const char* const> words) {
@@ -123,6 +123,8 @@ std::string unknown_word(const CLI::App& app, std::span<const char* const> words
   }
   for (const PackageSubcommand& subcommand : package_subcommands()) known.push_back(subcommand.name);
   if (words.size() < 2 || std::string_view(words[1]).starts_with("-")) return {};
+  if (std::string_view(words[1]) == "convert")
+    return "convert is called import now: salbench import LAYOUT --data DIR --to DIR2";
   return fmt::format("there is no subcommand '{}'; {}", words[1],
                      did_you_mean(words[1], known, "salbench --help names them"));
 }

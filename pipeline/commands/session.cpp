@@ -14,6 +14,7 @@
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/inputs/given_reference.h"
+#include "pipeline/package/listing.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -27,7 +28,7 @@ Inputs inputs_of(const Config& config, const Selection& selection) {
   const Others others = selection.reference || selection.reference_of_items ? Others::left_out
                         : simulated                                         ? Others::simulated
                                                                             : Others::measured;
-  return read_inputs(find_dataset(config.data, layouts_of(config.dataset.layout), config.dataset.twins),
+  return read_inputs(find_dataset(config.data, config.dataset.layout, config.dataset.twins),
                      simulated && selection.items.text == kScoredItems ? ItemChoice() : selection.items,
                      selection.shard, config.dataset.split, others);
 }

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/config/data_layout.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -34,19 +33,6 @@ Parameter config_parameter(Arguments& arguments) {
 Parameter shard_parameter(Arguments& arguments) {
   return {"--shard", &arguments.shard,
           "only share I of N of the items, as I/N; a run without it then merges the shares"};
-}
-
-Parameter layout_parameter(std::string* layout) {
-  return {"LAYOUT", layout,
-          "description of the data set: automatic, a name in configs/datasets, or a file of your own (.yaml)",
-          true};
-}
-
-void require_layout(const std::string& subcommand, const std::string& layout) {
-  if (is_layout(layout)) return;
-  throw ConfigError(fmt::format(
-      "{}: there is no layout '{}'; {}", subcommand, layout,
-      did_you_mean(layout, layout_names(), "name one of docs/data_sets.md, or a file NAME.yaml")));
 }
 
 Parameter data_parameter(Arguments& arguments) {

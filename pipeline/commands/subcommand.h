@@ -64,9 +64,6 @@ std::string shell_word(const std::string& word);  // as a shell reads it back as
 // Parameters that several subcommands share.
 Parameter config_parameter(Arguments& arguments);
 Parameter shard_parameter(Arguments& arguments);
-Parameter layout_parameter(std::string* layout);
-// Throws ConfigError, with the nearest name, unless the text may be a layout.
-void require_layout(const std::string& subcommand, const std::string& layout);
 Parameter data_parameter(Arguments& arguments);
 Parameter output_parameter(Arguments& arguments);
 Parameter threads_parameter(Arguments& arguments);

@@ -22,10 +22,6 @@ Subcommand evaluate_subcommand(Arguments& arguments);
 Subcommand export_subcommand(Arguments& arguments);
 // Authors of a report that shows shapes: once, before the export.
 Subcommand pictures_subcommand(Arguments& arguments);
-// Whoever has a data set and a description of it, before the first run.
-Subcommand inspect_subcommand(Arguments& arguments);
-// Whoever trains on data sets, or keeps them: each in the one form.
-Subcommand convert_subcommand(Arguments& arguments);
 // Before a long run, to see what it would compute, and why.
 Subcommand plan_subcommand(Arguments& arguments);
 // Whoever changes the table of rules, or explains the pipeline to others.

@@ -8,7 +8,7 @@
 // The arguments stand for the function's parameters, one for one: an Output<T> for a T, or for Members<T>,
 // which gathers all units; only_if(needed, Output<V>) for a view V; prepared<P>(Output<T>) for a P that is
 // made of a T once per family; a SectionOf<Options> for its options; kRandom for a RandomSource, kPlace for a
-// UnitPlace, kRemark for a Remark, a FilesOf for Files. Anything else does not compile.
+// UnitPlace, kName for a UnitName, kRemark for a Remark, a FilesOf for Files. Anything else does not compile.
 #pragma once
 
 #include <span>
@@ -32,6 +32,11 @@ struct Files {
   const std::any& source;   // of the family
   const std::string& name;  // of the unit
   std::span<const FileData> data;
+};
+
+// Name of the unit, for messages: results do not depend on it.
+struct UnitName {
+  const std::string& text;
 };
 
 // Oddity of a unit that can be used all the same: one line, stored beside the result.
@@ -153,6 +158,8 @@ inline constexpr OfJob<RandomSource> kRandom = {[](Rule& reader) { reader.seeded
                                                 [](const JobInputs& in) { return in.random; }};
 inline constexpr OfJob<UnitPlace> kPlace = {[](Rule& reader) { reader.placed = true; },
                                             [](const JobInputs& in) { return UnitPlace{in.place}; }};
+inline constexpr OfJob<UnitName> kName = {[](Rule&) {},
+                                          [](const JobInputs& in) { return UnitName{in.random.item}; }};
 inline constexpr OfJob<Remark> kRemark = {[](Rule& reader) { reader.remarks = true; },
                                           [](const JobInputs& in) { return Remark{*in.remark}; }};
 

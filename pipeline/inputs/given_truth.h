@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ground truth from the files of an item, as the description of its data set says that they are written.
+// Ground truth from the files of an item: values per point and picks, the one form, or what was imported.
 #pragma once
-
-#include <vector>
 
 #include "io/dataset.h"
 #include "io/one_form.h"
@@ -11,37 +9,26 @@
 
 namespace salbench {
 
-// The mesh file, if values are per face in its order; then saliency, masks and picks; or a cloud's file with
-// its ground truth in columns. How they are read, and from where the shape was seen, is part of their names,
-// and so of a key; the names of files in the Schelling study's form say nothing about it.
+// Saliency and picks, or the item's file in the one form. Of an imported item one without content, whose name
+// says which ground truth of the import is meant. None where nothing is known.
 FilesOfUnit truth_files_of(const DatasetItem& item);
 
 File mesh_file_of(const DatasetItem& item);  // not read yet
 
-bool has_columns(const DatasetItem& item);               // a point cloud in columns of a text
-std::string column_cloud_name(const DatasetItem& item);  // of its file, in keys
-
-// From what these files hold. Values per face or per point of another sampling are carried over to the
-// vertices; several files of saliency are averaged where they have a vertex seen, and kept if they are of
-// viewers; what the camera of the item does not see is hidden. Picks alone are enough: the saliency is then
-// made from them, as the study's authors did. [chen2012] Throws InputError, one line that names file and
-// line.
+// From what these files hold. Picks alone are enough: the saliency is then made from them, as the study's
+// authors did. [chen2012] Throws InputError, one line that names file and line.
 GroundTruth given_truth(const Mesh& mesh, const Files& files);
 
 // The same of a point cloud, picks being smoothed over its partial mesh. The files count the points of the
-// cloud's file, those without a position included; values per face are refused.
+// cloud's file, those without a position included.
 GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files);
 
-// The ground truth as its files have it: no saliency is made from picks. Without a surface, cameras see all
-// of a cloud. `as_read`, where it is given, takes the files whose values are not those of the result: of
-// faces or other points, masked, or averaged.
-GroundTruth measured_truth(const Mesh& mesh, const Files& files,
-                           std::vector<ValuesAsRead>* as_read = nullptr);
-GroundTruth measured_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files,
-                                 std::vector<ValuesAsRead>* as_read = nullptr);
+// The same of an item that was imported.
+GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Files& files);
 
-// How the files of an item are written.
-const TruthFormat& format_of(const DatasetItem& item);
+// What the files hold: no saliency is made from picks.
+GroundTruth measured_truth(const Mesh& mesh, const Files& files);
+GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files);
 
 // People whose picks or maps are in files of their own; one file may be of several who are not told apart.
 std::size_t participants_of(const DatasetItem& item);

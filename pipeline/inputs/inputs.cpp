@@ -11,7 +11,6 @@
 #include "io/file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
-#include "pipeline/inputs/sizes.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 #include "stages/scan/scan.h"
@@ -38,8 +37,6 @@ std::optional<Range> as_range(std::string_view text) {
   if (!first || !last || *first > *last) return {};
   return Range{*first, *last};
 }
-
-bool has_truth(const DatasetItem& item) { return !truth_files_of(item).empty(); }
 
 // A number range takes the items that exist in it: data sets have gaps. A single name must exist.
 std::set<std::string> selected_names(const ItemChoice& choice, const std::set<std::string>& present,
@@ -92,6 +89,18 @@ void select_split(Dataset& dataset, const std::string& split) {
   std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
 }
 
+// The line of a data set's notes on them.
+std::string text_of_unknown(const std::vector<SplitEntry>& unknown) {
+  std::set<std::string_view> names;
+  for (const SplitEntry& entry : unknown) names.insert(entry.item);
+  const SplitEntry& first = unknown.front();
+  return fmt::format(
+      "{}: the split '{}' names '{}', which is no item of the data set{}: correct the name, or "
+      "add its files",
+      first.where, first.split, first.item,
+      names.size() == 1 ? "" : fmt::format(" ({} such names)", names.size()));
+}
+
 // Of the names in splits that are no items: those of the split asked for are an error, others a note.
 std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& split) {
   std::vector<SplitEntry> of_split, of_others;
@@ -103,25 +112,26 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
   return {text_of_unknown(of_split)};
 }
 
+FilesOfUnit files_of_import(const ImportedItem& item) {
+  FilesOfUnit files;
+  for (const auto& [name, path, title] : item.files)
+    files.push_back({.name = name, .place = path, .title = title});
+  return files;
+}
+
 // The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
-// a name that says so.
-std::pair<Level, File> shape_file_of(const DatasetItem& item) {
+// a name that says so. Of an item with an importer, all its files.
+std::pair<Level, FilesOfUnit> shape_files_of(const DatasetItem& item) {
+  if (item.imported)
+    return {item.imported->known.is_cloud ? kClouds : kMeshes, files_of_import(*item.imported)};
   File file = mesh_file_of(item);
-  const std::string cloud_title = "point cloud file " + std::filesystem::path(item.mesh).filename().string();
-  if (has_columns(item)) {
-    file.name = column_cloud_name(item);
-    file.title = cloud_title;
-    return {kClouds, std::move(file)};
-  }
-  const std::string extension = lower_case_extension(item.mesh);
   FileData data;
+  const std::string extension = lower_case_extension(item.mesh);
   if (extension == ".ply") look(file, &data);
-  const bool is_cloud = holds_cloud(item, data.text());
-  if (is_cloud) {
-    file.name = "point cloud file " + extension;
-    file.title = cloud_title;
-  }
-  return {is_cloud ? kClouds : kMeshes, std::move(file)};
+  if (!holds_cloud(item, data.text())) return {kMeshes, {std::move(file)}};
+  file.name = "point cloud file " + extension;
+  file.title = "point cloud file " + std::filesystem::path(item.mesh).filename().string();
+  return {kClouds, {std::move(file)}};
 }
 
 }  // namespace
@@ -136,8 +146,8 @@ const std::vector<LevelInfo>& levels() {
 }
 
 bool holds_cloud(const DatasetItem& item, std::string_view bytes) {
-  if (item.indexed) return item.indexed->is_cloud;
-  return has_columns(item) || is_point_cloud(bytes, item.mesh);
+  if (const KnownItem* known = item.known()) return known->is_cloud;
+  return is_point_cloud(bytes, item.mesh);
 }
 
 const DatasetItem& item_of(const std::any& source) { return std::any_cast<const DatasetItem&>(source); }
@@ -167,6 +177,8 @@ DataIdentity identity_of(const Inputs& inputs) {
     hasher.add(inputs.units.families()[family].name);
     for (const FileColumnPtr& column : {inputs.shape_files, inputs.truth_files})
       for (File& file : column->files[family]) {
+        if (inputs.importer.version > 0 && column == inputs.truth_files)
+          continue;  // among those of the import
         look(file);
         hasher.add(file.name);
         hasher.add(file.digest ? file.digest->hex() : "unreadable");
@@ -200,7 +212,7 @@ void select_items(Dataset& dataset, const ItemChoice& choice, const std::string&
   std::set<std::string> present, scored;
   for (const DatasetItem& item : dataset.items) {
     present.insert({item.name, item.shape_name()});
-    if (has_truth(item)) scored.insert(item.name);
+    if (item.has_truth()) scored.insert(item.name);
   }
   const std::set<std::string> names = choice.all() ? present : selected_names(choice, present, scored);
   if (names.empty()) throw ConfigError(as_option("items", choice.text) + ": names no item");
@@ -218,7 +230,6 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
                    const std::string& split, Others others) {
   std::vector<std::string> errors;
   if (choice.all() || choice.text == kScoredItems) errors = errors_of_split(dataset, split);
-  if (!dataset.unit.where.empty()) fail_mixed_units(dataset);
   Dataset whole = dataset;
   select_items(dataset, choice, split);
   std::set<std::string> chosen;
@@ -230,14 +241,14 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
     if (!split.empty()) select_split(whole, split);
     items = std::move(whole.items);
     std::erase_if(items, [&](const DatasetItem& item) {
-      return !chosen.contains(item.name) && others == Others::measured && !has_truth(item);
+      return !chosen.contains(item.name) && others == Others::measured && !item.has_truth();
     });
   }
   std::vector<Family> families(items.size());
   FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;
   parallel_ranges(items.size(), 1, [&](std::size_t i, std::size_t) {
-    auto [level, file] = shape_file_of(items[i]);
-    shapes.files[i] = {std::move(file)};
+    auto [level, files] = shape_files_of(items[i]);
+    shapes.files[i] = std::move(files);
     truths.files[i] = truth_files_of(items[i]);
     families[i] = {level, items[i].name, {}, chosen.contains(items[i].name)};
     families[i].source = std::move(items[i]);
@@ -248,6 +259,7 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           Units(levels(), std::move(families)),
           std::make_shared<FileColumn>(std::move(shapes)),
           std::make_shared<FileColumn>(std::move(truths)),
+          dataset.importer,
           shard};
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,9 +30,10 @@ struct Inputs {
   std::vector<std::string> notes = {};   // on the data set, for the user
   std::vector<std::string> errors = {};  // likewise, of what should be there and is not: the others go on
   Units units = {};                      // a family is a mesh with its scans, or a point cloud
-  FileColumnPtr shape_files = {};        // [family]: one each
+  FileColumnPtr shape_files = {};        // [family]: one each; with an importer, all that it reads
   FileColumnPtr truth_files = {};        // [family]: none where nothing is known about the shape
-  std::optional<Shard> shard = {};       // the units are this share of the data set
+  DataImporter importer = {};
+  std::optional<Shard> shard = {};  // the units are this share of the data set
 
   // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;
@@ -77,8 +79,7 @@ enum class Others {
 };
 
 // The selected items, or one share of them, which has no others. Reads no file but those whose name does not
-// say which kind of shape they hold, unless the description has a unit of length: then shapes of another are
-// told by all sizes. Throws ConfigError as above.
+// say which kind of shape they hold. Throws ConfigError as above.
 Inputs read_inputs(Dataset dataset, const ItemChoice& choice = {}, const std::optional<Shard>& shard = {},
                    const std::string& split = {}, Others others = Others::left_out);
 

@@ -10,7 +10,6 @@
 #include "io/cloud_file.h"
 #include "io/mesh_file.h"
 #include "io/one_form.h"
-#include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
 #include "stages/core/mesh_check.h"
 #include "stages/core/scale.h"
@@ -33,9 +32,7 @@ void make(const Remark& remark, const std::string& name, const std::string& poly
 PointCloud parsed_cloud(const Files& file) {
   const DatasetItem& item = item_of(file.source);
   const std::string& bytes = file.data[0].text();
-  return item.indexed        ? cloud_in_form(bytes, item.mesh)
-         : has_columns(item) ? parse_column_cloud(bytes, item.mesh, item.format->columns)
-                             : parse_cloud(bytes, item.mesh);
+  return item.indexed ? cloud_in_form(bytes, item.mesh) : parse_cloud(bytes, item.mesh);
 }
 
 }  // namespace
@@ -48,16 +45,29 @@ Mesh parsed_mesh(const Files& file, PolygonCounts* polygons) {
 
 Mesh load_mesh(const Files& file, const Remark& remark) {
   PolygonCounts polygons;
-  CheckedMesh checked = check_mesh(parsed_mesh(file, &polygons));
-  for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", file.name, warning);
-  make(remark, file.name, polygons_text(polygons), odd_scale(checked.mesh.vertices));
-  return std::move(checked.mesh);
+  Mesh mesh = parsed_mesh(file, &polygons);
+  return usable_mesh(std::move(mesh), polygons, file.name, remark);
 }
 
 PointCloud load_cloud(const Files& file, const Remark& remark) {
-  CheckedCloud checked = check_cloud(parsed_cloud(file));
-  for (const std::string& warning : checked.warnings) spdlog::warn("{}: {}", file.name, warning);
-  make(remark, file.name, {}, odd_scale(checked.cloud.points));
+  return usable_cloud(parsed_cloud(file), file.name, remark);
+}
+
+Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,
+                 const Remark& remark) {
+  CheckedMesh checked = check_mesh(std::move(as_written));
+  for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", item, warning);
+  make(remark, item, polygons_text(polygons), odd_scale(checked.mesh.vertices));
+  return std::move(checked.mesh);
+}
+
+PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Remark& remark) {
+  if (!as_written.dropped.empty())  // by an importer
+    spdlog::warn("{}: {} of {} points dropped: they have no position", item, as_written.dropped.size(),
+                 as_written.size_in_file());
+  CheckedCloud checked = check_cloud(std::move(as_written));
+  for (const std::string& warning : checked.warnings) spdlog::warn("{}: {}", item, warning);
+  make(remark, item, {}, odd_scale(checked.cloud.points));
   return std::move(checked.cloud);
 }
 

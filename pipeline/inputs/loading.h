@@ -3,6 +3,8 @@
 // leave out, and make a remark on polygons that were split and on an odd scale.
 #pragma once
 
+#include <string>
+
 #include "io/polygons.h"
 #include "pipeline/engine/binding.h"
 #include "stages/core/point_cloud.h"
@@ -14,6 +16,11 @@ Mesh parsed_mesh(const Files& file, PolygonCounts* polygons);  // as the file ha
 
 Mesh load_mesh(const Files& file, const Remark& remark);
 PointCloud load_cloud(const Files& file, const Remark& remark);
+
+// What the two above make of what a file has.
+Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,
+                 const Remark& remark);
+PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Remark& remark);
 
 Mesh mesh_of(const PointCloud& cloud, Surface surface);
 

@@ -29,15 +29,16 @@ struct Size {
   std::string_view kind;
   double bytes_per_point, bytes;
 };
-constexpr std::array<Size, 9> kSizes = {{{"mesh", 48, 5000},  // a vertex, and 2 triangles
-                                         {"point_cloud", 48, 5000},
-                                         {"scan", 24, 5000},
-                                         {"normals", 24, 2600},
-                                         {"faces", 24, 2600},  // 2 triangles
-                                         {"descriptors", 132, 5000},
-                                         {"field", 8, 2600},
-                                         {"ground_truth", 12, 5000},  // a value, and picks
-                                         {"picture", 0, 5000}}};
+constexpr std::array<Size, 10> kSizes = {{{"shape_in_form", 56, 8000},  // a vertex, its value, 2 triangles
+                                          {"mesh", 48, 5000},           // a vertex, and 2 triangles
+                                          {"point_cloud", 48, 5000},
+                                          {"scan", 24, 5000},
+                                          {"normals", 24, 2600},
+                                          {"faces", 24, 2600},  // 2 triangles
+                                          {"descriptors", 132, 5000},
+                                          {"field", 8, 2600},
+                                          {"ground_truth", 12, 5000},  // a value, and picks
+                                          {"picture", 0, 5000}}};
 constexpr Size kOther = {"", 0, 5000};  // numbers of a shape, however large it is
 
 // Of descriptors, as measured on the meshes of scripts/demo and of SHREC'07 and rounded up; small arrays stay

@@ -142,9 +142,6 @@ std::string written(const Config& config, bool annotated) {
 }  // namespace
 
 void check(const DatasetOptions& options) {
-  if (!is_layout(options.layout))
-    throw OptionError("layout", fmt::format("is '{}', expected one of {}, or a file NAME.yaml",
-                                            options.layout, fmt::join(layout_names(), ", ")));
   if (!options.meshes && !options.scans) throw OptionError("scans", "must be true where meshes is false");
 }
 

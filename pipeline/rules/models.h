@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "pipeline/config/section.h"
-#include "pipeline/inputs/given_maps.h"
+#include "pipeline/rules/given_maps.h"
 #include "pipeline/rules/values.h"
 #include "stages/models/hs.h"
 

@@ -10,6 +10,7 @@
 
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/loading.h"
+#include "pipeline/package/importer.h"
 #include "pipeline/rules/human.h"
 #include "stages/core/centre.h"
 #include "stages/core/field.h"
@@ -195,22 +196,103 @@ void add_model(RuleTable& table, const ShapeOutputs& shape, const Config& config
   table.add(shape.level, stage_of(model.name, Role::mean_histogram, 1), mean_over<ScalarField>, map);
 }
 
-Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Inputs& inputs,
-                                          const Output<Mesh>& mesh) {
+// Files of a data set, and what reads them.
+struct Source {
+  const Inputs& inputs;
+  std::shared_ptr<Importer> importer;
+
+  bool imports() const { return inputs.importer.version > 0; }
+};
+
+// Files in the one form that another program wrote are read as this one writes them.
+template <class Read>
+auto in_own_form(const std::shared_ptr<Importer>& importer, const Files& files, const Read& read) try {
+  return read(files);
+} catch (const ForeignForm&) {
+  const std::vector<FileData> own = importer->rewritten(files);
+  return read(Files{files.source, files.name, own});
+}
+
+// Where the list of a data set names an importer, all that follows reads what it made.
+Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source) {
+  return table.add(
+      level, stage(Role::import, source.inputs.importer.version),
+      [importer = source.importer](const Files& files) { return importer->item(files); },
+      FilesOf{source.inputs.shape_files});
+}
+
+Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
+  const RuleHead head = stage(Role::shape, 2, "mesh");
+  if (source.imports())
+    return table.add(
+        kMeshes, head,
+        [](const ShapeInForm& shape, const UnitName& name, const Remark& remark) {
+          return usable_mesh(shape.mesh, shape.polygons, name.text, remark);
+        },
+        form, kName, kRemark);
+  return table.add(
+      kMeshes, head,
+      [importer = source.importer](const Files& files, const Remark& remark) {
+        return in_own_form(importer, files, [&](const Files& own) { return load_mesh(own, remark); });
+      },
+      FilesOf{source.inputs.shape_files}, kRemark);
+}
+
+Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
+  const RuleHead head = stage(Role::shape, 1, "cloud");
+  if (source.imports())
+    return table.add(
+        kClouds, head,
+        [](const ShapeInForm& shape, const UnitName& name, const Remark& remark) {
+          return usable_cloud(shape.cloud, name.text, remark);
+        },
+        form, kName, kRemark);
+  return table.add(
+      kClouds, head,
+      [importer = source.importer](const Files& files, const Remark& remark) {
+        return in_own_form(importer, files, [&](const Files& own) { return load_cloud(own, remark); });
+      },
+      FilesOf{source.inputs.shape_files}, kRemark);
+}
+
+Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
+                                          const Output<Mesh>& mesh, const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1);
+  const FilesOf files{source.inputs.truth_files};
   if (config.simulated())
     return table.add(kMeshes, head, simulate_ground_truth, mesh, section("simulation", config.simulation),
                      kRandom);
-  return table.add(kMeshes, head, given_truth, mesh, FilesOf{inputs.truth_files});
+  if (source.imports()) return table.add(kMeshes, head, imported_truth, mesh, form, files);
+  return table.add(
+      kMeshes, head,
+      [importer = source.importer](const Mesh& shape, const Files& given) {
+        return in_own_form(importer, given, [&](const Files& own) { return given_truth(shape, own); });
+      },
+      mesh, files);
 }
 
-Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& config, const Inputs& inputs,
-                                           const Output<PointCloud>& cloud, const Output<Surface>& surface) {
+Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& config, const Source& source,
+                                           const Output<PointCloud>& cloud, const Output<Surface>& surface,
+                                           const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1, "cloud_ground_truth");
+  const FilesOf files{source.inputs.truth_files};
   if (config.simulated())
     return table.add(kClouds, head, made_up_cloud_ground_truth, cloud, surface,
                      section("simulation", config.simulation), kRandom);
-  return table.add(kClouds, head, given_cloud_truth, cloud, surface, FilesOf{inputs.truth_files});
+  if (source.imports())
+    return table.add(
+        kClouds, head,
+        [](const PointCloud& points, Surface faces, const ShapeInForm& shape, const Files& given) {
+          return imported_truth(mesh_of(points, faces), shape, given);
+        },
+        cloud, surface, form, files);
+  return table.add(
+      kClouds, head,
+      [importer = source.importer](const PointCloud& points, Surface faces, const Files& given) {
+        return in_own_form(importer, given,
+                           [&](const Files& own) { return given_cloud_truth(points, faces, own); });
+      },
+      cloud, surface, files);
 }
 
 // A given reference is known before the run, and reads nothing.
@@ -235,17 +317,17 @@ Output<Descriptors> add_fpfh(RuleTable& table, const ShapeOutputs& shape,
 
 // From its points on, a cloud is described like the vertices of a mesh: with the same normals, both have the
 // same maps. What needs faces takes a partial mesh, as for scans.
-Output<PointCloud> add_cloud(RuleTable& table, const Config& config, const Inputs& inputs,
+Output<PointCloud> add_cloud(RuleTable& table, const Config& config, const Source& source,
                              const std::optional<Histogram>& given, ShapeOutputs& clouds) {
-  const auto cloud =
-      table.add(kClouds, stage(Role::shape, 1, "cloud"), load_cloud, FilesOf{inputs.shape_files}, kRemark);
+  const auto form = source.imports() ? add_import(table, kClouds, source) : Output<ShapeInForm>();
+  const Output<PointCloud> cloud = add_points(table, source, form);
   clouds.points = cloud;
   const Output<Normals> normals = table.add(kClouds, stage(Role::normals, 1, "cloud_normals"), cloud_normals,
                                             cloud, section("scan_normals", config.scan_normals));
   clouds.normals = normals;
   clouds.surface = table.add(kClouds, stage(Role::surface, 1), partial_mesh, cloud, normals,
                              section("surface", config.surface));
-  clouds.ground_truth = add_cloud_ground_truth(table, config, inputs, cloud, clouds.surface);
+  clouds.ground_truth = add_cloud_ground_truth(table, config, source, cloud, clouds.surface, form);
   clouds.reference = add_reference(table, kClouds, clouds.ground_truth, given);
   clouds.fpfh = add_fpfh(table, clouds, section("fpfh", config.fpfh));
   return cloud;
@@ -286,12 +368,14 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
   const bool any_mesh = inputs.has(kMeshes), any_cloud = inputs.has(kClouds);
   const bool on_meshes = any_mesh && config.dataset.meshes, on_scans = any_mesh && config.dataset.scans;
 
+  const Source source{inputs, std::make_shared<Importer>(inputs.importer)};
   Output<Mesh> mesh;
   if (any_mesh) {
-    mesh = table.add(kMeshes, stage(Role::shape, 2, "mesh"), load_mesh, FilesOf{inputs.shape_files}, kRemark);
+    const auto form = source.imports() ? add_import(table, kMeshes, source) : Output<ShapeInForm>();
+    mesh = add_mesh(table, source, form);
     meshes.points = mesh;
     meshes.surface = mesh;
-    meshes.ground_truth = add_mesh_ground_truth(table, config, inputs, mesh);
+    meshes.ground_truth = add_mesh_ground_truth(table, config, source, mesh, form);
     meshes.reference = add_reference(table, kMeshes, meshes.ground_truth, given_reference);
   }
   Output<Scan> scan;
@@ -317,7 +401,7 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
     scans.fpfh = add_fpfh(table, scans, section<FpfhOptions>("scan_fpfh", config.scan_fpfh));
   }
   Output<PointCloud> cloud;
-  if (any_cloud) cloud = add_cloud(table, config, inputs, given_reference, clouds);
+  if (any_cloud) cloud = add_cloud(table, config, source, given_reference, clouds);
 
   std::vector<ShapeOutputs*> evaluated;
   if (on_meshes) evaluated.push_back(&meshes);

@@ -83,7 +83,7 @@ ShapeCommand::ShapeCommand(const std::string& name, std::string command,
   if (!has(kListOfMeshes) && !has(kListOfShapes)) return;
   std::string line = command_;
   for (const std::string_view list : {kListOfMeshes, kListOfShapes}) replace_all(line, list, kListFile);
-  servers_.emplace(name, std::move(line),
+  servers_.emplace("models." + name, std::move(line),
                    [files = depends_](const fs::path& folder) { files->link_into(folder); });
 }
 
@@ -95,7 +95,8 @@ ScalarField ShapeCommand::map(const ShapeParts& shape) {
   const std::string end = servers_ ? ask(folder) : run(folder);
   depends_->check_unchanged();
   const fs::path written = written_file(folder, end);
-  return read_point_values(written, "the command's " + written.filename().string(), shape.points.size());
+  return read_point_values(written, "the command's " + written.filename().string(), shape.points.size(),
+                           [&](const fs::path& file) { return importer_.values(file); });
 }
 
 // Returns what the command did, for a message.

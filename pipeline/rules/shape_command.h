@@ -10,7 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/rules/command_servers.h"
+#include "pipeline/package/command_servers.h"
+#include "pipeline/package/importer.h"
 #include "pipeline/rules/depended_files.h"
 #include "stages/core/types.h"
 
@@ -57,6 +58,7 @@ class ShapeCommand {
   std::chrono::duration<double> timeout_;
   std::shared_ptr<DependedFiles> depends_;
   std::optional<CommandServers> servers_;  // of a command that has a list
+  Importer importer_;                      // of HDF5 files that it writes
 };
 
 }  // namespace salbench

@@ -18,6 +18,7 @@ namespace salbench {
 
 // Meaning of an output, whatever the level and the model. Its name is that of its stage, before the model's.
 enum class Role {
+  import,  // of a shape and its ground truth, from files that other programs wrote
   shape,
   ground_truth,
   reference,  // mean histogram of the ground truth, which maps are matched to
@@ -38,10 +39,10 @@ enum class Role {
 };
 template <>
 struct EnumNames<Role> {
-  static constexpr std::array<std::string_view, 17> names{
-      "shape",   "ground_truth",   "reference",        "normals",         "surface",       "fpfh",
-      "map",     "matched",        "mean_histogram",   "scores",          "score_table",   "curve",
-      "picture", "centre_density", "centre_densities", "smoothed_scores", "smoothed_table"};
+  static constexpr std::array<std::string_view, 18> names{
+      "import", "shape",   "ground_truth",   "reference",        "normals",         "surface",
+      "fpfh",   "map",     "matched",        "mean_histogram",   "scores",          "score_table",
+      "curve",  "picture", "centre_density", "centre_densities", "smoothed_scores", "smoothed_table"};
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 

@@ -1,62 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The subcommands of this side: `salbench NAME`, which the program hands over, is `python3 -P -m salbench NAME`."""
 
-import argparse
-import json
-import os
-import shlex
-import signal
 import sys
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
-ALL_DONE, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 0, 2, 3, 70, 130
-SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
+if TYPE_CHECKING:
+    import argparse
 
-
-_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07", "report": "salbench-out/shrec07",
-             "submit": "mine --to mine.zip --data SchellingData", "leaderboard": "submissions --to site --data SchellingData"}  # as `salbench --help` has them
+UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 2, 3, 70, 130
 
 
-class _Parser(argparse.ArgumentParser):
-    def format_help(self) -> str:
-        """In the form of the program's own subcommands."""
-        formatter = self._get_formatter()
-        formatter.add_text(self.description)
-        formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups, "Usage: ")
-        for title, group in zip(("Positionals", "Options"), self._action_groups):
-            formatter.start_section(title)
-            formatter.add_arguments(group._group_actions)
-            formatter.end_section()
-        formatter.add_text(self.epilog)
-        return formatter.format_help()
+def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> Any:
+    from salbench._command_line import Parser
 
-    def error(self, message: str) -> NoReturn:
-        self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
-
-
-def _parser(name: str, summary: str, positional: str) -> argparse.ArgumentParser:
-    return _Parser(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {positional}", allow_abbrev=False,
-                   description=summary[:1].lower() + summary[1:].rstrip("."), epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
-                   formatter_class=argparse.RawDescriptionHelpFormatter)
-
-
-def _add_output(parser: argparse.ArgumentParser, what: str) -> None:
-    parser.add_argument("--format", default="text", help="text (default), or json: one document for programs (docs/json.md)")
-    parser.add_argument("--quiet", action="store_true", help=f"no {what}; warnings and errors only")
-
-
-def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> argparse.ArgumentParser:
-    parser = _parser(name, summary, scores)
+    parser = Parser(name, summary, scores)
     parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
                         **of_scores)
     parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")
     parser.add_argument("--unit", help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)")
     parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
     parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
-    _add_output(parser, "table")
+    parser.add_report("no table; warnings and errors only")
     return parser
 
 
@@ -65,6 +30,7 @@ def conclude(arguments: Sequence[str]) -> int:
     from dataclasses import replace
 
     from salbench import conclusions
+    from salbench._command_line import ALL_DONE, report
     from salbench.conclusions.statements import read_statements
 
     parser = _scores_parser("conclude", conclude.__doc__ or "", "OUT|SCORES.csv")
@@ -72,23 +38,27 @@ def conclude(arguments: Sequence[str]) -> int:
                         "each beside what the scores say, in statements.csv")
     parser.add_argument("--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)")
     parser.add_argument("--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats")
-    given = parser.parse_args(arguments)
+    given = parser.parsed(arguments)
     claims = read_statements(given.statements) if given.statements else None
     source = _source(given)
     concluded = conclusions.conclude(replace(source, study=replace(source.study, claims=claims)), given.out, given.of)
     text = f"{concluded.text}one observation per {concluded.unit}; tables in {concluded.folder}\n"
     document = {"results": str(concluded.folder), "unit": concluded.unit, "scores": concluded.scores, "leaders": concluded.leaders}
-    return _print(given, "conclude", document, text)
+    report(given, "conclude", document, text)
+    return ALL_DONE
 
 
 def power(arguments: Sequence[str]) -> int:
     """Which differences between models the scores can show, and how many units would show those seen."""
+    from pathlib import Path
+
+    from salbench._command_line import ALL_DONE, report
     from salbench.conclusions import folders, tables
     from salbench.conclusions.power import power as power_of
 
     parser = _scores_parser("power", power.__doc__ or "", "OUT", nargs="?")
     parser.add_argument("--to", metavar="FILE", help="CSV file to write the table to")
-    given = parser.parse_args(arguments)
+    given = parser.parsed(arguments)
     given.scores = given.scores or _only_results()
     source = _source(given)
     table = power_of(source.study)
@@ -97,12 +67,29 @@ def power(arguments: Sequence[str]) -> int:
     unit = source.study.unit
     text = (f"{tables.aligned(table)}\none observation per {unit}; detectable: the difference of means that n of them show with probability 0.8 at "
             "0.05;\nn_to_detect: how many would show a true difference as large as the one seen\n")
-    return _print(given, "power", {"unit": unit, "pairs": tables.records(table)}, text)
+    report(given, "power", {"unit": unit, "pairs": tables.records(table)}, text)
+    return ALL_DONE
+
+
+def import_(arguments: Sequence[str]) -> int:
+    """Write a data set in one form, an HDF5 file per shape and an index, which is the layout hdf5."""
+    from salbench.datasets.importing import command
+
+    return command(arguments, import_.__doc__ or "")
+
+
+def inspect(arguments: Sequence[str]) -> int:
+    """Read all files of a data set and print what its description finds: items, splits, ranges, problems."""
+    from salbench.datasets.inspecting import command
+
+    return command(arguments, inspect.__doc__ or "")
 
 
 def submit(arguments: Sequence[str]) -> int:
     """Check maps of your own and write the file that a leaderboard takes."""
-    parser = _parser("submit", submit.__doc__ or "", "MINE")
+    from salbench._command_line import Parser
+
+    parser = Parser("submit", submit.__doc__ or "", "MINE")
     parser.add_argument("mine", metavar="MINE", help="folder with ITEM.val of every item with ground truth, and card.yaml")
     parser.add_argument("--to", metavar="FILE", required=True, help="the file to write, such as mine.zip")
     return _over_data("submit", parser, arguments)
@@ -110,33 +97,42 @@ def submit(arguments: Sequence[str]) -> int:
 
 def leaderboard(arguments: Sequence[str]) -> int:
     """Check and score submissions, and make a site that ranks them."""
-    parser = _parser("leaderboard", leaderboard.__doc__ or "", "FOLDER")
+    from salbench._command_line import Parser
+
+    parser = Parser("leaderboard", leaderboard.__doc__ or "", "FOLDER")
     parser.add_argument("folder", metavar="FOLDER", help="folder of the submissions (NAME.zip)")
     parser.add_argument("--to", metavar="DIR", required=True, help="folder of the site")
     parser.add_argument("--models", metavar="NAMES", help="also these of the configuration, such as LS,PS (default: people and chance alone)")
     return _over_data("leaderboard", parser, arguments)
 
 
-def _over_data(name: str, parser: argparse.ArgumentParser, arguments: Sequence[str]) -> int:
+def _over_data(name: str, parser: Any, arguments: Sequence[str]) -> int:
     """A command that runs jobs: a second call goes on where it was ended."""
+    import shlex
+    import signal
+
     from salbench.leaderboard import commands
 
     commands.add_arguments(parser)
-    given = parser.parse_args(arguments)
-    _check_format(given)
+    given = parser.parsed(arguments)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        carry_out = commands.submit if name == "submit" else commands.leaderboard
-        return carry_out(given, lambda document, text: _print(given, name, document, text))
+        return (commands.submit if name == "submit" else commands.leaderboard)(given)
     except KeyboardInterrupt:
         line = shlex.join(["salbench", name, *arguments])
         print(f"\ninterrupted; everything finished so far is kept. To go on:\n  {line}", file=sys.stderr)
         return INTERRUPTED
 
 
-def report(arguments: Sequence[str]) -> int:
+def report_(arguments: Sequence[str]) -> int:
     """Pages of a run that open from disk: who leads and how sure, figures, maps on the shapes."""
-    parser = _parser("report", report.__doc__ or "", "OUT")
+    import os
+    import tempfile
+    from pathlib import Path
+
+    from salbench._command_line import ALL_DONE, Parser, report
+
+    parser = Parser("report", report_.__doc__ or "", "OUT")
     parser.add_argument("results", metavar="OUT", help="results folder of salbench run or evaluate")
     parser.add_argument("--to", metavar="DIR", help="folder of the report (default: OUT/report)")
     parser.add_argument("--export", metavar="FILE.h5", nargs="+", action="extend", default=[],
@@ -145,9 +141,8 @@ def report(arguments: Sequence[str]) -> int:
     parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
     parser.add_argument("--processes", metavar="N", type=int, default=len(os.sched_getaffinity(0)),
                         help="that draw at the same time; the report does not depend on it (default: one per core)")
-    _add_output(parser, "path")
-    given = parser.parse_args(arguments)
-    _check_format(given)
+    parser.add_report("no path; warnings and errors only")
+    given = parser.parsed(arguments)
     with tempfile.TemporaryDirectory() as scratch:  # Matplotlib's font list: nothing is written outside the folder of the report
         os.environ["MPLCONFIGDIR"] = scratch
         from salbench.report.write import write_report
@@ -155,24 +150,37 @@ def report(arguments: Sequence[str]) -> int:
         page = write_report(Path(given.results), to=Path(given.to) if given.to else None, exports=given.export,
                             compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
                             processes=given.processes)
-    return _print(given, "report", {"page": str(page)}, f"{page}\n")
+    report(given, "report", {"page": str(page)}, f"{page}\n")
+    return ALL_DONE
 
 
-SUBCOMMANDS = {"conclude": conclude, "power": power, "submit": submit, "leaderboard": leaderboard, "report": report}
+def _list(arguments: Sequence[str]) -> int:
+    """`_list LAYOUT --data DIR [--twins T]`, which the program asks of layouts that it does not list itself."""
+    import json
+
+    from salbench.datasets.listing import document
+
+    options = dict(zip(arguments[1::2], arguments[2::2]))
+    print(json.dumps(document(arguments[0], options["--data"], options.get("--twins", "refuse"))))
+    return 0
 
 
-def _check_format(given: argparse.Namespace) -> None:
-    from salbench.conclusions.csv_file import InputError
+def _import(arguments: Sequence[str]) -> int:
+    """Items of archives for the program, a request after the other."""
+    from salbench.datasets.worker import main as serve
 
-    if given.format not in ("text", "json"):
-        raise InputError(f"--format {given.format}: must be text or json")
+    return serve()
 
 
-def _source(given: argparse.Namespace) -> Any:
+SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "power": power, "submit": submit, "leaderboard": leaderboard,
+               "report": report_}
+SERVED = {"_import": _import, "_list": _list}  # for the program alone
+
+
+def _source(given: "argparse.Namespace") -> Any:
     """The scores, with a warning of columns that are left out."""
     from salbench import conclusions
 
-    _check_format(given)
     source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=_names(given.higher), lower=_names(given.lower))
     for note in source.notes:
         print(f"warning: {note}", file=sys.stderr)
@@ -185,7 +193,9 @@ def _names(text: str) -> list[str]:
 
 def _only_results() -> str:
     """The only results below salbench-out."""
-    from salbench.conclusions.csv_file import InputError
+    from pathlib import Path
+
+    from salbench._errors import InputError
 
     found = sorted(str(path.parent) for path in Path("salbench-out").glob("*/results.csv"))
     if len(found) == 1:
@@ -193,30 +203,16 @@ def _only_results() -> str:
     raise InputError(f"name one of the results: {', '.join(found)}" if found else "salbench-out has no results: name their folder")
 
 
-def _print(given: argparse.Namespace, name: str, document: dict[str, Any], text: str) -> int:
-    if given.format == "json":
-        text = json.dumps({"schema": SCHEMA, "command": name, **document}, ensure_ascii=False, separators=(",", ":")) + "\n"
-        text = text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # U+FFFD in place of bytes that are not UTF-8
-    elif given.quiet:
-        return ALL_DONE
-    try:
-        sys.stdout.write(text)
-        sys.stdout.flush()
-    except OSError as error:
-        return _fail(UNUSABLE_STORAGE, f"standard output: cannot be written: {error.strerror}")
-    return ALL_DONE
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Carries out a subcommand; returns its exit status."""
-    name, *others = sys.argv[1:] if arguments is None else arguments or [""]
-    if name not in SUBCOMMANDS:
-        return _fail(UNUSABLE_ARGUMENTS, f"there is no subcommand '{name}' in the package; there are {', '.join(SUBCOMMANDS)}")
-    from salbench.conclusions.csv_file import InputError
-    from salbench.conclusions.folders import StorageError
+    from salbench._errors import InputError, StorageError
 
+    name, *others = sys.argv[1:] if arguments is None else arguments or [""]
+    subcommand = (SUBCOMMANDS | SERVED).get(name)
+    if subcommand is None:
+        return _fail(UNUSABLE_ARGUMENTS, f"there is no subcommand '{name}' in the package; there are {', '.join(SUBCOMMANDS)}")
     try:
-        return SUBCOMMANDS[name](others)
+        return subcommand(others)
     except InputError as error:
         return _fail(UNUSABLE_ARGUMENTS, str(error))
     except StorageError as error:
@@ -234,7 +230,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _fail(status: int, message: str) -> int:
-    print(f"error: {message}", file=sys.stderr)
+    sys.stderr.buffer.write(f"error: {message}\n".encode("utf-8", "surrogateescape"))
+    sys.stderr.flush()
     return status
 
 

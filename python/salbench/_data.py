@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Data sets as their authors published them."""
 
+from __future__ import annotations
+
 import errno
 import html
 import operator
@@ -10,6 +12,9 @@ from typing import SupportsIndex, overload
 
 from salbench import _core
 from salbench._shape import Shape
+from salbench.datasets import _workers, is_description, sets
+from salbench.datasets._files import read_file
+from salbench.datasets.records import InputError, Item
 
 Path = str | os.PathLike[str]
 
@@ -63,44 +68,48 @@ class Dataset:
         self._root = os.fspath(root)
         self._twins = twins
         self._open(items, split or "")
-        self._order = list(range(len(self._rows)))
+        self._order = list(range(len(self._items)))
 
     def _open(self, items: str | Iterable[str] | None, split: str = "") -> None:
         _require_folder(self._root)
-        _core.require_layout(self._layout)
-        if self._layout not in _core.layouts() and not os.path.exists(self._layout):
-            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
-        chosen: bytes | list[bytes] | None = None
-        if items is not None:
-            chosen = os.fsencode(items) if isinstance(items, str) else [os.fsencode(str(name)) for name in items]
-        self._data = _core.Data(os.fsencode(self._layout), os.fsencode(self._root), self._twins, chosen, split)
-        self._rows: list[tuple[str, str, str]] = self._data.items()
-        self._numbers = {name: number for number, (name, _) in enumerate(row[:2] for row in self._rows)}
+        if self._layout not in sets.LAYOUTS:
+            if not is_description(self._layout):
+                _core.fail_unknown("layout", os.fsencode(self._layout), sets.LAYOUTS)
+            if not os.path.exists(self._layout):
+                raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
+        if self._twins not in sets.TWINS:
+            raise ValueError(f"twins must be one of {', '.join(sets.TWINS)}, not '{self._twins}'")
+        self._found, listing = sets.listed(self._layout, self._root, self._twins)
+        self._archive = self._found if self._layout == sets.AUTOMATIC else self._layout
+        chosen = items if items is None or isinstance(items, str) else [str(name) for name in items]
+        self._items = sets.chosen(listing, chosen, split)
+        self._notes, self._splits = tuple(listing.notes), tuple(sorted({item.split for item in listing.items if item.split}))
+        self._numbers = {item.name: number for number, item in enumerate(self._items)}
 
     @property
     def layout(self) -> str:
         """Name of the layout found: of "automatic", the one that fits."""
-        return str(self._data.layout)
+        return self._found
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Remarks on the folder: ground truth without a shape, numbers that are missing, twins left out."""
-        return tuple(self._data.notes)
+        return self._notes
 
     @property
     def ids(self) -> tuple[str, ...]:
         """Names of the items, in order."""
-        return tuple(self._rows[number][0] for number in self._order)
+        return tuple(self._items[number].name for number in self._order)
 
     @property
     def categories(self) -> tuple[str, ...]:
         """Class of each item, or ""; reads no file."""
-        return tuple(self._rows[number][1] for number in self._order)
+        return tuple(self._items[number].category for number in self._order)
 
     @property
     def splits(self) -> tuple[str, ...]:
         """Names of the splits that the description has, such as "train" and "test"; reads no file."""
-        return tuple(self._data.splits)
+        return self._splits
 
     def __len__(self) -> int:
         return len(self._order)
@@ -108,9 +117,9 @@ class Dataset:
     @overload
     def __getitem__(self, index: SupportsIndex | str) -> Shape: ...
     @overload
-    def __getitem__(self, index: slice) -> "Dataset": ...
+    def __getitem__(self, index: slice) -> Dataset: ...
 
-    def __getitem__(self, index: SupportsIndex | str | slice) -> "Shape | Dataset":
+    def __getitem__(self, index: SupportsIndex | str | slice) -> Shape | Dataset:
         """The shape of a number, from the end if it is negative, or of a name; of a slice a `Dataset`."""
         if isinstance(index, slice):
             part = object.__new__(Dataset)
@@ -128,9 +137,9 @@ class Dataset:
         return self._load(number)
 
     def _load(self, number: int) -> Shape:
-        name, category, split = self._rows[number]
-        points, faces, normals, ground_truth, participants, viewers = self._data.load(number)
-        return Shape(name, points, faces, normals, None, category, split, ground_truth, participants, viewers)
+        item = self._items[number]
+        points, faces, normals, ground_truth, participants, viewers = _arrays(self._archive, self._root, item)
+        return Shape(item.name, points, faces, normals, None, item.category, item.split, ground_truth, participants, viewers)
 
     def __iter__(self) -> Iterator[Shape]:
         return map(self._load, self._order)
@@ -145,14 +154,15 @@ class Dataset:
     def _repr_html_(self) -> str:
         """The first items; reads no file."""
         shown = 10
-        cells = [(html.escape(value) for value in self._rows[number]) for number in self._order[:shown]]
+        first = [self._items[number] for number in self._order[:shown]]
+        cells = [[html.escape(text) for text in (item.name, item.category, item.split)] for item in first]
         rows = "".join(f"<tr><td>{'</td><td>'.join(row)}</td></tr>" for row in cells)
         more = f"<p>and {len(self) - shown} more</p>" if len(self) > shown else ""
         return (f"<p>{html.escape(repr(self))}</p><table><thead><tr><th>item</th><th>class</th><th>split</th></tr></thead>"
                 f"<tbody>{rows}</tbody></table>{more}")
 
     def __getstate__(self) -> dict[str, object]:
-        layout = self._layout if self._layout in _core.layouts() else os.path.abspath(self._layout)
+        layout = self._layout if self._layout in sets.LAYOUTS else os.path.abspath(self._layout)
         return {"layout": layout, "root": os.path.abspath(self._root), "twins": self._twins, "ids": self.ids}
 
     def __setstate__(self, state: dict[str, object]) -> None:
@@ -160,6 +170,26 @@ class Dataset:
         self._layout, self._root, self._twins = str(state["layout"]), str(state["root"]), str(state["twins"])
         self._open(ids)
         self._order = [self._numbers[name] for name in ids]
+
+
+def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
+    """Points, faces, normals, ground truth, participants and viewers, as a run has them."""
+    if item.problem:
+        raise InputError(item.problem)
+    if item.native is not None:
+        return _core.load_native(os.fsencode(item.name), *sets.native_files(item))
+    path = sets.shape_file(item)
+    names = os.fsencode(item.view) if item.truth else None, os.fsencode(item.name), os.fsencode(path)
+    if "form" in item.how:
+        loaded = _core.finished(read_file(path), *names)
+        if loaded is None:  # another program's bytes
+            loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names)
+    elif any(file.path.lower().endswith(".mat") for file in item.files):
+        loaded = _core.finished(_workers.asked({"do": "item", "layout": layout, "root": root, "item": item.to_json()}), *names)
+    else:
+        loaded = _core.finished(sets.read(layout, root, item), *names)
+    assert loaded is not None
+    return loaded
 
 
 def _require_folder(path: str) -> None:

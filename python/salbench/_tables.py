@@ -47,13 +47,23 @@ class Tables:
         raise NotImplementedError
 
     @cached_property
+    def leaders(self) -> "pandas.DataFrame":
+        """Who leads by each metric and how sure, and in sentences."""
+        return self._table("leaders")
+
+    @cached_property
+    def compact(self) -> "pandas.DataFrame":
+        """Mean, half interval, rank and group of each model by each metric, as a paper has them."""
+        return self._table("compact")
+
+    @cached_property
     def summary(self) -> "pandas.DataFrame":
         """Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by unit [efron1987]."""
         return self._table("summary")
 
     @cached_property
     def ranking(self) -> "pandas.DataFrame":
-        """Ranks with their intervals, and letters of groups that cannot be told apart [mogstad2024]."""
+        """Ranks with their intervals, and letters of groups: models without one in common differ [mogstad2024]."""
         return self._table("ranking")
 
     @cached_property

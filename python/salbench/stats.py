@@ -112,15 +112,15 @@ def conclude(
     Returns
     -------
     Conclusions
-        With the frames summary, ranking, significance, agreement, per_class, human_share, power.
+        With the frames leaders, summary, ranking, compact, significance, agreement, per_class, human_share, power.
 
     Raises
     ------
     KeyError
         A name among `metrics`, `higher_is_better`, `lower_is_better` that is no column.
     ValueError
-        A table that lacks columns, has an infinite score or two rows of a shape and model; the message names the row by its
-        position.
+        A table that lacks columns, has an infinite score, one that the metric cannot have, two rows of a shape and model, or names that are
+        empty or spelled in two ways; the message names the row by its position.
 
     References
     ----------
@@ -136,6 +136,7 @@ def conclude(
     >>> found.ranking[["model", "rank"]].values.tolist()
     [['A', 1], ['B', 2]]
     """
+    from salbench.conclusions import check_unit
     from salbench.conclusions.study import Study
     from salbench.conclusions.units import UNITS
 
@@ -151,7 +152,9 @@ def conclude(
     workers = _whole_number("threads", threads, 1, _MOST_THREADS)
     if str(unit) not in UNITS:
         raise ValueError(f"unit must be one of {', '.join(UNITS)}, not '{unit}'")
-    return Conclusions(Study(scores, str(unit), _whole_number("seed", seed, 0, 2**64 - 1), threads=workers))
+    study = Study(scores, str(unit), _whole_number("seed", seed, 0, 2**64 - 1), threads=workers)
+    check_unit(study)
+    return Conclusions(study)
 
 
 def _table_of(columns: dict[str, Any]) -> "Table":
@@ -168,18 +171,18 @@ def _table_of(columns: dict[str, Any]) -> "Table":
 
 def _scores(table: "Table", chosen: list[str] | None, higher: list[str], lower: list[str]) -> "Scores":
     """By all metrics that are known, or by those chosen."""
-    from salbench.conclusions.scores import metrics_to_read, only, scores_from
+    from salbench.conclusions.scores import check, metrics_to_read, only, scores_from
 
     known = metrics_to_read(higher, lower)
     if not any(metric.name in table.columns for metric in known):
         raise ValueError("table must have a column that is a metric of the program, or is named in higher_is_better or lower_is_better")
     scores = scores_from(table, known)
-    if chosen is None:
-        return scores
-    for name in chosen:
+    for name in chosen or ():
         if name not in (metric.name for metric in scores.metrics):
             raise ValueError(f"metrics: '{name}' is no metric of the program: name it in higher_is_better or lower_is_better")
-    return only(scores, chosen)
+    scores = scores if chosen is None else only(scores, chosen)
+    check(table, scores)
+    return scores
 
 
 def _whole_number(name: str, value: Any, low: int, high: int) -> int:

@@ -52,6 +52,11 @@ TEST(ContentDigest, DoesNotDependOnTheOrderOfArrays) {
   EXPECT_EQ(content_digest({a, b}), content_digest({b, a}));
 }
 
+TEST(Xxh128, IsWhatXxh128sumPrints) {
+  EXPECT_EQ(xxh128("").hex(), "99aa06d3014798d86001c324468d497f");
+  EXPECT_NE(xxh128("a"), file_digest("a")) << "keys have another digest";
+}
+
 TEST(Key, EveryComponentCounts) {
   const Recipe base{"fpfh", 1, "radius: 1\n", "7/52", {{"mesh", {1, 2}}}};
   std::vector<Recipe> others(6, base);

@@ -11,6 +11,7 @@ from salbench.conclusions.compact import compact
 from salbench.conclusions.leaders import find_leaders, leaders
 from salbench.conclusions.means import summary
 from salbench.conclusions.metrics import Metric, leading, of_program
+from salbench.conclusions.ranking import ranking
 
 
 def scored(models, meshes, noise=.01, split="", dataset=""):
@@ -35,12 +36,12 @@ class LeadersTest(unittest.TestCase):
         self.assertAlmostEqual(leader.lead, .1, delta=.02)
         self.assertRegex(level.sentence, r"^On 20 meshes, A leads by AUC \(mean 0\.\d{3}, 95 % interval 0\.\d{3} to 0\.\d{3}\)\.$")
 
-    def test_equal_models_cannot_be_told_apart(self):
+    def test_any_of_equal_models_may_be_best(self):
         level = level_of(scored({"A": .5, "B": .5, "C": .2}, 20))
         leader = level.leaders[0]
         self.assertEqual((leader.verdict, sorted(leader.models)), ("not told apart", ["A", "B"]))
         self.assertLess(leader.lead_interval[0], 0)
-        self.assertRegex(level.sentence, r"by AUC \([AB] mean .*\), ([AB]) and [AB] cannot be told apart\.$")
+        self.assertRegex(level.sentence, r"by AUC \([AB] mean .*\), [AB] or [AB] may be best; C is behind at least one of them\.$")
 
     def test_a_noisy_model_keeps_the_best_one_from_leading(self):  # A is ahead of B, but not of C, which varies much
         rng = np.random.default_rng(3)
@@ -48,7 +49,7 @@ class LeadersTest(unittest.TestCase):
                 for model, mean in (("A", .6), ("B", .55), ("C", .9 if mesh % 2 == 0 else .1))]
         level = level_of(rows)
         self.assertNotEqual(level.leaders[0].verdict, "leads")
-        self.assertRegex(level.sentence, "cannot be told apart.*C|C.*cannot be told apart")
+        self.assertRegex(level.sentence, "A or C may be best; B is behind at least one of them")
 
     def test_a_metric_where_lower_is_better_is_led_by_the_lowest(self):
         leader = level_of(scored({"A": .6, "B": .5}, 20), ("mse",)).leaders[0]
@@ -66,10 +67,15 @@ class LeadersTest(unittest.TestCase):
         self.assertRegex(level_of(scored({"A": .6}, 5)).sentence, r"A is the only model that is scored by AUC \(mean")
         self.assertEqual(level_of([row(1, "", "A", .5), row(2, "", "B", .6)]).sentence, "On meshes, no shape has scores of all models by AUC.")
 
+    def test_fewer_than_six_meshes_name_nobody(self):
+        level = level_of(scored({"A": .9, "B": .1}, 5))
+        self.assertEqual((level.leaders[0].verdict, level.leaders[0].models), ("too few units", []))
+        self.assertEqual(level.sentence, "On 5 meshes, 5 observations are too few to tell how the models rank by AUC: it takes 6.")
+
     def test_metrics_that_say_the_same_share_a_clause(self):
         rows = [(*cells, cells[-1], .5) for cells in scored({"A": .6, "B": .5}, 20)]
         sentence = level_of(rows, ("auc", "nss", "lcc")).sentence
-        self.assertRegex(sentence, r"A leads by AUC \(mean [0-9., a-z%]*\) and NSS \(0.*; by LCC \(A 0\.500, no interval\), A and B cannot")
+        self.assertRegex(sentence, r"A leads by AUC \(mean [0-9., a-z%]*\) and NSS \(0.*\)\. By LCC \(A 0\.500, no interval\), A or B may be best\.$")
 
     def test_views_are_counted_beside_their_meshes(self):
         rows = [("scans", *cells[1:4], view, *cells[5:]) for cells in scored({"A": .6, "B": .5}, 20) for view in "01"]
@@ -89,7 +95,7 @@ class LeadersTest(unittest.TestCase):
         self.assertEqual(set(table["sentence"]), {find_leaders(study)[0].sentence})
 
     def test_long_lists_are_cut_and_leading_metrics_are_the_papers(self):
-        self.assertIn("and 8 others cannot be told apart", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .5), 20)).sentence)
+        self.assertIn(" or 8 others may be best.", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .5), 20)).sentence)
         self.assertEqual(leading(("lcc", "kl", "auc", "sim", "mse")), ["auc", "lcc", "kl"])
 
     def test_no_sentence_claims_more_than_its_interval(self):  # over many made-up data sets
@@ -102,6 +108,66 @@ class LeadersTest(unittest.TestCase):
             self.assertEqual(" leads " in level.sentence, leader.verdict == "leads")
             self.assertTrue(leader.lead_interval[0] > 0 or leader.verdict != "leads", level.sentence)
         self.assertTrue(seen["leads"] and seen["not told apart"], seen)
+
+
+def in_classes(of_class, meshes=3, classes=8):
+    """Scores of models on classes that differ much in what a model gains there: {model: (mean, deviation from class to class)}."""
+    rng = np.random.default_rng(5)
+    gains = {model: mean + deviation * rng.permutation(np.linspace(-1, 1, classes)) for model, (mean, deviation) in of_class.items()}
+    return [row(f"{group}_{mesh}", "", model, gain[group] + .01 * rng.normal(), category=f"class {group}")
+            for group in range(classes) for mesh in range(meshes) for model, gain in gains.items()]
+
+
+class NewClassesTest(unittest.TestCase):
+    def sentence(self, rows, metrics=("auc",), unit="mesh"):
+        return find_leaders(study_of(rows, metrics, unit))[0].sentence
+
+    def test_a_lead_on_these_classes_may_be_none_on_new_ones(self):
+        clear, unclear = in_classes({"A": (.7, .02), "B": (.5, .02)}), in_classes({"A": (.6, .12), "B": (.5, .12)})
+        begin = r"^On 24 meshes of these 8 classes, A leads by AUC \(.*\)"
+        self.assertRegex(self.sentence(clear), begin + r"\. New classes: the same\.$")
+        self.assertRegex(self.sentence(unclear), begin + r"\. New classes: by AUC, A or B may be best\.$")
+        both = [(*one, other[-1]) for one, other in zip(clear, unclear)]
+        self.assertRegex(self.sentence(both, ("auc", "nss")), begin[:-2] + r".*\) and NSS \(.*\)\. New classes: AUC only\.$")
+        table = leaders(study_of(unclear))
+        self.assertEqual([list(table[name]) for name in ("verdict", "new_classes", "new_classes_leaders")],
+                         [["", "leads"], ["", "not told apart"], ["", "A, B"]])
+
+    def test_it_takes_six_classes_of_several_meshes_and_another_unit(self):
+        models = {"A": (.7, .02), "B": (.5, .02)}
+        few = in_classes(models, classes=5)
+        single = few + [row(f"9{group}", "", model, .6, category=f"single {group}") for group in range(9) for model in "AB"]
+        for rows in (few, single, [cells[:3] + ("",) + cells[4:] for cells in in_classes(models)]):
+            self.assertNotIn("classes", self.sentence(rows))
+        self.assertRegex(self.sentence(in_classes(models), unit="class"), r"^On 24 meshes of 8 classes, A leads by AUC \([^)]*\)\.$")
+
+
+class MissingScoresTest(unittest.TestCase):
+    def without(self, worst, models, chance=True):
+        """60 meshes; the first model has no score on those where it would be worst."""
+        rows = [cells for cells in scored(models | ({"RS": .1} if chance else {}), 60)]
+        of_first = sorted((cells for cells in rows if cells[5] == "A"), key=lambda cells: cells[-1])
+        return [(*cells[:-1], NAN) if cells in of_first[:worst] else cells for cells in rows]
+
+    def test_a_model_that_lacks_scores_leads_with_a_remark_and_its_rank_at_chance(self):
+        rows = self.without(12, {"A": .52, "B": .5})
+        study = study_of(rows)
+        self.assertRegex(find_leaders(study)[0].sentence, r"^On 48 of 60 meshes \(A has no score on 12\), A leads by AUC \(.*\)\. "
+                         r"With missing scores at chance, A ranks 2 by AUC\.$")
+        self.assertEqual(list(ranking(study)["rank_at_chance"]), [2, 1])
+        self.assertEqual(leaders(study)["n_missing"][1], 12)
+        self.assertTrue(ranking(study_of(scored({"A": .52, "B": .5}, 60)))["rank_at_chance"].isna().all())
+
+    def test_chance_is_rs_on_the_shape_or_what_is_known_of_the_metric(self):
+        for chance, metric, rank in ((False, "auc", "ranks 1"), (True, "kl", "ranks 1"), (False, "kl", None)):  # lower kl is better
+            sentence = find_leaders(study_of(self.without(12, {"A": .48, "B": .45}, chance), (metric,)))[0].sentence
+            self.assertEqual(f"at chance, A {rank}" in sentence, rank is not None, sentence)
+            self.assertIn("(A has no score on 12)", sentence)
+
+    def test_many_that_lack_scores_are_cut_behind_the_best(self):
+        rows = [(*cells[:-1], NAN) if int(cells[2]) == "ABCDEFGH".index(cells[5]) else cells
+                for cells in scored({model: .9 - .05 * place for place, model in enumerate("ABCDEFGH")}, 20)]
+        self.assertRegex(find_leaders(study_of(rows))[0].sentence, r"^On 12 of 20 meshes \(A has no score on 1, B .*, D has no score on 1 and 4 others\), A")
 
 
 class CompactTest(unittest.TestCase):

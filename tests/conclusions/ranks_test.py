@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ranks, their intervals, the letters of groups, and how far rankings agree."""
 
+import itertools
 import unittest
 
 import numpy as np
@@ -23,7 +24,25 @@ def around(means, units=30, noise=.1):
 
 
 def ranked(values, higher_is_better=True):
-    return rank_models(values, Bootstrap(1, 2000).means(values), higher_is_better)
+    bootstrap = Bootstrap(1, 2000)
+    return rank_models(values, bootstrap.flipped_of_each([values])[0], bootstrap.means(values), higher_is_better)
+
+
+def apart(values):
+    """Pairs that differ, one after the other: a slow twin of what is said of flips in docs/statistics.md."""
+    def largest(signed, pairs):
+        return max(abs(stats.ttest_1samp(signed[:, a] - signed[:, b], 0).statistic) for a, b in pairs)
+
+    flips = [np.array([1, *signs])[:, None] for signs in itertools.product((1, -1), repeat=len(values) - 1)]
+    left, found = list(itertools.combinations(range(values.shape[1]), 2)), set()
+    while left:
+        drawn = [largest(values * signs, left) for signs in flips]
+        new = {pair for pair in left if np.mean(np.array(drawn) >= largest(values, [pair]) - 1e-9) <= .05}
+        if not new:
+            break
+        found |= new
+        left = [pair for pair in left if pair not in new]
+    return found
 
 
 class RankingTest(unittest.TestCase):
@@ -35,7 +54,7 @@ class RankingTest(unittest.TestCase):
             self.assertEqual(found.letters, letters)
             np.testing.assert_array_equal(found.first, np.equal(ranks, 1))
 
-    def test_models_that_cannot_be_told_apart_share_a_letter_and_their_ranks(self):
+    def test_models_that_do_not_differ_share_a_letter_and_their_ranks(self):
         found = ranked(around([1, 1, 0], noise=.3))
         np.testing.assert_array_equal((found.low, found.high), ([1, 1, 3], [2, 2, 3]))
         self.assertEqual(found.letters, ["a", "a", "b"])
@@ -46,13 +65,30 @@ class RankingTest(unittest.TestCase):
         found = ranked(np.hstack([values, values]))
         self.assertEqual((list(found.rank), list(found.first), found.letters), ([1, 1], [.5, .5], ["a", "a"]))
 
-    def test_one_unit_ranks_without_saying_how_sure(self):
-        found = ranked(np.array([[.3, .4]]))
-        self.assertEqual((list(found.rank), found.letters), ([2, 1], ["", ""]))
-        self.assertTrue(np.isnan([*found.low, *found.high, *found.first]).all())
+    def test_fewer_than_six_units_show_means_alone(self):
+        for n in range(1, 7):
+            values = around([0, 2, 1], n, .001)
+            found = ranked(values)
+            np.testing.assert_array_equal(found.order, [1, 2, 0])
+            self.assertEqual((found.letters, found.better.any()), (["c", "a", "b"], True) if n == 6 else ([""] * 3, False))
+            self.assertEqual(np.isnan([*found.rank, *found.low, *found.high, *found.first]).all(), n < 6)
+
+    def test_pairs_differ_that_all_flips_and_steps_say_differ(self):
+        for trial in range(12):
+            rng = np.random.default_rng([4, trial])
+            n, k = 6 + trial % 4, 3 + trial % 2
+            values = rng.normal(size=(n, k)) * (1 + np.arange(k)) + np.arange(k) * rng.uniform(0, 4)
+            values = np.round(values) if trial % 3 == 0 else values
+            better = ranked(values).better
+            self.assertEqual({(a, b) for a, b in zip(*np.nonzero(np.triu(better | better.T)))}, apart(values), trial)
 
     def test_the_bound_of_two_models_is_students(self):
-        self.assertAlmostEqual(ranked(around([0, 0], 25, 1)).critical, stats.t.ppf(.975, 24), delta=.1)
+        self.assertAlmostEqual(ranked(around([0, 0], 25, 1)).bound, stats.t.ppf(.975, 24), delta=.1)
+
+    def test_differences_of_rounding_are_none_and_constant_ones_are_no_chance(self):
+        values = around([0], 12)
+        for shift, differ in ((0, False), (1e-16, False), (.1, True)):
+            self.assertEqual(ranked(np.hstack([values, values * (1 + 1e-16) + shift])).better.any(), differ, shift)
 
     def test_the_table_has_competitors_by_rank_and_no_reference(self):
         rows = [row(item, "", model, mean + .01 * (item % (3 if model == "A" else 4)))
@@ -66,6 +102,14 @@ class LettersTest(unittest.TestCase):
     def test_a_chain_overlaps(self):  # neighbours do not differ, others do
         differ = np.abs(np.subtract.outer(range(4), range(4))) > 1
         self.assertEqual(compact_letters(differ, range(4)), ["a", "ab", "bc", "c"])
+
+    def test_no_letters_beyond_26(self):
+        differ = ~np.eye(140, dtype=bool)
+        self.assertEqual(set(compact_letters(differ, range(140))), {""})
+        self.assertEqual(compact_letters(differ[:26, :26], range(26))[25], "z")
+        rng = np.random.default_rng(3)
+        random = np.triu(rng.random((140, 140)) < .5, 1)
+        self.assertEqual(set(compact_letters(random | random.T, range(140))), {""})
 
     def test_items_share_a_letter_exactly_where_they_do_not_differ(self):
         rng = np.random.default_rng(2)

@@ -22,6 +22,16 @@ class ResamplesTest(unittest.TestCase):
     def test_are_the_draws_that_they_have_always_been(self):  # PCG64's raw output, which no release of NumPy may change
         np.testing.assert_array_equal(Bootstrap(2016, 2).counts(8), [[4, 0, 0, 1, 2, 0, 0, 1], [1, 1, 1, 1, 1, 0, 2, 1]])
 
+    def test_signs_are_all_that_there_are_or_draws_that_they_have_always_been(self):
+        few = Bootstrap(2016, 32).signs(6)
+        self.assertEqual((few.shape, few[0].tolist(), few[5].tolist()), ((32, 6), [1] * 6, [-1, 1, -1, 1, 1, 1]))
+        self.assertEqual(len(np.unique(np.vstack([few, -few]), axis=0)), 64)
+        np.testing.assert_array_equal(Bootstrap(2016, 3).signs(9), [[1] * 9, [1, -1, -1, 1, 1, -1, -1, -1, -1],
+                                                                     [-1, 1, -1, -1, -1, 1, 1, 1, 1]])
+        many = Bootstrap(1).signs(100)
+        self.assertLess(np.abs(many.mean(axis=0)).max(), .05)  # five standard errors
+        self.assertLess(np.abs(many.T.astype(float) @ many / 1e4 - np.eye(100)).max(), .055)
+
     def test_draw_every_unit_as_often(self):
         counts = Bootstrap(1).counts(19)
         np.testing.assert_array_equal(counts.sum(axis=1), 19)

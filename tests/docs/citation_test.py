@@ -29,7 +29,8 @@ class Citation(unittest.TestCase):
         self.assertTrue(all(creator["name"] for creator in self.zenodo["creators"]))
 
     def test_one_version_date_and_licence(self):
-        self.assertEqual({self.cff["version"], self.zenodo["version"]}, {self.version})
+        package = re.search(r'^__version__ = "([\d.]+)"', (ROOT / "python/salbench/_version.py").read_text(), flags=re.M)[1]
+        self.assertEqual({self.cff["version"], self.zenodo["version"], package}, {self.version})
         self.assertEqual(self.cff["date-released"], self.zenodo["publication_date"])
         datetime.date.fromisoformat(self.zenodo["publication_date"])
         self.assertIn(f"\n## [{self.version}] - {self.cff['date-released']}\n", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))

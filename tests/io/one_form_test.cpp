@@ -34,7 +34,8 @@ ShapeInForm toy_shape() {
   shape.truths.push_back({.truth = truth});
   shape.truths.push_back(
       {.view = "300",
-       .truth = {.saliency = {1, 2, kNan, kNan}, .picks = {}},
+       .truth = {.saliency = {1, 2, kNan, kNan}, .picks = {}, .viewers = {{1, 2, kNan, 3}, {4, 5, 6, kNan}}},
+       .face_values = {0.5, kNan, 2, 3},
        .as_read = {{.file = "a_300.txt", .per = "vertex", .values = {1, 2, 7, 8}, .mask = {1, 1, 0, 0}}}});
   shape.about = {{"item", "a"}, {"licence", ""}};
   return shape;
@@ -58,19 +59,53 @@ bool same_values(const ScalarField& a, const ScalarField& b) {
 TEST(OneForm, HasAMeshAndItsGroundTruthAsTheyWere) {
   const ShapeInForm shape = toy_shape();
   const std::string image = text_of_image(one_form_image(shape));
-  PolygonCounts counts;
-  const Mesh mesh = mesh_in_form(image, "a.h5", &counts);
-  EXPECT_EQ(mesh.vertices, shape.mesh.vertices);
-  EXPECT_EQ(mesh.faces, shape.mesh.faces);
-  EXPECT_EQ(std::pair(counts.split, counts.concave), std::pair(std::int64_t{3}, std::int64_t{1}));
-  const GroundTruth truth = truth_in_form(image, "a.h5", ""), &expected = shape.truths[0].truth;
-  EXPECT_TRUE(same_values(truth.saliency, expected.saliency));
-  EXPECT_EQ(truth.picks, expected.picks);
-  ASSERT_EQ(truth.viewers.size(), 2U);
-  for (std::size_t k = 0; k < 2; ++k) EXPECT_TRUE(same_values(truth.viewers[k], expected.viewers[k]));
-  EXPECT_TRUE(same_values(truth_in_form(image, "a.h5", "300").saliency, {1, 2, kNan, kNan}));
+  const auto found = shape_in_form(image, "a.h5");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->mesh.vertices, shape.mesh.vertices);
+  EXPECT_EQ(found->mesh.faces, shape.mesh.faces);
+  EXPECT_EQ(found->polygons.split, 3);
+  EXPECT_EQ(found->polygons.concave, 1);
+  EXPECT_EQ(found->about, shape.about);
+  ASSERT_EQ(found->truths.size(), 2U);
+  for (const std::size_t k : {0U, 1U}) {
+    const TruthInForm &truth = found->truths[k], &expected = shape.truths[k];
+    EXPECT_EQ(truth.view, expected.view);
+    EXPECT_TRUE(same_values(truth.truth.saliency, expected.truth.saliency));
+    EXPECT_EQ(truth.truth.picks, expected.truth.picks);
+    EXPECT_TRUE(same_values(truth.face_values, expected.face_values));
+    ASSERT_EQ(truth.truth.viewers.size(), expected.truth.viewers.size());
+    for (std::size_t v = 0; v < truth.truth.viewers.size(); ++v)
+      EXPECT_TRUE(same_values(truth.truth.viewers[v], expected.truth.viewers[v]));
+  }
   EXPECT_THROW(truth_in_form(image, "a.h5", "413"), InputError);
   EXPECT_EQ(text_of_image(one_form_image(toy_shape())), image) << "equal shapes, equal bytes";
+}
+
+// What the parts of an image say, and arrays of a cache.
+TEST(OneForm, HasItsPartsByThemselvesToo) {
+  const ShapeInForm shape = toy_shape();
+  const std::string image = text_of_image(one_form_image(shape));
+  PolygonCounts counts;
+  EXPECT_EQ(mesh_in_form(image, "a.h5", &counts).faces, shape.mesh.faces);
+  EXPECT_EQ(counts.split, 3);
+  EXPECT_TRUE(same_values(truth_in_form(image, "a.h5", "300").saliency, {1, 2, kNan, kNan}));
+  const ShapeInForm back = shape_in_arrays(one_form_arrays(shape), "a");
+  EXPECT_EQ(back.truths[0].truth.picks, shape.truths[0].truth.picks);
+  EXPECT_EQ(back.polygons.concave, 1);
+}
+
+TEST(OneForm, ReadsVersionOne) {
+  const Hdf5Content content{.arrays = one_form_arrays({.mesh = shapes::tetrahedron()}),
+                            .attributes = {{"form", "salbench item"},
+                                           {"form_version", std::int64_t{1}},
+                                           {"item", "a"},
+                                           {"polygons_split", std::int64_t{5}},
+                                           {"polygons_concave", std::int64_t{2}}}};
+  const auto shape = shape_in_form(text_of_image(hdf5_image(content)), "a.h5");
+  ASSERT_TRUE(shape);
+  EXPECT_EQ(shape->mesh.faces, shapes::tetrahedron().faces);
+  EXPECT_EQ(shape->polygons.split, 5);
+  EXPECT_EQ(shape->polygons.concave, 2);
 }
 
 TEST(OneForm, HasACloudAsItWas) {
@@ -78,7 +113,7 @@ TEST(OneForm, HasACloudAsItWas) {
                    .normals = Normals(3, Vec3::UnitX()),
                    .viewpoint = Vec3(1, 2, 3),
                    .dropped = {1, 4}};
-  const std::string image = text_of_image(one_form_image({.cloud = cloud}));
+  const std::string image = text_of_image(one_form_image({.is_cloud = true, .cloud = cloud}));
   const PointCloud found = cloud_in_form(image, "c.h5");
   EXPECT_EQ(found.points, cloud.points);
   EXPECT_EQ(found.normals, cloud.normals);
@@ -86,7 +121,8 @@ TEST(OneForm, HasACloudAsItWas) {
   EXPECT_EQ(found.dropped, cloud.dropped);
   EXPECT_THAT(error_of(image), HasSubstr("has no data set \"shape/faces\""));
   cloud.dropped = {4, 1};
-  EXPECT_THROW(cloud_in_form(text_of_image(one_form_image({.cloud = cloud})), "c.h5"), InputError);
+  EXPECT_THROW(cloud_in_form(text_of_image(one_form_image({.is_cloud = true, .cloud = cloud})), "c.h5"),
+               InputError);
 }
 
 TEST(OneForm, CutShortItIsAnErrorThatNamesTheFile) {

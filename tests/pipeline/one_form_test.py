@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench convert`: a miniature of each public archive in the one HDF5 form gives the tables of the archive, byte by byte, and the
+"""`salbench import`: a miniature of each public archive in the one HDF5 form gives the tables of the archive, byte by byte, and the
 scores of NumPy; h5py reads what was in its files; and what is wrong with a converted file concerns its item alone."""
 
 import json
@@ -22,7 +22,7 @@ REAL = {"sal3d": ("sal3d", "cart,camel,chair"), "zaragoza": ("eyetracking", "cow
 
 
 def convert(layout, data, to, *further):
-    return subprocess.run([PROGRAM, "convert", layout, "--data", data, "--to", to, *further], capture_output=True, text=True)
+    return subprocess.run([PROGRAM, "import", layout, "--data", data, "--to", to, *further], capture_output=True, text=True)
 
 
 class Converted(protocols_twin_test.Protocols):
@@ -147,7 +147,7 @@ class Converted(protocols_twin_test.Protocols):
     def outcome(self, to, *further):
         done = convert("sal3d", self.data, to, "--quiet", "--format", "json", *further)
         document = json.loads(done.stdout)
-        self.assertEqual((document["command"], document["layout"]), ("convert", "sal3d"))
+        self.assertEqual((document["command"], document["layout"]), ("import", "sal3d"))
         return done.returncode, [(shape["name"], shape["outcome"]) for shape in document["shapes"]], document["removed"]
 
     def test_a_second_call_writes_what_changed(self):

@@ -15,6 +15,7 @@
 #include "io/file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/engine/run.h"
+#include "pipeline/package/listing.h"
 #include "pipeline/results/results.h"
 #include "stages/ground_truth/simulation.h"
 #include "tests/support/shapes.h"
@@ -83,8 +84,8 @@ struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
       : config(std::move(the_config)),
-        inputs(read_inputs(find_dataset(root, layouts_of(config.dataset.layout), config.dataset.twins), items,
-                           {}, config.dataset.split)),
+        inputs(read_inputs(find_dataset(root, config.dataset.layout, config.dataset.twins), items, {},
+                           config.dataset.split)),
         project(make_project(config, inputs)),
         store(the_store) {
     make_plan_again();

@@ -13,6 +13,7 @@ from typing import Any
 
 import pandas
 
+from salbench._version import __version__
 from salbench.conclusions import (
     agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, ranking, shares, significance, smoothing,
     statements, tables,
@@ -77,7 +78,16 @@ def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.S
     if unit is not None and unit not in UNITS:
         raise InputError(f"--unit {unit}: must be one of {', '.join(UNITS)}")
     path = Path(scores)
-    return folders.read_run(path, unit) if (path / "run.yaml").is_file() else folders.read_table(path, unit, **columns)
+    source = folders.read_run(path, unit) if (path / "run.yaml").is_file() else folders.read_table(path, unit, **columns)
+    check_unit(source.study)
+    return source
+
+
+def check_unit(study: Study) -> None:
+    """Throws InputError where nothing would be one observation."""
+    classes = study.scores.frame["class"]
+    if study.unit == "class" and len(classes) and not (classes != "").any():
+        raise InputError("unit class: no item has a class; name them in a column `class`, or with --classes, or take the unit mesh")
 
 
 def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
@@ -98,7 +108,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     text = _text(overview, source.remarks, found)
     concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
     folders.write_document(folder, {
-        "format": 1, "version": _version(), "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
+        "format": 1, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
         "leaders": concluded.leaders, "text": concluded.text, "tables": names})
     return concluded
 
@@ -112,9 +122,3 @@ def conclude_if_missing(folder: Path) -> None:
 def _text(overview: pandas.DataFrame, remarks: Sequence[str], found: Sequence[leaders.LevelLeaders]) -> str:
     simulated = [remark for remark in remarks if remark.startswith("SIMULATED")]
     return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*simulated, *(level.sentence for level in found)))
-
-
-def _version() -> str:
-    from salbench import _core
-
-    return str(_core.version)

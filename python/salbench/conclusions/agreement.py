@@ -67,7 +67,7 @@ def _fill(cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric],
     """The cells of each metric of one group with each of another one; none where these have fewer than two units or models in common."""
     x, y = (ranked[metrics[0]].competitors.scores for metrics in (one, other))
     models, units = np.intersect1d(x.models, y.models), np.intersect1d(x.units, y.units)
-    if len(models) < 2 or len(units) < 2:
+    if len(models) < 2 or len(units) < 2 or (one is other and len(one) == 1):
         return
     signs_x = _signs(study, ranked, one, models, units)
     signs_y = signs_x if one is other else _signs(study, ranked, other, models, units)

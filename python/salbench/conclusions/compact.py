@@ -33,7 +33,7 @@ def within_range(summary: Summary, metric: Metric) -> tuple[Floats, Floats]:
 
 
 def compact(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and model with scores; competitors by rank, then references."""
+    """A row per data set, metric and model with scores; competitors by their means, then references."""
     parts = (_part(level, metric, ranked) for level, of_level in study.ranked for metric, ranked in enumerate(of_level))
     return framed(COLUMNS, parts, study.in_splits)
 
@@ -52,10 +52,11 @@ def _part(level: Level, metric: int, ranked: RankedMetric) -> Part:
     cells["rank"][ranked.competitors.scores.models] = ranked.ranking.rank
     group = np.full(k, "", dtype=object)
     group[ranked.competitors.scores.models] = ranked.ranking.letters
-    has_score = level.defined[:, :, metric]
-    cells |= {"group": group, "best": (cells["rank"] == 1).astype(int), "n_missing": has_score.any(axis=1).sum() - has_score.sum(axis=0),
+    cells |= {"group": group, "best": (cells["rank"] == 1).astype(int), "n_missing": level.n_missing(metric),
               "model": np.array(level.models, dtype=object), "kind": np.where(level.is_reference, "reference", "model")}
     scored = level.scored(metric)
-    order = scored[np.lexsort((np.nan_to_num(cells["rank"][scored]), level.is_reference[scored]))]
+    place = np.zeros(k)
+    place[ranked.competitors.scores.models[ranked.ranking.order]] = np.arange(len(ranked.ranking.order))
+    order = scored[np.lexsort((place[scored], level.is_reference[scored]))]
     return {"dataset": level.dataset, "split": level.split, "metric": of_metric.name,
             "better": "higher" if of_metric.higher_is_better else "lower", **{name: values[order] for name, values in cells.items()}}

@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from salbench._errors import InputError as InputError
 from salbench.conclusions.units import Floats
 
 # What the module csv says, in our words.
@@ -18,10 +19,6 @@ _WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
           "',' expected after '\"'": "there is text after the quote that closes a field"}
 
 _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
-
-
-class InputError(ValueError):
-    """A file or table that cannot be used: the message says which, where and why."""
 
 
 @dataclass(frozen=True)

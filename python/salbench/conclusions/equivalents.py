@@ -11,7 +11,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.people import curve_level
-from salbench.conclusions.resampling import FEWEST_OF_PERCENTILES, percentile_interval
+from salbench.conclusions.resampling import FEWEST, percentile_interval
 from salbench.conclusions.samples import means
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPES, Part, count, framed, number, text
@@ -139,8 +139,8 @@ def _remark(meshes: Level, metric: int, model: int, found: dict[int, Equivalent]
         return "no scores"
     if own.n == 0:
         return "no mesh has a human curve and scores of all models"
-    if own.n < FEWEST_OF_PERCENTILES:
-        return f"no interval: fewer than {FEWEST_OF_PERCENTILES} units"
+    if own.n < FEWEST:
+        return f"no interval: fewer than {FEWEST} units"
     if np.isnan(own.low):
         return "no interval: the values do not vary"
     return _remark_on_scale(meshes, model, found, length)

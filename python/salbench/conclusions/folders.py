@@ -11,6 +11,7 @@ from typing import Any
 
 import pandas
 
+from salbench._errors import StorageError as StorageError
 from salbench.conclusions import tables
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.metrics import Metric, of_program
@@ -18,10 +19,6 @@ from salbench.conclusions.scores import read_people, read_results, read_scores, 
 from salbench.conclusions.study import DEFAULT_SEED, Study
 
 CONCLUDED = "conclusions.json"
-
-
-class StorageError(RuntimeError):
-    """A folder or file that cannot be written."""
 
 
 @dataclass(frozen=True)

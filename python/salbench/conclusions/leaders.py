@@ -9,6 +9,7 @@ import pandas
 
 from salbench.conclusions.compact import within_range
 from salbench.conclusions.metrics import Metric, leading
+from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import RankedMetric, Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, SPLIT, Part, framed, number, optional_count, text
@@ -16,11 +17,14 @@ from salbench.conclusions.units import Level
 from salbench.conclusions.words import Leader, sentence
 
 COLUMNS = (
-    DATASET, SPLIT, METRIC, text("verdict", "of the joint intervals of the ranks; empty in the row of a whole data set"),
+    DATASET, SPLIT, METRIC, text("verdict", "of the pairs that differ, all compared at once; empty in the row of a whole data set"),
     text("leaders", "models that may be the first, best mean first"), number("mean", "of the best model"), *CI95,
     text("second", "model with the next best mean"), number("lead", "how far the best mean is ahead of that, above 0 also where lower is better"),
-    number("lead_low", "its 95 % interval, joint for all pairs of models"), number("lead_high", "upper end"),
-    optional_count("n", "units"), optional_count("n_shapes", "shapes in these"), text("sentence", "what may be said of the row"))
+    number("lead_low", "lead -+ t_bound standard errors (significance.csv): beyond 0 where the two differ"), number("lead_high", "upper end"),
+    optional_count("n", "units"), optional_count("n_shapes", "shapes in these"),
+    optional_count("n_missing", "shapes left out, since a competitor has no score there"),
+    text("new_classes", "verdict if classes are the units, where six have several items"),
+    text("new_classes_leaders", "models that may then be the first"), text("sentence", "what may be said of the row"))
 
 
 @dataclass(frozen=True)
@@ -39,40 +43,45 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
     spoken_of = leading(metric.name for metric in study.scores.metrics)
     found = []
     for level, ranked in study.ranked:
-        leaders = [leader_of(level, of_metric, metric) for metric, of_metric in zip(level.metrics, ranked)
-                   if len(of_metric.competitors.scores.models)]
-        chosen = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
-        found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, chosen)))
+        places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.scores.models)]
+        leaders = [leader_of(level, ranked[place], place) for place in places]
+        if (level.dataset, level.split) in study.of_classes:
+            classes, of_classes = study.of_classes[level.dataset, level.split]
+            for leader, place in zip(leaders, places):
+                leader.new_classes = leader_of(classes, of_classes[place], place)
+        spoken = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
+        found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, spoken)))
     return found
 
 
-def leader_of(level: Level, ranked: RankedMetric, metric: Metric) -> Leader:
+def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     """The competitors at the top by one metric."""
-    scores, ranking, order = ranked.competitors.scores, ranked.ranking, ranked.ranking.order()
-    names = [level.models[model] for model in scores.models]
-    may_be_first = [names[column] for column in order if not ranking.low[column] > 1]
-    best = order[0]
-    of_best = summarise(scores.values[:, [best]])
-    low, high = within_range(of_best, metric)
-    leader = Leader(metric, "one unit", may_be_first, float(of_best.mean[0]), (float(low[0]), float(high[0])), scores.n, scores.n_shapes)
-    if scores.n == 0:
-        leader.verdict = "no common shape"
+    scores, ranking, metric = ranked.competitors.scores, ranked.ranking, level.metrics[place]
+    names, order = [level.models[model] for model in scores.models], ranking.order
+    missing, shapes = level.n_missing(place)[scores.models], int(level.defined[:, :, place].any(axis=1).sum())
+    leader = Leader(metric, "only model" if len(names) == 1 else "too few units", n=scores.n, n_shapes=scores.n_shapes,
+                    n_missing=shapes - scores.n_shapes, missing={
+                        names[column]: (int(missing[column]), float(ranked.at_chance[column])) for column in order if missing[column]})
     if scores.n < 2:
+        leader.verdict = "one unit" if scores.n else "no common shape"
+    if scores.n == 0 or (scores.n < FEWEST and len(names) > 1):
         return leader
+    of_best = summarise(scores.values[:, order[:1]])
+    low, high = within_range(of_best, metric)
+    leader.mean, leader.interval, leader.models = float(of_best.mean[0]), (float(low[0]), float(high[0])), names[:1]
     if len(names) == 1:
-        leader.verdict = "only model"
         return leader
-    # How far the best is ahead of each other one, in the order of the ranks, and the half of the interval that ranks are made of.
-    sign = 1.0 if metric.higher_is_better else -1
-    ahead = summarise(sign * (scores.values[:, [best]] - scores.values[:, order[1:]]))
-    half = ranking.critical * ahead.sd / np.sqrt(scores.n)
+    # How far the best is ahead of the next one, and the half of the interval that ranks are made of.
+    ahead = summarise((1.0 if metric.higher_is_better else -1) * (scores.values[:, order[:1]] - scores.values[:, order[1:2]]))
+    half = float(ranking.bound * ahead.sd[0] / np.sqrt(scores.n)) if ahead.sd[0] > 0 else np.nan  # none of width 0
     leader.second, leader.lead = names[order[1]], float(ahead.mean[0])
-    leader.lead_interval = float(ahead.mean[0] - half[0]), float(ahead.mean[0] + half[0])
-    if len(may_be_first) > 1:
-        leader.verdict = "not told apart"
-        return leader
-    leader.near = [names[column] for column, mean, bound in zip(order[1:], ahead.mean, half) if not abs(mean) > bound]
-    leader.verdict = "not behind" if leader.near else "leads"
+    leader.lead_interval = leader.lead - half, leader.lead + half
+    first = [column for column in order if ranking.low[column] == 1]
+    leader.models = [names[column] for column in first]
+    others = [column for column in order if column not in first]
+    leader.behind = [names[column] for column in others if ranking.better[first, column].any()]
+    leader.near = [names[column] for column in others if not ranking.better[first[0], column]] if len(first) == 1 else []
+    leader.verdict = "not told apart" if len(first) > 1 else "not behind" if leader.near else "leads"
     return leader
 
 
@@ -90,10 +99,13 @@ def _parts(level: LevelLeaders) -> list[Part]:
     label = {"dataset": level.dataset, "split": level.split}
     parts: list[Part] = [none | label | {"sentence": level.sentence}]
     for leader in level.leaders:
+        classes = leader.new_classes
         parts.append(label | {
             "metric": leader.metric.name, "verdict": leader.verdict, "leaders": ", ".join(leader.models), "mean": leader.mean,
             "ci95_low": leader.interval[0], "ci95_high": leader.interval[1], "second": leader.second, "lead": leader.lead,
             "lead_low": leader.lead_interval[0], "lead_high": leader.lead_interval[1], "n": leader.n, "n_shapes": leader.n_shapes,
+            "n_missing": leader.n_missing, "new_classes": classes.verdict if classes else "",
+            "new_classes_leaders": ", ".join(classes.models) if classes else "",
             "sentence": sentence(level.dataset, level.split, level.unit, [leader])})
     return parts
 

@@ -8,6 +8,7 @@ from functools import cache
 
 PAPERS = ("auc", "nss", "lcc")
 _LEADING = 3  # metrics that every page shows, and a sentence speaks of
+_CHANCE = {"auc": .5, "sauc": .5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}  # by maps that know nothing; of others RS alone knows
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,7 @@ class Metric:
     low: float = -math.inf
     high: float = math.inf
     label: str = ""
+    chance: float = math.nan  # the mean score of maps that know nothing; NaN: not known
 
 
 @cache
@@ -26,7 +28,7 @@ def of_program() -> dict[str, Metric]:
     """The program's metrics by name, in the order of its tables."""
     from salbench import _core
 
-    return {name: Metric(name, higher_is_better, low, high, label)
+    return {name: Metric(name, higher_is_better, low, high, label, _CHANCE.get(name.split("_")[0], math.nan))
             for name, _, _, higher_is_better, label, low, high in _core.metric_rows()}
 
 

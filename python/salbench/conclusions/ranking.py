@@ -9,10 +9,11 @@ from salbench.conclusions.units import Level
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, MODEL, N, N_SHAPES, MEAN,
-    optional_count("rank", "1: best mean in the direction of the metric; equal means share the best rank"),
-    optional_count("rank_low", "95 % interval, joint for all pairs of models; empty for one unit"), optional_count("rank_high", "upper end"),
+    optional_count("rank", "1: best mean in the direction of the metric; equal means share the best rank; empty for fewer than six units"),
+    optional_count("rank_low", "95 % interval, joint for all pairs of models"), optional_count("rank_high", "upper end"),
     number("first", "share of the resamples in which the model has the best mean"),
-    text("group", "letters; two models without one in common differ"))
+    text("group", "letters; two models without one in common differ; empty beyond 26 of them"),
+    optional_count("rank_at_chance", "if every score that a model lacks and another has were at chance; empty where none is missing"))
 
 
 def ranking(study: Study) -> pandas.DataFrame:
@@ -22,8 +23,9 @@ def ranking(study: Study) -> pandas.DataFrame:
 
 
 def _part(level: Level, metric: int, ranked: RankedMetric) -> Part:
-    scores, ranks, order = ranked.competitors.scores, ranked.ranking, ranked.ranking.order()
+    scores, ranks, order = ranked.competitors.scores, ranked.ranking, ranked.ranking.order
     return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name,
             "model": [level.models[model] for model in scores.models[order]], "n": scores.n, "n_shapes": scores.n_shapes,
             "mean": ranks.mean[order], "rank": ranks.rank[order], "rank_low": ranks.low[order], "rank_high": ranks.high[order],
-            "first": ranks.first[order], "group": [ranks.letters[column] for column in order]}
+            "first": ranks.first[order], "group": [ranks.letters[column] for column in order],
+            "rank_at_chance": ranked.at_chance[order]}

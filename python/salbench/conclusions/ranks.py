@@ -1,94 +1,128 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ranks of models, and how sure they are.
 
-All pairs of models are compared at once: the intervals of their mean differences hold together with 95 % probability (the largest of
-the standardised differences over the resamples is what bounds them), so that no pair stands out by its number alone. Ranks and groups
-follow from these intervals: a model's rank lies between 1 + the models above it and k - the models below it [romano2005]
+All pairs of models are compared at once, so that no pair stands out by its number alone: by flips of signs, one for each unit and draw
+and the same for all pairs. Where models are equal, and their differences as likely with the other sign, the flipped differences are
+as likely as those seen, and the largest |mean| / standard error over the pairs is beyond the 95 % quantile of that of the draws in at most
+5 % of data sets, however few units and however many models there are. Each draw has its own standard errors. Step-down: pairs that
+differ are put aside, and the others compared with the quantile over themselves, as long as that finds any [romano2005]. Ranks and
+groups follow from the pairs that differ: a model's rank lies between 1 + the models above it and k - the models below it
 [mogstad2024] [piepho2004].
-
-The bound is single-step: the 95 % quantile, over the resamples, of the largest |difference - resampled difference| in standard errors.
-Resampling knows the deviation of n units as that of the sample itself, which is too small by sqrt((n - 1) / n), and takes it for
-known; both are put right by the ratio of Student's quantile to the normal one, which makes the bound of a single pair Student's own.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special
 
-from salbench.conclusions.samples import CONFIDENCE, TAIL, means, summarise
+from salbench.conclusions.resampling import FEWEST, on_grid
+from salbench.conclusions.samples import CONFIDENCE, means
 from salbench.conclusions.units import Floats, Numbers
+
+_ROUNDING = 1e-9  # relative: of the same value, computed another way
+_MOST_LETTERS = 26  # nobody reads more
+
 
 @dataclass(frozen=True)
 class Ranking:
-    """Of the columns of scores."""
+    """Of the columns of scores. Without a unit nothing is known, and for fewer than six the means alone."""
 
     mean: Floats
-    rank: Floats  # 1: best; equal means share the best rank; NaN without a unit
-    low: Floats  # 95 %, jointly; NaN for fewer than two units
+    order: Numbers  # columns, best mean first
+    rank: Floats  # 1: best; equal means share the best rank
+    low: Floats  # 95 %, jointly
     high: Floats
     first: Floats  # share of the resamples where it is best
-    letters: list[str]  # two models without a letter in common differ; empty for fewer than two units
-    critical: float  # standard errors that bound every pair
-
-    def order(self) -> Numbers:
-        """Columns, best first."""
-        return np.argsort(self.rank, kind="stable")
+    letters: list[str]  # two models without a letter in common differ; empty where there would be too many
+    better: NDArray[np.bool_]  # [a, b]: a is better than b, and not by chance
+    bound: float  # standard errors beyond which a mean difference is no chance
 
 
-def rank_models(values: Floats, resampled: Floats, higher_is_better: bool) -> Ranking:
-    """Ranks the columns of units x models with their resampled means, which are not read for fewer than two units."""
+def rank_models(values: Floats, flipped: Floats, resampled: Floats, higher_is_better: bool = True) -> Ranking:
+    """Ranks the columns of units x models. flipped: their sums in Bootstrap.signs; resampled: their means in the resamples, none where it
+    does not matter how often which is best."""
     n, k = values.shape
-    unknown = np.full(k, np.nan)
-    if n == 0:
-        return Ranking(unknown, unknown, unknown, unknown, unknown, [""] * k, np.nan)
     sign = 1 if higher_is_better else -1
-    mean = means(values)
-    ahead = sign * (mean[:, None] - mean)  # of model a before model b
-    rank = 1.0 + (ahead < 0).sum(axis=1)
-    if n < 2:
-        return Ranking(mean, rank, unknown, unknown, unknown, [""] * k, np.nan)
-    a, b = np.triu_indices(k, 1)
-    differences = summarise(values[:, a] - values[:, b])
-    error = differences.sd / np.sqrt(n)
-    critical = critical_value(differences.mean, error, resampled[:, a] - resampled[:, b], n)
-    better = np.zeros((k, k), dtype=bool)  # model a is better than model b, and not by chance
-    differ = np.abs(differences.mean) > critical * error
-    better[a, b] = differ & (sign * differences.mean > 0)
-    better[b, a] = differ & (sign * differences.mean < 0)
-    order = np.argsort(rank, kind="stable")
-    return Ranking(mean, rank, 1.0 + better.sum(axis=0), k - better.sum(axis=1).astype(float), first_shares(sign * resampled),
-                   compact_letters(better | better.T, order), critical)
+    unknown = np.full(k, np.nan)
+    mean = means(values) if n else unknown
+    order = np.argsort(-sign * mean, kind="stable")
+    if n < FEWEST:
+        return Ranking(mean, order, unknown, unknown, unknown, unknown, [""] * k, np.zeros((k, k), dtype=bool), np.nan)
+    better, bound = differing(on_grid(values), sign * flipped)
+    return Ranking(mean, order, ranks(mean, higher_is_better), 1.0 + better.sum(axis=0), k - better.sum(axis=1).astype(float),
+                   first_shares(sign * resampled), compact_letters(better | better.T, order), better, bound)
 
 
-def critical_value(difference: Floats, error: Floats, resampled: Floats, n: int) -> float:
-    """Standard errors that bound the differences of all pairs together; resampled: resamples x pairs."""
-    varies = error > 0
-    away = np.abs(resampled[:, varies] - difference[varies]) / error[varies]
-    of_unknown_deviation = np.sqrt(n / (n - 1)) * special.stdtrit(n - 1, 1 - TAIL) / special.ndtri(1 - TAIL)
-    return float(np.quantile(away.max(axis=1, initial=0), CONFIDENCE) * of_unknown_deviation)
+def ranks(mean: Floats, higher_is_better: bool) -> Floats:
+    """1: best; equal means share the best rank. All NaN where a mean is."""
+    ahead = mean[:, None] - mean if higher_is_better else mean - mean[:, None]
+    return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < 0).sum(axis=1))
+
+
+def differing(values: Floats, flipped: Floats) -> tuple[NDArray[np.bool_], float]:
+    """[a, b]: higher values of a are no chance; and the standard errors that this takes. Draws are compared by the squares of the mean over
+    those of the values, q, of which (n - 1) q / (1 - q) is t squared."""
+    n, k = values.shape
+    sums = flipped.T.copy()  # models x draws: a pair lies in one piece
+    squares = np.stack([((values - values[:, [a]]) ** 2).sum(axis=0) for a in range(k)])
+    with np.errstate(divide="ignore"):
+        weights = np.where(squares > 0, 1 / (n * squares), 0)  # pairs that are equal on every unit never differ
+    seen = (sums[:, [0]] - sums[:, 0]) ** 2 * weights  # the first draw is the sample
+    compared = np.triu(squares > 0, 1)
+    bound = np.float64(np.nan)
+    while compared.any():
+        bound = _quantile(sums, weights, compared)
+        differ = compared & (seen > bound * (1 + _ROUNDING))
+        compared &= ~differ
+        if not differ.any():
+            break
+    better = (seen > bound * (1 + _ROUNDING)) & (sums[:, [0]] > sums[:, 0])
+    return better, float(np.sqrt((n - 1) * bound / (1 - bound))) if bound < 1 else np.inf
+
+
+def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> np.float64:
+    """That of the largest q over the pairs that are compared."""
+    largest = np.zeros(sums.shape[1])
+    for a in np.flatnonzero(compared.any(axis=1)):
+        b = np.flatnonzero(compared[a])
+        squared = sums[b] - sums[a]
+        np.square(squared, out=squared)
+        squared *= weights[a, b, None]
+        np.maximum(largest, squared.max(axis=0), out=largest)
+    place = int(np.ceil(CONFIDENCE * len(largest))) - 1
+    return np.float64(np.partition(largest, place)[place])
 
 
 def first_shares(resampled: Floats) -> Floats:
-    """Share of the resamples in which each model has the largest mean; several largest ones share it."""
+    """Share of the resamples in which each model has the largest mean; several largest ones share it. NaN without resamples."""
+    if not len(resampled):
+        return np.full(resampled.shape[1], np.nan)
     best = resampled == resampled.max(axis=1, keepdims=True)
     shares: Floats = (best / best.sum(axis=1, keepdims=True)).mean(axis=0)
     return shares
 
 
 def compact_letters(differ: NDArray[np.bool_], order: Sequence[int] | Numbers) -> list[str]:
-    """A letter for each largest group of items of which no two differ; the first of `order` are in group "a" [piepho2004]."""
-    groups = {frozenset(range(len(order)))}  # items are numbered by their place in the order
-    for i, j in combinations(range(len(order)), 2):
-        if not differ[order[i], order[j]]:
-            continue
-        split = {part for group in groups for part in ((group - {i}, group - {j}) if i in group and j in group else (group,))}
-        groups = {group for group in split if not any(group < other for other in split)}
+    """Letters such that two items share one exactly if they do not differ; the first of `order` are in group "a" [piepho2004].
+
+    Groups are filled up in this order, each around the first pair that no group has yet; none of them has letters beyond 26.
+    """
+    same = ~np.asarray(differ)[np.ix_(order, order)]  # items are numbered by their place in the order
+    missing, groups = np.triu(same), []
+    while missing.any():
+        if len(groups) == _MOST_LETTERS:
+            return [""] * len(order)
+        group = np.zeros(len(order), dtype=bool)
+        fits = np.ones(len(order), dtype=bool)
+        pair = np.unravel_index(np.argmax(missing), missing.shape)
+        for item in (*pair, *range(len(order))):
+            if fits[item]:
+                group[item], fits = True, fits & same[item]
+        missing &= ~np.outer(group, group)
+        groups.append(np.flatnonzero(group).tolist())
     letters = [""] * len(order)
-    for place, group in enumerate(sorted(groups, key=sorted)):
-        for i in sorted(group):
-            letters[order[i]] += chr(ord("a") + place % 26) + "'" * (place // 26)  # a to z, then a', b', ...
+    for place, members in enumerate(sorted(groups)):
+        for item in members:
+            letters[order[item]] += chr(ord("a") + place)
     return letters

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bootstrap over the units of inference [efron1993]: a matrix of counts times a matrix of scores.
+"""Draws over the units of inference: the bootstrap [efron1993], and flips of signs. A matrix of draws times a matrix of scores.
 
-One set of resamples serves every column of a table, so that means, differences and ranks of models are compared within the same
-resample. The product is exact, and so the same bytes whatever library multiplies, in whatever order, with however many threads:
-scores are rounded to a grid on which no sum of them needs more than the 53 bits of a double.
+One set of draws serves every column of a table, so that means, differences and ranks of models are compared within the same draw. The
+product is exact, and so the same bytes whatever library multiplies, in whatever order, with however many threads: scores are rounded to
+a grid on which no sum of them needs more than the 53 bits of a double.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +17,14 @@ from salbench.conclusions.parallel import mapped
 from salbench.conclusions.samples import TAIL, means
 from salbench.conclusions.units import Floats
 
+Draws = NDArray[np.integer[Any]]
+
 RESAMPLES = 10_000
 _BLOCK = 128  # resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their own need
 
 # With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do all resamples, whatever
-# percentiles are taken.
-FEWEST_OF_PERCENTILES = 6
+# percentiles are taken; and of 16 ways to flip signs none is rarer than one in twenty.
+FEWEST = 6
 
 
 class Bootstrap:
@@ -30,15 +33,26 @@ class Bootstrap:
     def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
         """threads: that may multiply; by default one per core."""
         self._seed, self._resamples, self._threads = seed, resamples, threads
-        self._counts: dict[int, NDArray[np.uint8]] = {}
+        self._counts: dict[int, Draws] = {}
 
-    def counts(self, n: int) -> NDArray[np.uint8]:
+    def counts(self, n: int) -> Draws:
         """How often each of n units is drawn: resamples x n."""
         if n not in self._counts:
             while len(self._counts) > 3:  # of thousands of scans, 48 MB each
                 del self._counts[next(iter(self._counts))]
             self._counts[n] = np.concatenate(list(self._drawn(n)))
         return self._counts[n]
+
+    def signs(self, n: int) -> Draws:
+        """+1 or -1 for each of n units, draws x n: all ways but for the sign of the whole where these are few, each once. The first is the
+        sample itself, in which all are +1."""
+        if 2 ** (n - 1) <= self._resamples:
+            flipped = (np.arange(2 ** (n - 1))[:, None] >> np.arange(n)) & 1
+        else:
+            words = np.random.PCG64([self._seed, n, 1]).random_raw(-(-self._resamples * n // 64))
+            flipped = np.unpackbits(words.astype("<u8").view(np.uint8), count=self._resamples * n).reshape(self._resamples, n)
+            flipped[0] = 0
+        return 1 - 2 * flipped.astype(np.int8)
 
     def _drawn(self, n: int) -> Iterator[NDArray[np.uint8]]:
         """Block by block. Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that taking
@@ -60,38 +74,44 @@ class Bootstrap:
         return self.means_of_each([values])[0]
 
     def means_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
-        """`means` of several samples; those of as many units share one product, which takes far less time. No resamples of fewer than
-        two units."""
-        means: list[Floats] = [np.empty((0, values.shape[1])) for values in samples]
-        for n in sorted({len(values) for values in samples if len(values) > 1 and values.size}):
-            places = [place for place, values in enumerate(samples) if len(values) == n and values.size]
-            relative = [_on_grid(samples[place] - samples[place][0]) for place in places]
-            resampled = self._product(np.hstack(relative)) / n
-            ends = np.cumsum([values.shape[1] for values in relative])
-            for place, own in zip(places, np.split(resampled, ends[:-1], axis=1)):
-                means[place] = own + samples[place][0]
-        return means
+        """`means` of several samples. No resamples of fewer than two units."""
+        sums = self._sums_of_each(self.counts, [values - values[:1] for values in samples], 2)
+        return [own / len(values) + values[0] if len(own) else own for own, values in zip(sums, samples)]
 
-    def _product(self, values: Floats) -> Floats:
-        """Sums of the columns over each resample."""
-        counts = self.counts(len(values))
-        sums = np.zeros((len(counts), values.shape[1]))
+    def flipped_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
+        """Sums of the columns of samples on the grid with the signs of each draw, draws x columns; none for fewer units than tell."""
+        return self._sums_of_each(self.signs, samples, FEWEST)
+
+    def _sums_of_each(self, draws: Callable[[int], Draws], samples: Sequence[Floats], fewest: int) -> list[Floats]:
+        """Those of as many units share one product, which takes far less time."""
+        sums: list[Floats] = [np.empty((0, values.shape[1])) for values in samples]
+        for n in sorted({len(values) for values in samples if len(values) >= fewest and values.size}):
+            places = [place for place, values in enumerate(samples) if len(values) == n and values.size]
+            drawn = self._product(draws(n), np.hstack([on_grid(samples[place]) for place in places]))
+            ends = np.cumsum([samples[place].shape[1] for place in places])
+            for place, own in zip(places, np.split(drawn, ends[:-1], axis=1)):
+                sums[place] = own
+        return sums
+
+    def _product(self, draws: Draws, values: Floats) -> Floats:
+        """Sums of the columns over each draw."""
+        sums = np.zeros((len(draws), values.shape[1]))
 
         def multiply(row: int) -> None:
             rows = slice(row, row + _BLOCK)
             for unit in range(0, len(values), _BLOCK):
                 units = slice(unit, unit + _BLOCK)
-                sums[rows] += counts[rows, units].astype(float) @ values[units]
+                sums[rows] += draws[rows, units].astype(float) @ values[units]
 
-        mapped(multiply, range(0, len(counts), _BLOCK), self._threads)
+        mapped(multiply, range(0, len(draws), _BLOCK), self._threads)
         return sums
 
 
-def _on_grid(values: Floats) -> Floats:
+def on_grid(values: Floats) -> Floats:
     """Rounded to multiples of a power of two, such that n times the largest value is below 2^53 of them: to 2^-40 of the largest
-    value for 4 800 units."""
+    value for 4 800 units, and what is too small for squares to 0. Columns that are equal but for rounding, such as scores summed in another order, are equal."""
     _, exponent = np.frexp(np.abs(values).max() * len(values))
-    step = np.ldexp(1.0, exponent - 53)
+    step = np.ldexp(1.0, max(int(exponent) - 53, -500))
     rounded: Floats = np.rint(values / step) * step
     return rounded
 
@@ -120,7 +140,7 @@ def percentile_interval(values: Floats, n: int) -> tuple[float, float]:
     Percentiles at the levels that give a mean of normal values Student's interval [hesterberg2015]. Ends are among the values, which may
     be infinite. None for too few units, where a value is NaN, or for equal finite values.
     """
-    if n < FEWEST_OF_PERCENTILES or len(values) == 0 or np.isnan(values).any():
+    if n < FEWEST or len(values) == 0 or np.isnan(values).any():
         return np.nan, np.nan
     z = np.sqrt(n / (n - 1)) * special.stdtrit(n - 1, 1 - TAIL)
     place = int(special.ndtr(-z) * (len(values) - 1))

@@ -2,6 +2,7 @@
 """Scores per shape from a table of anybody's: results.csv of a run, or what others have published."""
 
 import os
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,9 +12,12 @@ import pandas
 
 from salbench.conclusions.csv_file import InputError, Table, read_csv
 from salbench.conclusions.metrics import Metric, of_program
-from salbench.conclusions.units import DATASETS, TEXTS, Floats, Scores
+from salbench.conclusions.units import DATASETS, REFERENCES, TEXTS, Floats, Scores
 
 _BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
+_ROUNDING = 1e-9  # beyond the range of a metric
+_SMALLEST, _LARGEST = 1e-100, 1e100  # of the largest score of a metric
+_UNREADABLE = re.compile(r"[\x00-\x1f\x7f]")
 
 
 @dataclass(frozen=True)
@@ -25,8 +29,13 @@ class ScoreFile:
 
 def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> list[Metric]:
     """The program's metrics, and columns that are named by their direction."""
-    named = [*(Metric(name, True) for name in higher), *(Metric(name, False) for name in lower)]
-    return [*of_program().values(), *named]
+    metrics = of_program()
+    for name, higher_is_better in (*((name, True) for name in higher), *((name, False) for name in lower)):
+        if metrics.setdefault(name, Metric(name, higher_is_better)).higher_is_better != higher_is_better:
+            known = "both higher and lower values" if name not in of_program() else f"{'lower' if higher_is_better else 'higher'} values"
+            raise InputError(f"{'--higher' if higher_is_better else '--lower'} {name}: {known} of it would be better; name it once, or not at all "
+                             "if it is a metric of the program")
+    return list(metrics.values())
 
 
 def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower: Sequence[str] = (),
@@ -43,6 +52,7 @@ def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower:
         if name not in table.columns:
             raise InputError(f"{table.name}: no column '{name}'")
     found = scores_from(table, metrics, {} if classes is None else read_classes(classes))
+    check(table, found)
     return ScoreFile(found, _notes(table, found.metrics), table.remarks)
 
 
@@ -112,6 +122,60 @@ def _check_rows(table: Table, frame: pandas.DataFrame) -> None:
         if unknown[row]:
             table.fail(row, f"data set '{dataset}', expected one of {', '.join(DATASETS)}")
         table.fail(row, f"a second row of item '{item}'{', view ' + view if view else ''}, model '{model}'")
+
+
+def check(table: Table, scores: Scores) -> None:
+    """Throws InputError with the line of what somebody's table has by mistake, and what would make all others of its rows say nothing."""
+    frame = scores.frame
+    for name in TEXTS:
+        spelled: dict[str, str] = {}
+        for row in np.flatnonzero(~frame.duplicated(name)):
+            own = frame[name][row]
+            if _UNREADABLE.search(own) or (name == "model" and "," in own):
+                table.fail(row, f"{name} {own!r} has a {'comma, a ' if name == 'model' else ''}line break or another control character: lists of "
+                           "names could not be read")
+            if name not in ("item", "model"):
+                continue
+            if not own:
+                table.fail(row, f"the row names no {name}")
+            if (other := spelled.setdefault(own.strip().lstrip("0") or "0", own)) != own:
+                table.fail(row, f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same")
+    of_class = frame[frame["class"] != ""].drop_duplicates(["item", "class"])
+    for row in of_class.index[of_class.duplicated("item")][:1]:
+        first = of_class.loc[of_class["item"] == frame["item"][row], "class"].iloc[0]
+        table.fail(row, f"item '{frame['item'][row]}' is of class '{frame['class'][row]}' here, and of class '{first}' above: an item has one")
+    for metric in scores.metrics:
+        _check_values(table, frame[metric.name].to_numpy(), metric)
+    _check_coverage(table, frame, scores.metrics)
+
+
+def _check_values(table: Table, values: Floats, metric: Metric) -> None:
+    for row in np.flatnonzero((values < metric.low - _ROUNDING) | (values > metric.high + _ROUNDING))[:1]:
+        table.fail(row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: is it in percent, or another metric of "
+                   "that name?")
+    largest = int(np.argmax(np.abs(np.nan_to_num(values)))) if len(values) else 0
+    if len(values) and values[largest] != 0 and not _SMALLEST < np.abs(values[largest]) < _LARGEST:
+        table.fail(largest, f"{metric.name} is {values[largest]:g}, the largest of all: squares of such numbers cannot be computed; give the scores "
+                   "in another unit")
+
+
+def _check_coverage(table: Table, frame: pandas.DataFrame, metrics: Iterable[Metric]) -> None:
+    """A model with scores on fewer than half of the shapes of a data set and split would reduce the others to these."""
+    models, names = pandas.factorize(frame["model"])
+    parts, _ = pandas.factorize(frame["dataset"] + "\n" + frame["split"])
+    shapes, _ = pandas.factorize(frame["item"] + "\n" + frame["view"] + "\n" + frame["dataset"] + "\n" + frame["split"])
+    part_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
+    part_of_shape[shapes] = parts
+    competes = ~frame["model"].isin(REFERENCES).to_numpy()
+    for metric in metrics:
+        known = competes & frame[metric.name].notna().to_numpy()
+        n = np.bincount(part_of_shape[np.unique(shapes[known])], minlength=len(parts))
+        of_model = np.bincount(parts[known] * len(names) + models[known], minlength=1)
+        for cell in np.flatnonzero((of_model > 0) & (2 * of_model < n[np.arange(len(of_model)) // len(names)]))[:1]:
+            part, model = divmod(int(cell), len(names))
+            row = int(np.flatnonzero((parts == part) & (models == model))[0])
+            table.fail(row, f"model '{names[model]}' has {metric.name} on {of_model[cell]} of {n[part]} {frame['dataset'][row]}, and models are compared "
+                       "on the shapes that all have: complete its rows, or take them out")
 
 
 def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:

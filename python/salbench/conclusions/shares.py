@@ -7,7 +7,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.pairs import compare
-from salbench.conclusions.resampling import FEWEST_OF_PERCENTILES, percentile_interval
+from salbench.conclusions.resampling import FEWEST, percentile_interval
 from salbench.conclusions.samples import LEVEL, means
 from salbench.conclusions.study import RankedMetric, Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, framed, number, text
@@ -98,8 +98,8 @@ def _row(scale: _Scale, model: int) -> tuple[object, ...]:
 
 
 def _remark_on(low: float, high: float, n: int) -> str:
-    if n < FEWEST_OF_PERCENTILES:
-        return f"no interval: fewer than {FEWEST_OF_PERCENTILES} units"
+    if n < FEWEST:
+        return f"no interval: fewer than {FEWEST} units"
     if np.isnan(low):
         return "no interval: the shares do not vary"
     return "" if np.isfinite(low) and np.isfinite(high) else "no interval: HS is too near RS in the resamples"

@@ -9,8 +9,9 @@ import pandas
 
 from salbench.conclusions.pairs import Pairs, pairs_of
 from salbench.conclusions.parallel import mapped
-from salbench.conclusions.ranks import Ranking, rank_models
-from salbench.conclusions.resampling import Bootstrap
+from salbench.conclusions.ranks import Ranking, rank_models, ranks
+from salbench.conclusions.resampling import FEWEST, Bootstrap
+from salbench.conclusions.samples import means
 from salbench.conclusions.units import Floats, Level, Scores, UnitScores, levels
 
 DEFAULT_SEED = 2016
@@ -31,6 +32,7 @@ class RankedMetric:
     competitors: Resampled
     references: list[Resampled]
     ranking: Ranking
+    at_chance: Floats  # ranks of the competitors if scores that are missing were at chance; NaN where none is missing, or for few units
 
     @property
     def samples(self) -> list[Resampled]:
@@ -48,18 +50,25 @@ class RankedMetric:
         return bootstrap.means(scores.values)
 
 
-def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -> list[RankedMetric]:
-    """Per metric; all means are resampled together."""
+def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None, means_too: bool = True) -> list[RankedMetric]:
+    """Per metric; all sums are drawn together. means_too: with resampled means, those of references among them."""
     samples: list[list[UnitScores]] = []
     for number in range(len(level.metrics)):
-        references = [[model] for model in level.scored(number) if level.is_reference[model]]
+        references = [[model] for model in level.scored(number) if level.is_reference[model]] if means_too else []
         samples.append([level.compared(number, level.competitors(number)), *(scores for _, scores in level.groups(number, references))])
-    resampled = iter(bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
+    every = [scores.values for of_metric in samples for scores in of_metric]
+    resampled = iter(bootstrap.means_of_each(every) if means_too else [values[:0] for values in every])
     known = [[Resampled(scores, next(resampled)) for scores in of_metric] for of_metric in samples]
+    flipped = bootstrap.flipped_of_each([scores.values for scores, *_ in samples])
 
     def rank(number: int) -> RankedMetric:
         first, *others = known[number]
-        return RankedMetric(first, others, rank_models(first.scores.values, first.means, level.metrics[number].higher_is_better))
+        higher_is_better = level.metrics[number].higher_is_better
+        ranking = rank_models(first.scores.values, flipped[number], first.means, higher_is_better)
+        at_chance = np.full(len(first.scores.models), np.nan)
+        if level.n_missing(number)[first.scores.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
+            at_chance = ranks(means(filled), higher_is_better)
+        return RankedMetric(first, others, ranking, at_chance)
 
     return mapped(rank, range(len(level.metrics)), threads)
 
@@ -97,6 +106,20 @@ class Study:
     def ranked(self) -> list[tuple[Level, list[RankedMetric]]]:
         """Each level with its models ranked by each metric."""
         return [(level, rank_level(level, self.bootstrap, self.threads)) for level in self.levels]
+
+    @cached_property
+    def of_classes(self) -> dict[tuple[str, str], tuple[Level, list[RankedMetric]]]:
+        """The same with classes for units, for what new ones would show: by data set and split, where six classes have several items."""
+        if self.unit == "class":
+            return {}
+        found = {}
+        for level in levels(self.scores, "class"):
+            rows = self.scores.frame[(self.scores.frame["dataset"] == level.dataset) & (self.scores.frame["class"] != "")]
+            if level.split:
+                rows = rows[rows["split"] == level.split]
+            if (rows.groupby("class")["item"].nunique() > 1).sum() >= FEWEST:
+                found[level.dataset, level.split] = level, rank_level(level, self.bootstrap, self.threads, means_too=False)
+        return found
 
     @cached_property
     def pairs(self) -> list[tuple[Level, list[Pairs]]]:

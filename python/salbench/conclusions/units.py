@@ -99,6 +99,21 @@ class Level:
         """Shapes that the model has a score for."""
         return int(np.count_nonzero(self.defined[:, model, metric]))
 
+    def n_missing(self, metric: int) -> Numbers:
+        """By model: shapes that some model has a score for and this one has not."""
+        defined = self.defined[:, :, metric]
+        missing: Numbers = defined.any(axis=1).sum() - defined.sum(axis=0)
+        return missing
+
+    def at_chance(self, metric: int) -> Floats:
+        """Scores of the competitors, units x models, on all shapes that some model has a score for: one that is missing is that of RS on the
+        shape, or else what the metric gives to maps that know nothing. NaN where that is not known either."""
+        models, values = self.competitors(metric), self.values[:, :, metric]
+        kept = np.flatnonzero(self.defined[:, :, metric].any(axis=1))
+        chance = np.full(len(values), np.nan) if (place := self.find("RS")) is None else values[:, place]
+        chance = np.where(np.isnan(chance), self.metrics[metric].chance, chance)
+        return self._by_unit(np.where(np.isnan(values), chance[:, None], values)[:, models], kept)[1]
+
     def compared(self, metric: int, models: Sequence[int] | Numbers) -> UnitScores:
         """Scores of some models on the shapes that they and all competitors have a score for.
 
@@ -125,11 +140,15 @@ class Level:
         kept = np.flatnonzero(shapes & self.defined[:, models, metric].all(axis=1))
         if len(kept) == 0 or len(models) == 0:
             return UnitScores(models, np.empty(0, dtype=np.intp), np.empty((0, len(models))), 0)
-        units, unit = np.unique(self.unit_of_shape[kept], return_inverse=True)
-        k = len(models)
+        return UnitScores(models, *self._by_unit(self.values[:, models, metric], kept), len(kept))
+
+    def _by_unit(self, values: Floats, shapes: Numbers) -> tuple[Numbers, Floats]:
+        """The units of some shapes, and the means over these: units x columns."""
+        units, unit = np.unique(self.unit_of_shape[shapes], return_inverse=True)
+        k = values.shape[1]
         cells = (unit[:, None] * k + np.arange(k)).ravel()  # bincount adds shape after shape: another order rounds otherwise, and ties hang on it
-        sums = np.bincount(cells, self.values[kept[:, None], models, metric].ravel()).reshape(-1, k)
-        return UnitScores(models, units, sums / np.bincount(unit)[:, None], len(kept))
+        sums = np.bincount(cells, values[shapes].ravel()).reshape(-1, k)
+        return units, sums / np.bincount(unit)[:, None]
 
 
 def levels(scores: Scores, unit: str) -> list[Level]:

@@ -6,66 +6,115 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from salbench.conclusions.metrics import Metric
+from salbench.conclusions.resampling import FEWEST
 
 _NAMED = 4  # models that a sentence lists
 _SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "mse", "mae", "sauc")  # written as "AUC"
+_OWN = ("by ", "one ", "no ")  # words that a clause of ours begins with; models keep their spelling
 _SHAPES = {"meshes": ("mesh", "meshes"), "scans": ("scan", "scans"), "clouds": ("point cloud", "point clouds")}
 
 
 @dataclass
 class Leader:
-    """The competitors at the top by one metric. Verdicts, of the joint intervals of the ranks:
+    """The competitors at the top by one metric. Verdicts, of the pairs that differ when all are compared at once:
 
-    leads: one model has the rank 1 to 1, and is ahead of every other one.
-    not behind: one model's interval alone reaches 1, but it is not ahead of all others.
-    not told apart: intervals of several models reach 1.
-    only model; one unit: ranks have no intervals; no common shape: that all competitors have a score for.
+    leads: one model is ahead of every other one.
+    not behind: one model alone is behind no other, but it is not ahead of all.
+    not told apart: several models are behind no other.
+    only model; one unit, too few units: these show no ranks; no common shape: that all competitors have a score for.
     """
 
     metric: Metric
     verdict: str
-    models: list[str]  # whose rank may be the first, best mean first; all for one unit
-    mean: float  # of the best model
-    interval: tuple[float, float]  # of it, 95 %, within the range of the metric
-    n: int  # units
-    n_shapes: int
-    near: list[str] = field(default_factory=list)  # not behind: those that it cannot be told apart from
+    models: list[str] = field(default_factory=list)  # that are behind no other, best mean first
+    mean: float = math.nan  # of the best model
+    interval: tuple[float, float] = (math.nan, math.nan)  # of it, 95 %, within the range of the metric
+    n: int = 0  # units
+    n_shapes: int = 0
+    n_missing: int = 0  # shapes left out: some model has a score there, and not every competitor
+    missing: dict[str, tuple[int, float]] = field(default_factory=dict)  # by competitor: shapes that it lacks; its rank if they were at chance
+    near: list[str] = field(default_factory=list)  # not behind: those that it is not ahead of
+    behind: list[str] = field(default_factory=list)  # models that one of `models` is ahead of
     second: str = ""  # model with the next best mean; empty: none
     lead: float = math.nan  # how far the best mean is ahead of that, positive whether higher or lower is better
-    lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %, joint for all pairs of models: above 0 where the pair differs
+    lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %: beyond 0 where the pair differs
+    new_classes: "Leader | None" = None  # the same with classes for units, where there are enough
 
 
 def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> str:
-    """Of these metrics: those that say alike in one clause."""
+    """Of these metrics: those that say alike in one clause. Scores that are missing, and what new classes would show, in sentences of their own."""
     of_split = f" of split {split}" if split else ""
     if not leaders:
         return f"On {_spoken(dataset)}{of_split}, no model has scores but references."
-    alike: dict[tuple[str, frozenset[str], frozenset[str]], list[int]] = {}
-    for place, leader in enumerate(leaders):
-        alike.setdefault((leader.verdict, frozenset(leader.models), frozenset(leader.near)), []).append(place)
-    shapes = [_counted(dataset, unit, leader) for leader in leaders]
+    shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
     figures = [_figures(leader, place == 0, "" if over == shapes[0] else f", on {over}") for place, (leader, over) in enumerate(zip(leaders, shapes))]
-    clauses = [_clause([leaders[place] for place in places], [figures[place] for place in places]) for places in alike.values()]
-    return f"On {shapes[0]}{of_split}, {'; '.join(clauses)}."
+    said = f"On {shapes[0]}{of_split}, {_clauses(leaders, figures)}."
+    return " ".join(filter(None, (said, _at_chance(leaders), _of_new_classes(leaders))))
 
 
-def _clause(leaders: list[Leader], figures: list[str]) -> str:
+def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
+    """Each in a sentence; what metrics say alike in one."""
+    alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
+    for leader, text in zip(leaders, figures):
+        key = leader.verdict, *map(frozenset, (leader.models, leader.near, leader.behind))
+        _, labels, metrics = alike.setdefault(key, (leader, [], []))
+        labels.append(_label(leader.metric.name))
+        metrics.append(f"{labels[-1]} ({text})" if text else labels[-1])
+    first, *others = [_clause(*of) for of in alike.values()]
+    return ". ".join([first, *(f"{text[0].upper()}{text[1:]}" if text.startswith(_OWN) else text for text in others)])
+
+
+def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
     """What several metrics say alike."""
-    labels = [_label(leader.metric.name) for leader in leaders]
-    metrics = _listed([f"{label} ({text})" for label, text in zip(labels, figures)])
-    models, near = leaders[0].models, leaders[0].near
-    verdict = leaders[0].verdict
-    if verdict == "leads":
-        return f"{models[0]} leads by {metrics}"
-    if verdict == "not behind":
-        return f"by {metrics}, {models[0]} is behind no other model, but cannot be told apart from {_named(near)}"
-    if verdict == "not told apart":
-        return f"by {metrics}, {_named(models)} cannot be told apart"
-    if verdict == "only model":
-        return f"{models[0]} is the only model that is scored by {metrics}"
-    if verdict == "one unit":
+    models, by = leader.models, _listed(metrics)
+    if leader.verdict == "leads":
+        return f"{models[0]} leads by {by}"
+    if leader.verdict == "not behind":
+        are = "is" if len(leader.near) == 1 else "are"
+        return f"by {by}, no model is ahead of {models[0]}, and {_named(leader.near)} {are} not shown to be behind it"
+    if leader.verdict == "not told apart":
+        are = f"; {_named(leader.behind)} {'is' if len(leader.behind) == 1 else 'are each'} behind at least one of them" if leader.behind else ""
+        return f"by {by}, {_named(models, 'or')} may be best{are}"
+    if leader.verdict == "only model":
+        return f"{models[0]} is the only model that is scored by {by}"
+    if leader.verdict == "one unit":
         return f"one observation does not tell how the models rank by {_listed(labels)}"
+    if leader.verdict == "too few units":
+        return f"{leader.n} observations are too few to tell how the models rank by {_listed(labels)}: it takes {FEWEST}"
     return f"no shape has scores of all models by {_listed(labels)}"
+
+
+def _without(leader: Leader) -> str:
+    """ " (A has no score on 12)": who keeps shapes from being compared, the first ones of the ranking first."""
+    lacking = [f"{name} has no score on {count}" for name, (count, _) in leader.missing.items()]
+    return f" ({_listed(_cut(lacking))})" if lacking and leader.n else ""
+
+
+def _at_chance(leaders: Sequence[Leader]) -> str:
+    """ "With its missing scores at chance, A ranks 3 by AUC and NSS, 1 by LCC.": for every model that was named before."""
+    ranks: dict[str, dict[str, list[str]]] = {}
+    for leader in leaders:
+        for name in _cut(list(leader.missing)):
+            rank = leader.missing.get(name, (0, math.nan))[1]
+            if not math.isnan(rank):
+                ranks.setdefault(name, {}).setdefault(f"{rank:.0f}", []).append(_label(leader.metric.name))
+    said = [f"{name} ranks {', '.join(f'{rank} by {_listed(labels)}' for rank, labels in of.items())}" for name, of in ranks.items()]
+    return f"With missing scores at chance, {'; '.join(said)}." if said else ""
+
+
+def _of_new_classes(leaders: Sequence[Leader]) -> str:
+    """ "New classes: AUC only.": by which metrics the same can be said, else what can be."""
+    known = [leader for leader in leaders if leader.new_classes]
+    found = [leader.new_classes for leader in known if leader.new_classes]
+    if not found:
+        return ""
+    if all((leader.verdict, set(leader.models), set(leader.near), set(leader.behind)) == (of.verdict, set(of.models), set(of.near), set(of.behind))
+           for leader, of in zip(known, found)):
+        return "New classes: the same."
+    leading = [of for of in found if of.verdict == "leads"]
+    if {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *of.models) for of in leading}:
+        return f"New classes: {_listed([_label(of.metric.name) for of in leading])} only."
+    return f"New classes: {_clauses(found, [''] * len(found))}."
 
 
 def _figures(leader: Leader, explained: bool, over: str) -> str:
@@ -80,13 +129,15 @@ def _figures(leader: Leader, explained: bool, over: str) -> str:
 
 
 def _counted(dataset: str, unit: str, leader: Leader) -> str:
-    """ "228 scans of 19 meshes" """
+    """ "228 scans of 19 meshes", "48 of 60 meshes", "393 meshes of these 20 classes" """
     if leader.n == 0:
         return _spoken(dataset)
-    shapes = _several(leader.n_shapes, *_SHAPES[dataset])
-    if unit == "class":
-        return f"{shapes} of {_several(leader.n, 'class', 'classes')}"
-    return f"{shapes} of {_several(leader.n, 'mesh', 'meshes')}" if dataset == "scans" and unit == "mesh" else shapes
+    shapes = f"{leader.n_shapes} of " if leader.n_missing else ""
+    shapes += _several(leader.n_shapes + leader.n_missing, *_SHAPES[dataset])
+    if dataset == "scans" and unit == "mesh":
+        shapes += f" of {_several(leader.n, 'mesh', 'meshes')}"
+    n_classes = leader.n if unit == "class" else leader.new_classes.n if leader.new_classes else 0
+    return f"{shapes} of {'these ' if unit != 'class' else ''}{_several(n_classes, 'class', 'classes')}" if n_classes else shapes
 
 
 def _spoken(dataset: str) -> str:
@@ -101,11 +152,14 @@ def _label(metric: str) -> str:
     return metric.upper() if metric in _SHORT else metric
 
 
-def _named(models: list[str]) -> str:
+def _named(models: list[str], last: str = "and") -> str:
+    return _listed(_cut(models), last)
+
+
+def _cut(names: list[str]) -> list[str]:
     """A long list is cut: the tables have it."""
-    few = models if len(models) <= _NAMED + 1 else [*models[:_NAMED], f"{len(models) - _NAMED} others"]
-    return _listed(few)
+    return names if len(names) <= _NAMED + 1 else [*names[:_NAMED], f"{len(names) - _NAMED} others"]
 
 
-def _listed(names: list[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+def _listed(names: list[str], last: str = "and") -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}"

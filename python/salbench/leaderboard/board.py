@@ -18,7 +18,7 @@ import pandas
 from salbench import _core
 from salbench._run import Model
 from salbench.conclusions import compact, csv_file, folders, leaders, tables, tables_of
-from salbench.conclusions.csv_file import InputError
+from salbench._errors import InputError
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.leaderboard import submission

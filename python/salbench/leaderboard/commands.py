@@ -1,30 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write. Both print a document or a text, and return a status."""
+"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write. Both return a status."""
 
 import argparse
 import logging
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from salbench import _core, _run
+from salbench._command_line import ALL_DONE, SOME_FAILED, Parser, report
+from salbench._errors import InputError, StorageError
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
-from salbench.conclusions.csv_file import InputError
-from salbench.conclusions.folders import StorageError
 from salbench.leaderboard import board, folder, site, submission, texts
 from salbench.leaderboard.archive import Refused
 from salbench.leaderboard.texts import Manifest
 
-ALL_DONE, SOME_FAILED = 0, 1
 CONFIG = "shrec07_meshes"
-Print = Callable[[dict[str, Any], str], int]
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     """Those that both have: of a run over what has ground truth whose configuration need not be named."""
     parser.add_argument("-c", "--config", default=CONFIG, help=f"configuration, or the name of an installed one (default: {CONFIG})")
     parser.add_argument("--data", metavar="DIR", help="folder of the data set")
@@ -33,8 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--reference", metavar="FILE", help="match to this histogram (CSV with a column GS of 100 bins), not to the mean over the "
                         "data set; items: to the mean over the items with ground truth")
     parser.add_argument("--threads", type=int, metavar="N", help="threads (default: all cores); results do not depend on it")
-    parser.add_argument("--format", default="text", help="text (default), or json: one document for programs (docs/json.md)")
-    parser.add_argument("--quiet", action="store_true", help="neither progress nor tables; warnings and errors only")
+    parser.add_report("neither progress nor tables; warnings and errors only")
 
 
 class _Session:
@@ -90,8 +87,8 @@ def _failed(results: Results) -> int:
     return SOME_FAILED
 
 
-def submit(given: argparse.Namespace, say: Print) -> int:
-    """given: MINE and --to beside the arguments of both; say: prints a document, or a text, and returns a status other than 0 if it cannot."""
+def submit(given: argparse.Namespace) -> int:
+    """given: MINE and --to beside the arguments of both."""
     card_file = Path(given.mine, "card.yaml")
     card_text = card_file.read_bytes()
     try:
@@ -106,7 +103,8 @@ def submit(given: argparse.Namespace, say: Print) -> int:
             _write_checked(Path(given.to), results, card_text, card.name, Path(name))
         document = {"to": None if status else given.to, "model": card.name, **summary_of(results)}
     text = "" if status else f"{given.to} can be handed in: it was checked as salbench leaderboard checks it\n"
-    return say(document, text) or status
+    report(given, "submit", document, text)
+    return status
 
 
 def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch: Path) -> None:
@@ -131,7 +129,7 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
         raise InputError(f"{to}: would be refused, and was not written: {reason}") from None
 
 
-def leaderboard(given: argparse.Namespace, say: Print) -> int:
+def leaderboard(given: argparse.Namespace) -> int:
     """given: FOLDER, --to and --models beside the arguments of both."""
     entries = board.archives_in(given.folder)
     to = Path(given.to)
@@ -152,7 +150,8 @@ def leaderboard(given: argparse.Namespace, say: Print) -> int:
                     "leaders": leaders.documents(made.leaders), **summary_of(results)}
         status = _failed(before)
     any_refused = any(entry.refused for entry in entries)
-    return say(document, _text(made, given)) or status or (SOME_FAILED if any_refused else ALL_DONE)
+    report(given, "leaderboard", document, _text(made, given))
+    return status or (SOME_FAILED if any_refused else ALL_DONE)
 
 
 def _text(made: board.Board, given: argparse.Namespace) -> str:

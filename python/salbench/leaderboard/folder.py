@@ -8,8 +8,8 @@ import shutil
 from pathlib import Path
 
 from salbench.conclusions import TABLES
-from salbench.conclusions.csv_file import InputError
-from salbench.conclusions.folders import StorageError
+from salbench._errors import InputError
+from salbench._errors import StorageError
 from salbench.pages.rendering import is_ours
 
 OURS = "data/submissions.csv"  # written first: a folder that has it is the site of a leaderboard

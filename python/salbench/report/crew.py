@@ -7,7 +7,7 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-from salbench.conclusions.csv_file import InputError
+from salbench._errors import InputError
 
 _work: tuple[Callable[[Any], Any], Sequence[tuple[str, Any]]] | None = None  # (function, tasks): processes are forked when they are known, so that nothing is sent to them
 

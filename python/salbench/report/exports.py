@@ -10,7 +10,7 @@ import h5py
 import numpy
 from numpy.typing import NDArray
 
-from salbench.conclusions.csv_file import InputError
+from salbench._errors import InputError
 from salbench.conclusions.units import Floats
 from salbench.pages.viewer_parts import unit_range
 from salbench.report.names import natural, shape_name

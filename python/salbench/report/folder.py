@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from salbench.conclusions.csv_file import InputError
+from salbench._errors import InputError
 from salbench.pages.rendering import MARK, is_ours
 from salbench.report.kept import LEDGER, Kept, Set, within, write
 

@@ -15,8 +15,8 @@ import yaml
 
 from salbench import _tables
 from salbench.conclusions import conclude_if_missing, text_columns
-from salbench.conclusions.csv_file import InputError
-from salbench.conclusions.folders import StorageError
+from salbench._errors import InputError
+from salbench._errors import StorageError
 from salbench.conclusions.metrics import PAPERS, leading
 from salbench.pages.blocks import Missing
 from salbench.report import metrics

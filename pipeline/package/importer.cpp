@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A request is a line of JSON and the file for the answer (docs/decisions/0023-*.md). A process answers with
+// an image that this program's own reader takes, or with a file beside it that says what is wrong.
+#include "pipeline/package/importer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cache/digest.h"
+#include "io/file.h"
+#include "io/hdf5_image.h"
+#include "io/process.h"
+#include "io/scratch_folder.h"
+#include "pipeline/inputs/inputs.h"
+#include "pipeline/package/listing.h"
+#include "pipeline/package/package.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Ends a library that damaged bytes keep busy. The largest file that is read at all, of kMaxItemBytes, takes
+// minutes as text.
+constexpr std::chrono::minutes kTimeout(10);
+
+// Paths of requests are those from where salbench was started.
+std::string command_of_importer() {
+  return fmt::format("cd {} && {}", shell_quoted(fs::current_path().string()), package_command({"_import"}));
+}
+
+std::set<std::string> digests_in(const ShapeInForm& shape) {
+  constexpr std::size_t kHexadecimal = 32;
+  std::set<std::string> digests;
+  for (const auto& [key, text] : shape.about) {
+    if (key != "source_files") continue;
+    for (std::size_t begin = 0; begin < text.size();
+         begin = std::min(text.find('\n', begin), text.size() - 1) + 1)
+      digests.insert(text.substr(begin, kHexadecimal));
+  }
+  return digests;
+}
+
+}  // namespace
+
+Importer::Importer(DataImporter of)
+    : of_(std::move(of)), servers_("the importer", command_of_importer(), [](const fs::path&) {}) {}
+
+std::string Importer::answer(const std::string& request, const std::string& about) {
+  const ScratchFolder scratch;
+  const fs::path out = scratch.path() / "answer", error = scratch.path() / "answer.error";
+  std::string said;
+  try {
+    said = servers_.ask(fmt::format("{}\t{}", request, out.string()), out.string(), kTimeout);
+  } catch (const InputError& failure) {
+    throw InputError(fmt::format("{}: its importer failed: {}; copy the file again, or leave the item out",
+                                 about, failure.what()));
+  }
+  if (size_of_file(error)) throw InputError(read_file(error));
+  if (!size_of_file(out)) throw std::runtime_error(fmt::format("the importer wrote no answer; {}", said));
+  return read_file(out);
+}
+
+ShapeInForm Importer::item(const Files& files) {
+  const DatasetItem& item = item_of(files.source);
+  const std::string bytes =
+      answer(fmt::format(R"({{"do": "item", "layout": {}, "root": {}, "item": {}}})", json_text(of_.layout),
+                         json_text(of_.root), item.imported->entry),
+             item.mesh);
+  auto shape = shape_in_form(bytes, item.mesh);
+  if (!shape) throw std::runtime_error(fmt::format("the importer's form of {} cannot be read", item.name));
+  if (shape->is_cloud != item.imported->known.is_cloud)
+    throw std::runtime_error(
+        fmt::format("the importer's form of {} is of another kind than its list says", item.name));
+  const std::set<std::string> read = digests_in(*shape);
+  for (std::size_t i = 0; i < files.data.size(); ++i)
+    if (!read.contains(xxh128(files.data[i].text()).hex()))
+      throw InputError(
+          fmt::format("{}: changed while it was imported; run it again", item.imported->files[i].path));
+  return std::move(*shape);
+}
+
+std::vector<FileData> Importer::rewritten(const Files& files) {
+  const std::string& path = item_of(files.source).mesh;
+  std::string bytes = answer(fmt::format(R"({{"do": "rewrite", "path": {}}})", json_text(path)), path);
+  if (file_digest(read_file(path, kMaxItemBytes)) != files.data[0].digest)
+    throw InputError(fmt::format("{}: changed while it was read; run it again", path));
+  return {{files.data[0].digest, std::move(bytes)}};
+}
+
+std::vector<std::string> Importer::maps(const fs::path& file) {
+  const std::string list =
+      answer(fmt::format(R"({{"do": "maps", "path": {}}})", json_text(file.string())), file.string());
+  return names_in_json(list);
+}
+
+ScalarField Importer::values_in(const std::string& request, const std::string& about) {
+  const std::string bytes = answer(request, about);
+  auto content = hdf5::parsed_image(std::as_bytes(std::span(bytes)));
+  const Array* array = content ? find_array(content->arrays, "values") : nullptr;
+  const auto* values = array == nullptr ? nullptr : std::get_if<std::vector<double>>(&array->values);
+  if (values == nullptr)
+    throw std::runtime_error(fmt::format("the importer's values of {} cannot be read", about));
+  return *values;
+}
+
+ScalarField Importer::map(const fs::path& file, const std::string& name) {
+  return values_in(
+      fmt::format(R"({{"do": "map", "path": {}, "name": {}}})", json_text(file.string()), json_text(name)),
+      file.string());
+}
+
+ScalarField Importer::values(const fs::path& file) {
+  return values_in(fmt::format(R"({{"do": "values", "path": {}}})", json_text(file.string())), file.string());
+}
+
+}  // namespace salbench

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/package/package.h"
+
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/process.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Arguments: version, folder of the package or nothing, status if it is lacking, what to do then, words. No
+// variable of the environment is set: what the package starts finds the user's own.
+constexpr const char* kStart = R"py(import sys
+version, folder, status, remedy, *words = sys.argv[1:]
+if folder:
+    sys.path.insert(0, folder)
+def lacking(what):
+    print(f"error: {sys.executable}: {what}; {remedy}", file=sys.stderr)
+    sys.exit(int(status))
+try:
+    import salbench
+    found = salbench.__version__
+except (ImportError, AttributeError) as error:
+    lacking(f"the Python package of salbench cannot be used: {error}")
+if found != version:
+    lacking(f"its package salbench is {found} ({salbench.__file__}), but the program is {version}")
+sys.argv = ["salbench", *words]
+try:
+    from salbench.__main__ import main
+    sys.exit(main())
+except ModuleNotFoundError as error:
+    if (error.name or "").startswith("salbench.") and error.name != "salbench.__main__":
+        raise
+    lacking(f"there is no module {error.name}")
+)py";
+
+struct Package {
+  std::string interpreter;
+  fs::path folder;
+};
+
+std::optional<Package>& around_us() {
+  static std::optional<Package> package;
+  return package;
+}
+
+std::string interpreter() {
+  if (const auto& package = around_us()) return package->interpreter;
+  const char* chosen = std::getenv("SALBENCH_PYTHON");
+  return chosen != nullptr && *chosen != '\0' ? chosen : SALBENCH_PYTHON;
+}
+
+std::string remedy() {
+  return fmt::format(
+      "install python3-salbench {}, or set SALBENCH_PYTHON to an interpreter that has it; without it, data "
+      "sets are those of the layouts schelling, folder and hdf5, and end with scores and their means",
+      SALBENCH_VERSION);
+}
+
+}  // namespace
+
+void use_package(std::string interpreter, fs::path folder) {
+  around_us() = {std::move(interpreter), std::move(folder)};
+}
+
+fs::path package_folder() {
+  if (const auto& package = around_us()) return package->folder;
+  std::error_code error;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (fs::path folder : {bin / "python", bin.parent_path() / "lib/python3/dist-packages"})
+    if (folder.parent_path() != "/usr/lib/python3" && fs::is_directory(folder / "salbench", error))
+      return folder;
+  return {};
+}
+
+std::vector<std::string> package_words(int status_if_lacking, const std::vector<std::string>& words) {
+  std::vector<std::string> line = {interpreter(),
+                                   "-P",
+                                   "-c",
+                                   kStart,
+                                   SALBENCH_VERSION,
+                                   package_folder().string(),
+                                   std::to_string(status_if_lacking),
+                                   remedy()};
+  line.insert(line.end(), words.begin(), words.end());
+  return line;
+}
+
+std::string package_command(const std::vector<std::string>& words) {
+  std::string command = "exec";
+  for (const std::string& word : package_words(kNoPackage, words)) command += " " + shell_quoted(word);
+  return command;
+}
+
+std::string no_interpreter(std::string_view reason) {
+  return fmt::format("{}: {}; {}", interpreter(), reason, remedy());
+}
+
+std::string no_interpreter(int status) {
+  constexpr int kNotExecutable = 126, kNotFound = 127;  // as the shell says it of a program
+  if (status == kNotFound) return no_interpreter("not found");
+  return status == kNotExecutable ? no_interpreter("cannot be executed") : std::string();
+}
+
+}  // namespace salbench

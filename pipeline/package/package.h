@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Python package of this version, as the program starts it: it lists and imports data sets, and draws
+// conclusions.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace salbench {
+
+// Exit status of what follows, after one line that says what to install, if the interpreter has no package of
+// this version.
+inline constexpr int kNoPackage = 69;  // EX_UNAVAILABLE of sysexits.h
+
+// Words of a command that runs a subcommand of the package, with this exit status if there is none.
+std::vector<std::string> package_words(int status_if_lacking, const std::vector<std::string>& words);
+
+// The same as a line for /bin/sh.
+std::string package_command(const std::vector<std::string>& words);
+
+// The line of a command that ended with one of the shell's statuses for a program that it cannot start; empty
+// for another status.
+std::string no_interpreter(int status);
+std::string no_interpreter(std::string_view reason);
+
+// Folder to look for the package in: beside the program, in the tree that it was built or installed in; empty
+// where the interpreter finds it by itself.
+std::filesystem::path package_folder();
+
+// For a program that is a part of the package: the interpreter that it runs in, and where that found it.
+void use_package(std::string interpreter, std::filesystem::path folder);
+
+}  // namespace salbench

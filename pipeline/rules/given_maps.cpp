@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/rules/given_maps.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/ground_truth_file.h"
+#include "io/text_scanner.h"
+#include "pipeline/package/importer.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+GivenMaps maps_in_folder(const fs::path& folder) {
+  GivenMaps maps{.source = folder};
+  for (const FolderEntry& entry : list_folder(folder))
+    if (entry.path.extension() == ".val") maps.items.insert(entry.path.stem().string());
+  maps.read = [folder](const std::string& item) -> FileData {
+    std::string text = read_file(folder / (item + ".val"), kMaxItemBytes);
+    return {file_digest(text), std::move(text)};
+  };
+  return maps;
+}
+
+// Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
+GivenMaps maps_in_file(const fs::path& path) try {
+  const auto importer = std::make_shared<Importer>();
+  GivenMaps maps{.source = path};
+  for (const std::string& name : importer->maps(path)) maps.items.insert(name);
+  maps.read = [importer, path](const std::string& item) -> FileData {
+    ScalarField values = importer->map(path, item);
+    return {content_digest({column(item, values, "1", "")}), std::move(values)};
+  };
+  return maps;
+} catch (const InputError& error) {
+  throw ConfigError(fmt::format("--maps {}", error.what()));
+}
+
+}  // namespace
+
+std::string GivenMaps::place(const std::string& item) const {
+  return is_folder(source) ? (source / (item + ".val")).string()
+                           : fmt::format("{}: data set {}", source.string(), item);
+}
+
+ScalarField GivenMaps::checked(const FileData& data, const std::string& item, std::size_t n_points,
+                               const PointCloud* cloud) const {
+  const std::string where = place(item);
+  const auto* values = std::get_if<ScalarField>(&data.content);
+  ScalarField map = values != nullptr ? *values : parse_values(data.text(), where);
+  if (cloud != nullptr && map.size() == cloud->size_in_file()) map = values_left(*cloud, map);
+  if (map.size() != n_points)
+    throw InputError(fmt::format("{}: {} values, but the shape has {} points", where, map.size(), n_points));
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (!std::isfinite(map[i]))
+      throw InputError(
+          fmt::format("{}: value {} (0-based) is {}, expected a finite number", where, i, map[i]));
+    if (matched && !(map[i] >= 0 && map[i] <= 1))
+      throw InputError(
+          fmt::format("{}: value {} (0-based) is {}: a matched map lies in [0, 1]; leave out "
+                      "--matched to have it matched",
+                      where, i, map[i]));
+  }
+  return map;
+}
+
+GivenMaps find_given_maps(const fs::path& source, bool matched) {
+  GivenMaps maps = is_folder(source) ? maps_in_folder(source) : maps_in_file(source);
+  maps.matched = matched;
+  return maps;
+}
+
+std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
+                                         const std::vector<Level>& levels) {
+  const auto file_of = [&](const std::string& item) {
+    const auto read = [maps, item] {
+      if (maps->items.contains(item)) return maps->read(item);
+      throw InputError(fmt::format("{}: missing, although other items have a map", maps->place(item)));
+    };
+    return File{.name = "map file", .place = maps->place(item), .read = std::make_shared<ReadFile>(read)};
+  };
+  // Views of one shape that are scored by themselves may share its map.
+  const auto name_of_map = [&](Unit unit) {
+    const std::string name = units.name(unit);
+    const DatasetItem& item = item_of(units, unit);
+    return item.view.empty() || maps->items.contains(name)
+               ? name
+               : item.shape_name() + name.substr(item.name.size());
+  };
+  std::map<Level, FileColumnPtr> columns;
+  std::string example;  // of a name that would be one
+  bool any = false;
+  for (const Level level : levels) {
+    const std::vector<Unit> all = units.of(level);
+    const auto given = [&](Unit unit) { return maps->items.contains(name_of_map(unit)); };
+    const bool any_here = std::ranges::any_of(all, given);
+    auto column = std::make_shared<FileColumn>();
+    column->expected = false;
+    column->files.resize(units.slots(level));
+    for (const Unit unit : all)
+      if (any_here) column->files[unit.index].push_back(file_of(name_of_map(unit)));
+    for (const Unit unit : all)
+      if (units.family_of(unit) == units.family_of(all.front())) example = maps->place(name_of_map(unit));
+    columns[level] = std::move(column);
+    any |= any_here;
+  }
+  if (!any)
+    throw ConfigError(fmt::format("--maps {}: has no map of any item of the run; expected are such as {}",
+                                  maps->source.string(), example));
+  return columns;
+}
+
+}  // namespace salbench

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the subcommands of the package have in common with those of the program: help, reports, exit statuses."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from salbench._errors import InputError, StorageError
+
+ALL_DONE, SOME_FAILED, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 0, 1, 2, 3, 70, 130
+SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
+
+_EXAMPLES = {  # as `salbench --help` has them
+    "conclude": "results.csv --unit class --out tables",
+    "import": "3dva --data 3DVA --to 3DVA-hdf5",
+    "inspect": "3dva --data 3DVA",
+    "power": "salbench-out/shrec07",
+    "report": "salbench-out/shrec07",
+    "submit": "mine --to mine.zip --data SchellingData",
+    "leaderboard": "submissions --to site --data SchellingData",
+}
+
+
+class Parser(argparse.ArgumentParser):
+    """A subcommand, with its help in the form of the program's own."""
+
+    def __init__(self, name: str, summary: str, usage: str) -> None:
+        super().__init__(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {usage}", allow_abbrev=False,
+                         description=summary[:1].lower() + summary[1:].rstrip("."), epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
+                         formatter_class=argparse.RawDescriptionHelpFormatter)
+
+    def add_report(self, quiet: str = "") -> None:
+        self.add_argument("--format", default="text", help="text (default), or json: one document for programs (docs/json.md)")
+        if quiet:
+            self.add_argument("--quiet", action="store_true", help=quiet)
+
+    def format_help(self) -> str:
+        formatter = self._get_formatter()
+        formatter.add_text(self.description)
+        formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups, "Usage: ")
+        for title, group in zip(("Positionals", "Options"), self._action_groups):
+            formatter.start_section(title)
+            formatter.add_arguments(group._group_actions)
+            formatter.end_section()
+        formatter.add_text(self.epilog)
+        return formatter.format_help()
+
+    def parsed(self, arguments: Any) -> argparse.Namespace:
+        given = self.parse_args(arguments)
+        if given.format not in ("text", "json"):
+            raise InputError(f"--format {given.format}: must be text or json")
+        return given
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
+
+
+def report(given: argparse.Namespace, name: str, document: dict[str, Any], text: str) -> None:
+    """Prints the document, or else the text."""
+    if given.format == "json":
+        text = json.dumps({"schema": SCHEMA, "command": name, **document}, ensure_ascii=False, separators=(",", ":")) + "\n"
+    elif getattr(given, "quiet", False):
+        return
+    data = text.encode("utf-8", "surrogateescape")
+    if given.format == "json":
+        data = data.decode("utf-8", "replace").encode()  # U+FFFD in place of bytes that are not UTF-8
+    try:
+        sys.stdout.flush()
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+    except OSError as error:
+        raise StorageError(f"standard output: cannot be written: {error.strerror}") from None
+
+
+def aligned(names: Sequence[str], rows: Sequence[Sequence[Any]], decimals: int = 4) -> str:
+    """For the console: columns two spaces apart, numbers to the right, "-" for what is not known."""
+    columns = []
+    for number, name in enumerate(names):
+        values = [row[number] for row in rows]
+        cells = [name, *(_cell(value, decimals) for value in values)]
+        width = max(map(len, cells))
+        of_text = any(isinstance(value, str) for value in values)
+        columns.append([cell.ljust(width) if of_text else cell.rjust(width) for cell in cells])
+    return "".join("  ".join(line).rstrip(" ") + "\n" for line in zip(*columns))
+
+
+def _cell(value: Any, decimals: int) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    if value != value:
+        return "-"
+    vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals  # a value that rounds to 0 keeps its magnitude
+    return f"{value:.1e}" if vanishes else f"{value:.{decimals}f}"
+
+
+def warn(kind: str, line: str) -> None:
+    """ "warning: ..." on standard error, whatever bytes a name has."""
+    sys.stderr.flush()
+    sys.stderr.buffer.write(f"{kind}: {line}\n".encode("utf-8", "surrogateescape"))
+    sys.stderr.buffer.flush()

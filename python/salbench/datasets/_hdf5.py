@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""HDF5 files of other programs. What a data set claims is compared with what the file stores before memory is taken; links are not followed.
+
+Damaged bytes can crash the library all the same, so that these functions belong in a worker process (worker.py).
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+
+from salbench.datasets._files import MAX_ITEM_BYTES, read_file
+from salbench.datasets.records import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_MAX_INFLATION = 1032  # the most that deflate can do
+_MAX_RANK = 8
+_MAX_DEPTH = 64  # groups within groups
+_MIN_OBJECT_BYTES = 16  # of an object and its link; a file with more objects is damaged
+
+
+class Hdf5File:
+    """Data sets of numbers in the bytes of a file, by their names from the root group."""
+
+    def __init__(self, path: str, data: bytes | None = None) -> None:
+        self.path = path
+        data = read_file(path) if data is None else data
+        self._bytes = len(data)
+        try:
+            self._file = h5py.File(h5py.h5f.open_file_image(data))
+        except (OSError, RuntimeError, ValueError) as error:
+            raise InputError(f"{path}: not a readable HDF5 file ({_text(error)})") from None
+
+    def fail(self, name: str, what: str) -> InputError:
+        return InputError(f'{self.path}: data set "{name}": {what}')
+
+    def attribute(self, name: str) -> Any:
+        """A text or a number; None if there is none. Attributes of other types are an error."""
+        try:
+            if name not in self._file.attrs:
+                return None
+            claimed = self._file.attrs.get_id(name)
+            if claimed.shape != () or claimed.get_type().get_class() not in (h5py.h5t.STRING, h5py.h5t.INTEGER, h5py.h5t.FLOAT):
+                raise InputError(f"{self.path}: attribute '{name}' is not a single text or number")
+            value = self._file.attrs[name]
+        except InputError:
+            raise
+        except Exception as error:  # whatever the library makes of damaged bytes
+            raise InputError(f"{self.path}: attribute '{name}' cannot be read ({_text(error)})") from None
+        if isinstance(value, (bytes, np.bytes_)):
+            return bytes(value).decode("utf-8", "replace")
+        return value if isinstance(value, str) else value.item()
+
+    def names(self) -> list[str]:
+        """All data sets of numbers, sorted."""
+        found: list[str] = []
+        left = self._bytes // _MIN_OBJECT_BYTES
+
+        def visit(name: bytes, info: Any) -> None:
+            nonlocal left
+            left -= 1
+            if left < 0 or name.count(b"/") > _MAX_DEPTH:
+                raise ValueError("its groups are nested too deeply, or form a cycle")
+            if info.type == h5py.h5o.TYPE_DATASET:
+                found.append(os.fsdecode(name))
+
+        try:
+            h5py.h5o.visit(self._file.id, visit, info=True)
+            return sorted(name for name in found if self._opened(name).id.get_type().get_class() in (h5py.h5t.INTEGER, h5py.h5t.FLOAT))
+        except InputError:
+            raise
+        except Exception as error:
+            raise InputError(f"{self.path}: not a readable HDF5 file (listing its objects: {_text(error)})") from None
+
+    def members(self, group: str) -> list[str]:
+        """Names in a group that is in this file; nothing if there is none."""
+        try:
+            if not self._is_here(group) or not isinstance(found := self._file[group], h5py.Group):
+                return []
+            return sorted(found)
+        except Exception as error:
+            raise InputError(f"{self.path}: group '{group}' cannot be read ({_text(error)})") from None
+
+    def has(self, name: str) -> bool:
+        try:
+            return self._is_here(name) and isinstance(self._file[name], h5py.Dataset)
+        except InputError:
+            raise
+        except Exception as error:
+            raise self.fail(name, f"cannot be opened ({_text(error)})") from None
+
+    def read(self, name: str, shape: tuple[int | None, ...] | None = None, kind: str = "") -> NDArray[Any]:
+        """The values. None in a shape stands for any number; kind "f" stands for float64, "i" for whole numbers of at most 32 bits."""
+        try:
+            found = self._opened(name)
+            self._check_type(name, found, kind)
+            self._check_shape(name, found, shape)
+            self._check_storage(name, found)
+            values = found[()]
+        except InputError:
+            raise
+        except MemoryError:
+            raise self.fail(name, "no memory for its values; leave it out, or work on fewer items at a time") from None
+        except Exception as error:
+            raise self.fail(name, f"its values cannot be read: damaged, or packed by an unknown filter ({_text(error)})") from None
+        return np.ascontiguousarray(values, {"f": np.float64, "i": np.int32}.get(kind, values.dtype.newbyteorder("=")))
+
+    def _opened(self, name: str) -> Any:
+        if not self._is_here(name):
+            raise InputError(f'{self.path}: has no data set "{name}"')
+        return self._file[os.fsencode(name)]
+
+    def _is_here(self, name: str) -> bool:
+        """True of an object of this file: no link of the path leads by a name, or into another file."""
+        group = self._file
+        for part in name.split("/"):
+            link = group.get(os.fsencode(part), getlink=True)
+            if link is None:
+                return False
+            if not isinstance(link, h5py.HardLink):
+                raise InputError(f'{self.path}: "{name}" is a link, which is not followed: store the values in the file')
+            group = group[os.fsencode(part)]
+            if not isinstance(group, h5py.Group):
+                break
+        return True
+
+    def _check_type(self, name: str, found: Any, kind: str) -> None:
+        stored = found.id.get_type()
+        if stored.get_class() not in (h5py.h5t.INTEGER, h5py.h5t.FLOAT):
+            raise self.fail(name, "it does not hold numbers")
+        if (size := stored.get_size()) > 8:
+            raise self.fail(name, f"its numbers of {size} bytes are wider than float64 and int64: write them as one of these")
+        type_of = found.dtype
+        if kind == "f" and (type_of.kind != "f" or type_of.itemsize != 8):
+            raise self.fail(name, f"expected numbers of type float64, found {type_of.name}")
+        if kind == "i" and not np.can_cast(type_of, np.int32):
+            raise self.fail(name, f"expected whole numbers of type int32, found {type_of.name}")
+
+    def _check_shape(self, name: str, found: Any, expected: tuple[int | None, ...] | None) -> None:
+        shape = found.shape
+        if shape is None:
+            raise self.fail(name, "it has no values")
+        if len(shape) > _MAX_RANK:
+            raise self.fail(name, f"it has {len(shape)} dimensions, expected at most {_MAX_RANK}")
+        if expected is not None and (len(shape) != len(expected) or any(n not in (None, m) for n, m in zip(expected, shape))):
+            wanted = ", ".join("n" if n is None else str(n) for n in expected)
+            raise self.fail(name, f"its shape is ({', '.join(map(str, shape))}), expected ({wanted})")
+
+    def _check_storage(self, name: str, found: Any) -> None:
+        """The file must hold about as much as the data set claims: nothing else limits what is allocated."""
+        if found.is_virtual or found.external:
+            raise self.fail(name, "its values are in other files: store them in this one")
+        size = found.id.get_type().get_size()
+        claimed = size * int(np.prod(found.shape, dtype=object))
+        if claimed == 0:
+            return
+        stored = min(found.id.get_storage_size(), self._bytes)
+        plausible = stored == claimed
+        if found.chunks is not None:
+            chunk = size * int(np.prod(found.chunks, dtype=object))
+            plausible = stored > 0 and max(claimed, chunk) // _MAX_INFLATION <= stored
+        if not plausible:
+            raise self.fail(name, f"it claims {claimed} bytes of values, and {stored} are stored")
+        if claimed > MAX_ITEM_BYTES:
+            raise self.fail(name, f"{claimed} bytes: at most {MAX_ITEM_BYTES} can be read")
+
+
+def point_values(file: Hdf5File, name: str) -> NDArray[np.float64]:
+    """A data set as one value per point: n numbers, n x 1 or 1 x n, each equal to a double."""
+    values = file.read(name)
+    if values.size != max(values.shape, default=1):
+        raise file.fail(name, f"its shape is ({', '.join(map(str, values.shape))}), expected one value per point")
+    if values.dtype.kind in "iu" and values.dtype.itemsize == 8:
+        beyond = (values > 2**53) | ((values < -(2**53)) if values.dtype.kind == "i" else False)
+        if beyond.any():
+            raise file.fail(name, f"it holds {values[beyond].ravel()[0]}: whole numbers beyond 2^53 cannot be used, scale them")
+    return values.astype(np.float64).ravel()
+
+
+def only_values(path: str) -> NDArray[np.float64]:
+    """The only data set of numbers, or the one called "saliency"."""
+    file = Hdf5File(path)
+    names = file.names()
+    if "saliency" not in names and len(names) != 1:
+        raise InputError(f"{path}: it has {len(names)} data sets of numbers, expected one, or one called 'saliency'")
+    return point_values(file, "saliency" if "saliency" in names else names[0])
+
+
+def _text(error: BaseException) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a description says of a data set: where its files lie, and how they are read. Defaults are those of the Schelling study: a
+number per vertex, and 0-based indices. [chen2012]"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+from salbench.datasets._text import finite_number
+
+Words = tuple[str, ...]
+
+
+class Pattern(str):
+    """Names of files below the folder of the data set (_patterns.py), with the place in the description that has them."""
+
+    where: str = ""
+
+    @classmethod
+    def at(cls, text: str, where: str) -> Pattern:
+        pattern = cls(text)
+        pattern.where = where
+        return pattern
+
+
+@dataclass(frozen=True)
+class Values:
+    """How files of saliency are read."""
+
+    per: str = "vertex"  # what a value belongs to: vertex, face (in the order of the mesh's file), or a point beside the value
+    column: str = ""  # its name in the header, or its number from 1; "": the only one
+    points: Words = ("1", "2", "3")  # columns of x, y and z, of values per point
+    max_distance: float = 0.02  # in R: a vertex farther from every point was not seen
+    unseen: str = ""  # value in the file of what was not seen, such as "-1" or "nan"
+    variable: str = ""  # name in a MAT file
+    scale: float = 1.0  # what the coordinates beside values are multiplied by to be in the shape's unit
+    positives: str = "picks"  # points that count as picked: picks, above mean, or "top 20%" of what was seen
+
+
+@dataclass(frozen=True)
+class Indices:
+    """How files of picks are read."""
+
+    base: int = 0  # number of the first vertex
+    variable: str = ""  # name in a MAT file
+    cell: Words = ()  # row and column in a cell array of a MAT file, from 1
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A point cloud in columns of a text, with its ground truth beside it. Columns are named as in `Values`."""
+
+    position: Words = ()  # x, y, z; (): shapes are no such texts
+    normal: Words = ()  # x, y, z; (): computed
+    normalise_normals: bool = False  # False: another length than 1 is an error
+    padding: str = "none"  # rows at the end that fill up the file: none, zeros, copies of a row before them, any
+    duplicates: str = "kept"  # or dropped: points at the coordinates of one before them
+    density: str = ""  # the saliency
+    flag: str = ""  # 0 and 1, 1 for picks
+
+
+@dataclass(frozen=True)
+class Cameras:
+    """One place for everything, one per view, or a file."""
+
+    by_view: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # "": every view
+    file: str = ""  # CSV below the folder of the data set: columns x, y, z, and item or view or both
+    at_infinity: bool = False  # they are directions
+    where: str = ""
+
+    def __bool__(self) -> bool:
+        return bool(self.by_view or self.file)
+
+
+@dataclass(frozen=True)
+class TruthPlace:
+    saliency: Pattern = Pattern()  # one file per item, or one per view or viewer
+    picks: Pattern = Pattern()  # one file per participant, or one per item
+    mask: Pattern = Pattern()  # 0 for hidden, 1 for seen; one file per file of saliency, or one per item
+    cameras: Cameras = Cameras()  # what they do not see is hidden, too
+
+
+@dataclass(frozen=True)
+class Place:
+    meshes: Pattern  # the name without extension is the item's
+    truth: tuple[TruthPlace, ...] = ()  # the first that has an existing folder is taken
+    needs: str = ""  # folder without which the place is not looked at
+    root_is: str = ""  # the name that the root itself must have
+    views: str = "averaged"  # or scored: each is a unit of its own
+
+
+@dataclass(frozen=True)
+class Splits:
+    """One of three: a table, a list whose first lines are one split, or names in the description itself."""
+
+    table: str = ""  # CSV file below the folder of the data set
+    item: str = "item"  # its columns
+    split: str = "split"
+    list: str = ""  # file with the path of an item's file in each line
+    shares: tuple[tuple[str, float], ...] = ()  # of its lines, in their order; they sum to 1
+    named: tuple[tuple[str, Words, str], ...] = ()  # split, items, where that is written
+    where: str = ""
+
+    def __bool__(self) -> bool:
+        return bool(self.table or self.list or self.named)
+
+
+@dataclass(frozen=True)
+class Layout:
+    name: str
+    places: tuple[Place, ...]  # below the folder that the user names; the first with a mesh is taken
+    classes: str = "none"  # of an item: none, its mesh's folder, or shrec07: the class of a mesh named 1 to 400 [giorgi2007]
+    domain: str = "any"  # which of the files that fit are shapes: meshes, points, or any
+    needs_truth: bool = True  # patterns of ground truth that fit no file are an error
+    values: Values = Values()
+    indices: Indices = Indices()
+    columns: Columns = Columns()
+    splits: Splits = Splits()
+    scale: float = 1.0
+    unit_where: str = ""  # where a unit of length is given; "": nowhere
+    index: str = ""  # file below the folder that lists items in the one form; no places then
+    licence: str = ""  # on what terms the authors give the data, as far as is known
+
+    def where(self, written: str) -> str:
+        """Of something in a user's description, its file and line; of an archive's own layout its name."""
+        return written or f"layout {self.name}"
+
+
+def described(options: Any, **others: Any) -> str:
+    """" (per: face, column: 3)": options that are not at their defaults, in a key and for people."""
+    options = replace(options, **others)
+    told = [f"{entry.name}: {_text(getattr(options, entry.name))}" for entry in fields(options)
+            if getattr(options, entry.name) != entry.default]
+    return f" ({', '.join(told)})" if told else ""
+
+
+def number_text(value: float) -> str:
+    """The shortest that reads back as the same bits."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return number_text(value)
+    return f"[{', '.join(value)}]" if isinstance(value, tuple) else str(value)
+
+
+def positive_rule(text: str) -> tuple[str, float] | None:
+    """("picks", 0), ("mean", 0) or ("top", percent); None for what is no rule."""
+    if text in ("picks", "above mean"):
+        return text.removeprefix("above "), 0.0
+    if text.startswith("top ") and text.endswith("%"):
+        percent = finite_number(text[4:-1])
+        if percent is not None and 0 < percent < 100:
+            return "top", percent
+    return None

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Limits of a process that reads files of strangers: what they make a library do ends with the process, not with the machine."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+
+SECONDS = 600  # of processor time, per request
+SECONDS_OF_A_MAP = 60
+BYTES_OF_A_MAP = 1 << 30  # beyond what the process has
+
+
+def physical_memory() -> int:
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+def own_memory() -> int:
+    """Address space of this process, bytes."""
+    with open("/proc/self/statm", "rb") as file:
+        return int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def limit(seconds: int = SECONDS, memory: int | None = None) -> None:
+    """Bounds what this process uses from now on: processor time in seconds, and bytes beyond what it has (None: the machine's memory). A
+    request for more memory is then a MemoryError; one second more ends the process."""
+    used = sum(resource.getrusage(resource.RUSAGE_SELF)[:2])
+    _lower(resource.RLIMIT_CPU, int(used) + seconds)
+    _lower(resource.RLIMIT_AS, own_memory() + (physical_memory() if memory is None else memory))
+
+
+def no_core() -> None:
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def _lower(kind: int, most: int) -> None:
+    _, hard = resource.getrlimit(kind)
+    with contextlib.suppress(ValueError, OSError):  # a lower limit of the user's stands
+        resource.setrlimit(kind, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Columns of a text of numbers, a row per line: CSV, or words between blanks.
+
+The first lines tell separator, header and columns. All rows are then converted at once; where one of them is not plainly numbers, line by
+line, which takes what else may stand in a text, and names the line that cannot be used.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+
+from salbench.datasets._order import Elements, numbering_column, row_of_elements
+from salbench.datasets._text import BLANKS, decimal_comma_in, fits, in_quotes, is_number, is_same_number, lines_of, number_in
+from salbench.datasets.records import Floats, InputError
+
+MAX_NAMED = 20  # columns in a message
+_AROUND = b' \t\r"'
+_PLAIN = b"0123456789+-.eE,; \t\r\n"
+_TINY = re.compile(rb"[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # numbers that no double may hold
+_LONG = re.compile(rb"[0-9.]{300}")
+_ZEROS_IN_FRONT = re.compile(rb',[ \t\r"]*[-+]?0[0-9]')
+_WHOLE = re.compile(rb"[-+]?[0-9]+")
+
+Cells = list[bytes]
+WrongWithRows = Callable[[list[Floats]], "tuple[int, str] | None"]  # the first row that cannot be used, and why
+
+
+def cells_of(line: bytes, separator: bytes) -> Cells:
+    if separator == b" ":
+        return [word.strip(_AROUND) for word in line.split()]
+    return [cell.strip(_AROUND) for cell in line.split(separator)]
+
+
+def _separates_decimal_commas(separator: bytes, line: bytes) -> bool:
+    """True of "0,5;1" for semicolons: numbers, with a comma within one of them at least."""
+    cells = cells_of(line, separator)
+    return (len(cells) > 1 and any(decimal_comma_in(cell) for cell in cells)
+            and all(is_number(cell) or decimal_comma_in(cell) for cell in cells))
+
+
+def separator_of(line: bytes) -> bytes:
+    """Commas, semicolons or tabs, whichever the first line has; else blanks."""
+    if is_number(line.strip(_AROUND)):
+        return b" "
+    of_commas = next((separator for separator in (b";", b"\t", b" ") if _separates_decimal_commas(separator, line)), None)
+    return next((separator for separator in (b",", b";", b"\t") if separator in line), b" ") if of_commas is None else of_commas
+
+
+def _are_names(cells: Cells) -> bool:
+    return any(word and not is_number(word) and not decimal_comma_in(word) for word in cells)
+
+
+def _filled(cells: Cells) -> int:
+    """How many there are, without empty ones at the end."""
+    return next((n for n in range(len(cells), 0, -1) if cells[n - 1]), 0)
+
+
+def _column_number(column: str) -> int:
+    """From 1, of a column without a header; 0 for a name."""
+    return int(column) if re.fullmatch("[0-9]{1,9}", column) else 0
+
+
+@dataclass
+class _Table:
+    """The lines of a text, and which cells of them are wanted."""
+
+    name: str
+    lines: list[bytes]
+    columns: Sequence[str]
+    separator: bytes = b" "
+    header: Cells | None = None
+    size: int = 0  # cells of the first line
+    filled: int = 0  # without empty ones at its end
+    places: tuple[int, ...] = ()
+    numbering: int = -1  # place of the column that numbers the rows; -1: none
+    begin: int = 0  # line of the first row, from 0
+
+    def fail(self, what: str, line: int | None = None) -> NoReturn:
+        number = len(self.lines) if line is None else line + 1
+        raise InputError(f"{self.name}:{number}: {what}" if number else f"{self.name}: {what}")
+
+    def read_header(self, elements: Elements | None) -> None:
+        """The first line, or the last comment above it that has a name per column."""
+        comments = []
+        for line, text in enumerate(self.lines):
+            if not text.strip(BLANKS):
+                continue
+            if text.lstrip(BLANKS).startswith(b"#"):
+                comments.append(text[text.index(b"#") + 1:])
+                continue
+            self.separator = separator_of(text)
+            first = cells_of(text, self.separator)
+            self.size, self.filled, self.begin = len(first), _filled(first), line
+            above = (cells_of(comment, self.separator) for comment in reversed(comments))
+            self.header = next((names for names in [first, *above] if len(names) == self.size and _are_names(names)), None)
+            self.places = tuple(self._place(column, line) for column in self.columns)
+            if elements is not None and self.header is not None:
+                self._find_numbering(elements, line)
+            self.begin += _are_names(first)
+            return
+        self.begin = len(self.lines)
+
+    def _place(self, column: str, line: int) -> int:
+        number = _column_number(column)
+        if not column or number:
+            return max(number - 1, 0)
+        if self.header is None:
+            self.fail(f"no column {in_quotes(column.encode())}: the first line has numbers, not names of columns", line)
+        name = column.encode("utf-8", "surrogateescape")
+        if name in self.header:
+            return self.header.index(name)
+        known = ", ".join(in_quotes(name) for name in self.header[:MAX_NAMED]) + (", ..." if len(self.header) > MAX_NAMED else "")
+        self.fail(f"no column {in_quotes(name)}: the header has {known}", line)
+
+    def _find_numbering(self, elements: Elements, line: int) -> None:
+        """Beside the only column, one that numbers the rows is no other."""
+        assert self.header is not None
+        only = self.columns == ("",)
+        if only and len(self.header) != 2:
+            return
+        try:
+            place = numbering_column(self.header, elements, () if only else self.places)
+        except InputError as error:
+            self.fail(str(error), line)
+        if place is not None:
+            self.numbering = place
+            self.places = (1 - place,) if only else self.places
+
+    def is_sure(self) -> bool:
+        """Names of columns are wanted, or obeyed: none may stand above other columns, as R writes names of rows."""
+        return self.header is not None and (self.numbering >= 0 or not all(map(_column_number, self.columns)))
+
+    # --- all rows at once
+
+    def all_at_once(self) -> list[Floats] | None:
+        """The columns, and that which numbers the rows; None if a row is not plainly numbers, as many as the first line has cells."""
+        rows = self.lines[self.begin:]
+        body = b"\n".join(rows)
+        if not body.strip() or body.translate(None, _PLAIN) or _TINY.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
+            return None
+        if self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(body):
+            return None
+        if self.columns == ("",) and self.size > (2 if self.numbering >= 0 else 1):
+            return None
+        wanted = [*self.places, *([self.numbering] if self.numbering >= 0 else [])]
+        try:
+            delimiter = None if self.separator == b" " else self.separator.decode()
+            table = np.loadtxt(rows, delimiter=delimiter, comments=None, ndmin=2)
+        except ValueError:
+            return None
+        if table.shape[1] != self.size or max(wanted) >= self.size or not np.isfinite(table).all():
+            return None
+        return [table[:, place].copy() for place in wanted]
+
+    # --- line by line
+
+    def row(self, cells: Cells, line: int, unseen: bytes) -> list[float]:
+        if self.separator == b",":
+            self._check_commas(cells, line)
+        if self.is_sure() and _filled(cells) > self.size:
+            self.fail(f"{_filled(cells)} columns, but the header names {self.size}", line)
+        wanted = [self._cell(cells, k, line) for k in range(len(self.places))]
+        values = [self._value(cell, line, b"" if k else unseen) for k, cell in enumerate(wanted)]
+        if self.numbering < 0:
+            return values
+        if self.numbering >= len(cells):
+            assert self.header is not None
+            self.fail(f"the line has no column {in_quotes(self.header[self.numbering])}", line)
+        return [*values, self._value(cells[self.numbering], line, b"")]
+
+    def _check_commas(self, cells: Cells, line: int) -> None:
+        """A comma that separates may be a decimal one: "0,05" as two cells, or one cell more than the others have."""
+        advice, filled = "write decimal commas, if these are some, as points", _filled(cells)
+        if filled > self.size if self.header is not None else len(cells) != self.size and filled != self.filled:
+            self.fail(f"{len(cells)} columns between commas, but the first line has {self.size}: {advice}", line)
+        if (self.header is None and all(map(_WHOLE.fullmatch, cells)) and any(len(cell) > 1 and cell[:1] == b"0" for cell in cells[1:])):
+            self.fail(f"whole numbers between commas, some with zeros in front: {advice}, or name the columns in a first line", line)
+
+    def _cell(self, cells: Cells, k: int, line: int) -> bytes:
+        if not self.columns[k] and len(cells) > (2 if self.numbering >= 0 else 1):
+            comma = ", or write its decimal comma as a point" if len(cells) == 2 and decimal_comma_in(b",".join(cells)) else ""
+            self.fail(f"the line has {len(cells)} columns, expected one value: keep that column alone, or, of ground truth, name it in the "
+                      f"description (`column:`){comma}", line)
+        if self.places[k] >= len(cells):
+            column = self.columns[k]
+            told = column if _column_number(column) else in_quotes(column.encode())
+            self.fail(f"the line has {len(cells)} {'column' if len(cells) == 1 else 'columns'}, expected column {told}", line)
+        return cells[self.places[k]]
+
+    def _value(self, cell: bytes, line: int, unseen: bytes) -> float:
+        number = number_in(cell)
+        if number is None:
+            self.fail(f"{in_quotes(cell)} is not a number{decimal_comma_in(cell)}", line)
+        if not fits(cell, number):
+            self.fail(f"{in_quotes(cell)} does not fit a double", line)
+        if unseen and is_same_number(number, unseen):
+            return float("nan")
+        if not abs(number) < float("inf"):
+            self.fail(f"{in_quotes(cell)} is not a finite number", line)
+        return number
+
+    def rows(self) -> list[int]:
+        """The lines that hold one."""
+        return [line for line in range(self.begin, len(self.lines))
+                if (text := self.lines[line].lstrip(BLANKS)) and not text.startswith(b"#")]
+
+
+def read_columns(text: bytes, name: str, columns: Sequence[str], unseen: str = "", expected: Elements | None = None,
+                 wrong_with_rows: WrongWithRows | None = None) -> list[Floats]:
+    """The columns named, each by its name in the header or by its number from 1, in the order of `columns`; "" is the only column of the
+    text. A first line in which a word is no number is the header. Blank lines are skipped, and so are lines that begin with '#', of which
+    the last before the numbers is a header if it has a word per column. Decimal commas are refused.
+
+    With `expected`, rows come in the order of the elements: a column that numbers these is obeyed, and is none beside which the only column
+    would not be the only one. A value of the first column that is `unseen` becomes NaN; all others must be finite."""
+    table = _Table(name, lines_of(text), tuple(columns))
+    table.read_header(expected)
+    wanted = unseen.encode()
+    values = table.all_at_once()
+    if values is None:
+        values = _line_by_line(table, wanted, wrong_with_rows)
+    elif wanted and (number := number_in(wanted)) is not None:
+        values[0] = np.where(values[0] == number, np.nan, values[0])
+    if wrong_with_rows is not None and (wrong := wrong_with_rows(values)):
+        table.fail(wrong[1], table.rows()[wrong[0]])
+    if expected is not None and expected.n is not None and len(values[0]) != expected.n:
+        table.fail(expected.wrong_count(len(values[0])))
+    if not len(values[0]):
+        table.fail("the file has no values")
+    if table.numbering < 0 or expected is None:
+        return values
+    assert table.header is not None
+    order = row_of_elements(values.pop(), expected)
+    if isinstance(order, tuple):
+        table.fail(f"column {in_quotes(table.header[table.numbering])} {order[1]}", table.rows()[order[0]])
+    return [column[order] for column in values]
+
+
+def _line_by_line(table: _Table, unseen: bytes, wrong_with_rows: WrongWithRows | None) -> list[Floats]:
+    rows: list[list[float]] = []
+    width = len(table.columns) + (table.numbering >= 0)
+
+    def columns() -> list[Floats]:
+        return list(np.array(rows).reshape(len(rows), width).T.copy())
+
+    lines = table.rows()
+    try:
+        for line in lines:
+            rows.append(table.row(cells_of(table.lines[line], table.separator), line, unseen))
+    except InputError:
+        if wrong_with_rows is not None and rows and (wrong := wrong_with_rows(columns())):
+            table.fail(wrong[1], lines[wrong[0]])  # an earlier line
+        raise
+    return columns()

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names of files as a description has them, such as "RawData/{item}_{participant}.pid".
+
+    *              any characters of one name
+    {item}         name of the item that the file belongs to
+    {participant}  digits
+    {view}, {viewer}  any characters of one name
+
+A name that begins with a dot is hidden and fits no pattern. Paths are relative, with '/' between names. A pattern is matched name by name
+from the root, each name by backtracking over its few pieces.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Container, Sequence
+from dataclasses import dataclass, field
+
+from salbench.datasets._files import below, list_folder
+
+STANDS_FOR = {"*": "*", "{item}": "NAME", "{participant}": "NUMBER", "{view}": "VIEW", "{viewer}": "VIEWER"}
+PARTS = ("{participant}", "{view}", "{viewer}")
+MAX_PER_NAME = 3  # placeholders; matching tries all their lengths
+
+_PIECES = re.compile(r"(\*|\{item\}|\{participant\}|\{view\}|\{viewer\})")
+_DIGITS = re.compile(rb"([0-9]+)")
+
+
+class _Anything:
+    def __contains__(self, name: object) -> bool:
+        return True
+
+
+@dataclass(frozen=True)
+class FoundFile:
+    path: str
+    item: str  # what {item} stands for; "" if the pattern has none
+    part: str  # what {participant}, {view} or {viewer} stands for
+
+
+@dataclass
+class FoundFiles:
+    fit: list[FoundFile] = field(default_factory=list)  # in natural order of the paths
+    left_out: list[str] = field(default_factory=list)  # end as the pattern does, but do not fit it
+
+
+def natural_order(text: str) -> tuple[list[bytes | tuple[int, bytes]], bytes]:
+    """A key that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10". Equal but for leading zeros: by bytes."""
+    raw = os.fsencode(text)
+    key: list[bytes | tuple[int, bytes]] = []
+    pieces = _DIGITS.split(raw)
+    for letters, digits in zip(pieces[::2], pieces[1::2]):
+        significant = digits.lstrip(b"0")
+        key += [letters + b"0", (len(significant), significant)]  # the 0: where digits meet another character, they compare as one
+    return [*key, pieces[-1]], raw
+
+
+def pieces_of(name: str) -> list[str]:
+    return [piece for piece in _PIECES.split(name) if piece]
+
+
+def _match(pieces: Sequence[str], name: str, items: Container[str], item: str, part: str) -> tuple[str, str] | None:
+    """Item and part of a name that fits, each placeholder taking as much as it can."""
+    if not pieces:
+        return None if name else (item, part)
+    piece, rest = pieces[0], pieces[1:]
+    known = item if piece == "{item}" else "" if piece in STANDS_FOR else piece
+    if known:
+        return _match(rest, name[len(known):], items, item, part) if name.startswith(known) else None
+    for length in range(len(name), -1 if piece == "*" else 0, -1):
+        taken = name[:length]
+        if piece == "{item}":
+            found = _match(rest, name[length:], items, taken, part) if taken in items else None
+        elif piece == "*":
+            found = _match(rest, name[length:], items, item, part)
+        else:
+            is_part = piece != "{participant}" or (taken.isascii() and taken.isdigit())
+            found = _match(rest, name[length:], items, item, taken) if is_part else None
+        if found:
+            return found
+    return None
+
+
+def _fits(pieces: Sequence[str], name: str, items: Container[str], captured: tuple[str, str]) -> tuple[str, str] | None:
+    """As an item where that is possible, else as anything."""
+    return _match(pieces, name, items, *captured) or _match(pieces, name, _Anything(), *captured)
+
+
+def _folders(root: str, pattern: str, items: Container[str]) -> list[tuple[str, tuple[str, str]]]:
+    """The folders that files of a pattern may be in, with what their names captured."""
+    folders = [(root, ("", ""))]
+    for name in pattern.split("/")[:-1]:
+        pieces = pieces_of(name)
+        found = []
+        for folder, captured in folders:
+            if len(pieces) == 1 and pieces[0] not in STANDS_FOR:
+                found.append((below(folder, name), captured))
+                continue
+            for entry, is_folder in list_folder(folder):
+                if is_folder and not entry.startswith(".") and (fit := _fits(pieces, entry, items, captured)):
+                    found.append((os.path.join(folder, entry), fit))
+        folders = found
+    return folders
+
+
+def files_like(root: str, pattern: str, items: Container[str] = ()) -> FoundFiles:
+    """Files below the root that fit. {item} is an item wherever the name can be read so, the longest first, and any other text elsewhere.
+    Lists folders and reads no file."""
+    found = FoundFiles()
+    if not pattern:
+        return found
+    pieces = pieces_of(pattern.split("/")[-1])
+    ending = "" if pieces[-1] in STANDS_FOR else pieces[-1]
+    for folder, captured in _folders(root, pattern, items):
+        for name, is_folder in list_folder(folder):
+            if is_folder or name.startswith("."):
+                continue
+            if fit := _fits(pieces, name, items, captured):
+                found.fit.append(FoundFile(os.path.join(folder, name), *fit))
+            elif ending and name.endswith(ending):
+                found.left_out.append(os.path.join(folder, name))
+    found.fit.sort(key=lambda file: natural_order(file.path))
+    found.left_out.sort(key=natural_order)
+    return found
+
+
+def has_folder_for(root: str, pattern: str) -> bool:
+    """True if a folder exists that a file of this pattern could be in."""
+    return bool(pattern) and any(os.path.isdir(folder) for folder, _ in _folders(root, pattern, ()))
+
+
+def one_file_per_item(pattern: str) -> bool:
+    return not any(part in pattern for part in PARTS)
+
+
+def has_viewers(pattern: str) -> bool:
+    return "{viewer}" in pattern
+
+
+def has_views(pattern: str) -> bool:
+    return "{view}" in pattern
+
+
+def filled_in(pattern: str, item: str, part: str) -> str:
+    """The pattern with these in place of {item} and of {view} or {viewer}."""
+    return "".join({"{item}": item, "{view}": part, "{viewer}": part}.get(piece, piece) for piece in pieces_of(pattern))
+
+
+def expected_name(pattern: str) -> str:
+    """"NAME_NUMBER.pid" for "RawData/{item}_{participant}.pid"."""
+    return "".join(STANDS_FOR.get(piece, piece) for piece in pieces_of(pattern.split("/")[-1]))
+
+
+def place_of(root: str, pattern: str) -> str:
+    """The pattern below the root, as a user reads it: its folder if every file in that is wanted."""
+    path = below(root, pattern)
+    return os.path.dirname(path) if os.path.basename(path) == "*" else path
+
+
+def _wrong_with(text: str) -> str:
+    if not text:
+        return "is empty"
+    for name in text.split("/"):
+        if not name:
+            return "must be relative to the folder of the data set, without an empty name in it"
+        pieces = pieces_of(name)
+        if any(brace in piece for piece in pieces if piece not in STANDS_FOR for brace in "{}"):
+            return "has braces around something other than item, participant, view or viewer"
+        if sum(piece in STANDS_FOR for piece in pieces) > MAX_PER_NAME:
+            return f"has more than {MAX_PER_NAME} placeholders in one name"
+    return ""
+
+
+def wrong_with_mesh_pattern(text: str) -> str:
+    """"" for a pattern of meshes, which has no placeholder but *."""
+    return "must have * where the names of meshes differ, and no braces" if "{" in text else _wrong_with(text)
+
+
+def wrong_with_truth_pattern(text: str, parts: Sequence[str]) -> str:
+    """"" for a pattern of ground truth, which has {item} and may have one of `parts`."""
+    if wrong := _wrong_with(text):
+        return wrong
+    if "{item}" not in text:
+        return "must have {item} in place of the name of the item"
+    found = [part for part in PARTS if part in text]
+    for part in found:
+        if part not in parts:
+            return f"cannot have {part} here"
+    return "has both {view} and {viewer}" if len(found) > 1 else ""

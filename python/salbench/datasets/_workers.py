@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Processes of worker.py, from the side that asks them. One that dies fails what it was asked, and the next question starts another."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from salbench.datasets import _limits
+from salbench.datasets.records import InputError
+from salbench.datasets.worker import ERROR
+
+_START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.datasets.worker import main; sys.exit(main())"
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+
+class Worker:
+    """One process, started by the first question."""
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+
+    def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
+        """What it made, and what is wrong with the input: lines."""
+        if self._process is None:
+            self._start()
+        assert self._process is not None and self._process.stdin and self._process.stdout and self._folder
+        out = os.path.join(self._folder.name, "out")
+        try:
+            self._process.stdin.write(f"{json.dumps(request)}\t{out}\n".encode())
+            self._process.stdin.flush()
+            answered = self._process.stdout.readline()
+        except BrokenPipeError:
+            answered = b""
+        if not answered.endswith(b"\n"):
+            return None, [self._end()]
+        made, problems = _taken(out), _taken(out + ERROR) or b""
+        return made, problems.decode("utf-8", "surrogateescape").splitlines()
+
+    def close(self) -> None:
+        """A worker that is at work is ended."""
+        if self._process is not None:
+            self._process.kill()
+            self._end()
+        if self._folder is not None:
+            self._folder.cleanup()
+
+    def _start(self) -> None:
+        self._folder = self._folder or tempfile.TemporaryDirectory(prefix="salbench-")
+        # One thread: items are what is shared out, and stacks of more count as memory.
+        self._process = subprocess.Popen([sys.executable, "-P", "-c", _START, _PACKAGE], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+
+    def _end(self) -> str:
+        """Waits for it, and says how it ended."""
+        process, self._process = self._process, None
+        assert process is not None and process.stdin and process.stdout
+        status = process.wait()
+        process.stdout.close()
+        try:
+            process.stdin.close()
+        except BrokenPipeError:
+            pass
+        if status == -signal.SIGXCPU:
+            return f"it took more than {_limits.SECONDS} s: damaged, or too large; write the file again"
+        how = f"crashed (signal {-status}: {signal.strsignal(-status)})" if status < 0 else f"ended with status {status}"
+        return f"damaged: the process that reads it {how}; write the file again"
+
+
+_own: tuple[int, Worker] | None = None
+_one_at_a_time = threading.Lock()
+
+
+def asked(request: dict[str, Any]) -> bytes:
+    """The answer of this process's own worker. A child that was forked starts another."""
+    global _own
+    with _one_at_a_time:
+        if _own is None or _own[0] != os.getpid():
+            _own = os.getpid(), Worker()
+            atexit.register(_own[1].close)
+        made, problems = _own[1].ask(request)
+    if made is None:
+        raise InputError(problems[0] if problems else "the process that reads it ended without an answer")
+    return made
+
+
+def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | None, list[str]], None], processes: int | None = None) -> bool:
+    """Asks as many workers at once as there are processors. `done` is called with the number of the request and its answer, by one thread at
+    a time. False after Ctrl-C, which lets the requests at work end; a second one is a KeyboardInterrupt."""
+    numbers = iter(range(len(requests)))
+    lock, stop = threading.Lock(), threading.Event()
+    failures: list[BaseException] = []
+
+    def work() -> None:
+        worker = Worker()
+        try:
+            while not stop.is_set():
+                with lock:
+                    number = next(numbers, None)
+                if number is None:
+                    return
+                made, problems = worker.ask(requests[number])
+                with lock:
+                    done(number, made, problems)
+        except BaseException as error:  # of `done`, such as a full disk
+            failures.append(error)
+            stop.set()
+        finally:
+            worker.close()
+
+    count = min(processes or len(os.sched_getaffinity(0)), len(requests))
+    threads = [threading.Thread(target=work, daemon=True) for _ in range(count)]
+    for thread in threads:
+        thread.start()
+    interrupted = False
+    for thread in threads:
+        while thread.is_alive():
+            try:
+                thread.join()
+            except KeyboardInterrupt:
+                if interrupted:
+                    raise
+                interrupted = True
+                stop.set()
+    if failures:
+        raise failures[0]
+    return not interrupted
+
+
+def _taken(path: str) -> bytes | None:
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+    except FileNotFoundError:
+        return None
+    os.unlink(path)
+    return data

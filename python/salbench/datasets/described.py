@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Any data set that a description tells of: what its folder holds, and the one form of an item.
+
+`items` lists folders and reads no shape: it imports the standard library alone, and PyYAML for a user's description.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any
+
+from salbench.datasets._files import extension
+from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
+from salbench.datasets._layout import Columns, Indices, Layout, Values, described, number_text
+from salbench.datasets.records import InputError, Item, Listing, Native, Source
+
+if TYPE_CHECKING:
+    from salbench.datasets.records import Form
+
+VERSION = 1  # of what `read` makes of an item: another form for the same files is another version
+HEADER_BYTES = 1 << 16
+
+_FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ \t])", re.MULTILINE)
+
+
+def items(layout: Layout, root: str, twins: str = "refuse", beside: Callable[[str], list[Source]] | None = None) -> Listing:
+    """What the folder holds, in natural order. `beside`: files that belong to a shape's, such as its texture."""
+    if layout.index:
+        from salbench.datasets import _indexed
+
+        return _indexed.items(layout, root)
+    found = find(layout, root, twins)
+    native = _is_native(found)
+    rows = [_item(found, entry, native) for entry in found.entries]
+    if beside is not None:
+        rows = [replace(row, files=(*row.files, *beside(row.files[0].path))) for row in rows]
+    listing = Listing(rows, found.notes, found.read, layout.splits and layout.where(layout.splits.where) or "", found.no_splits,
+                      [{"split": one.split, "name": one.item, "where": one.where} for one in found.unknown], layout.scale, layout.unit_where,
+                      layout.licence, layout.values.positives)
+    if layout.unit_where:
+        from salbench.datasets._sizes import fail_mixed_units
+
+        fail_mixed_units(listing)
+    return listing
+
+
+def read(item: Item) -> Form:
+    """The one form of an item that `items` listed."""
+    from salbench.datasets._truth import read_item
+
+    if "form" in item.how:
+        from salbench.datasets import sets
+
+        return sets.read("", "", item)
+    if item.native is not None:
+        item = _imported(item, item.native)
+    path = item.files[0].path
+    try:
+        return read_item(item)
+    except InputError:
+        raise
+    except ValueError as error:  # of C++, which may not know the file
+        raise InputError(str(error) if path in str(error) else f"{path}: {error}") from None
+    except MemoryError:
+        raise InputError(f"{path}: no memory for what its item's files hold; leave it out, or work on fewer items at a time") from None
+
+
+def _imported(item: Item, native: Native) -> Item:
+    """A native row as any other: its files, and how many there are of each kind."""
+    paths = [native.mesh, *native.saliency, *native.picks]
+    return replace(item, files=tuple(Source("", path) for path in paths), how=_nonzero(saliency=len(native.saliency), picks=len(native.picks)))
+
+
+def _is_native(found: Found) -> bool:
+    """True of shapes with a number per vertex and indices from 0 beside them: C++ reads them as its own layouts."""
+    layout, truth = found.layout, found.truth
+    plain = (layout.values, layout.indices, layout.columns) == (Values(), Indices(), Columns()) and not layout.unit_where
+    if truth is None or not plain:
+        return plain
+    one_file = all(len(entry.saliency) <= 1 and not entry.views for entry in found.entries)
+    endings = truth.saliency.endswith(".val") or not truth.saliency, truth.picks.endswith(".pid") or not truth.picks
+    return one_file and all(endings) and not truth.mask and not truth.cameras
+
+
+def kind_of(path: str) -> str:
+    """ "cloud" of a file that holds points alone: .pcd, .xyz and columns always do, .ply where its header announces no faces. A header that
+    cannot be read announces some."""
+    kind = extension(path)
+    if kind != ".ply":
+        return "mesh" if kind in MESHES else "cloud"
+    try:
+        with open(path, "rb") as file:
+            header, end, _ = file.read(HEADER_BYTES).replace(b"\r", b"\n").partition(b"end_header")
+    except OSError:
+        return "mesh"
+    return "cloud" if header.startswith(b"ply") and end and not _FACES.search(header) else "mesh"
+
+
+def _item(found: Found, entry: Candidate, native: bool) -> Item:
+    layout = found.layout
+    in_columns = is_column_cloud(entry.mesh, layout.columns)
+    has_columns = in_columns and bool(layout.columns.density or layout.columns.flag)
+    problem = entry.problem or next((missing for _, missing in entry.masks if missing), "")
+    by_viewer = bool(found.truth and "{viewer}" in found.truth.saliency)
+    item = Item(entry.name, entry.shape, entry.view, entry.category, entry.split, "cloud" if in_columns else kind_of(entry.mesh),
+                bool(entry.saliency or entry.picks or has_columns or problem), len(entry.picks), len(entry.saliency) if by_viewer else 0, problem)
+    if native:
+        item.native = Native(entry.mesh, tuple(entry.saliency), tuple(entry.picks))
+        return item
+    if problem:
+        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[])
+    files = [_shape_source(layout, entry, item.kind, in_columns)]
+    how: dict[str, Any] = {"columns": _given(layout.columns)} if in_columns else {}
+    if has_columns and not problem:
+        how |= _nonzero(values=_given(Values(positives=layout.values.positives)))
+    elif entry.saliency or entry.picks:
+        at_infinity = bool(found.truth and found.truth.cameras.at_infinity)
+        how |= _nonzero(saliency=len(entry.saliency), picks=len(entry.picks), masks=bool(entry.masks), by_viewer=by_viewer,
+                        views=entry.views if by_viewer else [], values=_given(layout.values), indices=_given(layout.indices),
+                        cameras=[{"place": list(place), "at_infinity": at_infinity, "where": where} for place, where in entry.cameras])
+        files += _truth_sources(layout, entry, how)
+    if problem and has_columns:
+        how["columns"] = _given(replace(layout.columns, density="", flag=""))
+    item.files, item.how = tuple(files), how
+    return item
+
+
+def _given(options: Any) -> dict[str, Any]:
+    """Options that are not at their defaults, as JSON has them."""
+    defaults = asdict(type(options)())
+    return {key: list(value) if isinstance(value, tuple) else value for key, value in asdict(options).items() if value != defaults[key]}
+
+
+def _nonzero(**entries: Any) -> dict[str, Any]:
+    return {key: value for key, value in entries.items() if value}
+
+
+def _titled(kind: str, path: str) -> str:
+    return f"{kind} {path.rpartition('/')[2]}"
+
+
+def _shape_source(layout: Layout, entry: Candidate, kind: str, in_columns: bool) -> Source:
+    name = f"{'point cloud' if kind == 'cloud' else 'mesh'} file"
+    how = ""
+    if in_columns:
+        how = described(layout.columns, **({"density": "", "flag": ""} if entry.problem else {}))
+        how += described(Values(positives=layout.values.positives))
+    view = f", view {entry.view}" if entry.view else ""
+    return Source(f"{name} {extension(entry.mesh)}{how}{view}", entry.mesh, _titled(name, entry.mesh))
+
+
+def _camera_text(how: dict[str, Any], k: int) -> str:
+    """ " from [0, 0, 5]", "from direction [0, 0, 1]"; nothing where all was seen."""
+    if not how.get("cameras"):
+        return ""
+    camera = how["cameras"][k]
+    return f" from {'direction ' if camera['at_infinity'] else ''}[{', '.join(map(number_text, camera['place']))}]"
+
+
+def _truth_sources(layout: Layout, entry: Candidate, how: dict[str, Any]) -> list[Source]:
+    """Files of saliency, masks and picks. How they are read, and from where the shape was seen, is part of their names."""
+    files = []
+    for k, path in enumerate(entry.saliency):
+        viewer = f", {how['views'][k]}" if how.get("by_viewer") else ""
+        name = f"saliency of viewer {k}{viewer}" if viewer else f"saliency file {k}" if len(entry.saliency) > 1 else "saliency file"
+        numbered = ", rows by their numbers" if layout.values.column and layout.values.per != "point" else ""
+        files.append(Source(f"{name}{described(layout.values)}{numbered}{_camera_text(how, k)}", path, _titled("saliency file", path)))
+    files += [Source(f"mask {k}", path, _titled("mask", path)) for k, (path, _) in enumerate(entry.masks)]
+    hides = entry.saliency and (entry.masks or entry.cameras or layout.values.unseen or layout.values.per != "vertex")
+    for k, path in enumerate(entry.picks):
+        camera = _camera_text(how, k) if not entry.saliency and k == 0 else ""
+        files.append(Source(f"picks {k}{described(layout.indices)}{' of what was seen' if hides else ''}{camera}", path, _titled("picks", path)))
+    return files
+
+
+def of_file(path: str) -> Layout:
+    """The layout that a user's description tells of."""
+    from salbench.datasets._description import read_description
+
+    return read_description(path)
+
+
+__all__ = ["CLOUDS", "VERSION", "InputError", "items", "kind_of", "of_file", "read"]

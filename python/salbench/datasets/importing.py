@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`salbench import`: a data set in the one form. What is there and would be the same is left alone; what fails is taken out."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from salbench import _command_line as command_line
+from salbench import _core
+from salbench._errors import InputError, StorageError
+from salbench.datasets import described, one_form, sets
+from salbench.datasets._workers import ask_all
+from salbench.datasets.records import Item, Listing
+
+
+@dataclass
+class Imported:
+    """A shape that was selected."""
+
+    name: str
+    outcome: str = "failed"  # of its file: written, unchanged, failed
+    problem: str = ""  # why it, or one of its views, is not in the set: one line
+    rows: list[one_form.Row] = field(default_factory=list)
+
+
+@dataclass
+class Import:
+    layout: str
+    shapes: list[Imported]
+    notes: list[str]
+    removed: int = 0  # files of shapes that the source no longer has
+    complete: bool = True  # False: interrupted
+
+    @property
+    def problems(self) -> int:
+        return sum(bool(shape.problem) for shape in self.shapes)
+
+    def count(self, outcome: str) -> int:
+        return sum(shape.outcome == outcome for shape in self.shapes)
+
+
+def import_set(layout: str, root: str, to: str, items: str = "", split: str = "", done: Callable[[int, int], None] | None = None) -> Import:
+    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them and of those that were there before."""
+    if layout == sets.ONE_FORM:
+        raise InputError(f"import: {layout} is the one form already")
+    root = os.path.normpath(root)
+    layout_name, listing = sets.listed(layout, root)
+    archive = layout if layout != sets.AUTOMATIC else layout_name
+    places = {item.name: number for number, item in enumerate(listing.items)}
+    before = _rows_before(to, root, layout_name, places)
+    shapes: dict[str, list[Item]] = {}
+    for item in _selected(listing, items, split):
+        shapes.setdefault(item.shape or item.name, []).append(item)
+    _make_folder(os.path.join(to, "items"))
+
+    found = [Imported(name) for name in shapes]
+    answered = [False] * len(found)
+
+    def take(number: int, made: bytes | None, problems: list[str]) -> None:
+        _take(found[number], shapes[found[number].name], made, problems, to, layout_name)
+        answered[number] = True
+        if done is not None:
+            done(sum(answered), len(found))
+
+    requests = [{"do": "shape", "layout": archive, "root": root, "licence": listing.licence, "items": [item.to_json() for item in views]}
+                for views in shapes.values()]
+    complete = ask_all(requests, take)
+    found = [shape for shape, known in zip(found, answered) if known]
+    renewed = {shape.name for shape in found}
+    rows = [row for row in before if row[0] not in renewed and _name(row) in places] + [row for shape in found for row in shape.rows]
+    try:
+        removed = one_form.put_index(to, sorted(rows, key=lambda row: places[_name(row)]), [row for row in before if row[0] not in renewed])
+    except OSError as error:
+        raise StorageError(f"{error.filename}: cannot be written: {error.strerror}") from None
+    return Import(layout_name, found, listing.notes, removed, complete)
+
+
+def _take(shape: Imported, views: list[Item], made: bytes | None, problems: list[str], to: str, source: str) -> None:
+    """Puts what a worker made of a shape into the set."""
+    failed = dict(line.partition("\t")[::2] for line in problems if "\t" in line)
+    shape.problem = next(iter(failed.values()), "") or (problems[0] if problems else "")
+    path = one_form.file_of(to, shape.name)
+    try:
+        if made is None:
+            shape.problem = shape.problem or "a worker ended without an answer; run it again"
+            if os.path.exists(path):
+                os.unlink(path)
+            return
+        shape.outcome = "written" if one_form.put(path, made) else "unchanged"
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be written: {error.strerror}") from None
+    shape.rows = [(shape.name, view.view, view.category, view.split, view.kind or described.kind_of(sets.shape_file(view)), view.truth,
+                   view.participants, view.viewers, source) for view in views if view.name not in failed]
+
+
+def _rows_before(to: str, root: str, layout: str, places: dict[str, int]) -> list[one_form.Row]:
+    """The index that is there, of the same set."""
+
+    def refuse(what: str) -> InputError:
+        return InputError(f"--to {to}: {what}; choose another folder")
+
+    try:
+        rows = one_form.read_index(to)
+    except ValueError as error:
+        raise refuse(f"holds something else: {error}") from None
+    for row in rows:
+        if row[-1] != layout:
+            raise refuse(f"holds another set, read with the layout {row[-1]}")
+    if rows and not any(_name(row) in places for row in rows):
+        raise refuse(f"holds another set, of which no item is in {root}")
+    return rows
+
+
+def _name(row: one_form.Row) -> str:
+    return f"{row[0]}_{row[1]}" if row[1] else row[0]
+
+
+def _selected(listing: Listing, items: str, split: str) -> list[Item]:
+    """Shapes as a whole, whichever of their views are named."""
+    chosen = sets.chosen(listing, items or None, split)
+    shapes = {item.shape or item.name for item in chosen}
+    return [item for item in listing.items if (item.shape or item.name) in shapes]
+
+
+def _make_folder(folder: str) -> None:
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        raise StorageError(f"{folder}: cannot be made: {error.strerror}; choose another with --to") from None
+
+
+class _Progress:
+    """On standard error: a line that is written over on a terminal, else one every ten seconds."""
+
+    def __init__(self) -> None:
+        self._begin = self._shown = time.monotonic()
+        self._on_terminal = sys.stderr.isatty()
+
+    def __call__(self, done: int, items: int) -> None:
+        now = time.monotonic()
+        if done < items and now - self._shown < (0.1 if self._on_terminal else 10):
+            return
+        self._shown = now
+        left = (items - done) * (now - self._begin) / done
+        text = f"importing: {done}/{items} items, {left:.0f} s left"
+        print(f"\r{text}\033[K" if self._on_terminal else text, end="" if self._on_terminal and done < items else "\n", file=sys.stderr, flush=True)
+
+
+def command(arguments: Sequence[str], summary: str) -> int:
+    parser = command_line.Parser("import", summary, "LAYOUT")
+    sets.add_data_arguments(parser)
+    parser.add_argument("--to", metavar="DIR", required=True, help="folder that the set is written to")
+    parser.add_argument("--items", default="", metavar="LIST", help="only these shapes, such as 1-20,52,125")
+    parser.add_argument("--split", default="", metavar="NAME", help="only this split of the data set, such as test")
+    parser.add_report("neither progress nor a summary; warnings and errors only")
+    given = parser.parsed(arguments)
+    _core.write_options_for_the_command_line()
+    layout, data = sets.given_data("import", given)
+    done = import_set(layout, data, given.to, given.items, given.split, None if given.quiet else _Progress())
+    for note in done.notes:
+        command_line.warn("warning", note)
+    for shape in done.shapes:
+        if shape.problem:
+            command_line.warn("error", f"{shape.name}: {shape.problem}")
+    if not done.complete:
+        print(f"\ninterrupted; {len(done.shapes)} shapes are done; to go on:\n  {shlex.join(['salbench', 'import', *arguments])}", file=sys.stderr)
+        return command_line.INTERRUPTED
+    command_line.report(given, "import", _document(done), _text(done, given.to))
+    return command_line.SOME_FAILED if done.problems else command_line.ALL_DONE
+
+
+def _document(done: Import) -> dict[str, Any]:
+    return {"layout": done.layout, "shapes": [{"name": shape.name, "outcome": shape.outcome, "problem": shape.problem} for shape in done.shapes],
+            "written": done.count("written"), "unchanged": done.count("unchanged"), "removed": done.removed, "n_problems": done.problems}
+
+
+def _text(done: Import, to: str) -> str:
+    return (f"{done.count('written')} of {len(done.shapes)} shapes written to {to}, {done.count('unchanged')} unchanged, {done.removed} removed, "
+            f"{done.problems} with problems\n")

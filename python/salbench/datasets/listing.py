@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The listing of a data set as C++ asks for it: one JSON document. The standard library alone, and PyYAML for a user's description."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from salbench.datasets import find
+from salbench.datasets._twins import TWINS
+from salbench.datasets.records import InputError
+
+
+def document(layout: str, root: str, twins: str = "refuse") -> dict[str, Any]:
+    """Items, notes and files of a folder, as plain JSON. Throws InputError, one line for the user."""
+    if twins not in TWINS:
+        raise InputError(f"twins must be one of {', '.join(TWINS)}, not '{twins}'")
+    archive = find(layout)
+    listing = archive.items(root, twins)
+    facts = asdict(listing) | {"items": [item.to_json() for item in listing.items]}
+    return {"layout": archive.LAYOUT.name, "version": archive.VERSION, **facts}

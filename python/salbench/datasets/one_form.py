@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one form of data sets: a folder with index.csv and items/NAME.h5, a file per shape (docs/hdf5_form.md).
+
+Files are written by the program's own writer, so that equal shapes give equal bytes, and the program reads them without the HDF5 library.
+Files that anybody else wrote are read by h5py and checked.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from salbench import _core
+from salbench.datasets._files import read_file
+from salbench.datasets.records import Form, InputError, Truth
+
+INDEX = "index.csv"
+FORM, VERSION = "salbench item", 2
+OWN = "own"  # source of a set that did not come from an archive
+
+Row = tuple[str, str, str, str, str, bool, int, int, str]  # item, view, class, split, kind, truth, participants, viewers, source
+
+_OF_SHAPE = ("points", "faces", "normals", "viewpoint", "left_out", "polygons")
+_OF_TRUTH = ("saliency", "viewers", "picks", "picks_of", "faces")
+
+
+def file_of(folder: str, shape: str) -> str:
+    return os.path.join(folder, "items", f"{shape}.h5")
+
+
+def read(path: str) -> Form:
+    """The shape in a file, whoever wrote it."""
+    data = read_file(path)
+    fields = _core.read_one_form(data, os.fsencode(path))
+    return form_of_fields(fields) if fields is not None else read_foreign(path, data)
+
+
+def read_foreign(path: str, data: bytes | None = None) -> Form:
+    """The same from a file of another program, which may hold anything."""
+    from salbench.datasets._hdf5 import Hdf5File
+
+    file = Hdf5File(path, data)
+    if file.attribute("form") != FORM:
+        raise InputError(f"{path}: has no attribute form = '{FORM}': it is no file of an imported data set")
+    version = file.attribute("form_version")
+    if not isinstance(version, int) or not 1 <= version <= VERSION:
+        raise InputError(f"{path}: is of version {version} of the form, and this program reads 1 to {VERSION}: import the set again")
+    arrays = {name: file.read(name) for name in (f"shape/{part}" for part in _OF_SHAPE) if file.has(name)}
+    groups = ["truth/", *(f"views/{view}/" for view in file.members("views"))]
+    arrays |= {name: file.read(name) for name in (group + part for group in groups for part in _OF_TRUTH) if file.has(name)}
+    if version == 1 and (split := file.attribute("polygons_split")):
+        arrays["shape/polygons"] = np.array([split, file.attribute("polygons_concave") or 0], np.int64)
+    return form_of_fields(_core.form_of_arrays(arrays, os.fsencode(path)))
+
+
+def image(form: Form) -> bytes:
+    """The bytes of a file."""
+    return _core.one_form_image(form)
+
+
+def put(path: str, data: bytes) -> bool:
+    """Replaces the file in one step, unless it holds these bytes; true if it did not."""
+    with contextlib.suppress(OSError), open(path, "rb") as file:
+        if file.read() == data:
+            return False
+    temporary = os.path.join(os.path.dirname(path), f".{os.urandom(8).hex()}.tmp")
+    try:
+        with open(temporary, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        raise
+    return True
+
+
+def read_index(folder: str) -> list[Row]:
+    """Rows of the index; none of a folder without one."""
+    path = os.path.join(folder, INDEX)
+    return _core.read_index(os.fsencode(path)) if os.path.exists(path) else []
+
+
+def put_index(folder: str, rows: list[Row], before: list[Row]) -> int:
+    """Writes the index, and removes files of shapes that only the one before it has. How many these are."""
+    put(os.path.join(folder, INDEX), _core.index_text(rows))
+    gone = {row[0] for row in before} - {row[0] for row in rows}
+    for shape in gone:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(file_of(folder, shape))
+    return len(gone)
+
+
+def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str = OWN) -> None:
+    """A data set of one's own, as the layout "hdf5".
+
+    Parameters
+    ----------
+    folder : path
+        It is made if it is missing. Files that would be the same are left alone; shapes that are no longer in the set are removed.
+    shapes : iterable of salbench.Shape
+        Or of anything with its `id` and `points` (n, 3), and where they are known `faces` (m, 3), `normals` of a cloud (n, 3), `ground_truth`
+        (n,) with NaN for what nobody saw, `participants` (indices of the points that each of them picked), `viewers` (v, n), `category` and
+        `split`.
+    source : str
+        Name of the set's origin, which the index repeats. A folder of another source is left alone.
+
+    Raises
+    ------
+    ValueError
+        A shape that cannot be used, named; two of one name; a folder that holds another set.
+
+    Examples
+    --------
+    >>> import numpy, tempfile, types
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> wedge = types.SimpleNamespace(id="wedge", points=numpy.eye(4, 3), faces=[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],
+    ...                               ground_truth=[0, 1, 2, 3])
+    >>> write(folder.name, [wedge])
+    >>> import salbench
+    >>> salbench.Dataset("hdf5", folder.name)["wedge"].ground_truth
+    array([0., 1., 2., 3.])
+    >>> folder.cleanup()
+    """
+    folder = os.fspath(folder)
+    before = read_index(folder)
+    for row in before:
+        if row[-1] != source:
+            raise InputError(f"{folder}: holds another set, of source {row[-1]}; choose another folder")
+    os.makedirs(os.path.join(folder, "items"), exist_ok=True)
+    rows: dict[str, Row] = {}
+    for number, shape in enumerate(shapes):
+        name = str(getattr(shape, "id", "")) or f"shape {number}"
+        if not is_name(name):
+            raise InputError(f"shape {name!r}: its id is no name of a file; leave out '/'")
+        if name in rows:
+            raise InputError(f"shape {name!r}: its id is given twice")
+        try:
+            form = form_of(shape, name, source)
+            data = image(form)
+            _core.shape_facts(form, os.fsencode(name), os.fsencode(name))
+        except (TypeError, ValueError) as error:
+            raise InputError(f"shape {name!r}: {error}") from None
+        put(file_of(folder, name), data)
+        rows[name] = row_of(name, form)
+    put_index(folder, list(rows.values()), before)
+
+
+def form_of(shape: Any, name: str, source: str = OWN) -> Form:
+    """The one form of a shape in memory."""
+
+    def floats(key: str) -> Any:
+        value = getattr(shape, key, None)
+        return None if value is None or len(value) == 0 else np.asarray(value, np.float64)
+
+    points, faces = np.asarray(shape.points, np.float64), getattr(shape, "faces", None)
+    picks = tuple(np.asarray(one) for one in getattr(shape, "participants", None) or ())
+    truth = Truth("", floats("ground_truth"), floats("viewers"), picks)
+    if truth.viewers is not None and truth.saliency is None:
+        raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
+    has_truth = truth.saliency is not None or any(len(one) for one in picks)
+    about = {"item": name, "class": str(getattr(shape, "category", "")), "split": str(getattr(shape, "split", "")), "source": source,
+             "source_files": "", "viewers": "", "licence": ""}
+    return Form(points, None if faces is None else np.asarray(faces), floats("normals") if faces is None else None,
+                truths=(truth,) if has_truth else (), about=about)
+
+
+def row_of(name: str, form: Form, view: str = "", participants: int | None = None, viewers: int | None = None) -> Row:
+    """Row of the index for a shape, or one view of it."""
+    truth = next((one for one in form.truths if one.view == view), None)
+    if truth is not None and participants is None:
+        participants, viewers = len(truth.picks), 0 if truth.viewers is None else len(truth.viewers)
+    about = form.about
+    return (name, view, about["class"], about["split"], "cloud" if form.faces is None else "mesh", truth is not None, participants or 0,
+            viewers or 0, about["source"])
+
+
+def is_name(word: str) -> bool:
+    """True of what a file or a group can be called, which leads nowhere else."""
+    return word not in ("", ".", "..") and not {"/", "\0"} & set(word)
+
+
+def form_of_fields(fields: Mapping[str, Any]) -> Form:
+    """What the compiled part has read."""
+    form = Form(**fields)
+    form.truths = tuple(Truth(**truth) for truth in fields["truths"])
+    return form

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What importers hand over: the items of a data set as its folders list them, and the one form of a shape.
+
+Importing this costs no NumPy: a listing opens no shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any
+
+from salbench._errors import InputError as InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Ints = NDArray[np.int32]
+else:
+    Floats = Ints = Any
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file of an item. The name says how it is read, and is part of the key of what is computed from it."""
+
+    name: str  # "saliency file (per: face, column: 3)"; no path in it
+    path: str
+    title: str = ""  # for people: "saliency file cow.csv"
+
+
+@dataclass(frozen=True)
+class Native:
+    """The files of an item that C++ reads by itself: a mesh, values per vertex, picks per participant."""
+
+    mesh: str
+    saliency: tuple[str, ...] = ()
+    picks: tuple[str, ...] = ()
+
+
+@dataclass
+class Item:
+    """A unit that is scored: a shape, or one view of it, with where its ground truth lies."""
+
+    name: str
+    shape: str = ""  # name of the shape; of a view that is scored the item is called SHAPE_VIEW
+    view: str = ""
+    category: str = ""
+    split: str = ""
+    kind: str = "mesh"  # or "cloud"; "" where only the file tells
+    truth: bool = False
+    participants: int = 0
+    viewers: int = 0
+    problem: str = ""  # why its ground truth cannot be used: one line
+    files: tuple[Source, ...] = ()  # in the order in which they are read
+    how: dict[str, Any] = field(default_factory=dict)  # what `read` needs beside the files; plain JSON
+    native: Native | None = None  # then there are neither files nor how
+
+    def to_json(self) -> dict[str, Any]:
+        row = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        row["shape"] = self.shape or self.name
+        if self.native is not None:
+            del row["files"], row["how"]
+            return row | {"native": {"mesh": self.native.mesh, "saliency": [*self.native.saliency], "picks": [*self.native.picks]}}
+        del row["native"]
+        return row | {"files": [{"name": file.name, "path": file.path, "title": file.title} for file in self.files]}
+
+    @classmethod
+    def from_json(cls, row: Mapping[str, Any]) -> Item:
+        known = {entry.name for entry in fields(cls)}
+        values = {key: value for key, value in row.items() if key in known}
+        values["files"] = tuple(Source(**file) for file in row.get("files", ()))
+        native = row.get("native")
+        values["native"] = Native(native["mesh"], tuple(native["saliency"]), tuple(native["picks"])) if native else None
+        return cls(**values)
+
+
+@dataclass
+class Listing:
+    """A data set as its folders show it."""
+
+    items: list[Item]
+    notes: list[str] = field(default_factory=list)  # a line each: ground truth without a shape, missing numbers
+    read: list[str] = field(default_factory=list)  # files beside those of items: splits, cameras
+    splits_where: str = ""  # file and line of the description
+    no_splits: str = ""  # why no item is in a split; "": some are, or none are described
+    unknown: list[dict[str, str]] = field(default_factory=list)  # split, name, where: names in splits that are no items
+    scale: float = 1.0  # of coordinates, where lengths are shown
+    unit_where: str = ""
+    licence: str = ""
+    positives: str = "picks"
+
+
+@dataclass
+class AsRead:
+    """One file of saliency, where what is scored is not what it holds."""
+
+    file: str  # its name, without folders
+    per: str  # "vertex", "face" or "point"
+    values: Floats  # one per element, before the mask; NaN: not seen
+    points: Floats | None = None  # (k, 3), of values per point
+    mask: Floats | None = None  # 0 hidden, 1 seen
+
+
+@dataclass
+class Truth:
+    view: str = ""  # that is scored by itself; "": the shape
+    saliency: Floats | None = None  # (n,); NaN: not seen. None: people's picks are all that is known
+    viewers: Floats | None = None  # (v, n)
+    picks: tuple[Ints, ...] = ()  # 0-based, a participant each
+    face_values: Floats | None = None  # (f,), as published
+    as_read: tuple[AsRead, ...] = ()
+
+
+@dataclass
+class Form:
+    """The one form of a shape in memory (docs/hdf5_form.md)."""
+
+    points: Floats  # (n, 3)
+    faces: Ints | None = None  # (f, 3); None: a point cloud
+    normals: Floats | None = None  # of clouds
+    viewpoint: Floats | None = None
+    left_out: Ints | None = None  # of clouds: rows of the file that are no points here, ascending
+    polygons: tuple[int, int] = (0, 0)  # that were split, and how many of them were concave
+    truths: tuple[Truth, ...] = ()
+    about: dict[str, str] = field(default_factory=dict)  # item, class, split, source, source_files, viewers, licence
+    digests: dict[str, str] = field(default_factory=dict)  # path of each file that was read -> what xxh128sum prints of it

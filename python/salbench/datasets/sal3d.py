@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where 32 people looked on 58 meshes in virtual reality: 20 000 points of the surface of each, with fixation densities. [martin2024]
+
+Published: supplement of the paper; an earlier state in the public repository FandosA/3D_Mesh_Saliency_Prediction_PyTorch.
+Seen: 52 point clouds of that state, and their splits.
+A line has the position, a direction along the normal, the density, and 1 for the points that are looked at most, between blanks. In 26 of
+the 52 clouds the directions are sums around a vertex, mostly 2 pi long, in the others unit normals. None of them is padded. Points with
+the same position are clones of one vertex: each is scored, as the authors do.
+Assumed: Models_3D/ and dataset_*/ of the earlier state, and meshes/ and gaze/ of another public repository, whose meshes take the value of
+the nearest point.
+Cannot answer: who looked where (pooled over people).
+"""
+
+from functools import partial
+
+from salbench.datasets import described
+from salbench.datasets._layout import Columns, Layout, Pattern, Place, Splits, TruthPlace, Values
+from salbench.datasets.described import VERSION, read
+
+_ON_MESHES = Values("point", "7", ("1", "2", "3"))
+_LICENCE = "not known; ask the authors"
+
+
+def _meshes(meshes: str, gaze: str) -> Place:
+    return Place(Pattern(meshes), (TruthPlace(Pattern(gaze)),))
+
+
+LAYOUT = Layout(
+    "sal3d",
+    (Place(Pattern("Gaze/*.txt")),  # as published: points and ground truth in one
+     _meshes("Models_3D/*.obj", "dataset_*/{item}.txt"), _meshes("meshes/*.obj", "gaze/{item}.txt")),
+    values=_ON_MESHES, columns=Columns(("1", "2", "3"), ("4", "5", "6"), True, "any", "kept", "7", "8"),
+    splits=Splits(table="splits.csv"), licence=_LICENCE)
+items = partial(described.items, LAYOUT)
+
+__all__ = ["LAYOUT", "VERSION", "items", "read"]

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A data set of any layout, whoever lists it: an importer, or the program what it reads by itself."""
+
+from __future__ import annotations
+
+import functools
+import os
+from dataclasses import fields
+from typing import Any
+
+from salbench import _core
+from salbench.datasets import ARCHIVES, NATIVE, find, is_description, one_form
+from salbench.datasets import read as read_archive
+from salbench.datasets._files import read_file
+from salbench.datasets._section import did_you_mean
+from salbench.datasets._twins import TWINS as TWINS
+from salbench.datasets.records import Form, InputError, Item, Listing
+
+AUTOMATIC = "automatic"
+LAYOUTS = tuple(sorted({*ARCHIVES, *NATIVE}))
+ONE_FORM = "hdf5"
+
+_found = functools.lru_cache(maxsize=16)(find)
+
+
+def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]:
+    """The name of the layout, of "automatic" the one that fits, and what the folder holds."""
+    if layout == AUTOMATIC:
+        return _automatic(root, twins)
+    if layout not in NATIVE:
+        archive = find(layout)
+        return archive.LAYOUT.name, archive.items(root, twins)
+    found = _core.native_items(os.fsencode(layout), os.fsencode(root), twins)
+    known = {field.name for field in fields(Listing)}
+    listing = Listing(**{key: value for key, value in found.items() if key in known})
+    listing.items = [_item(row) for row in found["items"]]
+    listing.licence = NATIVE[found["layout"]]
+    return found["layout"], listing
+
+
+def _automatic(root: str, twins: str) -> tuple[str, Listing]:
+    def has(*path: str) -> bool:
+        return os.path.isdir(os.path.join(root, *path))
+
+    layouts = ["gs"] if has("GS") or has("Saliency") else []
+    layouts.append("schelling")
+    if has("off") or has("data", "off") or has("MeshsegBenchmark-1.0", "data", "off") or os.path.basename(os.path.abspath(root)) == "off":
+        layouts.append("princeton")
+    for layout in layouts:
+        try:
+            return listed(layout, root, twins)
+        except InputError:
+            continue
+        except ValueError:  # of the program
+            continue
+    return listed("folder", root, twins)
+
+
+def _item(row: dict[str, Any]) -> Item:
+    item = Item.from_json(row)
+    item.how = {"form": row["form"]} if "form" in row else {}
+    return item
+
+
+def shape_file(item: Item) -> str:
+    """The file that the shape of an item is in."""
+    return str(item.native.mesh if item.native else item.how.get("form") or item.files[0].path)
+
+
+def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
+    """The one form of an item of a listing, with what is known about it. `licence`: of a set that the program lists."""
+    if item.problem:
+        raise InputError(item.problem)
+    if "form" in item.how:
+        form = one_form.read(item.how["form"])
+        form.truths = tuple(truth for truth in form.truths if truth.view == item.view) if item.truth else ()
+        if item.truth and not form.truths:
+            raise InputError(f"{item.how['form']}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
+        return form
+    if item.native is None:
+        return read_archive(layout, root, item)
+    form = one_form.form_of_fields(_core.native_form(os.fsencode(item.name), *native_files(item)))
+    form.digests = {path: _core.xxh128(read_file(path)) for path in (item.native.mesh, *item.native.saliency, *item.native.picks)}
+    lines = "".join(f"{digest}  {os.path.relpath(path, root)}\n" for path, digest in sorted(form.digests.items()))
+    if layout not in NATIVE:
+        described = _found(layout).LAYOUT
+        layout, licence = described.name, described.licence
+    form.about = {"item": item.shape or item.name, "class": item.category, "split": item.split, "source": layout, "source_files": lines,
+                  "viewers": "", "licence": licence}
+    return form
+
+
+def native_files(item: Item) -> tuple[bytes, list[bytes], list[bytes]]:
+    """As the program is asked for them."""
+    assert item.native is not None
+    return os.fsencode(item.native.mesh), [*map(os.fsencode, item.native.saliency)], [*map(os.fsencode, item.native.picks)]
+
+
+def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:
+    """Items that a user names: "1-20,52", "scored" for those with ground truth, or a list of names; None: all. "" stands for all splits."""
+    wanted = [*map(os.fsencode, items)] if isinstance(items, list) else None if items is None else os.fsencode(items)
+    rows = [(item.name, item.shape or item.name, item.split, item.truth, item.problem) for item in listing.items]
+    numbers = _core.chosen_items(rows, wanted, os.fsencode(split), os.fsencode(listing.splits_where), os.fsencode(listing.no_splits))
+    return [listing.items[number] for number in numbers]
+
+
+def add_data_arguments(parser: Any) -> None:
+    parser.add_argument("layout", metavar="LAYOUT",
+                        help="description of the data set: automatic, a name of docs/data_sets.md, or a file of your own (.yaml)")
+    parser.add_argument("--data", default="", metavar="DIR", help="folder of the data set")
+
+
+def given_data(subcommand: str, given: Any) -> tuple[str, str]:
+    """Layout and folder of a command line."""
+    if given.layout not in LAYOUTS and not is_description(given.layout):
+        hint = did_you_mean(given.layout, LAYOUTS, "name one of docs/data_sets.md, or a file NAME.yaml")
+        raise InputError(f"{subcommand}: there is no layout '{given.layout}'; {hint}")
+    if not given.data:
+        raise InputError(f"{subcommand}: names no data set: give --data DIR")
+    return given.layout, given.data

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where people looked on rendered meshes: fixation densities per vertex from three views of each of 32 meshes, and which vertices each
+view shows. Each view is scored by itself, on what it shows. [lavoue2018]
+
+Published: https://perso.liris.cnrs.fr/guillaume.lavoue/data/saliency/
+Seen: the names of its folders and files, none of the files.
+Assumed: a number per line. A hidden vertex has 0 in the densities, and so has one that is visible and not looked at: the masks tell them
+apart. The second arrangement has no masks, and -1 for hidden; its views are averaged. The published densities are not negative.
+Cannot answer: who looked where (pooled over people).
+"""
+
+from functools import partial
+
+from salbench.datasets import described
+from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace, Values
+from salbench.datasets.described import VERSION, read
+
+_PUBLISHED = (TruthPlace(Pattern("FixationMaps/{item}_{view}norm.txt"),
+                         mask=Pattern("CentricityAndVisibilityMaps/{item}_{view}_visibility.txt")),)
+LAYOUT = Layout(
+    "3dva",
+    (Place(Pattern("3DModels-Simplif/*"), _PUBLISHED, views="scored"),
+     Place(Pattern("3DModels-Simplif-up/*"), _PUBLISHED, views="scored"),  # the same meshes, turned upright
+     Place(Pattern("Meshes/*"), (TruthPlace(Pattern("FixationMaps/{item}_{view}.txt")),))),
+    values=Values(unseen="-1"), licence="not known, the files were not seen; ask the authors")
+items = partial(described.items, LAYOUT)
+
+__all__ = ["LAYOUT", "VERSION", "items", "read"]

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`salbench _import`, a served command: reads items of archives, and files of strangers, in a process that may crash.
+
+A line of standard input is `REQUEST<TAB>OUT`, a request being a line of JSON. The answer is written to the file OUT, or what is wrong with
+the input, one line, to OUT.error; then OUT is printed on a line of its own. Requests have `do`:
+
+item     layout, root, item (of a listing)     image of the one form
+shape    layout, root, items of one shape      the same with all views; problems of those that are left out in OUT.error, a line each
+facts    layout, root, item                    JSON: what `salbench inspect` tells of it
+rewrite  path                                  image of the one form, from a file that another program wrote
+values   path                                  image with the array `values`: the only data set of numbers, or that called "saliency"
+maps     path                                  JSON: names of all data sets of numbers
+map      path, name                            image with the array `values`: one number per point
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable
+from typing import Any, BinaryIO
+
+from salbench.datasets import _limits
+from salbench.datasets.records import InputError, Item
+
+ERROR = ".error"
+
+
+def item(request: dict[str, Any]) -> bytes:
+    from salbench.datasets import one_form, sets
+
+    return one_form.image(sets.read(request["layout"], request["root"], Item.from_json(request["item"]), request.get("licence", "")))
+
+
+def shape(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
+    from salbench import _core
+    from salbench.datasets import one_form, sets
+
+    whole, problems = None, []
+    for row in request["items"]:
+        view = Item.from_json(row)
+        try:
+            if view.view and not one_form.is_name(view.view):
+                raise InputError(f"{view.name}: a view cannot be called '{view.view}': rename its files")
+            form = sets.read(request["layout"], request["root"], view, request.get("licence", ""))
+            if whole is None:
+                _core.shape_facts(form, os.fsencode(view.shape or view.name), os.fsencode(sets.shape_file(view)))
+        except (ValueError, OSError, MemoryError) as error:
+            problems.append(f"{view.name}\t{message(error)}")
+            continue
+        if whole is None:
+            whole = form
+        else:
+            whole.truths = (*whole.truths, *form.truths)
+            whole.about["source_files"] = _lines(whole.about["source_files"], form.about["source_files"])
+    return None if whole is None else one_form.image(whole), problems
+
+
+def facts(request: dict[str, Any]) -> bytes:
+    from salbench.datasets.inspecting import facts_of
+
+    return json.dumps(facts_of(request["layout"], request["root"], Item.from_json(request["item"]))).encode()
+
+
+def rewrite(request: dict[str, Any]) -> bytes:
+    from salbench.datasets import one_form
+
+    return one_form.image(one_form.read_foreign(request["path"]))
+
+
+def values(request: dict[str, Any]) -> bytes:
+    from salbench import _core
+    from salbench.datasets import _hdf5
+
+    return _core.values_image(_hdf5.only_values(request["path"]))
+
+
+def maps(request: dict[str, Any]) -> bytes:
+    from salbench.datasets import _hdf5
+
+    return json.dumps(_hdf5.Hdf5File(request["path"]).names()).encode()
+
+
+def one_map(request: dict[str, Any]) -> bytes:
+    from salbench import _core
+    from salbench.datasets import _hdf5
+
+    return _core.values_image(_hdf5.point_values(_hdf5.Hdf5File(request["path"]), request["name"]))
+
+
+ANSWERS: dict[str, Callable[[dict[str, Any]], bytes | tuple[bytes | None, list[str]]]] = {
+    "item": item, "shape": shape, "facts": facts, "rewrite": rewrite, "values": values, "maps": maps, "map": one_map,
+}
+
+
+def message(error: BaseException) -> str:
+    """One line."""
+    if isinstance(error, MemoryError):
+        return "no memory for it; leave it out, or work on fewer items at a time"
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{os.fsdecode(error.filename)}: cannot be read: {error.strerror}"
+    if isinstance(error, (ValueError, OSError)):
+        return " ".join(str(error).splitlines())
+    return f"a defect of salbench, please report it: {type(error).__name__}: {error}"
+
+
+def answer(text: bytes, out: bytes) -> None:
+    """Writes OUT or OUT.error, or both."""
+    made: bytes | None = None
+    problems: list[str] = []
+    try:
+        request = json.loads(text)
+        of_map = request["do"] in ("values", "map", "maps")
+        _limits.limit(*((_limits.SECONDS_OF_A_MAP, _limits.BYTES_OF_A_MAP) if of_map else ()))
+        answered = ANSWERS[request["do"]](request)
+        made, problems = answered if isinstance(answered, tuple) else (answered, [])
+    except Exception as error:  # the file of one item must not end the process that reads the others
+        problems = [message(error)]
+    for path, data in ((out, made), (out + ERROR.encode(), "\n".join(problems).encode("utf-8", "surrogateescape") or None)):
+        if data is not None:
+            with open(path, "wb") as file:
+                file.write(data)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Serves until standard input ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this one ends it
+    _limits.no_core()
+    _log_to_stderr()
+    said = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a library prints is no answer
+    serve(sys.stdin.buffer, said)
+    return 0
+
+
+def serve(lines: BinaryIO, said: BinaryIO) -> None:
+    for line in lines:
+        request, _, out = line.rstrip(b"\n").rpartition(b"\t")
+        answer(request, out)
+        said.write(out + b"\n")
+        said.flush()
+
+
+def _log_to_stderr() -> None:
+    import logging
+
+    handler = logging.StreamHandler()
+    handler.setFormatter(logging.Formatter("warning: %(message)s"))
+    logging.getLogger("salbench").addHandler(handler)
+
+
+def _lines(*texts: str) -> str:
+    return "".join(sorted({line for text in texts for line in text.splitlines(keepends=True)}, key=lambda line: line[34:]))

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""23 models with the time that 32 people looked at each vertex in virtual reality, and as picks the 1000 vertices that the study marks as
+interesting.
+
+Published: data of the 2022 study.
+Seen: the files, in the arrangement of folders of the Schelling study [chen2012], which C++ reads by itself.
+Cannot answer: who looked where (pooled over people).
+"""
+
+from functools import partial
+
+from salbench.datasets import described
+from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace
+from salbench.datasets.described import VERSION, read
+
+LAYOUT = Layout(
+    "zaragoza",
+    (Place(Pattern("Meshes/*"), (TruthPlace(Pattern("Distributions/{item}.val"), Pattern("RawData/{item}_{participant}.pid")),)),),
+    licence="not known; ask the authors")
+items = partial(described.items, LAYOUT)
+
+__all__ = ["LAYOUT", "VERSION", "items", "read"]

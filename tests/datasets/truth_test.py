@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ground truth of an item, from files of every kind that a description may tell of."""
+
+import numpy as np
+
+from salbench import Shape
+from salbench.datasets import one_form
+from support import FACES, NAN, POINTS, WithArchive, cells, lines, mat, npy, obj, off, sphere
+
+MAPS = "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"
+PICKS = "places: [{meshes: 'off/*', truth: {picks: 'clicks/{item}_{participant}.pid'}}]\n"
+MASKED = ("places:\n  - meshes: off/*\n    truth: {saliency: 'fix/{item}_{view}.txt', mask: 'seen/{item}_{view}_visibility.txt'}\n"
+          "    views: %s\n")
+
+
+class Saliency(WithArchive):
+    def setUp(self):
+        super().setUp()
+        self.write({"off/cat.off": off(), "maps/cat.csv": "1\n2\n3\n4\n"})
+
+    def test_values_per_vertex_of_any_file(self):
+        for content, more in [("1\n2\n3\n4\n", ""), ("id,s\n3,4\n1,2\n0,1\n2,3\n", "values: {column: s}\n"), (npy(np.arange(1.0, 5)), ""),
+                              (mat(a=np.arange(1.0, 5)), "values: {variable: a}\n"), ("x;s\nx;1\ny;2\nz;3\nw;4\n", "values: {column: 2}\n")]:
+            self.write({"maps/cat.csv": content})
+            form = self.read(MAPS + more)
+            self.equal(form.truths[0].saliency, [1, 2, 3, 4])
+            self.equal(form.faces, FACES)
+            self.assertEqual((form.truths[0].picks, form.truths[0].as_read, form.truths[0].viewers), ((), (), None))
+
+    def test_what_was_not_seen(self):
+        for content, unseen in [("1\n-1\n3\n4\n", "-1"), ("1\nNaN\n3\n4\n", "nan"), (npy([1.0, -1, 3, 4]), "-1.0"), (npy([1.0, NAN, 3, 4]), "nan")]:
+            self.write({"maps/cat.csv": content})
+            self.equal(self.truth(MAPS + f"values: {{unseen: {unseen}}}\n").saliency, [1, NAN, 3, 4])
+
+    def test_values_per_face_are_carried_to_vertices_and_kept(self):
+        faces = np.vstack([[0, 0, 1], FACES])  # one without area has its line all the same
+        self.write({"off/cat.off": off(faces=faces), "maps/cat.csv": lines([77, 0, 1, 2, 3])})
+        truth = self.truth(MAPS + "values: {per: face}\n")
+        self.equal(truth.face_values, [77, 0, 1, 2, 3])
+        area = np.array([1, 1, 3 ** 0.5, 1])
+        around = [[0, 1, 3], [0, 1, 2], [0, 2, 3], [1, 2, 3]]
+        np.testing.assert_allclose(truth.saliency, [np.average([0, 1, 2, 3], weights=area * np.isin(range(4), near)) for near in around])
+        self.write({"maps/cat.csv": "nan\nnan\n1\nnan\nnan\n"})
+        truth = self.truth(MAPS + "values: {per: face, unseen: nan}\n")
+        self.equal(truth.saliency, [1, 1, NAN, 1])
+        self.equal(truth.face_values, [NAN, NAN, 1, NAN, NAN])
+
+    def test_values_per_point_are_those_of_the_nearest(self):
+        near = POINTS * 1000 + 1
+        rows = [f"{x},{y},{z},{value}" for (x, y, z), value in zip(near.tolist(), [5, 6, 7, 8])][:3]
+        self.write({"maps/cat.csv": "x,y,z,s\n" + "\n".join(rows)})
+        point = MAPS + "values: {per: point, points: [x, y, z], column: s%s}\n"
+        truth = self.truth(point % ", scale: 0.001")
+        self.equal(truth.saliency, [5, 6, 7, NAN])
+        self.equal(truth.as_read[0].points, 0.001 * near[:3])
+        self.assertEqual((truth.as_read[0].file, truth.as_read[0].per), ("cat.csv", "point"))
+        self.assertEqual(self.error_of(lambda: self.read(point % "")), "ROOT/maps/cat.csv: no point of the shape has a value; expected are values of "
+                                                                       "what was seen, and points within max_distance of it")
+        self.equal(self.truth(point % ", scale: 0.001, max_distance: 10").saliency, [5, 6, 7, 5])
+
+    def test_positives_of_densities(self):
+        points, faces = sphere()
+        density = np.arange(len(points)) % 7.0
+        density[:9] = NAN
+        self.write({"off/cat.off": off(points, faces), "maps/cat.csv": lines(density)})
+        for rule, positive in [("above mean", density > np.nanmean(density)), ("top 20%", density >= np.sort(density[9:])[-int(np.ceil(0.2 * len(density[9:])))])]:
+            truth = self.truth(MAPS + f"values: {{unseen: nan, positives: {rule}}}\n")
+            self.equal(truth.picks[0], np.flatnonzero(positive))
+        self.write({"maps/cat.csv": lines(np.full(len(points), 5.0))})
+        self.assertEqual(self.truth(MAPS + "values: {positives: top 20%}\n").picks, ())
+
+    def test_viewers_make_the_ground_truth(self):
+        viewers = MAPS.replace("{item}", "{item}_{viewer}")
+        maps = np.array([[1, 2, 3, NAN], [2, 2, 9, NAN], [6, 5, NAN, NAN]])
+        self.write({f"maps/cat_{k}.csv": lines(one) for k, one in enumerate(maps)})
+        form = self.read(viewers + "values: {unseen: nan}\n")
+        self.equal(form.truths[0].saliency, [3, 3, 6, NAN])
+        self.equal(form.truths[0].viewers, maps)
+        self.assertEqual((form.about["viewers"], form.truths[0].as_read), ("0\n1\n2", ()))
+        huge = np.full((2, 4), 1.7e308)
+        self.write({f"maps/cat_{k}.csv": lines(one) for k, one in enumerate(huge)})
+        self.assertTrue(np.isfinite(self.truth(viewers + "values: {unseen: nan}\n").saliency[:2]).all())
+
+    def test_one_viewer_is_no_group(self):
+        self.write({"maps/cat_a.csv": "1\n2\n3\n4\n"})
+        truth = self.truth(MAPS.replace("{item}", "{item}_{viewer}"))
+        self.assertIsNone(truth.viewers)
+        self.equal(truth.saliency, [1, 2, 3, 4])
+
+    def test_polygons_are_split_and_counted(self):
+        self.write({"off/cat.off": "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n3 0 2 1\n"})
+        form = self.read(MAPS)
+        self.assertEqual((form.polygons, form.faces.tolist()), ((1, 0), [[0, 1, 2], [0, 2, 3], [0, 2, 1]]))
+
+    def test_what_the_form_says_of_its_sources(self):
+        about = self.read(MAPS + "licence: ask\nclasses: folder\nsplits: {items: {test: [cat]}}\n").about
+        self.assertEqual({key: about[key] for key in ("item", "class", "split", "source", "licence")},
+                         {"item": "cat", "class": "off", "split": "test", "source": "own", "licence": "ask"})
+        self.assertRegex(about["source_files"], r"^[0-9a-f]{32}  maps/cat.csv\n[0-9a-f]{32}  off/cat.off\n$")
+
+
+class Views(WithArchive):
+    def setUp(self):
+        super().setUp()
+        self.write({"off/cat.off": off(), "fix/cat_1.txt": "1\n2\n3\n4\n", "seen/cat_1_visibility.txt": "1\n1\n0\n1\n",
+                    "fix/cat_2.txt": "5\n0\n0\n8\n", "seen/cat_2_visibility.txt": "1\n1\n1\n0\n"})
+
+    def test_are_averaged_where_they_have_a_vertex_seen(self):
+        truth = self.truth(MASKED % "averaged")
+        self.equal(truth.saliency, [3, 1, 0, 4])
+        self.assertIsNone(truth.viewers, "views are no people")
+        self.equal([one.mask for one in truth.as_read], [[1, 1, 0, 1], [1, 1, 1, 0]])
+        self.equal(truth.as_read[1].values, [5, 0, 0, 8])
+
+    def test_are_items_of_their_own_if_they_are_scored(self):
+        for name, expected in [("cat_1", [1, 2, NAN, 4]), ("cat_2", [5, 0, 0, NAN])]:
+            form = self.read(MASKED % "scored", name)
+            self.equal(form.truths[0].saliency, expected)
+            self.assertEqual((form.truths[0].view, form.about["item"]), (name[-1], "cat"))
+
+    def test_one_mask_may_be_that_of_all_views(self):
+        self.write({"seen/cat.txt": "0\n1\n1\n1\n"})
+        one = "places: [{meshes: 'off/*', truth: {saliency: 'fix/{item}_{view}.txt', mask: 'seen/{item}.txt'}}]\n"
+        self.equal(self.truth(one).saliency, [NAN, 1, 1.5, 6])
+
+    def test_a_mask_is_of_faces_where_values_are(self):
+        self.write({"seen/cat_1_visibility.txt": "0\n1\n0\n0\n"})
+        (self.root / "fix/cat_2.txt").unlink()
+        truth = self.truth(MASKED % "averaged" + "values: {per: face}\n")
+        self.equal(truth.face_values, [NAN, 2, NAN, NAN])
+        self.equal(truth.saliency, [2, 2, NAN, 2])
+        self.equal(truth.as_read[0].values, [1, 2, 3, 4])
+        self.assertEqual(len(self.list(MASKED % "averaged").notes), 1, "a mask without ground truth")
+
+    def test_picks_where_nothing_was_seen_do_not_count(self):
+        self.write({"clicks/cat_0.pid": "2\n1\n", "clicks/cat_1.pid": "2\n"})
+        both = MASKED.replace("visibility.txt'}", "visibility.txt', picks: 'clicks/{item}_{participant}.pid'}")
+        self.assertEqual([one.tolist() for one in self.truth(both % "scored", "cat_1").picks], [[1], []])
+
+
+class Cameras(WithArchive):
+    """A sphere of radius 1 around (10, 0, 0)."""
+
+    def setUp(self):
+        super().setUp()
+        self.points, self.faces = sphere()
+        self.centre = np.array([10.0, 0, 0])
+        self.values = np.arange(len(self.points)) % 7.0
+        self.write({"off/cat.off": off(self.points + self.centre, self.faces), "maps/cat_front.txt": lines(self.values),
+                    "maps/cat_top.txt": lines(self.values)})
+
+    def described(self, cameras, views="scored"):
+        return (f"places:\n  - meshes: off/*\n    views: {views}\n    truth:\n      saliency: maps/{{item}}_{{view}}.txt\n"
+                f"      {cameras}\n")
+
+    def assert_sees(self, truth, direction, above=0.0):
+        """Exactly the points on that side of the sphere were seen, but for those that are edge-on."""
+        height = self.points @ (np.array(direction) / np.linalg.norm(direction)) - above
+        clear = np.abs(height) > 0.3
+        self.equal(np.isnan(truth.saliency)[clear], (height < 0)[clear])
+
+    def test_each_view_has_its_own(self):
+        own = self.described("visible_from_direction: {front: [0, 0, 1], top: [0, 0.01, -2]}")
+        self.assert_sees(self.truth(own, 0), [0, 0, 1])
+        self.assert_sees(self.truth(own, 1), [0, 0.01, -2])
+
+    def test_a_place_is_in_the_coordinates_of_the_shape(self):
+        self.assert_sees(self.truth(self.described("visible_from: [10, 0, 4]")), [0, 0, 1], 0.25)  # of the tangent plane
+        self.assert_sees(self.truth(self.described("visible_from: [0, 0, 4]")), [-10, 0, 4], 1 / 116 ** 0.5)
+
+    def test_a_file_names_them_by_item_and_view(self):
+        own = self.described("visible_from_direction: cameras.csv")
+        self.write({"cameras.csv": "item,view,x,y,z\ncat,front,0,0,1\ndog,front,0,0,-1\ncat,top,1,0,0\n"})
+        self.assert_sees(self.truth(own, 0), [0, 0, 1])
+        self.assert_sees(self.truth(own, 1), [1, 0, 0])
+        self.assertEqual(self.list(own).read, [str(self.root / "cameras.csv")])
+        self.write({"cameras.csv": "view,x,y,z\nfront,0,0,1\n"})
+        self.assert_sees(self.truth(own, 0), [0, 0, 1])
+        self.assertEqual(self.error_of(lambda: self.truth(own, 1)), "own.yaml:6: there is no camera of cat for the view 'top': add it")
+
+    def test_views_that_are_averaged_are_hidden_one_by_one(self):
+        truth = self.truth(self.described("visible_from_direction: {front: [0, 0, 1], top: [0, 0, -1]}", "averaged"))
+        clear = np.abs(self.points[:, 2]) > 0.3
+        self.equal(truth.saliency[clear], self.values[clear])
+
+    def test_hide_the_picks_that_they_do_not_see(self):
+        above, below = len(self.points) - 1, len(self.points) - 2
+        self.write({"clicks/cat_0.pid": f"{above}\n{below}\n", "clicks/cat_1.pid": f"{below}\n"})
+        truth = self.truth("places: [{meshes: 'off/*', truth: {picks: 'clicks/{item}_{participant}.pid', visible_from_direction: [0, 0, 1]}}]\n")
+        self.assert_sees(truth, [0, 0, 1])
+        self.assertEqual([one.tolist() for one in truth.picks], [[above], []])
+        self.assertEqual(truth.saliency[above], 0.5, "of two participants")
+
+    def test_the_surface_of_a_cloud_hides_its_far_side(self):
+        (self.root / "off/cat.off").unlink()
+        points, _ = sphere(30, 40)
+        self.write({"off/cat.xyz": "\n".join(" ".join(map(str, point)) for point in points + self.centre),
+                    "maps/cat_front.txt": lines(np.ones(len(points))), "maps/cat_top.txt": lines(np.ones(len(points)))})
+        self.points = points
+        seen = ~np.isnan(self.truth(self.described("visible_from_direction: [0, 0, 1]")).saliency)
+        self.assertGreater(seen[points[:, 2] > 0.3].mean(), 0.95)
+        self.assertLess(seen[points[:, 2] < -0.3].mean(), 0.05)
+
+    def test_one_that_sees_nothing_fails_its_item(self):
+        flat = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0], [-9, -9, 5], [9, -9, 5], [0, 9, 5], [-9, -9, -5], [9, -9, -5], [0, 9, -5.0]])
+        self.write({"off/cat.off": off(flat, np.arange(9).reshape(3, 3)), "maps/cat_front.txt": "1\n" + "nan\n" * 8,
+                    "maps/cat_top.txt": "1\n" + "nan\n" * 8})
+        own = self.described("visible_from: {front: [0, 0, 1], top: [0, 0, 20]}\nvalues: {unseen: nan}")
+        self.assertIn("maps/cat_top.txt: no point of the shape has a value", self.error_of(lambda: self.read(own, "cat_top")))
+        self.equal(self.truth(own, "cat_front").saliency[:1], [1])
+
+    def test_wrong_files_are_named_with_their_line(self):
+        own = self.described("visible_from_direction: cameras.csv")
+        for text, wrong in [("x,y,z\n0,0,1\n", "1: has neither a column 'item' nor 'view' (own.yaml:6)"),
+                            ("view,x,y,z\nfront,0,0,1\ntop,0,0,0\n", "3: a direction has a length"), ("view,x,y,z\nfront,0,0,\n", "2: a coordinate is not a "
+                                                                                                                                "finite number"),
+                            ("view,x,y,z\nfront,0,0,1e999\n", '2: "1e999" is not a number'), ("view,x,y\nfront,0,0\n", ' there is no column "z"; there are "view", '
+                                                                                                                      '"x", "y"'),
+                            ("view,x,y,z\nfront,0,0,1\nfront,0,0,1\n", "3: ROOT/cameras.csv:2 has this camera already: keep one of them"),
+                            ("view,x,y,z\n\nfront,0,0\n", "3: the line has 3 fields, the header 4"), ("x,x\n", '1: two columns are named "x"'),
+                            ('view,x\n"a,1\n', "2: a quote opens a field that nothing closes"), ('view\n"a"b\n', "2: there is text after the quote that closes a field"),
+                            ("", " the file is empty, where a line of column names is expected")]:
+            self.write({"cameras.csv": text})
+            self.assertEqual(self.error_of(lambda: self.list(own)), f"ROOT/cameras.csv:{wrong}")
+
+
+class People(WithArchive):
+    def setUp(self):
+        super().setUp()
+        self.write({"off/cat.off": off()})
+
+    def picks(self, layout):
+        return [one.tolist() for one in self.truth(layout).picks]
+
+    def test_a_participant_without_picks_counts(self):
+        self.write({"clicks/cat_0.pid": "3\n", "clicks/cat_10.pid": "1\n1\n", "clicks/cat_2.pid": ""})
+        self.assertEqual(self.picks(PICKS + "indices: {base: 0}\nvalues: {column: 1}\n"), [[3], [], [1, 1]])
+
+    def test_indices_may_be_numbered_from_one_or_lie_in_cells(self):
+        self.write({"clicks/cat_0.pid": "4\n1\n", "clicks/cat_1.pid": mat(points=[[2, 4]], c=cells(3, 8, r3c8=[1, 3]))})
+        one = PICKS.replace("_{participant}", "_%s") + "indices: {base: 1%s}\n"
+        for number, more, expected in [(0, "", [3, 0]), (1, ", variable: points", [1, 3]), (1, ", variable: c, cell: [3, 8]", [0, 2])]:
+            self.assertEqual(self.picks(one % (number, more)), [expected])
+
+
+class Columns(WithArchive):
+    OWN = ("domain: points\nplaces: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], normal: [4, 5, 6], density: 7, flag: 8, "
+           "normalise_normals: true, padding: any%s}\n")
+
+    def setUp(self):
+        super().setUp()
+        self.around = np.arange(12.0)  # points on a helix, with directions twenty times as long as normals
+        out = np.stack([np.cos(self.around), np.sin(self.around), 0 * self.around], 1)
+        self.points = out + np.outer(self.around, [0, 0, 0.1])
+        table = np.column_stack([self.points, 20 * out, 0.5 * self.around, self.around % 5 == 2])
+        self.rows = [" ".join(map(repr, row)) for row in table.tolist()]
+        self.normals = out
+
+    def read_rows(self, layout):
+        self.write({"Gaze/cat.txt": "\n".join(self.rows)})
+        return self.read(layout)
+
+    def test_position_normal_density_and_flag(self):
+        form = self.read_rows(self.OWN % "")
+        self.equal(form.points, self.points)
+        np.testing.assert_allclose(form.normals, self.normals, rtol=0, atol=1e-15)
+        self.equal(form.truths[0].saliency, 0.5 * self.around)
+        self.assertEqual(([one.tolist() for one in form.truths[0].picks], form.faces), ([[2, 7]], None))
+
+    def test_padding_and_duplicates_are_left_out_with_their_truth(self):
+        zeros = " ".join("0" * 8)
+        self.rows = [*self.rows[:4], self.rows[2], *self.rows[4:], zeros, self.rows[1], self.rows[1], zeros, zeros]
+        form = self.read_rows(self.OWN % ", duplicates: dropped")
+        self.assertEqual(form.left_out.tolist(), [4, 13, 14, 15, 16, 17])
+        self.equal(form.points, self.points)
+        self.equal(form.truths[0].saliency, 0.5 * self.around)
+        self.assertEqual([one.tolist() for one in form.truths[0].picks], [[2, 7]])
+        for padding, left_out in [("none", []), ("zeros", [16, 17]), ("copies", [14, 15, 16, 17])]:
+            own = (self.OWN % "").replace("any", padding).replace("normal: [4, 5, 6], ", "")
+            self.assertEqual(self.read_rows(own).left_out.tolist(), left_out, padding)
+
+    def test_a_header_names_columns(self):
+        self.write({"Gaze/cat.csv": "d,x,y,z\n" + "".join(f"{k},{k % 2},{k % 3},{k}\n" for k in range(9))})
+        form = self.read("places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [x, y, z], density: d}\n")
+        self.equal(form.points[5], [1, 2, 5])
+        self.equal(form.truths[0].saliency, np.arange(9))
+
+    def test_values_beside_a_cloud_count_the_rows_of_its_file(self):
+        self.rows.insert(1, "0 0 0 0 0 0 0 0")
+        self.rows.append(self.rows[0])
+        self.write({"maps/cat.txt": lines(np.arange(14.0)), "clicks/cat_0.pid": "2\n0\n"})
+        own = ("places: [{meshes: 'Gaze/*', truth: {saliency: 'maps/{item}.txt', picks: 'clicks/{item}_{participant}.pid'}}]\n"
+               "columns: {position: [1, 2, 3], padding: copies}\n")
+        truth = self.read_rows(own).truths[0]
+        self.equal(truth.saliency, np.arange(13))
+        self.assertEqual([one.tolist() for one in truth.picks], [[2, 0]])
+        self.write({"clicks/cat_0.pid": "2\n13\n"})
+        self.assertIn("participant 0 picked point 13 (0-based), which has no position", self.error_of(lambda: self.read(own)))
+
+    def test_wrong_rows_are_named(self):
+        named = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], normal: [4, 5, 6], density: 7}\n"
+        self.assertRegex(self.error_of(lambda: self.read_rows(named)), "^ROOT/Gaze/cat.txt:1: the normal is not of unit length: name its columns, or add")
+        for row, wrong in [("1 1 1 1 0 0 0.5 0.5", "the flag is neither 0 nor 1"), ("1 1 1 1 0 0 0.5", "the line has 7 columns, expected column 8"),
+                           ("1e151 1 1 1 0 0 0 0", "a coordinate is larger than 1e150"), ("nan 1 1 1 0 0 0 0", '"nan" is not a finite number')]:
+            self.rows[3] = row
+            self.assertTrue(self.error_of(lambda: self.read_rows(self.OWN % "")).startswith(f"ROOT/Gaze/cat.txt:4: {wrong}"), row)
+        self.rows = [row[:-3] + "0" for row in self.rows[:3] + self.rows[4:]]
+        own = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], flag: 8}\n"
+        self.assertEqual(self.error_of(lambda: self.read_rows(own)), "ROOT/Gaze/cat.txt: no point has its flag set: there is nothing to compare with")
+
+
+class OneForm(WithArchive):
+    def test_a_description_may_name_a_set_in_the_one_form(self):
+        own = "index: index.csv\nlicence: ask\n"
+        self.assertEqual(self.error_of(lambda: self.list(own)), "ROOT/index.csv: cannot be read: there is no such file")
+        one_form.write(self.root, [Shape("cat", POINTS, FACES, ground_truth=np.arange(4.0), category="pet"), Shape("dog", POINTS, FACES)])
+        listed = self.list(own)
+        self.assertEqual([(item.name, item.category, item.truth, item.native) for item in listed.items], [("cat", "pet", True, None), ("dog", "", False, None)])
+        self.assertEqual((listed.licence, listed.read), ("ask", [str(self.root / "index.csv")]))
+        self.equal(self.truth(own, "cat").saliency, np.arange(4))
+        self.assertEqual(self.read(own, "dog").truths, ())
+
+
+class Obj(WithArchive):
+    def test_textures_of_a_mesh_do_no_harm(self):
+        self.write({"off/cat.obj": "mtllib cat.mtl\n" + obj(), "maps/cat.csv": "1\n2\n3\n4\n"})
+        self.equal(self.read(MAPS).points, POINTS)
