@@ -8,7 +8,7 @@ if(NOT IS_DIRECTORY ${programs}/doc/salbench)
 endif()
 file(REMOVE ${programs}/doc/salbench/LICENSE)
 file(RENAME ${programs}/doc/salbench/CHANGELOG.md ${programs}/doc/salbench/changelog)
-execute_process(COMMAND gzip -9n man/man1/salbench.1 man/man1/salbench-report.1 WORKING_DIRECTORY ${programs}
+execute_process(COMMAND gzip -9n man/man1/salbench.1 WORKING_DIRECTORY ${programs}
   COMMAND_ERROR_IS_FATAL ANY)
 
 execute_process(COMMAND date -R -u -d ${CPACK_SALBENCH_DATE} OUTPUT_VARIABLE date

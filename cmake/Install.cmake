@@ -30,15 +30,13 @@ if(HELP2MAN)
     set(all ALL)
   endif()
   add_custom_target(salbench_manual ${all} DEPENDS ${documents}/salbench.1)
-  file(WRITE ${documents}/salbench-report.1 ".so man1/salbench.1\n")
-  install(FILES ${documents}/salbench.1 ${documents}/salbench-report.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${documents}/salbench.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 else()
   message(WARNING "help2man is missing: no manual page will be installed. scripts/setup installs it.")
 endif()
 
 install(TARGETS salbench)
-install(PROGRAMS scripts/report DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME salbench-report)
-install(DIRECTORY configs report DESTINATION ${share} PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY configs DESTINATION ${share})
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
   FILES_MATCHING PATTERN *.md PATTERN *.bib PATTERN *.png PATTERN *.svg PATTERN own_model.py)
@@ -63,11 +61,10 @@ salbench takes meshes, simulated range scans of them and point clouds through
 normals, descriptors, saliency models, histogram matching and metrics, scores
 models against the published ones, and keeps every intermediate in a cache.
 .
-The recommended packages are those of the report: figures and tables as pages
-that open from disk.")
+The recommended package draws conclusions from the scores, and makes the
+report: figures and tables as pages that open from disk.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
-  "libjs-three, python3, python3-h5py, python3-jinja2, python3-matplotlib, python3-pandas, python3-pil, python3-yaml")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS python3-salbench)
 if(SALBENCH_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-salbench)
@@ -75,15 +72,14 @@ if(SALBENCH_PYTHON)
 "benchmark of 3D saliency models (Python 3)
 Metrics, saliency models, descriptors, simulated scans and data sets of
 salbench as functions on NumPy arrays, and its whole benchmark as a function
-call, with models that are functions of Python.
-.
-Needs the package salbench for configurations and reports.")
+call, with models that are functions of Python. Conclusions from scores, and
+the report of a run.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   # Compiled for one version of Python.
   math(EXPR next "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, salbench (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "libjs-three, python3-pandas, python3-scipy, python3-tqdm, python3-yaml")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "libjs-three, python3-h5py, python3-jinja2, python3-matplotlib, python3-pandas, python3-pil, python3-scipy, python3-tqdm, python3-yaml")
 endif()
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS

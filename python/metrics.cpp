@@ -182,7 +182,8 @@ py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle
 py::list metric_rows() {
   py::list rows;
   for (const Metric& metric : metric_table())
-    rows.append(py::make_tuple(metric.name, metric.unit, metric.help, metric.higher_is_better));
+    rows.append(py::make_tuple(metric.name, metric.unit, metric.help, metric.higher_is_better, metric.label,
+                               metric.range.low, metric.range.high));
   return rows;
 }
 

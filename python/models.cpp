@@ -8,6 +8,7 @@
 
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
+#include "pipeline/rules/config.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/module.h"
@@ -146,6 +147,9 @@ py::list model_table() {
 void bind_models(py::module_& module) {
   module.def("map", &map_of);
   module.def("model_table", &model_table);
+  module.def("protocol_configuration", [](const std::string& protocol) {
+    return annotated_config_yaml(read_config(Section::from_text("protocol: " + protocol, protocol), ""));
+  });
 }
 
 }  // namespace salbench::python

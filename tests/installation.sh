@@ -29,14 +29,15 @@ grep -q "^.TH SALBENCH \"1\" \"$month\" \"salbench $version\"" "$prefix/share/ma
 (cd "$prefix" && echo 'protocol: published' > shrec07_text &&
   [[ $("$salbench" config shrec07_text) == *$'\nprotocol: published'* ]]) || complain "shrec07_text: the file comes first"
 "$salbench" config shrec08 2> /dev/null && complain "shrec08: there is no such configuration"
-"$prefix/bin/salbench-report" --help | grep -qF "$salbench" || complain "salbench-report: does not know its program"
 
 # The Python package, where it was built: of this version, and with its types.
 package=$prefix/lib/python3/dist-packages
 if [[ -d $package ]]; then
   [[ $(PYTHONPATH=$package /usr/bin/python3 -B -c 'import salbench; print(salbench.__version__)') == "$version" ]] ||
     complain "import salbench: not of $version"
-  [[ -e $package/salbench/py.typed ]] || complain "salbench/py.typed: not installed"
+  for file in py.typed configs/paper/claims.csv report/templates/index.html pages/static/report.css; do
+    [[ -e $package/salbench/$file ]] || complain "salbench/$file: not installed"
+  done
 fi
 
 # The manual page and the completion have every subcommand and option of the help.

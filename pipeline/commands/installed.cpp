@@ -15,24 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Found from the program, since a package is built before its files are in their place. No such folder in a
-// checkout.
-fs::path share() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / "share/salbench";
-}
-
-// The program of a checkout lies in one of its folders; empty if it is not there.
-fs::path in_checkout(const fs::path& name) {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  for (fs::path folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path())
-    if (fs::path found = folder / name;
-        fs::exists(folder / "scripts/report", error) && fs::exists(found, error))
-      return found;
-  return {};
-}
-
 // Names without ending of the files beside it, and of those of the program.
 std::vector<std::string> known_configurations(const fs::path& given) {
   std::vector<std::string> names;
@@ -70,17 +52,6 @@ fs::path package_folder() {
     if (folder.parent_path() != "/usr/lib/python3" && fs::is_directory(folder / "salbench", error))
       return folder;
   return {};
-}
-
-fs::path report_program() {
-  std::error_code error;
-  if (!fs::is_directory(share() / "report", error)) return in_checkout("scripts/report");
-  return fs::read_symlink("/proc/self/exe", error).parent_path() / "salbench-report";
-}
-
-std::string report_command() {
-  std::error_code error;
-  return fs::is_directory(share() / "report", error) ? "salbench-report" : "scripts/report";
 }
 
 }  // namespace salbench

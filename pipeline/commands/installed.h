@@ -17,10 +17,4 @@ Section configuration(const std::string& given);
 // where it is Debian's, which its interpreter finds anyway.
 std::filesystem::path package_folder();
 
-// The file that makes reports, from any folder: of the installation, or of the checkout that the program was
-// built in; empty if neither is there.
-std::filesystem::path report_program();
-
-std::string report_command();  // that of the installation, or of the checkout
-
 }  // namespace salbench

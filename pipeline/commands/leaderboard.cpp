@@ -16,7 +16,7 @@
 #include "io/scratch_folder.h"
 #include "io/values_file.h"
 #include "pipeline/commands/conclude.h"
-#include "pipeline/commands/installed.h"
+#include "pipeline/commands/package.h"
 #include "pipeline/commands/run.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/commands/submission.h"
@@ -192,10 +192,7 @@ void require_own_folder(const fs::path& site) {
 
 // False if there are no pages.
 bool render(const fs::path& site) try {
-  if (report_program().empty()) throw InputError("the report's program is not there");
-  run_command(fmt::format("{} leaderboard {}", shell_quoted(report_program().string()),
-                          shell_quoted(fs::absolute(site).string())),
-              site, kRendering);
+  run_command(package_command({"report", "leaderboard", fs::absolute(site).string()}), site, kRendering);
   return size_of_file(site / "index.html").has_value();
 } catch (const InputError& error) {
   spdlog::warn("{}: the tables are there, but no pages: {}", site.string(), error.what());

@@ -22,6 +22,7 @@ constexpr PackageSubcommand kSubcommands[] = {
     {"conclude", "means, intervals, tests and ranks of scores per shape, of a run or of anybody's"},
     {"power",
      "which differences between models the scores can show, and how many units would show those seen"},
+    {"report", "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes"},
 };
 
 // Arguments: version, folder of the package or nothing, status if it is lacking, what to do then, words. No
@@ -58,7 +59,7 @@ std::string interpreter() {
 std::string remedy() {
   std::string names;
   for (const PackageSubcommand& subcommand : kSubcommands)
-    names += fmt::format("{}{}", names.empty() ? "" : " and ", subcommand.name);
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", subcommand.name);
   return fmt::format(
       "install python3-salbench {}, or set SALBENCH_PYTHON to an interpreter that has it; without it, {} and "
       "all conclusions are missing, and everything else works",

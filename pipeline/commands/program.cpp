@@ -53,6 +53,7 @@ constexpr Example kExamples[] = {
     {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"},
     {"conclude results.csv --unit class --out tables", "with classes as observations"},
     {"power salbench-out/shrec07", "which differences a run could show"},
+    {"report salbench-out/shrec07", "salbench-out/shrec07/report/index.html"},
     {"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"},
     {"graph configs/shrec07.yaml --format dot | dot -Tsvg", "the flow graph of a run, as a picture"},
     {"explain configs/shrec07.yaml 52_3 --data SchellingData", "what differs from what the cache has"},

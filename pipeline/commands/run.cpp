@@ -47,10 +47,9 @@ std::string summary_text(Session& session, const Concluded& concluded) {
     text = fmt::format("{}\n{}", aligned(means_of(session)),
                        setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "");
   return fmt::format(
-      "{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: {} {}\n", text,
-      aligned(map_table(count_maps(session.resolver, session.store))), name_of(setup.config.protocol),
-      session.resolver.computed(), setup.output.string(), report_command(),
-      shell_word(setup.output.string()));
+      "{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: salbench report {}\n",
+      text, aligned(map_table(count_maps(session.resolver, session.store))), name_of(setup.config.protocol),
+      session.resolver.computed(), setup.output.string(), shell_word(setup.output.string()));
 }
 
 std::string write_results(const Session& session, RunRecord record) {

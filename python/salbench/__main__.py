@@ -3,7 +3,9 @@
 
 import argparse
 import json
+import os
 import sys
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
@@ -12,7 +14,7 @@ ALL_DONE, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 0, 2, 3, 7
 SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
 
 
-_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07"}  # as `salbench --help` has them
+_EXAMPLES = {"conclude": "results.csv --unit class --out tables", "power": "salbench-out/shrec07", "report": "salbench-out/shrec07"}  # as `salbench --help` has them
 
 
 class _Parser(argparse.ArgumentParser):
@@ -32,18 +34,26 @@ class _Parser(argparse.ArgumentParser):
         self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
 
 
+def _parser(name: str, summary: str, scores: str) -> argparse.ArgumentParser:
+    return _Parser(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {scores}", allow_abbrev=False,
+                   description=summary[:1].lower() + summary[1:].rstrip("."), epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
+                   formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def _add_output(parser: argparse.ArgumentParser, what: str) -> None:
+    parser.add_argument("--format", default="text", help="text (default), or json: one document for programs (docs/json.md)")
+    parser.add_argument("--quiet", action="store_true", help=f"no {what}; warnings and errors only")
+
+
 def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> argparse.ArgumentParser:
-    parser = _Parser(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {scores}", allow_abbrev=False,
-                     description=summary[:1].lower() + summary[1:].rstrip("."), epilog=f"Examples:\n  salbench {name} {_EXAMPLES[name]}",
-                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = _parser(name, summary, scores)
     parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
                         **of_scores)
     parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")
     parser.add_argument("--unit", help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)")
     parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
     parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
-    parser.add_argument("--format", default="text", help="text (default), or json: one document for programs (docs/json.md)")
-    parser.add_argument("--quiet", action="store_true", help="no table; warnings and errors only")
+    _add_output(parser, "table")
     return parser
 
 
@@ -87,16 +97,49 @@ def power(arguments: Sequence[str]) -> int:
     return _print(given, "power", {"unit": unit, "pairs": tables.records(table)}, text)
 
 
-SUBCOMMANDS = {"conclude": conclude, "power": power}
+def report(arguments: Sequence[str]) -> int:
+    """Pages of a run that open from disk: who leads and how sure, figures, maps on the shapes."""
+    parser = _parser("report", report.__doc__ or "", "OUT")
+    parser.add_argument("results", metavar="OUT", help="results folder of salbench run or evaluate")
+    parser.add_argument("--to", metavar="DIR", help="folder of the report (default: OUT/report)")
+    parser.add_argument("--export", metavar="FILE.h5", nargs="+", action="extend", default=[],
+                        help="exports of shapes to show, with the pictures of salbench pictures (default: OUT/shapes.h5 if it exists)")
+    parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
+    parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
+    parser.add_argument("--processes", metavar="N", type=int, default=len(os.sched_getaffinity(0)),
+                        help="that draw at the same time; the report does not depend on it (default: one per core)")
+    _add_output(parser, "path")
+    if arguments[:1] == ["leaderboard"]:  # of salbench leaderboard
+        from salbench.report.leaderboard import main
+
+        return main(arguments[1:])
+    given = parser.parse_args(arguments)
+    _check_format(given)
+    with tempfile.TemporaryDirectory() as scratch:  # Matplotlib's font list: nothing is written outside the folder of the report
+        os.environ["MPLCONFIGDIR"] = scratch
+        from salbench.report.write import write_report
+
+        page = write_report(Path(given.results), to=Path(given.to) if given.to else None, exports=given.export,
+                            compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
+                            processes=given.processes)
+    return _print(given, "report", {"page": str(page)}, f"{page}\n")
+
+
+SUBCOMMANDS = {"conclude": conclude, "power": power, "report": report}
+
+
+def _check_format(given: argparse.Namespace) -> None:
+    from salbench.conclusions.csv_file import InputError
+
+    if given.format not in ("text", "json"):
+        raise InputError(f"--format {given.format}: must be text or json")
 
 
 def _source(given: argparse.Namespace) -> Any:
     """The scores, with a warning of columns that are left out."""
     from salbench import conclusions
-    from salbench.conclusions.csv_file import InputError
 
-    if given.format not in ("text", "json"):
-        raise InputError(f"--format {given.format}: must be text or json")
+    _check_format(given)
     source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=_names(given.higher), lower=_names(given.lower))
     for note in source.notes:
         print(f"warning: {note}", file=sys.stderr)

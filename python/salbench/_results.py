@@ -14,11 +14,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from salbench import _core
-from salbench._tables import Tables
+from salbench._tables import Tables, read
 from salbench._types import ArrayLike, NDArray
 
 if TYPE_CHECKING:
     import pandas
+
+
+# The report draws in processes of its own, and sets up Matplotlib: the caller's process is left as it is.
+_IN_PROCESS = "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
 
 
 class Failure(NamedTuple):
@@ -120,20 +124,17 @@ class Results(Tables):
                    "from": tuple(map(datetime.datetime.fromtimestamp, (first, last))) if first <= last else None}
             for name, computed, read, first, last in (run.models() if run else ())}
 
-    def _text(self, name: str) -> str:
+    def _table(self, name: str) -> "pandas.DataFrame":
         path = self.folder / f"{name}.csv"
         if not path.is_file():
             self._conclude()
-        return path.read_text(encoding="utf-8")
+        return read(path)
 
     def _conclude(self) -> None:
-        """Draws the conclusions that are missing: a run writes scores alone, and removes conclusions from others."""
         from salbench import conclusions
 
-        if (self.folder / conclusions.folders.CONCLUDED).is_file():
-            return
         try:
-            conclusions.conclude(conclusions.source_of(str(self.folder)))
+            conclusions.conclude_if_missing(self.folder)
         except conclusions.folders.StorageError as error:
             raise OSError(str(error)) from None
 
@@ -186,13 +187,9 @@ class Results(Tables):
     def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page."""
         self._conclude()
-        roots = [pathlib.Path(__file__).parent, pathlib.Path("/usr/share/salbench")]
-        root = next((root for root in roots if (root / "report").is_dir()), None)
-        if root is None:
-            raise FileNotFoundError(f"the report is neither in {roots[0]} nor in {roots[1]}: install salbench")
-        environment = os.environ | {"PYTHONPATH": str(root)}
-        subprocess.run([sys.executable, "-B", "-P", "-m", "report", str(self.folder), "--to", os.fspath(folder)],
-                       env=environment, check=True)
+        package = str(pathlib.Path(__file__).resolve().parent.parent)
+        arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet"]
+        subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, package, *arguments], check=True)
         return pathlib.Path(folder) / "index.html"
 
     def _repr_html_(self) -> str:

@@ -174,12 +174,10 @@ def _configuration(given: str | os.PathLike[str] | None) -> str:
     name = "shrec07" if given is None else os.fspath(given)
     if os.path.exists(name):
         return name
-    here = pathlib.Path(__file__).parent
-    folders = [here / "configs", pathlib.Path("/usr/share/salbench/configs")]
-    for folder in folders:
-        if (folder / f"{name}.yaml").is_file():
-            return str(folder / f"{name}.yaml")
-    raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folders[0]} or {folders[1]}")
+    folder = pathlib.Path(__file__).parent / "configs"
+    if (folder / f"{name}.yaml").is_file():
+        return str(folder / f"{name}.yaml")
+    raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folder}")
 
 
 def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str]:

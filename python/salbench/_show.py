@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A shape in the viewer of the report, as one page that needs no network and no other file."""
 
-import functools
 import html
-import importlib.util
 import pathlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -11,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from salbench._types import ArrayLike, NDArray
+from salbench.pages import viewer_parts
 
 if TYPE_CHECKING:
     from salbench._shape import Shape
 
-REPORTS = (pathlib.Path(__file__).parent / "report", pathlib.Path("/usr/share/salbench/report"))
-THREE = pathlib.Path("/usr/share/javascript/three")
-SCRIPTS = ("three.min.js", "examples/js/controls/OrbitControls.js")
+STATIC = pathlib.Path(viewer_parts.__file__).parent / "static"
 NEIGHBOURS = 500  # points whose distances say how wide separate points are drawn
 
 # The page may fetch nothing, whatever is in it.
@@ -43,16 +40,15 @@ class View:
 
 def show(shape: "Shape", values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
     """The page of a shape with its ground truth, and maps beside it."""
-    parts = _parts()
     if len(shape.points) == 0:
         raise ValueError(f"{shape.id} has no points to show")
-    maps = {name: parts.unit_range(known) for name, known in _maps(shape, values).items()}
+    maps = {name: viewer_parts.unit_range(known) for name, known in _maps(shape, values).items()}
     faces = np.zeros((0, 3), np.int32) if shape.faces is None else shape.faces
     first, second = [*maps, "", ""][:2]
-    call = parts.call(shape.id, shape.id, shape.points, faces, maps, picks=np.unique(shape.picks), shade=None,
+    call = viewer_parts.call(shape.id, shape.id, shape.points, faces, maps, picks=np.unique(shape.picks), shade=None,
                       on_surface=len(faces) > 0, step=_spacing(shape.points))
     entries = [{"name": shape.id, "title": shape.id, "path": ""}]
-    section = parts.section(entries, second or first, ("Left view", "Right view") if second else ("View",))
+    section = viewer_parts.section(entries, second or first, ("Left view", "Right view") if second else ("View",))
     return View(_page(shape.id, section, call), shape.id)
 
 
@@ -81,11 +77,10 @@ def _spacing(points: NDArray[np.float64]) -> float:
 
 
 def _page(title: str, section: str, call: str) -> str:
-    static = _report() / "static"
-    scripts = [_three(name) for name in SCRIPTS]
-    scripts += ["const salbench = {};", *((static / name).read_text(encoding="utf-8") for name in ("viewer.js", "palette.js"))]
+    scripts = [file.read_text(encoding="utf-8") for file in viewer_parts.three_js()]
+    scripts += ["const salbench = {};", *((STATIC / name).read_text(encoding="utf-8") for name in ("viewer.js", "palette.js"))]
     scripts.append(call.replace("<", "\\u003c"))  # all of its text is JSON
-    style = (static / "report.css").read_text(encoding="utf-8")
+    style = (STATIC / "report.css").read_text(encoding="utf-8")
     return "\n".join(["<!DOCTYPE html>", '<html lang="en-GB"><head><meta charset="utf-8">',
                       f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
                       f"<title>{html.escape(title)}</title>", f"<style>{style}</style>",
@@ -95,29 +90,3 @@ def _page(title: str, section: str, call: str) -> str:
 
 def _inline(script: str) -> str:
     return script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
-
-
-def _three(name: str) -> str:
-    try:
-        return (THREE / name).read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise FileNotFoundError(f"{THREE / name}: the viewer needs three.js, Debian's package libjs-three") from None
-
-
-def _report() -> pathlib.Path:
-    """The folder of the report, whose viewer this is."""
-    for folder in REPORTS:
-        if folder.is_dir():
-            return folder
-    raise FileNotFoundError(f"{REPORTS[-1]}: the viewer is the report's, of Debian's package salbench")
-
-
-@functools.cache
-def _parts() -> Any:
-    """Its module report/viewer_parts.py, without the rest, which needs more than NumPy."""
-    path = _report() / "viewer_parts.py"
-    spec = importlib.util.spec_from_file_location("salbench._viewer_parts", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module

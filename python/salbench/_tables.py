@@ -1,34 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The program's tables as data frames: the same doubles, and names as texts whatever they look like."""
 
-import io
+import os
+from collections.abc import Container
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pandas
 
-NAMES = ("item", "view", "class", "split", "model", "model_a", "model_b", "group")
+
+def remarks_of(path: str | os.PathLike[str]) -> list[str]:
+    """The lines of '#' that a file begins with, without the '#'."""
+    remarks = []
+    with open(path, encoding="utf-8", errors="replace") as file:
+        for line in file:
+            if not line.startswith("#"):
+                break
+            remarks.append(line[1:].strip())
+    return remarks
 
 
-def read(text: str) -> "pandas.DataFrame":
-    """A table from the text of its file, whose remarks stand above it."""
+def read(path: str | os.PathLike[str], numbers: Container[str] | None = None, errors: str = "surrogateescape") -> "pandas.DataFrame":
+    """The one reader of tables that the program or this package has written; conclusions.csv_file reads those of anybody, strictly.
+
+    Texts are as they stand in the file, "" where it has none; numbers are the same doubles, NaN where it has none. numbers: all columns
+    that are; otherwise those that no table of scores or conclusions has as text. errors: for bytes that are not UTF-8.
+    """
     import pandas
 
-    while text.startswith("#"):
-        text = text.partition("\n")[2]
-    return pandas.read_csv(io.StringIO(text), dtype=dict.fromkeys(NAMES, str), keep_default_na=False, na_values=[""],
-                           float_precision="round_trip")
+    from salbench.conclusions import text_columns
+
+    above = len(remarks_of(path))
+    names = pandas.read_csv(path, skiprows=above, nrows=0, encoding_errors=errors).columns
+    known = text_columns() if numbers is None else ()
+    texts = [name for name in names if (name in known if numbers is None else name not in numbers)]
+    frame = pandas.read_csv(path, skiprows=above, dtype=dict.fromkeys(texts, str), keep_default_na=False, na_values=[""],
+                            float_precision="round_trip", encoding_errors=errors)
+    return frame.fillna(dict.fromkeys(texts, ""))
 
 
 class Tables:
     """The tables that conclusions have, by the names of their files."""
 
-    def _text(self, name: str) -> str:
-        raise NotImplementedError
-
     def _table(self, name: str) -> "pandas.DataFrame":
-        return read(self._text(name))
+        raise NotImplementedError
 
     @cached_property
     def leaders(self) -> "pandas.DataFrame":

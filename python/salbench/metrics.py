@@ -22,6 +22,9 @@ class Metric(NamedTuple):
     unit: str
     help: str
     higher_is_better: bool
+    label: str
+    low: float  # of what it can be at all
+    high: float
 
 
 def table() -> list[Metric]:

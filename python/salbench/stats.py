@@ -37,11 +37,6 @@ class Conclusions(Tables):
 
         return next(table for table in TABLES if table.name == name).make(self._study)
 
-    def _text(self, name: str) -> str:
-        from salbench.conclusions import tables
-
-        return tables.csv(self._made(name))
-
     def _table(self, name: str) -> "pandas.DataFrame":
         return _as_read(self._made(name))
 
@@ -52,11 +47,9 @@ class Conclusions(Tables):
 
 
 def _as_read(frame: "pandas.DataFrame") -> "pandas.DataFrame":
-    """With the types of a table that is read from a file: what is empty is NaN."""
-    columns = {name: values.where(values != "", np.nan) if values.dtype == object else
-               values.astype(float if values.isna().any() else int) if values.dtype == "Int64" else values
-               for name, values in frame.items()}
-    return frame.assign(**columns)
+    """With the types of a table that is read from a file."""
+    counts = {name: values.astype(float if values.isna().any() else int) for name, values in frame.items() if values.dtype == "Int64"}
+    return frame.assign(**counts)
 
 
 def _text(value: Any) -> str:

@@ -103,6 +103,8 @@ struct BaseMetric {
   bool of_measure = true;  // points have a weight
 };
 
+constexpr Range kShare{0, 1}, kCorrelation{-1, 1}, kDivergence{0};
+
 // Its literature scores maps as models make them.
 BaseMetric unmatched(BaseMetric row) {
   row.metric.matching = Matching::none;
@@ -118,6 +120,7 @@ BaseMetric varying(BaseMetric row) {
 // Points are found or not: how many vertices there are, and of which area, does not count.
 BaseMetric of_points(Metric metric, bool higher_is_better) {
   metric.higher_is_better = higher_is_better;
+  metric.range = kShare;
   metric.picks = PickCount::multiplicity;
   metric.matching = Matching::none;
   metric.reads_surface = true;
@@ -126,44 +129,50 @@ BaseMetric of_points(Metric metric, bool higher_is_better) {
 
 constexpr const char* kDeviations = "standard deviations";
 
-BaseMetric divergence_row(const char* name, const char* what, double (*value)(const MetricInput&)) {
-  return varying(
-      unmatched({{name, "nats", std::string("Kullback-Leibler divergence from the ground truth, ") + what,
-                  value, 1, false}}));
+BaseMetric divergence_row(const char* name, const char* label, const char* what,
+                          double (*value)(const MetricInput&)) {
+  return varying(unmatched(
+      {{name, label, "nats", std::string("Kullback-Leibler divergence from the ground truth, ") + what, value,
+        kDivergence, 1, false}}));
 }
 
 // What came after the first release.
 std::vector<BaseMetric> later_metrics() {
   using Points = InterestPointScores;
   BaseMetric against_others = unmatched(
-      {{"sauc", "1",
+      {{"sauc", "AUC (shuffled)", "1",
         "as auc_exact, negatives where the other shapes of the set are marked, by the distance from "
         "the centroid",
-        shuffled},
+        shuffled, kShare},
        true});
   against_others.metric.reads_others = true;
   return {
-      varying(unmatched({{"cosine", "1", "cosine of the angle between map and ground truth as they are",
-                          of_saliency<cosine_of_fields>}})),
-      divergence_row("kl_keras", "1e-7 added to densities", of_saliency<of_divergence<kKerasFloors>>),
-      divergence_row("kl_caffe", "1e-6 added to densities", of_saliency<of_divergence<kCaffeFloors>>),
-      divergence_row("kl_pysaliency", "1e-20 added to values", of_saliency<of_divergence<kPysaliencyFloors>>),
-      divergence_row("kl_shifted", "1e-12 added to both densities",
+      varying(
+          unmatched({{"cosine", "Cosine", "1", "cosine of the angle between map and ground truth as they are",
+                      of_saliency<cosine_of_fields>, kCorrelation}})),
+      divergence_row("kl_keras", "KL (Keras)", "1e-7 added to densities",
+                     of_saliency<of_divergence<kKerasFloors>>),
+      divergence_row("kl_caffe", "KL (Caffe)", "1e-6 added to densities",
+                     of_saliency<of_divergence<kCaffeFloors>>),
+      divergence_row("kl_pysaliency", "KL (pysaliency)", "1e-20 added to values",
+                     of_saliency<of_divergence<kPysaliencyFloors>>),
+      divergence_row("kl_shifted", "KL (shifted)", "1e-12 added to both densities",
                      of_saliency<of_divergence<kShiftedFloors>>),
       against_others,
-      of_points({"fne", "1", "share of the marked points that no local maximum of the map is at",
+      of_points({"fne", "FNE", "1", "share of the marked points that no local maximum of the map is at",
                  of_interest_points<&Points::fne>},
                 false),
-      of_points({"fpe", "1", "share of the local maxima of the map that are at no marked point",
+      of_points({"fpe", "FPE", "1", "share of the local maxima of the map that are at no marked point",
                  of_interest_points<&Points::fpe>},
                 false),
+      of_points({"wme", "WME", "1", "fne, a marked point as often as it was marked",
+                 of_interest_points<&Points::wme>},
+                false),
       of_points(
-          {"wme", "1", "fne, a marked point as often as it was marked", of_interest_points<&Points::wme>},
-          false),
-      of_points({"precision", "1", "share of the local maxima of the map with a marked point nearby",
-                 of_interest_points<&Points::precision>},
-                true),
-      of_points({"recall", "1", "share of the marked points with a local maximum of the map nearby",
+          {"precision", "Precision", "1", "share of the local maxima of the map with a marked point nearby",
+           of_interest_points<&Points::precision>},
+          true),
+      of_points({"recall", "Recall", "1", "share of the marked points with a local maximum of the map nearby",
                  of_interest_points<&Points::recall>},
                 true),
   };
@@ -171,50 +180,58 @@ std::vector<BaseMetric> later_metrics() {
 
 std::vector<BaseMetric> base_metrics() {
   std::vector<BaseMetric> rows = {
-      {{"auc", "1", "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds",
-        sampled},
+      {{"auc", "AUC", "1",
+        "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds", sampled,
+        kShare},
        true},
-      {{"auc_exact", "1", "probability that a picked point lies above an unpicked one, ties one half", exact},
+      {{"auc_exact", "AUC (exact)", "1",
+        "probability that a picked point lies above an unpicked one, ties one half", exact, kShare},
        true},
-      {{"nss", kDeviations, "mean height of the picks above the mean of the map", height_of_picks}, true},
-      {{"cc", "1", "Pearson correlation with the saliency of the ground truth", of_saliency<pearson>}},
-      {{"lcc", "1", "magnitude of cc", of_saliency<pearson_magnitude>}},
-      {{"auc_judd", "1", "area under the ROC curve with thresholds at the picks", judd}, true},
-      {{"auc_borji", "1", "area under the ROC curve with sampled negatives and thresholds at every tenth",
-        borji},
+      {{"nss", "NSS", kDeviations, "mean height of the picks above the mean of the map", height_of_picks},
        true},
-      unmatched({{"ig", "bits per pick", "information gain over the uniform map", gain}, true}),
-      {{"spearman", "1", "rank correlation with the saliency of the ground truth", of_saliency<of_ranks>}},
-      varying(unmatched(
-          {{"kl", "nats", "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-            of_saliency<of_densities<&DensityScores::kl>>, 1, false}})),
-      varying(unmatched(
-          {{"kl_smoothed", "nats", "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-            of_saliency<of_densities<&DensityScores::kl_smoothed>>, 1, false}})),
-      varying(unmatched({{"sim", "1", "intersection of map and ground truth as distributions",
-                          of_saliency<of_densities<&DensityScores::sim>>}})),
-      varying(unmatched({{"sim_minmax", "1", "the same after min-max normalisation",
-                          of_saliency<of_densities<&DensityScores::sim_of_normalised>>}})),
-      varying({{"mse", "1", "mean squared difference after min-max normalisation",
-                of_saliency<of_errors<&Errors::mse>>, 2, false}}),
-      varying({{"mae", "1", "mean absolute difference after min-max normalisation",
-                of_saliency<of_errors<&Errors::mae>>, 2, false}}),
+      {{"cc", "CC", "1", "Pearson correlation with the saliency of the ground truth", of_saliency<pearson>,
+        kCorrelation}},
+      {{"lcc", "LCC", "1", "magnitude of cc", of_saliency<pearson_magnitude>, kShare}},
+      {{"auc_judd", "AUC (Judd)", "1", "area under the ROC curve with thresholds at the picks", judd, kShare},
+       true},
+      {{"auc_borji", "AUC (Borji)", "1",
+        "area under the ROC curve with sampled negatives and thresholds at every tenth", borji, kShare},
+       true},
+      unmatched(
+          {{"ig", "Information gain", "bits per pick", "information gain over the uniform map", gain}, true}),
+      {{"spearman", "Spearman", "1", "rank correlation with the saliency of the ground truth",
+        of_saliency<of_ranks>, kCorrelation}},
+      varying(unmatched({{"kl", "KL", "nats",
+                          "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
+                          of_saliency<of_densities<&DensityScores::kl>>, kDivergence, 1, false}})),
+      varying(unmatched({{"kl_smoothed", "KL (smoothed)", "nats",
+                          "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
+                          of_saliency<of_densities<&DensityScores::kl_smoothed>>, kDivergence, 1, false}})),
+      varying(unmatched({{"sim", "SIM", "1", "intersection of map and ground truth as distributions",
+                          of_saliency<of_densities<&DensityScores::sim>>, kShare}})),
+      varying(unmatched({{"sim_minmax", "SIM (min-max)", "1", "the same after min-max normalisation",
+                          of_saliency<of_densities<&DensityScores::sim_of_normalised>>, kShare}})),
+      varying({{"mse", "MSE", "1", "mean squared difference after min-max normalisation",
+                of_saliency<of_errors<&Errors::mse>>, kShare, 2, false}}),
+      varying({{"mae", "MAE", "1", "mean absolute difference after min-max normalisation",
+                of_saliency<of_errors<&Errors::mae>>, kShare, 2, false}}),
   };
   const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
     const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };
-    const auto help = [](std::size_t i, const char* what) {
-      return what + std::to_string(kTopPercents[i]) + " % of the ground truth";
+    const auto label = [&](std::size_t i, const char* what) { return name(i, what) + " %)"; };
+    const auto help = [&](std::size_t i, const char* what) {
+      return name(i, what) + " % of the ground truth";
     };
-    (rows.push_back(
-         {{name(k, "auc_top"), "1", help(k, "auc_exact, positives the upper "), of_saliency<top_auc<k>>}}),
+    (rows.push_back({{name(k, "auc_top"), label(k, "AUC (top "), "1",
+                      help(k, "auc_exact, positives the upper "), of_saliency<top_auc<k>>, kShare}}),
      ...);
-    (rows.push_back(
-         {{name(k, "nss_top"), kDeviations, help(k, "mean height of the upper "), of_saliency<top_nss<k>>}}),
+    (rows.push_back({{name(k, "nss_top"), label(k, "NSS (top "), kDeviations,
+                      help(k, "mean height of the upper "), of_saliency<top_nss<k>>}}),
      ...);
   };
   add_top(std::make_index_sequence<kTopPercents.size()>());
   BaseMetric over_centre_bias = varying(
-      unmatched({{"ig_centre", "bits per pick",
+      unmatched({{"ig_centre", "Information gain (centre bias)", "bits per pick",
                   "information gain over the centre bias of the shape, the distance from its centroid",
                   gain_over_centre_bias},
                  true}));
@@ -233,6 +250,7 @@ std::vector<Metric> all_metrics() {
     Metric& twin = table.emplace_back(row.metric);
     twin.help = twin.name + ", a point as often as it was picked";
     twin.name += "_multiplicity";
+    twin.label += ", with multiplicity";
     twin.picks = PickCount::multiplicity;
   }
   for (std::size_t row = 0, per_vertex = table.size(); row < per_vertex; ++row) {
@@ -240,6 +258,7 @@ std::vector<Metric> all_metrics() {
     Metric twin = table[row];
     twin.help = twin.name + ", points weighed by their area";
     twin.name += "_area";
+    twin.label += ", by area";
     twin.weighting = Weighting::area;
     table.push_back(std::move(twin));
   }

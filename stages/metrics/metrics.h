@@ -110,10 +110,12 @@ struct MetricInput {
 };
 
 struct Metric {
-  std::string name;  // column of results.csv
+  std::string name;   // column of results.csv
+  std::string label;  // the same for people
   std::string unit;
   std::string help;
   double (*value)(const MetricInput&);  // NaN where undefined
+  Range range = {};                     // what the value can be at all
   std::int32_t since = 1;               // version of the stage `scores` with which these values came
   bool higher_is_better = true;
   Weighting weighting = Weighting::vertex;

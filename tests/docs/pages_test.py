@@ -10,7 +10,7 @@ import urllib.parse
 from pathlib import Path
 
 import salbench
-from report import elements
+from salbench.report import elements
 
 import pages
 

@@ -107,7 +107,7 @@ TEST(RunRecord, TellsMemoryCacheAndTimeline) {
   const Outcome ended = toy.salbench("run");
   ASSERT_EQ(ended.status, 0);
   EXPECT_THAT(ended.out,
-              testing::EndsWith("to make a report of them: scripts/report " + toy.out().string() + "\n"));
+              testing::EndsWith("to make a report of them: salbench report " + toy.out().string() + "\n"));
   const Section record = Section::from_file((toy.out() / "run.yaml").string());
   EXPECT_GT(std::stod(record.text("peak_memory_mb").value_or("0")), 5);
   std::uintmax_t bytes = 0;

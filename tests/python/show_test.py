@@ -5,19 +5,24 @@ import base64
 import html
 import html.parser
 import json
+import os
 import pathlib
 import re
 import unittest
+import unittest.mock
 import zlib
 
 import numpy as np
 
 import salbench
-from salbench import _show
+from salbench.pages import viewer_parts
 
 POINTS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3], [1, 1, 1]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], np.int32)
-WITHOUT_THREE = not (_show.THREE / _show.SCRIPTS[0]).is_file()
+try:
+    WITHOUT_THREE = not viewer_parts.three_js()
+except FileNotFoundError:
+    WITHOUT_THREE = True
 
 
 def shape(name="52", **known):
@@ -136,13 +141,12 @@ class Pages(unittest.TestCase):
         root = pathlib.Path(__file__).resolve().parents[2]
         page = str(shape().show())
         for name in ("viewer.js", "palette.js", "report.css"):
-            self.assertIn((root / "report/static" / name).read_text(), page)
+            self.assertIn((root / "python/salbench/pages/static" / name).read_text(), page)
 
 
 class WithoutThree(unittest.TestCase):
     def setUp(self):
-        self.addCleanup(setattr, _show, "THREE", _show.THREE)
-        _show.THREE = pathlib.Path("/nowhere")
+        self.enterContext(unittest.mock.patch.dict(os.environ, XDG_DATA_DIRS="/nowhere"))
 
     def test_says_what_is_missing(self):
         with self.assertRaisesRegex(FileNotFoundError, "libjs-three"):

@@ -7,7 +7,7 @@ import unittest
 
 import browser
 import support
-from report import leaderboard
+from salbench.report import leaderboard
 
 AXE = "axe-core@4.10.2"
 GRAVE = ("serious", "critical")

@@ -6,8 +6,8 @@ import unittest
 from pathlib import Path
 
 import support
-from report.elements import ELEMENTS
-from report.metrics import PAPER
+from salbench.conclusions.metrics import PAPERS
+from salbench.report.elements import ELEMENTS
 
 # As numbered in the paper, with its LaTeX labels.
 PAPERS_ELEMENTS = {
@@ -23,10 +23,10 @@ SHOWS = {
     "figure-2": ["figures/distributions-meshes.svg", "figures/distributions-scans.svg"],
     "figure-3": ["LS-before", "LS-after", "figures/matching.pdf"],
     "table-1": ["table-parameters", "r_low", "epsilon"],
-    "figure-4": [f"figures/{name}.svg" for metric in PAPER
+    "figure-4": [f"figures/{name}.svg" for metric in PAPERS
                  for name in (f"performance-meshes-{metric}", f"difficult-meshes-{metric}")],
     "figure-5": ["figures/human-curves.svg", "table-worth", "table-more-participants"],
-    "table-2": [f"table-classes-meshes-{metric}" for metric in PAPER] + ["data/classes-meshes-auc.tex"],
+    "table-2": [f"table-classes-meshes-{metric}" for metric in PAPERS] + ["data/classes-meshes-auc.tex"],
     "figure-6": ["figures/ranking-scans.svg"],
     "figure-7": ["figures/examples-scans.pdf", "Scan "],
 }

@@ -12,7 +12,7 @@ import pandas
 import fixture
 import pinhole
 import support
-from report import exports, viewer
+from salbench.report import exports, viewer
 
 CLOUDS = [("kitten", ""), ("oni", ""), ("ball", "")]
 

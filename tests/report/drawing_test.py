@@ -10,8 +10,8 @@ import pandas
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from report import style
-from report.drawing import Drawing, Later
+from salbench.report import style
+from salbench.report.drawing import Drawing, Later
 
 
 def recorded():

@@ -8,17 +8,12 @@ import numpy
 import pandas
 
 import pinhole
-import twin
+from salbench import conclusions
+from salbench.conclusions.metrics import lower_is_better, of_program
 
 MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
 METRICS = ("auc", "auc_exact", "nss", "cc", "lcc")
-_PICKED = ("auc", "auc_exact", "nss", "auc_judd", "auc_borji", "ig", "ig_centre", "sauc")
-_PER_VERTEX = (*METRICS, "auc_judd", "auc_borji", "ig", "spearman", "kl", "kl_smoothed", "sim", "sim_minmax", "mse", "mae",
-               *(f"{kind}_top{share}" for kind in ("auc", "nss") for share in (20, 10, 5, 1)), "ig_centre",
-               "cosine", "kl_keras", "kl_caffe", "kl_pysaliency", "kl_shifted", "sauc",
-               *(f"{name}_multiplicity" for name in _PICKED))
-_OF_POINTS = ("fne", "fpe", "wme", "precision", "recall")
-ALL_METRICS = (*_PER_VERTEX, *_OF_POINTS, *(f"{name}_area" for name in _PER_VERTEX))  # what `metrics: all` chooses
+ALL_METRICS = tuple(of_program())  # what `metrics: all` chooses
 CLASSES = ("human", "teddy", "glasses", "spring")
 LEVELS = {"LS": 0.64, "CS": 0.61, "PS": 0.60, "MS": 0.55, "HS": 0.58, "RS": 0.5}  # mean AUC of a model
 
@@ -43,28 +38,24 @@ def scores(random, level, n):
     return {"auc": auc, "auc_exact": numpy.clip(auc + 0.03, 0, 1), "nss": 5 * (auc - 0.5), "cc": cc, "lcc": numpy.abs(cc)}
 
 
-def is_distance(metric):
-    return metric.startswith(("kl", "mse", "mae", "fne", "fpe", "wme"))
-
-
 def with_metrics(results, metrics, seed=7):
     """The table with columns for these metrics: those that it has, and others that follow the AUC, with some noise."""
     random = numpy.random.default_rng(seed)
     made = results[["dataset", "item", "class", "view", "model"]].copy()
     for metric in metrics:
         noise = results["auc"] + 0.02 * random.standard_normal(len(results))
-        made[metric] = results[metric] if metric in results else 1 - noise if is_distance(metric) else noise
+        made[metric] = results[metric] if metric in results else 1 - noise if lower_is_better(metric) else noise
     return made.assign(n_points=results["n_points"], n_picks=results["n_picks"])
 
 
 def matching_of(metric):
-    return "none" if metric.split("_")[0] in ("kl", "sim", "ig", "cosine", "sauc", *_OF_POINTS) else "histogram"
+    return "none" if metric.split("_")[0] in ("kl", "sim", "ig", "cosine", "sauc", "fne", "fpe", "wme", "precision", "recall") else "histogram"
 
 
 def metric_lines(metrics):
     """The block `metrics` of run.yaml."""
     return "metrics:  # columns of the tables\n" + "".join(
-        f'  {metric}: {{unit: "1", better: {"lower" if is_distance(metric) else "higher"}, matching: {matching_of(metric)}}}\n'
+        f'  {metric}: {{unit: "1", better: {"lower" if lower_is_better(metric) else "higher"}, matching: {matching_of(metric)}}}\n'
         for metric in metrics)
 
 
@@ -97,27 +88,18 @@ def histograms(models, seed=2):
     return pandas.DataFrame(table)
 
 
-def human_curve():
-    rows = []
-    for n in range(1, 12):
-        for metric, start, gain in (("auc", 0.58, 0.06), ("auc_exact", 0.6, 0.06), ("nss", 0.9, 0.3), ("cc", 0.2, 0.3),
-                                    ("lcc", 0.2, 0.3)):
-            mean = start + gain * (1 - 1 / n)
-            rows.append((n, metric, 8, mean, 0.05, mean - 0.04, mean + 0.04))
-    return pandas.DataFrame(rows, columns=["n", "metric", "n_meshes", "mean", "sd", "ci95_low", "ci95_high"])
-
-
-def curves_by_mesh(items, seed=5):
-    """Each mesh has a level of its own, beside which more participants add much the same."""
+def people(items, metrics, seed=5):
+    """people.csv. Each mesh has a level of its own, beside which more participants add much the same."""
     random = numpy.random.default_rng(seed)
-    table, rows = human_curve(), []
+    rows = []
     for item, category in items:
         level = 0.04 * random.standard_normal()
-        for row in table.itertuples():
-            value = row.mean + level + 0.01 * random.standard_normal()
-            reliability = 2 * max(value, 0) / (1 + max(value, 0)) if row.metric == "cc" else numpy.nan
-            rows.append((item, category, row.n, row.metric, value, reliability))
-    return pandas.DataFrame(rows, columns=["item", "class", "n", "metric", "value", "reliability"])
+        for n in range(1, 12):
+            values = {metric: start + gain * (1 - 1 / n) + level + 0.01 * random.standard_normal()
+                      for metric, start, gain in (("auc", 0.58, 0.06), ("auc_exact", 0.6, 0.06), ("nss", 0.9, 0.3), ("cc", 0.2, 0.3),
+                                                  ("lcc", 0.2, 0.3))}
+            rows.append((item, category, n, *(values.get(metric, numpy.nan) for metric in metrics)))
+    return pandas.DataFrame(rows, columns=["item", "class", "n", *metrics])
 
 
 def run_yaml(models, simulated, failed=(), extra=""):
@@ -135,24 +117,20 @@ def run_yaml(models, simulated, failed=(), extra=""):
 
 
 def write_results(folder, items, models=MODELS, simulated=False, results=None, **options):
-    """A results folder with all tables; returns the table of results."""
+    """A results folder with all tables: what a run would write, and the conclusions from it. Returns the table of results."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     results = results_table(items, models) if results is None else results
     head = "# SIMULATED participants: these scores say nothing about people.\n" if simulated else ""
     of_meshes = results[results["dataset"] == "meshes"].drop_duplicates("item")
-    curves = curves_by_mesh(list(zip(of_meshes["item"], of_meshes["class"])))
-    tables = {"results": results, "summary": twin.summary(results), "per_class": twin.per_class(results),
-              "significance": twin.significance(results), "ranking": twin.ranking(results, is_distance),
-              "ranking_agreement": twin.agreement(results, is_distance), "mean_histograms_meshes": histograms(models),
-              "mean_histograms_scans": histograms([model for model in models if model != "HS"], 3),
-              "human_curve": human_curve(), "human_curve_by_mesh": curves, "human_curve_differences": twin.human_differences(curves),
-              "human_equivalents": twin.human_equivalents(curves, results, is_distance),
-              "compact": twin.compact(results, is_distance), "leaders": twin.leaders(results, is_distance),
-              "human_share": twin.human_shares(results, is_distance), "human_reliability": twin.human_reliability(curves)}
+    metrics = [column for column in results if column not in ("dataset", "split", "item", "class", "view", "model", "n_points", "n_picks")]
+    tables = {"results": results, "people": people(zip(of_meshes["item"], of_meshes["class"]), metrics),
+              "mean_histograms_meshes": histograms(models),
+              "mean_histograms_scans": histograms([model for model in models if model != "HS"], 3)}
     for name, table in tables.items():
         (folder / f"{name}.csv").write_text(head + table.to_csv(index=False), encoding="utf-8")
     (folder / "run.yaml").write_text(run_yaml(models, simulated, **options), encoding="utf-8")
+    conclusions.conclude(conclusions.source_of(str(folder)))
     return results
 
 

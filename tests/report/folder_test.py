@@ -7,7 +7,7 @@ import unittest.mock
 
 import fixture
 import support
-from report.folder import LIST
+from salbench.report.folder import LIST
 
 ITEMS = fixture.eight_meshes()[:3]
 OWN = {"notes.html": "my own notes", "data/notes.txt": "more", "figures/mine/plot.svg": "<svg/>", "thesis.tex": "years of work"}
@@ -61,7 +61,7 @@ class WrittenAgain(support.ReportTest):
         self.assertFalse((self.folder / "again/pictures/1").exists())
 
     def test_a_call_that_was_ended_leaves_nothing_that_stays(self):
-        with self.assertRaises(KeyboardInterrupt), unittest.mock.patch("report.run_page.blocks", side_effect=KeyboardInterrupt):
+        with self.assertRaises(KeyboardInterrupt), unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
             self.made(self.rich, "ended", "--compare", self.poor)
         self.assertTrue((self.folder / "ended/comparison.html").exists())
         self.add_own("ended")

@@ -13,8 +13,8 @@ import numpy
 import fixture
 import support
 from folder_test import files_of
-from report import shape_files, style
-from report.kept import LEDGER
+from salbench.report import shape_files, style
+from salbench.report.kept import LEDGER
 
 ITEMS = fixture.eight_meshes()[:3]
 
@@ -45,7 +45,7 @@ class Kept(support.ReportTest):
         def save(figure, svg, pdf, original=style.save):
             figures.append(svg.name.partition(".")[0])
             original(figure, svg, pdf)
-        with unittest.mock.patch("report.shape_files.draw", draw), unittest.mock.patch("report.style.save", save):
+        with unittest.mock.patch("salbench.report.shape_files.draw", draw), unittest.mock.patch("report.style.save", save):
             self.made(name, out=out)
         return shapes, figures
 
@@ -99,7 +99,7 @@ class Kept(support.ReportTest):
 
     def test_a_call_that_was_ended_is_gone_on_with(self):
         self.copied("ended")
-        with self.assertRaises(KeyboardInterrupt), unittest.mock.patch("report.run_page.blocks", side_effect=KeyboardInterrupt):
+        with self.assertRaises(KeyboardInterrupt), unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
             self.made("ended")
         (self.folder / "ended" / "pictures/1/mesh-LS-before.webp.part").write_text("half of a")
         with open(self.folder / "ended" / LEDGER, "a") as ledger:
@@ -124,12 +124,12 @@ class Kept(support.ReportTest):
                 raise ZeroDivisionError("no light")
             return original(work)
         for processes in (1, 2):
-            with self.subTest(processes), unittest.mock.patch("report.shape_files.draw", draw):
+            with self.subTest(processes), unittest.mock.patch("salbench.report.shape_files.draw", draw):
                 with self.assertRaisesRegex(RuntimeError, "drawing 2_0: ZeroDivisionError: no light"):
                     self.made(f"error-{processes}", processes)
 
     def test_a_process_that_is_killed_ends_the_call_with_a_sentence(self):
-        with unittest.mock.patch("report.shape_files.draw", lambda work: os.kill(os.getpid(), 9)):
+        with unittest.mock.patch("salbench.report.shape_files.draw", lambda work: os.kill(os.getpid(), 9)):
             status, errors = support.make(self.out, self.folder / "killed", "--processes", 2)
         self.assertEqual(status, 2)
         self.assertIn("was ended from outside", errors)

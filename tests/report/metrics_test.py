@@ -11,8 +11,9 @@ from scipy import stats
 
 import fixture
 import support
-from report import metrics, statistics
-from report.results import read_results
+from salbench.conclusions.metrics import label_of, lower_is_better
+from salbench.report import metrics, statistics
+from salbench.report.results import read_results
 
 LEADING = ("AUC", "NSS", "LCC")
 MODELS = ("LS", "CS", "PS", "RS")
@@ -22,23 +23,17 @@ NAN = float("nan")
 
 class Names(unittest.TestCase):
     def test_labels_and_families(self):
-        self.assertEqual(metrics.label_of("nss_multiplicity_area"), "NSS, with multiplicity, by area")
-        self.assertEqual(metrics.label_of("auc_top5_area"), "AUC (top 5 %), by area")
-        self.assertEqual(metrics.label_of("of_tomorrow"), "of_tomorrow")
+        self.assertEqual(label_of("nss_multiplicity_area"), "NSS, with multiplicity, by area")
+        self.assertEqual(label_of("auc_top5_area"), "AUC (top 5 %), by area")
+        self.assertEqual(label_of("of_tomorrow"), "of_tomorrow")
         self.assertEqual(metrics.family_of("auc_judd_multiplicity_area"), "auc")
         self.assertEqual({metrics.family_of(name) for name in ("cc", "lcc_area", "spearman")}, {"lcc"})
         self.assertEqual(metrics.family_of("of_tomorrow_area"), "of")
 
     def test_every_metric_of_the_program_has_its_own_label(self):
-        self.assertEqual(len(fixture.ALL_METRICS), 81)
-        labels = [metrics.label_of(name) for name in fixture.ALL_METRICS]
-        self.assertEqual(len(set(labels)), 81)
+        labels = [label_of(name) for name in fixture.ALL_METRICS]
+        self.assertEqual(len(set(labels)), len(fixture.ALL_METRICS))
         self.assertFalse([label for label in labels if "_" in label])
-
-    def test_what_leads(self):
-        self.assertEqual(metrics.leading(fixture.ALL_METRICS), ["auc", "nss", "lcc"])
-        self.assertEqual(metrics.leading(["kl", "nss", "sim", "mse"]), ["nss", "kl", "sim"])
-        self.assertEqual(metrics.leading(["kl"]), ["kl"])
 
     def test_better_is_what_run_yaml_says_else_known_by_name(self):
         self.assertTrue(metrics.described("kl_area").lower)
@@ -178,7 +173,7 @@ class AllMetrics(support.ReportTest):
         data = json.loads(text.removeprefix("salbench.scores = ").removesuffix(";\n"))
         self.assertEqual(list(data["scores"]), ["auc", "nss", "lcc"])
         self.assertEqual(len(data["files"]), 78)
-        self.assertEqual(set(data["lower"]), {name for name in fixture.ALL_METRICS if fixture.is_distance(name)})
+        self.assertEqual(set(data["lower"]), {name for name in fixture.ALL_METRICS if lower_is_better(name)})
         script = (self.to / data["files"]["kl"]).read_text()
         rows = json.loads(script.removeprefix('salbench.scores.scores["kl"] = ').removesuffix(";\n"))
         expected = statistics.scores(self.results, "meshes", "kl")["LS"].round(5).tolist()
@@ -201,7 +196,7 @@ class AllMetrics(support.ReportTest):
         reference = means["auc"].rank(ascending=False)
         changed = 0
         for name, mean in means.items():
-            row = rows[metrics.label_of(name)]
+            row = rows[label_of(name)]
             tau = stats.kendalltau(reference, mean.rank(ascending=False))[0]
             self.assertEqual(row[3].split()[0], "–" if name == "auc" else f"{tau:.2f}".replace("-", "−"))
             self.assertEqual(len(row), 4 + len(COMPETITORS), "chance has no rank")

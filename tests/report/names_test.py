@@ -9,8 +9,8 @@ import urllib.parse
 
 import fixture
 import support
-from report import names
-from report.names import file_name, file_names, natural
+from salbench.report import names
+from salbench.report.names import file_name, file_names, natural
 
 ALIKE = ["case", "Case", "CASE"]
 ODD = ["con", "CON", "Con.obj", "lpt1", "aux ", "nul.", "com1.", "dot.", "dots..", "space ", ".hidden", "a:b", "a/b", "a\\b", "line\nbreak",

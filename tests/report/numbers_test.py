@@ -2,7 +2,6 @@
 """Numbers that cannot be computed with: infinite, huge or missing ones count as undefined, the report says so, and nothing is
 written to the error stream."""
 
-import os
 import shutil
 import subprocess
 import sys
@@ -16,12 +15,12 @@ import pandas
 
 import fixture
 import support
-from report.exports import unit_range
-from report.results import TEXT_COLUMNS, number_of, read_results, read_table
+from salbench.report.exports import unit_range
+from salbench.conclusions import text_columns
+from salbench.report.results import number_of, read_results, read_table
 
 ITEMS = fixture.eight_meshes()[:3]
 MODELS = ("LS", "HS", "RS")
-ROOT = Path(__file__).resolve().parents[2]
 
 
 class Splits(unittest.TestCase):
@@ -41,7 +40,7 @@ class Numbers(unittest.TestCase):
     def test_of_a_table_are_counted_where_they_cannot_be_used(self):
         path = Path(self.enterContext(support.tempfile.TemporaryDirectory())) / "table.csv"
         path.write_text("item,a,b\ninf,inf,\n1,-inf,\n2,1e150,\n3,-1e151,nan\n4,x,\n")
-        table, _, unusable = read_table(path)
+        table, unusable = read_table(path)
         self.assertEqual(unusable, 3)
         self.assertEqual(table["item"].tolist(), ["inf", "1", "2", "3", "4"])
         self.assertEqual(table["a"].dropna().tolist(), [1e150])
@@ -78,7 +77,7 @@ class OddNumbers(support.ReportTest):
         table = pandas.read_csv(out / file, dtype=str, keep_default_na=False)
         for place, at in enumerate(range(len(table))[rows]):
             for column in table:
-                if column not in TEXT_COLUMNS:
+                if column not in text_columns():
                     table.loc[at, column] = values[place % len(values)]
         table.to_csv(out / file, index=False)
         return out
@@ -123,8 +122,8 @@ class OddNumbers(support.ReportTest):
             file["2/mesh/vertices"][:2] = [[1.7e308], [-1.7e308]]
             file["3/ground_truth/saliency"][...] = numpy.nan
             file["3/picture/view_projection"][3] = 0
-        done = subprocess.run([sys.executable, "-B", "-P", "-W", "error::RuntimeWarning", "-m", "report", out, "--to", self.folder / "drawn-report"],
-                              env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-B", "-P", "-W", "error::RuntimeWarning", "-m", "salbench", "report", out, "--to", self.folder / "drawn-report", "--quiet"],
+                              capture_output=True, text=True)
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.returncode, 0)
 

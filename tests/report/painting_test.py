@@ -14,9 +14,9 @@ from PIL import Image
 import fixture
 import pinhole
 import support
-from report.exports import Picture, Shapes, unit_range, usable
-from report.painting import LIGHTEST, Canvas, palette, project, visible, with_dots
-from report.shape_files import TRUTH, differences
+from salbench.report.exports import Picture, Shapes, unit_range, usable
+from salbench.report.painting import LIGHTEST, Canvas, palette, project, visible, with_dots
+from salbench.report.shape_files import TRUTH, differences
 
 
 def picture_of(points, faces, size=64):

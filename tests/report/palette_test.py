@@ -6,7 +6,7 @@ import unittest
 
 import numpy
 
-from report.painting import colours
+from salbench.report.painting import colours
 
 SIGHTS = {
     "usual": numpy.eye(3),

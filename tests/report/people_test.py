@@ -8,8 +8,9 @@ import pandas
 
 import fixture
 import support
-from report import people
-from report.results import Missing, Results
+from salbench.pages.blocks import Missing
+from salbench.report import people
+from salbench.report.results import Results
 
 NAN = float("nan")
 

@@ -3,7 +3,7 @@
 
 import unittest
 
-from report import paper, statements
+from salbench.report import paper, statements
 
 
 def row(a, b, by_shapes="holds", by_meshes="holds", by_classes="holds", dataset="scans", metric="auc"):

@@ -12,14 +12,15 @@ from pathlib import Path
 
 import browser
 import fixture
-from report import cli, elements
+from salbench import __main__
+from salbench.report import elements
 
 
 def make(out, to, *arguments):
-    """Runs scripts/report in this process; its exit status and what it wrote to the error stream."""
+    """Runs `salbench report` in this process; its exit status and what it wrote to the error stream."""
     errors = io.StringIO()
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
-        status = cli.main([str(out), "--to", str(to), "--program", "/nonexistent/salbench", *map(str, arguments)])
+        status = __main__.main(["report", str(out), "--to", str(to), *map(str, arguments)])
     return status, errors.getvalue()
 
 
@@ -31,7 +32,7 @@ def without_drawing():
     def touch(_, svg, pdf):
         svg.write_text(SVG)
         pdf.touch()
-    return unittest.mock.patch("report.style.save", touch)
+    return unittest.mock.patch("salbench.report.style.save", touch)
 
 
 class Nothing:
@@ -56,7 +57,7 @@ class Nothing:
 @contextlib.contextmanager
 def without_figures():
     """For tests of something else than figures, over data that tests with figures have drawn."""
-    with without_drawing(), unittest.mock.patch("report.style.new_figure", lambda *_, **__: Nothing()):
+    with without_drawing(), unittest.mock.patch("salbench.report.style.new_figure", lambda *_, **__: Nothing()):
         yield
 
 

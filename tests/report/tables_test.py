@@ -6,7 +6,7 @@ import unittest
 
 import fixture
 import support
-from report.latex import escape
+from salbench.report.latex import escape
 
 
 class Tables(support.ReportTest):

@@ -39,9 +39,9 @@ class ToyResultsTest(unittest.TestCase):
         ran(PROGRAM, "pictures", *options)
         ran(PROGRAM, "export", *options, "--to", cls.export)
 
-    def test_report_and_report_pictures(self):
+    def test_report_pictures(self):
         report = self.out / "report"
-        ran(SCRIPTS / "report", self.out)
+        ran(PROGRAM, "report", self.out)
         self.assertIn("</html>", (report / "shapes/1.html").read_text(encoding="utf-8"))
         if browser.AVAILABLE:
             ran(*PYTHON, SCRIPTS / "report_pictures", report, self.out / "pictures", "1")

@@ -7,6 +7,7 @@ with its columns and its function, and a row here. Files are read and written in
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,8 @@ from salbench.conclusions import (
 )
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.study import Study
-from salbench.conclusions.units import UNITS
+from salbench.conclusions.tables import Column
+from salbench.conclusions.units import TEXTS, UNITS
 
 
 @dataclass(frozen=True)
@@ -27,28 +29,35 @@ class Table:
 
     name: str
     make: Callable[[Study], pandas.DataFrame]
+    columns: Sequence[Column] = ()
     needs: str = ""  # the field of the study without which there is no such table
 
 
 TABLES = (
-    Table("chance", chance.chance, needs="constant"),  # first: it takes a data set apart once more, before resamples fill the memory
-    Table("summary", means.summary),
-    Table("ranking", ranking.ranking),
-    Table("ranking_agreement", agreement.agreement),
-    Table("significance", significance.significance),
-    Table("per_class", classes.per_class),
-    Table("human_share", shares.human_share),
-    Table("compact", compact.compact),
-    Table("leaders", leaders.leaders),
-    Table("power", power.power),
-    Table("human_curve", people.human_curve, needs="people"),
-    Table("human_curve_by_mesh", people.human_curve_by_mesh, needs="people"),
-    Table("human_curve_differences", people.human_curve_differences, needs="people"),
-    Table("human_equivalents", equivalents.human_equivalents, needs="people"),
-    Table("human_reliability", people.human_reliability, needs="people"),
-    Table("smoothing", smoothing.smoothing, needs="smoothed"),
-    Table("statements", statements.statements, needs="claims"),
+    Table("chance", chance.chance, chance.COLUMNS, needs="constant"),  # first: it takes a data set apart once more, before resamples fill the memory
+    Table("summary", means.summary, means.COLUMNS),
+    Table("ranking", ranking.ranking, ranking.COLUMNS),
+    Table("ranking_agreement", agreement.agreement, agreement.COLUMNS),
+    Table("significance", significance.significance, significance.COLUMNS),
+    Table("per_class", classes.per_class, classes.COLUMNS),
+    Table("human_share", shares.human_share, shares.COLUMNS),
+    Table("compact", compact.compact, compact.COLUMNS),
+    Table("leaders", leaders.leaders, leaders.COLUMNS),
+    Table("power", power.power, power.COLUMNS),
+    Table("human_curve", people.human_curve, people.CURVE, needs="people"),
+    Table("human_curve_by_mesh", people.human_curve_by_mesh, people.CURVE_BY_MESH, needs="people"),
+    Table("human_curve_differences", people.human_curve_differences, people.DIFFERENCES, needs="people"),
+    Table("human_equivalents", equivalents.human_equivalents, equivalents.COLUMNS, needs="people"),
+    Table("human_reliability", people.human_reliability, people.RELIABILITY, needs="people"),
+    Table("smoothing", smoothing.smoothing, smoothing.COLUMNS, needs="smoothed"),
+    Table("statements", statements.statements, statements.COLUMNS, needs="claims"),
 )
+
+
+@cache
+def text_columns() -> frozenset[str]:
+    """Names of the columns of text, in tables of scores, of conclusions, and of the time that a run took."""
+    return frozenset((*TEXTS, "node")) | {column.name for table in TABLES for column in table.columns if column.type == "str"}
 
 
 @dataclass(frozen=True)
@@ -101,6 +110,12 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
         "format": 1, "version": _version(), "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
         "leaders": concluded.leaders, "text": concluded.text, "tables": names})
     return concluded
+
+
+def conclude_if_missing(folder: Path) -> None:
+    """Of a run: it may have written its scores alone, and removes conclusions from others."""
+    if not (folder / folders.CONCLUDED).is_file():
+        conclude(source_of(str(folder)))
 
 
 def _text(overview: pandas.DataFrame, remarks: Sequence[str], found: Sequence[leaders.LevelLeaders]) -> str:

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Metrics as conclusions know them: name, direction, and the values that they can take."""
+"""Metrics as conclusions and pages know them: name, label, direction, and the values that they can take."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 
-_SHARE, _CORRELATION, _DIVERGENCE = (0.0, 1.0), (-1.0, 1.0), (0.0, math.inf)
-
-# By the part of the name before the first "_". Heights in standard deviations (nss) and gains (ig) have no bounds.
-_RANGES = {"auc": _SHARE, "cc": _CORRELATION, "lcc": _SHARE, "spearman": _CORRELATION, "kl": _DIVERGENCE, "sim": _SHARE, "mse": _SHARE,
-           "mae": _SHARE, "sauc": _SHARE, "cosine": _CORRELATION, "fne": _SHARE, "fpe": _SHARE, "wme": _SHARE, "precision": _SHARE,
-           "recall": _SHARE}
-_CHANCE = {"auc": .5, "sauc": .5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}  # by maps that know nothing; of others RS alone knows
+PAPERS = ("auc", "nss", "lcc")
+_LEADING = 3  # metrics that every page shows, and a sentence speaks of
+_CHANCE = {"auc": .5, "sauc": .5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}  # by the part of the name before the first "_"
 
 
 @dataclass(frozen=True)
@@ -21,15 +19,30 @@ class Metric:
     higher_is_better: bool = True
     low: float = -math.inf
     high: float = math.inf
-    chance: float = math.nan  # the mean score of maps that know nothing; NaN: not known
+    label: str = ""
+    chance: float = math.nan  # the mean score of maps that know nothing; NaN: not known, but by RS
 
 
+@cache
 def of_program() -> dict[str, Metric]:
     """The program's metrics by name, in the order of its tables."""
     from salbench import _core
 
-    metrics = {}
-    for name, _, _, higher_is_better in _core.metric_rows():
-        kind = name.split("_")[0]
-        metrics[name] = Metric(name, higher_is_better, *_RANGES.get(kind, (-math.inf, math.inf)), _CHANCE.get(kind, math.nan))
-    return metrics
+    return {name: Metric(name, higher_is_better, low, high, label, _CHANCE.get(name.split("_")[0], math.nan))
+            for name, _, _, higher_is_better, label, low, high in _core.metric_rows()}
+
+
+def label_of(name: str) -> str:
+    """For people; the name itself of a column that is not the program's."""
+    return of_program().get(name, Metric(name)).label or name
+
+
+def lower_is_better(name: str) -> bool:
+    return not of_program().get(name, Metric(name)).higher_is_better
+
+
+def leading(names: Iterable[str]) -> list[str]:
+    """The paper's metrics among some, filled up to three with the first of the others."""
+    known = list(names)
+    papers = [name for name in PAPERS if name in known]
+    return papers + [name for name in known if name not in papers][:_LEADING - len(papers)]

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from salbench.conclusions.metrics import Metric
 from salbench.conclusions.resampling import FEWEST
 
-_PAPERS = ("auc", "nss", "lcc")
-_LEADING = 3  # metrics that a sentence speaks of
 _NAMED = 4  # models that a sentence lists
 _SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "mse", "mae", "sauc")  # written as "AUC"
 _OWN = ("by ", "one ", "no ")  # words that a clause of ours begins with; models keep their spelling
@@ -41,14 +39,6 @@ class Leader:
     lead: float = math.nan  # how far the best mean is ahead of that, positive whether higher or lower is better
     lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %: beyond 0 where the pair differs
     new_classes: "Leader | None" = None  # the same with classes for units, where there are enough
-
-
-def leading_metrics(metrics: Sequence[Metric]) -> list[str]:
-    """Names of the metrics that the sentence of a data set speaks of: the paper's, filled up to three with the first of the others."""
-    names = [metric.name for metric in metrics]
-    papers = [name for name in _PAPERS if name in names]
-    others = [name for name in names if name not in papers]
-    return papers + others[:_LEADING - len(papers)]
 
 
 def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> str:

@@ -245,11 +245,12 @@ TEST(MetricTable, HasTheColumnsOfStoredScoresInTheirOrder) {
 
 TEST(MetricTable, ANewMetricIsAFunctionAndARow) {
   std::vector<Metric> metrics = chosen_metrics({});
-  metrics.push_back({"picked_mean", "1", "mean of the map over the picks", [](const MetricInput& in) {
-                       double sum = 0;
-                       for (const std::int32_t i : in.picked) sum += in.map[static_cast<std::size_t>(i)];
-                       return sum / static_cast<double>(in.picked.size());
-                     }});
+  metrics.push_back(
+      {"picked_mean", "Picked mean", "1", "mean of the map over the picks", [](const MetricInput& in) {
+         double sum = 0;
+         for (const std::int32_t i : in.picked) sum += in.map[static_cast<std::size_t>(i)];
+         return sum / static_cast<double>(in.picked.size());
+       }});
   const GroundTruth truth{{1, 3, 2, 0}, {{1, 2}, {2}}};
   const Rng rng(1, "score", "x");
   const Scores with = score(metrics, {1, 5, 2, 0}, truth, {}, rng);

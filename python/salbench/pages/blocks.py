@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What elements of pages are made of. Templates know these types and nothing of the data behind them."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+class Missing(Exception):
+    """What an element needs is not there. Its text stands where the element would."""
+
+
+@dataclass
+class Note:
+    """A sentence that stands where something is missing, or that explains."""
+    text: str
+    missing: bool = False
+    kind: str = "note"
+
+
+@dataclass
+class Plot:
+    """figures/NAME.svg with its PDF, the plotted numbers as data/NAME.csv, and what a reader who cannot see it is told."""
+    name: str
+    alt: str
+    width: int  # pixels at 100 %
+    caption: str = ""
+    kind: str = "plot"
+
+
+@dataclass
+class Cell:
+    """One cell: what is shown, what it is sorted by, and what it links to."""
+    text: str
+    key: float | str | None = None  # None: the text itself
+    href: str = ""
+    below: str = ""      # second line, smaller
+    bold: bool = False
+    style: str = ""      # name of a CSS class
+    after: str = ""      # follows the text, lighter
+
+
+@dataclass
+class Table:
+    """A table that sorts and filters. numeric: per column, True aligns right and sorts as numbers."""
+    id: str
+    caption: str
+    columns: list[str]
+    rows: "list[list[Cell]]"
+    numeric: list[bool]
+    filters: list[int] = field(default_factory=list)  # indices of columns that get a menu
+    files: list[tuple[str, str]] = field(default_factory=list)  # (label, path) of the same table in other forms
+    folded: str = ""     # what a reader opens it with; empty: it stands open
+    better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for an arrow in its head
+    kind: str = "table"
+
+
+@dataclass
+class Tile:
+    """A painted picture and the lines below it, as (text, bold) pieces."""
+    picture: str         # path within the report; empty: there is none, and `title` says why
+    title: str
+    alt: str = ""
+    pieces: list[tuple[str, bool]] = field(default_factory=list)
+    href: str = ""
+
+
+@dataclass
+class Gallery:
+    """Rows of tiles with one colour bar."""
+    caption: str
+    rows: list[tuple[str, list[Tile]]]
+    files: list[tuple[str, str]] = field(default_factory=list)
+    differences: bool = False  # the maps are differences from the ground truth
+    kind: str = "gallery"
+
+
+Block = Note | Plot | Table | Gallery
+
+
+def attempt(build: Callable[..., Any], *arguments: Any) -> list[Block]:
+    """The blocks that build makes, or the note that stands in their place."""
+    try:
+        blocks = build(*arguments)
+    except Missing as reason:
+        return [Note(str(reason), missing=True)]
+    return blocks if isinstance(blocks, list) else [blocks]
+
+
+def cell(value: float | None, digits: int = 3, **more: Any) -> Cell:
+    """A number, or a dash where it is undefined."""
+    if value is None or value != value:
+        return Cell("–", "", **more)
+    return Cell(f"{value:.{digits}f}".replace("-", "−"), float(value), **more)
+
+
+def count(value: float, **more: Any) -> Cell:
+    return Cell("–", "", **more) if value != value else Cell(f"{int(value)}", int(value), **more)
+
+
+def p_value(value: float | None, **more: Any) -> Cell:
+    """Three digits, or a bound where they would be zeros."""
+    if value is None or value != value:
+        return Cell("–", "", **more)
+    return Cell("< 0.001" if value < 0.001 else f"{value:.3f}", float(value), **more)
+
+
+def interval(low: float, high: float, digits: int = 3) -> Cell:
+    if low != low or high != high:
+        return Cell("–", "")
+    return Cell(f"{low:.{digits}f} to {high:.{digits}f}".replace("-", "−"), float(low))
+
+
+def mean_cell(row: Mapping[str, Any] | None) -> Cell:
+    """Of a row of compact.csv: the mean, half of its interval, and the letters of its groups."""
+    if row is None or row["mean"] != row["mean"]:
+        return cell(None)
+    return cell(row["mean"], bold=row["best"] == 1, after=" ".join(filter(None, (spread(row), row["group"]))))
+
+
+def spread(row: Mapping[str, Any], digits: int = 3) -> str:
+    """Half of the interval, or its ends where these are not equally far from the mean; empty if there is none."""
+    if row["low"] != row["low"]:
+        return ""
+    if row["half"] == row["half"]:
+        return f"± {row['half']:.{digits}f}"
+    return f"({row['low']:.{digits}f} to {row['high']:.{digits}f})".replace("-", "−")

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One table of models and metrics per data set: what one pastes into a paper, as HTML, LaTeX and CSV."""
+
+from collections.abc import Mapping, Sequence
+
+from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, mean_cell
+from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
+from salbench.report import statistics
+from salbench.report.latex import write_compact
+from salbench.report.results import Frame, Results, Row, write_csv
+from salbench.report.units import counted
+from salbench.report.workshop import Workshop
+
+MOST = 12  # metrics of one table; the page of the other metrics has the rest
+CAPTION = ("{}, {}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best of each metric in "
+           "bold; letters: two models without one in common differ. HS and RS, human performance and chance, are "
+           "references.{}")
+
+
+def tables(shop: Workshop) -> list[Block]:
+    return [block for dataset in statistics.shown(shop.results) for block in attempt(table, shop, dataset)]
+
+
+def metrics_of(results: Results, dataset: str) -> list[str]:
+    known = results.table("compact.csv", *statistics.COMPACT)
+    present = set(known.loc[known["dataset"] == dataset, "metric"])
+    found = [name for name in results.metrics if name in present]
+    return found if len(found) <= MOST else [name for name in found if name in results.leading]
+
+
+def table(shop: Workshop, dataset: str) -> list[Block]:
+    results = shop.results
+    metrics = metrics_of(results, dataset)
+    if not metrics:
+        raise Missing(f"compact.csv has no scores of {spoken(dataset)}.")
+    parts = {metric: statistics.compact(results, dataset, metric) for metric in metrics}
+    by_cell = {(row["model"], metric): row for metric, part in parts.items() for row in part.to_dict("records")}
+    models = list(dict.fromkeys(model for part in parts.values() for model in part.loc[part["kind"] == "model", "model"]))
+    models += [model for model in shop.models if model not in models and any((model, metric) in by_cell for metric in metrics)]
+    failed = {model: most for model in models if (most := missing(model, metrics, by_cell))}
+    rows = [[Cell(model + (" †" if model in failed else ""), key=model)] + [mean_cell(by_cell.get((model, metric))) for metric in metrics]
+            for model in models]
+    found = [results.metric(metric) for metric in metrics]
+    identifier = f"compact-{dataset}"
+    over = counted_of(results, dataset, parts)
+    write_csv(results.table("compact.csv").query("dataset == @dataset"), shop.file(f"data/{identifier}.csv"))
+    write_compact(shop.file(f"data/{identifier}.tex"), models, found, by_cell, failed, spoken(dataset), over, results.simulated)
+    made = Table(identifier, CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)), ["Model", *(of.label for of in found)], rows,
+                 [False] + [True] * len(metrics), files=[("LaTeX", f"data/{identifier}.tex"), ("CSV", f"data/{identifier}.csv")],
+                 better=[""] + ["lower" if of.lower else "higher" for of in found])
+    left = [name for name in results.metrics if name not in metrics]
+    more = [Note(f"{several(len(left), 'metric')} more: see Other metrics.")] if left and len(results.metrics) > MOST else []
+    return [made, *more]
+
+
+def counted_of(results: Results, dataset: str, parts: dict[str, Frame]) -> str:
+    first = next(iter(parts.values())).iloc[0]
+    return counted(results.unit, dataset, first["n"], first["n_shapes"])
+
+
+def missing(model: str, metrics: Sequence[str], by_cell: Mapping[tuple[str, str], Row]) -> int:
+    """On how many shapes a competitor has no score that others have, at most over the metrics."""
+    rows = [by_cell[model, metric] for metric in metrics if (model, metric) in by_cell]
+    return int(max((row["n_missing"] for row in rows if row["kind"] == "model" and row["n_missing"] == row["n_missing"]), default=0))
+
+
+def remark(dataset: str, failed: dict[str, int]) -> str:
+    if not failed:
+        return ""
+    kind = KIND_NAMES[dataset]
+    each = ", ".join(f"{model} {several(n, kind)}" for model, n in failed.items())
+    return f" † has no score on some shapes ({each}): all models are compared on those that every one has."

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work on several processes, with results in the order of the tasks, whichever process did them."""
+
+import multiprocessing
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any
+
+from salbench.conclusions.csv_file import InputError
+
+_work: tuple[Callable[[Any], Any], Sequence[tuple[str, Any]]] | None = None  # (function, tasks): processes are forked when they are known, so that nothing is sent to them
+
+
+def _do(at: int) -> Any:
+    assert _work is not None
+    function, tasks = _work
+    name, task = tasks[at]
+    try:
+        return function(task)
+    except Exception as error:
+        raise RuntimeError(f"drawing {name}: {type(error).__name__}: {error}") from error
+
+
+def each(function: Callable[[Any], Any], tasks: Sequence[tuple[str, Any]], processes: int) -> Iterator[Any]:
+    """Yields function(task) for each (name, task) of the list. An error names its task."""
+    global _work
+    _work = function, tasks
+    if min(processes, len(tasks)) < 2:
+        yield from map(_do, range(len(tasks)))
+        return
+    pool = ProcessPoolExecutor(min(processes, len(tasks)), multiprocessing.get_context("fork"))
+    try:
+        futures = [pool.submit(_do, at) for at in range(len(tasks))]
+        for (name, _), future in zip(tasks, futures):
+            try:
+                yield future.result()
+            except BrokenProcessPool:
+                raise InputError(f"a process that drew {name} or what follows it was ended from outside; is there too little memory? "
+                               "The next call goes on from here: --processes 1 takes the least.") from None
+    finally:
+        pool.shutdown(cancel_futures=True)

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Galleries of painted pictures: the paper's examples, before and after matching, difficult shapes, scans."""
+
+from pathlib import Path
+from typing import Any
+
+from PIL import Image
+
+from salbench.pages.blocks import Gallery, Missing, Tile
+from salbench.pages.names import spoken
+from salbench.report import statistics, style
+from salbench.report.drawing import Later
+from salbench.report.gallery import Painter, describe
+from salbench.report.names import natural
+from salbench.report.painting import palette
+from salbench.report.shape_pages import Scores, models_of
+from salbench.report.viewer import label_of
+from salbench.report.workshop import Workshop
+
+CHANCE = "RS"  # has a map, but shows nothing that the paper's figures show
+HOW = ("No export with pictures of {} was given. salbench pictures CONFIG --items LIST makes them, salbench export CONFIG "
+       "--items LIST --to OUT/shapes.h5 puts them where the report looks; {}")
+
+
+def scored_pictures(shop: Workshop, dataset: str) -> list[Painter]:
+    """Painters of the shapes that have a picture and a mean score by the first metric, best first."""
+    if shop.painters is None:
+        made = [Painter(shop, shape) for shape in shop.shapes.shapes.values()]
+        shop.painters = [painter for painter in made if painter.has("ground truth")]
+    try:
+        first = next(iter(shop.results.leading))
+        place = {key: at for at, key in enumerate(statistics.mean_per_shape(shop.results, dataset, first).index)}
+    except Missing:
+        place = {}
+
+    def order(painter: Painter) -> tuple[int, list[tuple[int, int, str]]]:
+        return -place.get((painter.shape.item, painter.shape.view), -1), natural(painter.shape.name)
+    return sorted((painter for painter in shop.painters if painter.shape.dataset == dataset), key=order)
+
+
+def scores_of(shop: Workshop) -> Scores:
+    if shop.scores is None:
+        shop.scores = Scores(shop.results)
+    return shop.scores
+
+
+def leading_labels(shop: Workshop) -> str:
+    return ", ".join(of.label for of in shop.results.leading.values())
+
+
+def map_tile(shop: Workshop, painter: Painter, what: str, when: str, title: str, scored: bool = True) -> Tile:
+    shape = painter.shape
+    picture = painter.paint(what, when)
+    return Tile(picture, title, painter.alt(what, when, label_of(what, when)) if picture else "Not in the export.",
+                scores_of(shop).pieces(shape, what) if scored and what != "ground truth" else [], shop.page_of(shape.item))
+
+
+def rows_of_maps(shop: Workshop, painters: list[Painter]) -> list[tuple[str, list[Tile]]]:
+    """Per shape the ground truth and every model's map before matching, scores below."""
+    rows = []
+    for painter in painters:
+        models = [model for model in models_of(shop, painter.maps) if model != CHANCE and painter.has(model)]
+        tiles = [map_tile(shop, painter, "ground truth", "before", "Ground truth")]
+        tiles += [map_tile(shop, painter, model, "before", model) for model in models]
+        rows.append((describe(painter.shape).capitalize(), tiles))
+    return rows
+
+
+def spread(painters: list[Painter], count: int) -> list[Painter]:
+    """Some of the painters, evenly spread from the first to the one in the middle."""
+    last = (len(painters) - 1) / 2
+    at = dict.fromkeys(round(i * last / max(count - 1, 1)) for i in range(count))
+    return [painters[i] for i in at]
+
+
+def chosen(shop: Workshop, dataset: str, count: int) -> list[Painter]:
+    """The shapes named with --examples, else from the best to the median by mean AUC."""
+    painters = scored_pictures(shop, dataset)
+    named = [painter for painter in painters if painter.shape.item in shop.examples]
+    if not painters:
+        raise Missing(HOW.format(spoken(dataset), "see docs/results.md."))
+    return named[:count] if named else spread(painters, count)
+
+
+def meshes(shop: Workshop) -> Gallery:
+    gallery = Gallery(f"Saliency maps before histogram matching, with ({leading_labels(shop)}) of the matched map; best "
+                      "in bold.", rows_of_maps(shop, chosen(shop, "meshes", 2)))
+    return printed(shop, "examples-meshes", gallery)
+
+
+def scans(shop: Workshop) -> Gallery:
+    gallery = Gallery(f"Saliency maps before histogram matching on simulated range scans, with ({leading_labels(shop)}) of the "
+                      "matched map; best in bold.", rows_of_maps(shop, chosen(shop, "scans", 4)))
+    return printed(shop, "examples-scans", gallery)
+
+
+def clouds(shop: Workshop) -> Gallery:
+    gallery = Gallery(f"Saliency maps before histogram matching on point clouds, with ({leading_labels(shop)}) of the matched "
+                      "map; best in bold.", rows_of_maps(shop, chosen(shop, "clouds", 2)))
+    return printed(shop, "examples-clouds", gallery)
+
+
+def matching(shop: Workshop) -> Gallery:
+    """One shape under every model, before and after."""
+    painter = chosen(shop, "meshes", 1)[0]
+    models = [model for model in models_of(shop, painter.maps) if painter.has(model) and painter.has(model, "after")]
+    truth = map_tile(shop, painter, "ground truth", "before", "Ground truth")
+    rows = [(label, ([truth] if when == "before" else []) + [map_tile(shop, painter, model, when, model, scored=False)
+             for model in models]) for when, label in (("before", "Before"), ("after", "After"))]
+    gallery = Gallery(f"Saliency maps of {describe(painter.shape)} before and after their histograms were matched to that "
+                      "of the ground truth.", rows)
+    return printed(shop, "matching", gallery)
+
+
+def difficult(shop: Workshop, dataset: str, metric: str, count: int = 3) -> Gallery:
+    """The shapes with the worst mean score: ground truth beside the best model's map."""
+    of = shop.results.metric(metric)
+    lowest_scoring = f"{'highest' if of.lower else 'lowest'}-scoring {spoken(dataset)} by {of.label}"
+    mean = statistics.mean_per_shape(shop.results, dataset, metric)
+    if mean.empty:
+        raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
+    wide = statistics.scores(shop.results, dataset, metric)
+    painters = {(painter.shape.item, painter.shape.view): painter for painter in scored_pictures(shop, dataset)}
+    lowest = list(mean.index[:count])
+    absent = [item for item, view in lowest if (item, view) not in painters]
+    if len(absent) == len(lowest):
+        names = ", ".join(f"{item} ({mean[item, view]:.3f})" for item, view in lowest)
+        raise Missing(f"The {lowest_scoring} are {names}. "
+                      + HOW.format("them", f"LIST is {','.join(absent)}."))
+    tiles = []
+    for item, view in lowest:
+        label = f"{item}, mean {mean[item, view]:.3f}"
+        if (item, view) not in painters:
+            tiles.append(Tile("", label, f"Not in the exports: add {item} to --items.", href=shop.page_of(item)))
+            continue
+        painter = painters[item, view]
+        with_maps = [model for model in wide if painter.has(model)]
+        best = of.best(wide.loc[(item, view), with_maps].astype(float).to_dict())
+        tiles.append(map_tile(shop, painter, "ground truth", "before", label))
+        if best:
+            name = next(model for model in with_maps if model in best)
+            tiles.append(map_tile(shop, painter, name, "after", f"best: {name}"))
+    gallery = Gallery(f"The {lowest_scoring}: ground truth, and the map of the model that scores best there, after "
+                      f"matching; below: {leading_labels(shop)}.", [("", tiles)])
+    return printed(shop, f"difficult-{dataset}-{shop.metric_files[metric]}", gallery)
+
+
+def pixels(path: Path) -> Any:
+    return Image.open(path).convert("RGB")
+
+
+def scale() -> Any:
+    """What the colour bar of maps is drawn from."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+
+    return ScalarMappable(Normalize(0, 1), ListedColormap(palette() / 255))
+
+
+def printed(shop: Workshop, name: str, gallery: Gallery) -> Gallery:
+    """The gallery, with the same pictures as one figure for print."""
+    columns = max(len(tiles) for _, tiles in gallery.rows)
+    lines = len(gallery.rows)
+    width, height = 1.7 * columns + 0.9, 2.3 * lines + 0.2
+    figure = style.new_figure(width, height, layout=None)
+    grid = figure.subplots(lines, columns, squeeze=False, gridspec_kw={
+        "left": 0.1 / width, "right": 1 - 0.8 / width, "bottom": 0.35 / height, "top": 1 - 0.3 / height, "hspace": 0.28,
+        "wspace": 0.04})
+    for line, (_, tiles) in zip(grid, gallery.rows):
+        for axes in line:
+            axes.axis("off")
+        for axes, tile in zip(line, tiles):
+            axes.set_title(tile.title, fontsize=9)
+            if tile.picture:
+                axes.imshow(Later(pixels, path := shop.folder.path / tile.picture, content=path.read_bytes()))
+                axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in tile.pieces),
+                          transform=axes.transAxes, ha="center", va="top", fontsize=9)
+    bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
+    figure.colorbar(Later(scale, content=palette().tobytes()), cax=bar)
+    bar.grid(visible=False)
+    shop.draw(name, figure)
+    gallery.files = [("SVG", f"figures/{name}.svg"), ("PDF", f"figures/{name}.pdf")]
+    return gallery

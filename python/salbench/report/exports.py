@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read when they are needed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy
+from numpy.typing import NDArray
+
+from salbench.conclusions.csv_file import InputError
+from salbench.conclusions.units import Floats
+from salbench.pages.viewer_parts import unit_range
+from salbench.report.names import natural, shape_name
+from salbench.report.results import LARGEST
+
+Faces = NDArray[numpy.int32]
+Maps = dict[tuple[str, str], Floats]  # (model, when) -> values
+BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)  # what h5py raises for a damaged or foreign file
+
+
+def text(value: Any) -> str:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+@dataclass
+class Picture:
+    """What a pinhole camera sees of a shape; row 0 is the top row."""
+
+    primitive: Faces                # H x W int32: face of a mesh, point of others; -1 nothing
+    weights: NDArray[Any]           # H x W x 3 float32: of the face's corners; of a point 1, 0, 0
+    shade: NDArray[numpy.uint8]     # H x W uint8: brightness
+    view_projection: Floats | None  # 4 x 4 float64: world to clip space, column vectors; None if not recorded
+    depth: NDArray[Any] | None      # H x W float32: along the viewing direction, the w of clip space; None if not recorded
+    coverage: NDArray[numpy.uint8] | None = None  # H x W uint8: part of the pixel that the shape fills; None: all of it
+
+    def camera(self) -> tuple[Floats | None, str]:
+        """Its position in the coordinates of the shape, None where it is infinitely far, and which axis points up in the
+        picture, "y" or "z"."""
+        assert self.view_projection is not None
+        rows = self.view_projection[[0, 1, 3]]
+        eye = numpy.linalg.svd(rows)[2][-1]  # the only point that has no place in the image
+        return eye[:3] / eye[3] if abs(eye[3]) > 1e-12 else None, "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where the groups of one kind of shapes hold what all have."""
+
+    points: str
+    ground_truth: str
+    faces: str = ""   # empty: the shape has none
+    normals: str = ""
+    eye: str = ""     # from where the points were seen
+
+
+PLACES = {"meshes": Places("mesh/vertices", "ground_truth", faces="mesh/faces"),
+          "scans": Places("scan/points", "scan_ground_truth", normals="scan_normals/normals", eye="scan/camera"),
+          "clouds": Places("cloud/points", "cloud_ground_truth", normals="cloud_normals/normals", eye="cloud/viewpoint")}
+
+
+class Shape:
+    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW."""
+
+    def __init__(self, name: str, group: Any) -> None:
+        self.name = name
+        self.group = group
+        self.dataset = text(group.attrs["dataset"])
+        self.item = text(group.attrs["item"])
+        self.category = text(group.attrs.get("class", ""))
+        self.view = str(int(group.attrs["view"])) if self.dataset == "scans" else ""
+        self.places = PLACES[self.dataset]
+
+    def _array(self, path: str) -> Any:
+        try:
+            return self.group[path][:] if path else None
+        except BROKEN:
+            return None
+
+    def _coordinates(self, path: str) -> Floats | None:
+        """An array of numbers that can be computed with, or None."""
+        values = self._array(path)
+        return values if values is not None and usable(values) else None
+
+    @property
+    def points(self) -> Floats | None:
+        """n x 3 float64, or None."""
+        return self._coordinates(self.places.points)
+
+    @property
+    def faces(self) -> Faces | None:
+        """f x 3 int32; None for scans and point clouds."""
+        faces: Faces | None = self._array(self.places.faces)
+        return faces
+
+    @property
+    def ground_truth(self) -> Floats | None:
+        """n float64 in [0, 1], or None where it is not known. Points that nobody saw are shown like the lowest."""
+        values = self._array(f"{self.places.ground_truth}/saliency")
+        if values is None or len(values) == 0 or numpy.isnan(values).all():
+            return None
+        return unit_range(numpy.where(numpy.isnan(values), numpy.nanmin(values), values))
+
+    @property
+    def picks(self) -> Faces:
+        """Indices of the distinct points that participants picked; empty where nobody did."""
+        found = self._array(f"{self.places.ground_truth}/picks")
+        picks: Faces = numpy.unique(found) if found is not None else numpy.zeros(0, dtype=numpy.int32)
+        return picks
+
+    @property
+    def models(self) -> list[str]:
+        stages = (stage.partition(".") for stage in self.group)
+        return [model for kind, _, model in stages if kind in ("map", "matched") and model]
+
+    def maps(self) -> Maps:
+        """(model, "before" or "after" matching) -> n float64 in [0, 1], models in the order of the file."""
+        found = {}
+        for stage in sorted(self.group):
+            kind, _, model = stage.partition(".")
+            if kind in ("map", "matched") and model:
+                values = self._array(f"{stage}/saliency")
+                if values is not None and len(values):
+                    found[model, "before" if kind == "map" else "after"] = unit_range(values)
+        return found
+
+    def seen_from(self) -> Floats | None:
+        """From where the points of a scan or point cloud were seen, or None."""
+        eye = self._coordinates(self.places.eye)
+        return eye.reshape(-1) if eye is not None and eye.size == 3 else None
+
+    def shade(self, eye: Floats | None) -> Floats | None:
+        """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from `eye`; None if that or
+        normals are not in the export."""
+        points, normals, camera = self.points, self._coordinates(self.places.normals), self.seen_from()
+        camera = eye if camera is None else camera
+        if points is None or normals is None or camera is None or len(normals) != len(points):
+            return None
+        towards = camera - points
+        lengths = numpy.linalg.norm(towards, axis=1, keepdims=True)
+        towards /= numpy.where(lengths > 0, lengths, 1)
+        shade: Floats = numpy.clip(numpy.abs((normals * towards).sum(axis=1)), 0, 1)
+        return shade
+
+    def eye(self, picture: Picture | None) -> tuple[Floats | None, str]:
+        """From where the shape is looked at first, or None, and its upward axis: as in its picture, which may be None, else from
+        where it was scanned."""
+        if picture is not None and picture.view_projection is not None:
+            return picture.camera()
+        return self.seen_from(), "y"
+
+    def picture(self) -> Picture | None:
+        """The picture, or None where the export has none that can be used."""
+        primitive, shade = self._array("picture/primitive"), self._array("picture/shade")
+        weights = self._array("picture/weights")
+        if primitive is None or shade is None or weights is None or weights.shape[:2] != primitive.shape:
+            return None
+        if weights.dtype.kind == "u":  # share of the type's range
+            weights = weights * numpy.float32(1 / numpy.iinfo(weights.dtype).max)
+        elif not usable(weights):
+            return None
+        return Picture(primitive, weights, shade, self._coordinates("picture/view_projection"), self._array("picture/depth"),
+                       self._array("picture/coverage"))
+
+
+def usable(values: Floats) -> bool:
+    """Compared in double: NumPy 2 would round the limit to the type of the values, to infinity for single precision."""
+    return bool((numpy.abs(numpy.asarray(values, dtype=float)) <= LARGEST).all())
+
+
+class Shapes:
+    """All shapes of some exports, by name; of a name that several exports hold, the first counts."""
+
+    def __init__(self, paths: Sequence[str | Path]) -> None:
+        self.files: list[Any] = []
+        self.shapes: dict[str, Shape] = {}
+        for path in paths:
+            self._open(Path(path))
+
+    def _open(self, path: Path) -> None:
+        try:
+            file = h5py.File(path, "r")
+            layout = text(file.attrs.get("layout", ""))
+        except OSError as error:
+            raise InputError(f"{path}: cannot be read as HDF5 ({' '.join(str(error).split())}); name a file of salbench "
+                           "export with --export") from None
+        if not layout.startswith("salbench export"):
+            raise InputError(f"{path}: not a file of salbench export; name one with --export")
+        self.files.append(file)
+        for name in file:
+            try:
+                group = file[name]
+                if isinstance(group, h5py.Group) and text(group.attrs.get("dataset", "")) in PLACES:
+                    shape = Shape(name, group)
+                    self.shapes.setdefault(shape_name(shape.item, shape.view), shape)
+            except BROKEN:
+                continue  # a link to an artefact that is gone: the page of the shape says that it is missing
+
+    def itself(self, item: str) -> Shape | None:
+        """The mesh or point cloud."""
+        return self.shapes.get(shape_name(item))
+
+    def scans(self, item: str) -> list[Shape]:
+        """The scans of a mesh that are there, in the order of their views."""
+        found = [shape for shape in self.shapes.values() if shape.view and shape.item == item]
+        return sorted(found, key=lambda shape: natural(shape.view))
+
+    @property
+    def models(self) -> list[str]:
+        """Every model that a shape has a map of."""
+        return sorted({model for shape in self.shapes.values() for model in shape.models})
+
+    @property
+    def items(self) -> list[str]:
+        """Every mesh of which the mesh or a scan is there, and every point cloud."""
+        return sorted({shape.item for shape in self.shapes.values()}, key=natural)

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The paper's diagrams. `..._data` gives the numbers of a diagram, the function beside it draws them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy
+import pandas
+
+from salbench.pages.blocks import Missing, Plot
+from salbench.pages.names import DATASETS, spoken
+from salbench.report import names, statistics, style
+from salbench.report.metrics import Metric, family_of
+from salbench.report.results import Frame, Results
+from salbench.report.workshop import Workshop
+
+
+def cumulative_data(results: Results, dataset: str) -> Frame:
+    """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it, per model."""
+    name = f"mean_histograms_{dataset}.csv"
+    table = results.table(name, "bin_left")
+    columns = [column for column in table if column != "bin_left" and table[column].sum() > 0]
+    if not columns:
+        raise Missing(f"{name} holds no distribution: the run left the {spoken(dataset)} out.")
+    density = table[columns].to_numpy()
+    shares = numpy.vstack([numpy.zeros(len(columns)), density.cumsum(axis=0) / density.sum(axis=0)])
+    edges = numpy.append(table["bin_left"].to_numpy(), 1.0)
+    return pandas.DataFrame({"value": edges, **dict(zip(columns, shares.T))})
+
+
+def cumulative(shop: Workshop, dataset: str) -> Plot:
+    data = cumulative_data(shop.results, dataset)
+    figure = style.new_figure(7, 4.4)
+    axes = figure.subplots()
+    columns = list(data.columns[1:])
+    looks = [names.colours(columns), names.dashes(columns), names.markers(columns)]
+    for at, column in enumerate(columns):
+        colour, dash, marker = (look[column] for look in looks)
+        axes.plot(data["value"], data[column], color=colour, ls=dash, lw=2.4 if column == "GS" else 1.8, marker=marker, ms=5,
+                  markevery=(3 + 2 * at, 16))
+    axes.set(xlim=(0, 1), ylim=(0, 1.01), xlabel="Saliency", ylabel="Share of points at or below")
+    # All curves end at 1, 1: each is named where it reaches its part of the way there, highest first.
+    order = sorted(columns, key=lambda column: -float(data[column].sum()))
+    for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
+        axes.annotate("Ground truth" if column == "GS" else column, (numpy.interp(part, data[column], data["value"]), part),
+                      xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks[0][column],
+                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85})
+    medians = ", ".join(f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:])
+    return shop.plot(f"distributions-{dataset}", figure, data,
+                     f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below: {medians}.",
+                     f"{DATASETS[dataset]}: mean cumulative distribution of the ground truth and of each model's maps "
+                     "before histogram matching.")
+
+
+def ranking_data(results: Results, dataset: str, metric: str) -> Frame:
+    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first; where compact.csv cut an interval at the
+    range of the metric, the cut one."""
+    data = statistics.summary(results, dataset, metric)[["model", "n", "mean", "ci95_low", "ci95_high"]].copy()
+    try:
+        cut = statistics.compact(results, dataset, metric).set_index("model")
+    except Missing:
+        return data
+    for column, of in (("ci95_low", "low"), ("ci95_high", "high")):
+        data[column] = data["model"].map(cut[of]).fillna(data[column])
+    return data
+
+
+REFERENCES = {"RS": ("chance", (0, (2, 2))), "HS": ("people", (0, (7, 3)))}
+
+
+def draw_ranking(axes: Any, data: Frame, shop: Workshop, metric: Metric) -> None:
+    """A dot per model at its mean with its 95 % interval, best on top, and references as named lines. That of an AUC begins at .5
+    unless something lies below."""
+    data = data.dropna(subset=["mean"]).reset_index(drop=True)
+    low, high = data["ci95_low"].fillna(data["mean"]), data["ci95_high"].fillna(data["mean"])
+    least, most = (low.min(), high.max()) if len(data) else (0, 1)
+    margin = 0.06 * (most - least) or 0.05
+    markers = names.markers(shop.models)
+    for y, row in enumerate(data.itertuples()):
+        axes.plot([low[y], high[y]], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
+        axes.plot([row.mean], [y], color=shop.colours.get(row.model), marker=markers.get(row.model, "o"), ms=8, ls="none", zorder=3)
+        axes.annotate(f"{row.mean:.3f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
+                      annotation_clip=False)
+        if row.model in REFERENCES:
+            name, dash = REFERENCES[row.model]
+            axes.axvline(row.mean, color="#555555", lw=1.1, ls=dash, zorder=1)
+            axes.annotate(name, (row.mean, 1.005), xycoords=("data", "axes fraction"), fontsize=8, color="#555555", ha="center",
+                          va="bottom", annotation_clip=False)
+    axes.set_yticks(range(len(data)), data["model"])
+    axes.set_ylim(max(len(data), 1) - 0.5, -0.5)
+    begin = 0.5 if family_of(metric.name) == "auc" and least >= 0.5 else least - margin
+    axes.set_xlim(begin, most + margin)
+    axes.grid(axis="y", visible=False)
+    axes.set_xlabel(f"Mean {metric.label}" + (", lower is better" if metric.lower else ""))
+
+
+def sentence(data: Frame) -> str:
+    return ", ".join(f"{row.model} {row.mean:.3f}" for row in data.itertuples() if row.mean == row.mean)
+
+
+def heat_data(results: Results, dataset: str, metric: str) -> Frame:
+    """Shapes by models, worst mean over the models first; columns item, view, mean, then one per model."""
+    mean = statistics.mean_per_shape(results, dataset, metric)
+    wide = statistics.scores(results, dataset, metric).loc[mean.index]
+    lower = results.metric(metric).lower
+    order = wide.mean().sort_values(ascending=lower, kind="stable", na_position="last").index
+    return pandas.concat([mean.rename("mean"), wide[order]], axis=1).reset_index()
+
+
+def performance(shop: Workshop, dataset: str, metric: str) -> Plot:
+    """The paper's panels of one metric: colour map, ranking, mean per shape."""
+    of = shop.results.metric(metric)
+    heat = heat_data(shop.results, dataset, metric)
+    ranking = ranking_data(shop.results, dataset, metric)
+    if heat.empty:
+        raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
+    models = list(heat.columns[3:])
+    figure = style.new_figure(11, 4.6)
+    panels = figure.subplot_mosaic([["map", "bars"], ["line", "bars"]], width_ratios=[1.75, 1], height_ratios=[1.1, 1])
+    values = heat[models].to_numpy().T
+    finite = values[numpy.isfinite(values)]
+    low, high = numpy.percentile(finite, [1, 99]) if len(finite) else (0, 1)
+    image = panels["map"].imshow(values, aspect="auto", interpolation="nearest", vmin=low, vmax=max(high, low + 1e-9),
+                                 extent=(0.5, len(heat) + 0.5, len(models) - 0.5, -0.5))
+    panels["map"].set_yticks(range(len(models)), models)
+    panels["map"].grid(visible=False)
+    figure.colorbar(image, ax=panels["map"], location="top", shrink=0.5, aspect=40, label=of.label, extend="both")
+    rank = numpy.arange(1, len(heat) + 1)
+    panels["line"].plot(rank, heat["mean"], color=style.INK, lw=1.6, marker="o" if len(heat) < 60 else "", ms=3.5)
+    panels["line"].set(xlabel=f"Shapes, {'highest' if of.lower else 'lowest'} mean {of.label} first",
+                       ylabel=f"Mean {of.label}")
+    for panel in ("map", "line"):
+        panels[panel].set_xlim(0.5, len(heat) + 0.5)
+        panels[panel].xaxis.get_major_locator().set_params(integer=True)
+    draw_ranking(panels["bars"], ranking, shop, of)
+    name = f"performance-{dataset}-{shop.metric_files[metric]}"
+    block = shop.plot(name, figure, heat,
+                      f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs from "
+                      f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
+                      f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
+                      "their mean, with 95 % confidence intervals; mean per shape.")
+    return block
+
+
+def rankings(shop: Workshop, dataset: str) -> Plot:
+    """Models ordered by mean, one panel per metric."""
+    data, missing = {}, []
+    for metric in shop.results.leading:
+        try:
+            data[metric] = ranking_data(shop.results, dataset, metric)
+        except Missing as reason:
+            missing.append(str(reason))
+    if not data:
+        raise Missing(" ".join(missing))
+    figure = style.new_figure(11, 0.42 * max(len(table) for table in data.values()) + 1.1)
+    for axes, (metric, table) in zip(figure.subplots(1, len(data), squeeze=False)[0], data.items()):
+        of = shop.results.metric(metric)
+        draw_ranking(axes, table, shop, of)
+        axes.set_title(of.label, pad=16)
+    text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
+    plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
+    return shop.plot(f"ranking-{dataset}", figure, plotted, f"Models on {spoken(dataset)}, best first. {text}.",
+                     f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
+
+
+def human_data(results: Results, metric: str) -> Frame:
+    """Columns n, n_meshes, mean, ci95_low, ci95_high of human_curve.csv."""
+    columns = ["n", "n_meshes", "mean", "ci95_low", "ci95_high"]
+    table = results.table("human_curve.csv", "metric", *columns)
+    rows = table[table["metric"] == metric][columns].dropna(subset=["n", "mean"]).reset_index(drop=True)
+    if rows.empty:
+        raise Missing(f"human_curve.csv has no {results.metric(metric).label}.")
+    return rows
+
+
+def model_means(shop: Workshop, metric: str) -> dict[str, float]:
+    """model -> mean on meshes, without references."""
+    if not shop.results.has("summary.csv"):
+        return {}
+    rows = statistics.summary(shop.results, "meshes", metric).dropna(subset=["mean"])
+    return {row.model: row.mean for row in rows.itertuples() if row.model not in REFERENCES}
+
+
+def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], shop: Workshop) -> None:
+    """The curve of participants and a line per model, each named at its right end."""
+    axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
+    axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4)
+    last = table["n"].max()
+    for model, mean in means.items():
+        axes.plot([table["n"].min(), last], [mean, mean], color=shop.colours.get(model), lw=1.4, ls=shop.dashes.get(model, "-"))
+    values = [*table["mean"], *table["ci95_low"].dropna(), *table["ci95_high"].dropna(), *means.values()]
+    margin = 0.05 * (max(values) - min(values)) or 0.05
+    limits = (min(values) - margin, max(values) + margin)
+    axes.set_ylim(*limits)
+    axes.set_xlim(table["n"].min(), last)
+    axes.set_xticks(range(1, int(last) + 1, 2))
+    style.label_ends(axes, [(mean, model, shop.colours.get(model)) for model, mean in means.items()]
+                     + [(table["mean"].iloc[-1], "people", style.INK)], limits, 3.2)
+
+
+def human_curves(shop: Workshop) -> Plot:
+    """n participants against n others, one panel per metric, with each model's mean as a line across."""
+    data = {metric: human_data(shop.results, metric) for metric in shop.results.leading}
+    figure = style.new_figure(11, 4.1)
+    for axes, (metric, table) in zip(figure.subplots(1, len(data)), data.items()):
+        draw_curve(axes, table, model_means(shop, metric), shop)
+        label = shop.results.metric(metric).label
+        axes.set(title=label, xlabel="Participants n", ylabel=f"Mean {label}")
+    ends = "; ".join(f"{shop.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
+                     for metric, table in data.items())
+    plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
+    return shop.plot("human-curves", figure, plotted,
+                     f"n participants against n others, n = 1 to {int(table['n'].max())}: {ends}.",
+                     "How well n participants predict n others, with the 95 % interval; lines across: each model's mean, against all participants.")

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The first screen: who leads and how sure, the models with their intervals, three shapes, and what the data is and is not."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from salbench.pages.blocks import Missing, Note
+from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
+from salbench.report import examples, paper, statistics
+from salbench.report.gallery import describe
+from salbench.report.metrics import family_of
+from salbench.report.results import Frame, Results, text_of
+from salbench.report.workshop import Workshop
+
+PANELS = 2   # data sets with panels; the page of the ranking has all
+MODELS = 6   # rows of a panel, likewise
+LINES = {"RS": "chance", "HS": "people"}
+
+
+@dataclass
+class Panel:
+    """A dot plot of the best models of a data set by one metric. Places are percentages of the width of the plot."""
+    title: str
+    arrow: str       # "higher" or "lower" is better
+    rows: "list[Dot]"
+    lines: list[tuple[str, str, float]]  # (name, value, place) of references
+    low: str         # ends of the axis
+    high: str
+    more: int = 0    # models that are left out
+
+
+@dataclass
+class Dot:
+    model: str
+    mean: str
+    between: str     # the interval in words; empty: there is none
+    group: str
+    first: bool      # may be the best
+    at: float
+    low: float
+    high: float
+    marker: str
+
+
+@dataclass
+class Front:
+    sentences: list[str]
+    panels: list[tuple[str, list[Panel]]] = field(default_factory=list)  # (data set, [Panel])
+    shapes: list[tuple[Any, ...]] = field(default_factory=list)  # (label, item, page, score, [(picture, alt)])
+    shapes_said: str = ""
+    facts: list[tuple[str, str]] = field(default_factory=list)  # (term, text)
+    notes: list[Note] = field(default_factory=list)  # of what is missing
+
+
+def front(shop: Workshop) -> Front:
+    """Everything that index.html shows."""
+    made = Front(sentences=[])
+    for build in (add_sentences, add_panels, add_shapes, add_facts):
+        try:
+            build(shop, made)
+        except Missing as reason:
+            note = Note(str(reason), missing=True)
+            made.notes += [note] if note not in made.notes else []
+    return made
+
+
+def add_sentences(shop: Workshop, made: Front) -> None:
+    for dataset in statistics.shown(shop.results):
+        made.sentences += [text for text in statistics.leaders(shop.results, dataset)["sentence"][:1] if text]
+
+
+def add_panels(shop: Workshop, made: Front) -> None:
+    for dataset in statistics.shown(shop.results):
+        panels = []
+        for metric in shop.results.leading:
+            try:
+                panels.append(panel(shop.results, dataset, metric, MODELS))
+            except Missing:
+                continue
+        if panels and len(made.panels) < PANELS:
+            made.panels.append((DATASETS[dataset], panels))
+    if not made.panels:
+        shop.results.table("compact.csv", *statistics.COMPACT)
+        raise Missing("No shape has scores: there is nothing to compare.")
+
+
+def panel(results: Results, dataset: str, metric: str, most: int) -> Panel:
+    of = results.metric(metric)
+    table = statistics.compact(results, dataset, metric)
+    table = table[table["mean"].notna()]
+    models, references = table[table["kind"] == "model"], table[table["kind"] == "reference"]
+    if models.empty:
+        raise Missing(f"compact.csv has no model with a mean {of.label} on {spoken(dataset)}.")
+    first = set(first_of(results, dataset, metric))
+    shown = models.head(most)
+    low, high = limits(metric, shown, references)
+
+    def place(value: float) -> float:
+        return round(100 * min(max((value - low) / (high - low), 0), 1), 2)
+    rows = []
+    for at, row in enumerate(shown.to_dict("records")):
+        known = row["low"] == row["low"]
+        between = f"{row['low']:.3f} to {row['high']:.3f}".replace("-", "−") if known else ""
+        rows.append(Dot(row["model"], number(row["mean"]), between, row["group"], row["model"] in first, place(row["mean"]),
+                        place(row["low"] if known else row["mean"]), place(row["high"] if known else row["mean"]), SHAPES[at % len(SHAPES)]))
+    lines = [(LINES[row["model"]], number(row["mean"]), place(row["mean"])) for row in references.to_dict("records")
+             if row["model"] in LINES]
+    return Panel(of.label, "lower" if of.lower else "higher", rows, lines, number(low, 2), number(high, 2), len(models) - len(shown))
+
+
+# Outlines around 0, 0: neighbours differ in form too.
+MARKS = {"circle": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z", "square": "M-4 -4h8v8h-8z", "diamond": "M0 -5.5L5.5 0L0 5.5L-5.5 0z",
+         "triangle": "M0 -5L5 4H-5z"}
+SHAPES = tuple(MARKS)
+
+
+def first_of(results: Results, dataset: str, metric: str) -> list[str]:
+    """Models that may be the best by a metric."""
+    try:
+        rows = statistics.leaders(results, dataset, metric)
+    except Missing:
+        return []
+    return str(rows["leaders"].iloc[0]).split(", ") if len(rows) else []
+
+
+def number(value: float, digits: int = 3) -> str:
+    text = f"{value:.{digits}f}"
+    return (text.lstrip("-") if float(text) == 0 else text).replace("-", "−")
+
+
+def limits(metric: str, shown: Frame, references: Frame) -> tuple[float, float]:
+    """Ends of the axis, a little beyond all intervals and references; that of an AUC begins at .5 unless an interval lies below."""
+    values = [*shown["low"].fillna(shown["mean"]), *shown["high"].fillna(shown["mean"]), *references["mean"]]
+    low, high = min(values), max(values)
+    margin = 0.04 * (high - low) or 0.05
+    below = 0.5 if family_of(metric) == "auc" and min(shown["low"].fillna(shown["mean"])) >= 0.5 else low - margin
+    return below, high + margin
+
+
+def add_shapes(shop: Workshop, made: Front) -> None:
+    """The best, the median and the worst of the shapes with pictures, by the score of the leader."""
+    metric = next(iter(shop.results.leading))
+    for dataset in statistics.shown(shop.results):
+        leaders = first_of(shop.results, dataset, metric)
+        if not leaders:
+            continue
+        scores = statistics.scores(shop.results, dataset, metric)[leaders[0]].dropna()
+        painters = [painter for painter in examples.scored_pictures(shop, dataset)
+                    if (painter.shape.item, painter.shape.view) in scores.index and painter.has(leaders[0])]
+        if painters:
+            break
+    else:
+        return
+    of = shop.results.metric(metric)
+    painters.sort(key=lambda painter: float(scores[painter.shape.item, painter.shape.view]), reverse=not of.lower)
+    chosen = dict(zip((0, (len(painters) - 1) // 2, len(painters) - 1), ("Best", "Typical", "Worst")))
+    for at, label in chosen.items():
+        shape = painters[at].shape
+        pictures = [(painters[at].paint(what), alt) for what, alt in
+                    (("ground truth", f"What people marked on {shape.name}"), (leaders[0], f"Map of {leaders[0]} on {shape.name}"))]
+        score = f"{of.label} {number(scores[shape.item, shape.view])}"
+        made.shapes.append((label, describe(shape), shop.page_of(shape.item), score, [pair for pair in pictures if pair[0]]))
+    kind = KIND_NAMES[dataset]
+    made.shapes_said = (f"{leaders[0]} on its best, median and worst {kind} by {of.label}, of {len(painters)} with pictures: "
+                        f"{'the simulated ground truth' if shop.results.simulated else 'what people marked'}, and its map.")
+
+
+def add_facts(shop: Workshop, made: Front) -> None:
+    """What the data is, and what it is not."""
+    results = shop.results
+    rows = results.table("results.csv", "dataset", "item", "view")
+    counts = rows.drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
+    shapes = ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
+    made.facts.append(("Shapes", f"{shapes} with ground truth"))
+    made.facts.append(("Participants", people(results, counts)))
+    protocol = results.option("protocol")
+    unit = {"mesh": "a mesh", "class": "a class of shapes", "shape": "a mesh, scan or point cloud"}.get(results.unit)
+    said = [f"protocol {protocol}" if protocol else "", f"one observation is {unit}" if unit else "", "intervals are 95 %"]
+    made.facts.append(("Method", "; ".join(filter(None, said))))
+    reason = paper.other_data(results)
+    if reason:
+        made.facts.append(("Not", f"a check of the paper: {reason}"))
+
+
+def people(results: Results, counts: Mapping[str, int]) -> str:
+    entry = results.record.get("data_set")
+    layout = text_of(entry.get("layout")) if isinstance(entry, dict) else ""
+    of = f", data set {layout}" if layout else ""
+    if results.simulated:
+        return f"simulated by the program{of}: nothing here is about people"
+    scans = "; scans have the ground truth of their mesh, nobody was asked about them" if "scans" in counts else ""
+    return f"{told_apart(entry)}{of}{scans}"
+
+
+def told_apart(entry: Any) -> str:
+    """How many people there were per shape, as far as the files tell them apart."""
+    found = entry.get("participants") if isinstance(entry, dict) else None
+    if not found:
+        return "real people"
+    few, many = found
+    if many == 0:
+        return "real people, pooled"
+    return f"{few if few == many else f'{few} to {many}'} real people per shape"

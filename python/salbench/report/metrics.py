@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Metrics as pages show them, and which are conventions of the same measurement."""
+
+import math
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from salbench.conclusions.metrics import label_of, lower_is_better
+
+TIE = 1e-12  # relative difference of equal means: the same scores summed in another order
+_FAMILIES = {"auc": "AUC", "nss": "NSS", "lcc": "Correlation", "kl": "KL", "sim": "SIM", "mse": "Error",
+             "ig": "Information gain"}
+_FAMILY_OF = {"cc": "lcc", "spearman": "lcc", "mae": "mse"}
+Key = TypeVar("Key", bound=Hashable)
+
+
+def family_of(name: str) -> str:
+    """The metric that the others of its family are variants of: "auc" of auc_judd_area, "lcc" of cc."""
+    base = name.partition("_")[0]
+    return _FAMILY_OF.get(base, base)
+
+
+def family_label(family: str) -> str:
+    return _FAMILIES.get(family, family)
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A column of the tables, as run.yaml describes it."""
+    name: str
+    label: str
+    unit: str = "1"
+    lower: bool = False  # better
+    matching: str = ""   # of the maps that it reads: "histogram", "none"; empty if run.yaml does not say
+
+    @property
+    def maps(self) -> str:
+        """Which maps it reads, in words; empty where nobody said."""
+        return {"histogram": "matched", "none": "as they are"}.get(self.matching, "")
+
+    @property
+    def below(self) -> str:
+        """What stands below the label in tables: the paper's metrics read matched maps, which goes without saying."""
+        return "maps as they are" if self.matching == "none" else ""
+
+    def best(self, scores: Mapping[Key, float | None]) -> set[Key]:
+        """The keys of the best scores: what every page and table sets in bold. Several where scores tie; none where no score
+        is a finite number."""
+        known = {key: value for key, value in scores.items() if value is not None and math.isfinite(value)}
+        top = (min if self.lower else max)(known.values(), default=0)
+        return {key for key, value in known.items() if abs(value - top) <= TIE * abs(top)}
+
+
+def described(name: str, entry: Any = None) -> Metric:
+    """entry: {"unit": ..., "better": ..., "matching": ...} of run.yaml, if it has one."""
+    entry = entry if isinstance(entry, dict) else {}
+    lower = entry["better"] == "lower" if entry.get("better") else lower_is_better(name)
+    return Metric(name, label_of(name), str(entry.get("unit") or "1"), lower, str(entry.get("matching") or ""))

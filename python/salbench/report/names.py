@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names, order and colours of models; names of files and of items."""
+
+import hashlib
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+MODELS = {
+    "LS": "Saliency of large point sets (Shtrom, Leifman, Tal 2013)",
+    "CS": "Cluster-based point set saliency (Tasse, Kosinka, Dodgson 2015)",
+    "PS": "Principal components of descriptors (Tasse, Kosinka, Dodgson 2016)",
+    "MS": "Mesh saliency by spectral processing (Song, Liu, Martin, Rosin 2014)",
+    "HS": "Human performance: one participant against the others",
+    "RS": "Chance",
+}
+
+# Okabe and Ito's colours, which colour-blind readers tell apart, darkened where they have less than 3:1 beside white. Ground truth
+# is black.
+_COLOURS = {"GS": "#000000", "LS": "#0072B2", "CS": "#D55E00", "PS": "#009E73", "MS": "#BF5F96", "HS": "#A87400",
+            "RS": "#767676"}
+_OWN = ("#00828C", "#8B4513", "#5B8A1F", "#5E3C99", "#6B6BD6", "#B03060", "#8A7A00")
+_MARKERS = {"GS": "*", "LS": "o", "CS": "s", "PS": "^", "MS": "D", "HS": "P", "RS": "X"}
+_OWN_MARKERS = ("v", "h", "<", "p", ">", "d", "8", "H", "o")
+_DASHES = {"GS": "-", "LS": "-", "CS": (0, (6, 2)), "PS": (0, (2, 1.5)), "MS": (0, (6, 2, 1, 2)), "HS": (0, (1, 1.5)),
+           "RS": (0, (8, 2, 1, 2, 1, 2))}
+_OWN_DASHES = ((0, (4, 1)), (0, (3, 2, 1, 2)), (0, (1, 1)), (0, (5, 2, 1, 2, 1, 2)), (0, (9, 3)))
+
+
+def colours(models: Sequence[str]) -> dict[str, str]:
+    """model -> colour. Built-in models keep theirs in every figure; others take the remaining ones in order."""
+    return _each(models, _COLOURS, _OWN)
+
+
+def dashes(models: Sequence[str]) -> dict[str, Any]:
+    """model -> line style, and below its marker: they tell models apart where colours do not, in print and in grey. Those of one's
+    own differ in number from the colours, so that 300 models differ in one of the three."""
+    return _each(models, _DASHES, _OWN_DASHES)
+
+
+def markers(models: Sequence[str]) -> dict[str, str]:
+    return _each(models, _MARKERS, _OWN_MARKERS)
+
+
+def _each(models: Sequence[str], built_in: Mapping[str, T], own: Sequence[T]) -> dict[str, T]:
+    """model -> what a built-in model has, or for others the next of their own, in turns."""
+    others = [model for model in models if model not in built_in]
+    return {model: built_in[model] if model in built_in else own[others.index(model) % len(own)] for model in models}
+
+
+def natural(name: str) -> list[tuple[int, int, str]]:
+    """Sort key: item 9 stands before item 10."""
+    return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", str(name)) if part]
+
+
+_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)  # no files on Windows, whatever the extension
+_LONGEST = 200  # a file system takes 255 bytes: this leaves room for extensions and for the names of pictures
+
+
+def _escaped(pattern: str, text: str) -> str:
+    return re.sub(pattern, lambda match: f"+{ord(match[0]):x}+", text)
+
+
+def file_name(name: str, with_capitals: bool = True) -> str:
+    """A file name for any item, one-to-one: every character but letters, digits and ".-_" becomes its code between +, and
+    so do a "." at either end and the first letter of a device's name. The end of a long one becomes a digest."""
+    text = _escaped(r"[^A-Za-z0-9._-]" if with_capitals else r"[^a-z0-9._-]", str(name))
+    text = _escaped(r"^\.|\.$", text) or "+"
+    if _DEVICES.match(text):
+        text = _escaped("^.", text)
+    if len(text) > _LONGEST:
+        text = f"{text[:_LONGEST - 33]}~{hashlib.md5(str(name).encode('utf-8', 'surrogatepass')).hexdigest()}"
+    return text
+
+
+def file_names(names: Iterable[str]) -> dict[str, str]:
+    """name -> file name, all different also where capitals do not count: on macOS and Windows. In names that would be the
+    same there, capitals become their codes."""
+    alike: dict[str, list[str]] = {}
+    for name in dict.fromkeys(names):
+        alike.setdefault(file_name(name).lower(), []).append(name)
+    return {name: file_name(name, with_capitals=len(group) == 1) for group in alike.values() for name in group}
+
+
+def shape_name(item: str, view: str = "") -> str:
+    """As the program names items: mesh "52", its scan 3 "52_3"."""
+    return f"{item}_{view}" if view != "" else str(item)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pages from templates."""
+
+import shutil
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from salbench.pages import rendering
+from salbench.pages.viewer_parts import three_js
+from salbench.report.folder import Folder
+from salbench.report.painting import colour_bar
+from salbench.report.results import Results, text_of
+from salbench.report.workshop import Workshop
+
+HERE = Path(__file__).parent
+
+
+def copy_static(folder: Folder) -> None:
+    """Style, scripts, colour bars; three.js where it is installed, without which pages have no viewer."""
+    for place in (rendering.HERE, HERE):
+        for file in sorted((place / "static").iterdir()):
+            shutil.copyfile(file, folder.file(f"static/{file.name}"))
+    colour_bar().save(folder.file("static/colourbar.png"))
+    colour_bar("diverging").save(folder.file("static/colourbar-difference.png"))
+    with suppress(FileNotFoundError):
+        for file in three_js():
+            shutil.copyfile(file, folder.file(f"static/{file.name}"))
+
+
+class Pages:
+    """Renders templates into the report's folder with what every page shows: banners and navigation."""
+
+    def __init__(self, shop: Workshop, navigation: list[tuple[str, str]]) -> None:
+        self.shop = shop
+        self.templates = rendering.environment(HERE)
+        self.common = {"results": shop.results, "navigation": navigation, "program": text_of(shop.results.record.get("program"))}
+
+    def write(self, path: str, template: str, **values: Any) -> None:
+        """path: within the report; links in templates start with `root`."""
+        root = "../" * path.count("/")
+        text = self.templates.get_template(template).render(
+            path=path, root=root, banners=banners(self.shop.results), **self.common, **values)
+        self.shop.file(path).write_text(text, encoding="utf-8")
+
+
+def banners(results: Results) -> list[str]:
+    """What every page says at its top: simulated participants, a run that did not end, numbers that cannot be used."""
+    said = []
+    if results.simulated:
+        said.append(rendering.SIMULATED)
+    if results.state != "finished":
+        said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
+    return said + results.unusable

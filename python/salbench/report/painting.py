@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Paints saliency maps on pictures: a look-up per pixel, with no rendering."""
+
+import re
+from functools import cache
+from typing import Any
+
+import numpy
+from numpy.typing import NDArray
+from PIL import Image
+
+from salbench.conclusions.units import Floats
+from salbench.pages import rendering
+from salbench.report.exports import Faces, Picture
+
+Bytes = NDArray[numpy.uint8]
+COLOURS = rendering.HERE / "static/palette.js"  # the tables stand there, once for pages and pictures
+DEPTH_MARGIN = 0.004  # share of the depth by which a pick may lie behind what its pixels show
+LIGHTEST = 0.25  # how much of its shade a picture loses: the lightness of a colour tells the map, and less of it the shape
+
+
+@cache
+def colours(name: str) -> Bytes:
+    """n x 3 uint8 of a table of palette.js: "palette" of the values 0 to 1, "diverging" of -1 to 1, or the one "pick"."""
+    digits = re.findall(rf'salbench\.{name} = "([0-9a-f]+)";', COLOURS.read_text(encoding="utf-8"))[0]
+    return numpy.frombuffer(bytes.fromhex(digits), numpy.uint8).reshape(-1, 3)
+
+
+def palette() -> Bytes:
+    """256 x 3 uint8: the colours of the values 0 to 1."""
+    return colours("palette")
+
+
+class Canvas:
+    """A picture of a shape with all that its maps have in common. faces: f x 3, None for separate points."""
+
+    def __init__(self, picture: Picture, faces: Faces | None) -> None:
+        self.size = picture.primitive.shape
+        self.seen = numpy.flatnonzero(picture.primitive >= 0)
+        primitive = picture.primitive.reshape(-1)[self.seen]
+        self.corners = primitive[:, None] if faces is None else faces[primitive]
+        self.weights = None if faces is None else picture.weights.reshape(-1, 3)[self.seen].astype(numpy.float32)
+        shade = picture.shade.reshape(-1)[self.seen].astype(numpy.float32) / 255
+        covered = numpy.ones_like(shade) if picture.coverage is None else picture.coverage.reshape(-1)[self.seen] / numpy.float32(255)
+        self.shade = ((LIGHTEST + (1 - LIGHTEST) * shade) * covered)[:, None]
+        self.ground = (255 * (1 - covered) + 0.5)[:, None]  # white; the half rounds
+
+    def values(self, values: Floats) -> Floats:
+        """Of n values, those of the pixels that show something."""
+        of_corners = numpy.asarray(values, numpy.float32)[self.corners]
+        found: Floats = of_corners[:, 0] if self.weights is None else numpy.einsum("kc,kc->k", of_corners, self.weights)
+        return found
+
+    def paint(self, values: Floats, name: str = "palette") -> Any:
+        """An RGB image of the map on the shape: its colours times the shade, on white. values: n in [0, 1], or in [-1, 1] under
+        "diverging"."""
+        shown = self.values(values)
+        if name == "diverging":
+            shown = (shown + 1) / 2
+        level = numpy.clip(shown * 255 + 0.5, 0, 255).astype(numpy.uint8)
+        image = numpy.full((self.size[0] * self.size[1], 3), 255, numpy.uint8)
+        image[self.seen] = colours(name).astype(numpy.float32)[level] * self.shade + self.ground
+        return Image.fromarray(image.reshape(*self.size, 3))
+
+
+def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> tuple[Floats, Floats]:
+    """m x 2 pixel coordinates (x to the right, y down) and m depths of m x 3 points; NaN where the depth is 0; size: (width,
+    height)."""
+    clip = numpy.column_stack([points, numpy.ones(len(points))]) @ numpy.asarray(view_projection).T
+    depth = clip[:, 3]
+    x, y = (clip[:, :2] / numpy.where(depth == 0, numpy.nan, depth)[:, None]).T
+    return numpy.column_stack([(x + 1) / 2 * size[0], (1 - y) / 2 * size[1]]), depth
+
+
+def visible(picture: Picture, picks: Faces, points: Floats) -> Floats:
+    """Pixel coordinates, k x 2, of the picks that the camera sees: at least one of the pixels about a pick shows nothing
+    that is nearer to the camera."""
+    if picture.view_projection is None or picture.depth is None or len(picks) == 0:
+        return numpy.zeros((0, 2))
+    height, width = picture.primitive.shape
+    at, depth = project(points[picks], picture.view_projection, (width, height))
+    inside = ((at >= 0) & (at < (width, height))).all(axis=1)
+    at, depth = at[inside], depth[inside]
+    column, row = at.astype(int).T
+    farthest = numpy.full(len(at), -numpy.inf)  # of the 3 x 3 pixels about the pick, so that picks on edges count
+    for down in (-1, 0, 1):
+        for right in (-1, 0, 1):
+            near = picture.depth[(row + down).clip(0, height - 1), (column + right).clip(0, width - 1)]
+            farthest = numpy.maximum(farthest, numpy.where(numpy.isfinite(near), near, -numpy.inf))
+    return at[depth <= farthest * (1 + DEPTH_MARGIN)]
+
+
+def with_dots(image: Any, dots: Floats) -> Any:
+    """The image with a dot per row of m x 2 pixel coordinates, smooth at the rim."""
+    if len(dots) == 0:
+        return image
+    pixels = numpy.asarray(image).astype(numpy.float32)
+    radius = max(2, image.width / 100)
+    for x, y in dots:
+        left, top = max(int(x - radius - 1), 0), max(int(y - radius - 1), 0)
+        part = pixels[top:int(y + radius + 2), left:int(x + radius + 2)]
+        rows, columns = numpy.ogrid[top:top + part.shape[0], left:left + part.shape[1]]
+        distance = numpy.hypot(columns + 0.5 - x, rows + 0.5 - y)
+        for r, colour in ((radius, 255), (radius * 0.72, colours("pick")[0])):
+            covered = numpy.clip(r + 0.5 - distance, 0, 1)[:, :, None]
+            part += (colour - part) * covered
+    return Image.fromarray((pixels + 0.5).astype(numpy.uint8))
+
+
+def colour_bar(name: str = "palette", width: int = 256, height: int = 16) -> Any:
+    """An RGB image of a table from its first colour on the left to its last on the right."""
+    return Image.fromarray(numpy.broadcast_to(colours(name), (height, 256, 3)).copy()).resize((width, height))

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the paper prints, typed into configs/paper/*.csv with its source."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy
+
+from salbench import _tables
+from salbench.report.results import Frame, Results, flatten, text_of
+
+FOLDER = Path(__file__).parent.parent / "configs/paper"
+CLASSES = 20
+LAYOUTS = ("schelling", "princeton", "gs")  # of SHREC'07 with the ground truth of the Schelling study
+MODELS = ("LS", "CS", "PS", "MS", "HS", "RS")
+# Options that scores depend on, beside those of the models.
+OPTIONS = ("scan.", "normals.", "scan_normals.", "surface.", "fpfh.", "scan_fpfh.", "metrics.splits", "metrics.thresholds",
+           "metrics.constant_nss", *(f"models.{model}." for model in MODELS))
+
+
+def read(name: str) -> Frame:
+    """A table of configs/paper: text, but for the columns mean, ci95 and margin, which is NaN where there is none."""
+    return _tables.read(FOLDER / name, numbers=("mean", "ci95", "margin"))
+
+
+def per_class() -> dict[tuple[str, str], tuple[float, float]]:
+    """(class, model) -> (mean AUC, half of its 95 % interval), from table 2."""
+    return {(row["class"], row["model"]): (row["mean"], row["ci95"]) for _, row in read("per_class.csv").iterrows()}
+
+
+def mean_auc(model: str) -> float | None:
+    """The paper's mean AUC on meshes: the mean of its table over the classes, which are equally large. None if the paper
+    does not have the model."""
+    means = [mean for (_, name), (mean, _) in per_class().items() if name == model]
+    return float(numpy.mean(means)) if len(means) == CLASSES else None
+
+
+def other_data(results: Results) -> str:
+    """Why scores say nothing about the paper's; empty if they are of its shapes and people."""
+    if results.simulated:
+        return "the participants are simulated"
+    if not results.record:
+        return "run.yaml does not say of which data and protocol the scores are"
+    found = results.record.get("data_set")
+    layout = text_of(found.get("layout")) if isinstance(found, dict) else ""
+    if layout not in LAYOUTS:
+        return f"these are not the paper's data, but of the layout {layout or 'unknown'}"
+    return ""
+
+
+def other_protocol(results: Results, protocols: dict[str, Any]) -> str:
+    """Why the scores are not made as the paper's; empty if they are. protocols: as Workshop.protocols."""
+    name = results.option("protocol")
+    if name is None:
+        return "run.yaml does not name the protocol"
+    own, theirs = flatten(results.record["configuration"]), flatten(protocols.get(name, {}))
+    changed = [f"{path} is {own[path]} and not {value}" for path, value in theirs.items()
+               if path.startswith(OPTIONS) and own.get(path, value) != value]
+    return f"this is not the paper's protocol: {', '.join(changed)}" if changed else ""

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""People beside models: what more participants add, how many of them a model is worth, which share of human performance it
+reaches, and how reliable the ground truth is."""
+
+from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, interval, p_value
+from salbench.report import statistics
+from salbench.report.results import Row
+from salbench.report.tables import HUMAN, signed
+from salbench.report.units import HEAD, count_cell, counted
+from salbench.report.workshop import Workshop
+
+NOT_BELOW, ABOVE = "not shown below HS", "above HS"
+SHARE = ("Of HS: which share of the way from chance to human performance the model goes, with its 95 % interval. "
+         f"“{NOT_BELOW}”: the interval contains 1, and these data cannot tell the model from one participant; "
+         f"“{ABOVE}”: it lies beyond 1.")
+
+
+def tables(shop: Workshop) -> list[Block]:
+    """What stands below the human curve."""
+    explained = [Note(HUMAN)] if shop.results.has("human_curve.csv") else []
+    return (explained + attempt(reliability, shop) + attempt(worth, shop, "worth", list(shop.results.leading))
+            + attempt(more_participants, shop, "more-participants", list(shop.results.leading)))
+
+
+def share_cell(row: Row | None) -> Cell:
+    """row: of human_share.csv, or None."""
+    if row is None:
+        return cell(None)
+    if row["share"] != row["share"]:
+        missing = row["remark"].startswith("no scores")  # of HS on scans, which nobody was asked about
+        return cell(None, below="" if missing else row["remark"])
+    low, high = row["ci95_low"], row["ci95_high"]
+    if low != low or high != high:
+        return cell(row["share"], 2, below=row["remark"])
+    mark = ABOVE if low > 1 else NOT_BELOW if high >= 1 else ""
+    return cell(row["share"], 2, bold=mark == ABOVE, below=", ".join(filter(None, [interval(low, high, 2).text, mark])))
+
+
+def reliability(shop: Workshop) -> Note:
+    table = shop.results.table("human_reliability.csv", "n", "n_shapes", "fewest_participants", "most_participants", "split_half", "mean",
+                               "ci95_low", "ci95_high").dropna(subset=["mean"])
+    if table.empty:
+        raise Missing("human_reliability.csv is empty: reliability takes the metric cc and two participants.")
+    row = table.iloc[0]
+    people = " to ".join(dict.fromkeys(f"{row[name]:.0f}" for name in ("fewest_participants", "most_participants")))
+    between = f" (95 % interval {interval(row['ci95_low'], row['ci95_high'], 2).text})" if row["ci95_low"] == row["ci95_low"] else ""
+    return Note(f"Reliability of the ground truth of {people} participants: {row['mean']:.2f}{between} over "
+                f"{counted(shop.results.unit, 'meshes', row['n'], row['n_shapes'])}, from two halves that correlate by "
+                f"{row['split_half']:.2f} (Spearman and Brown).".replace("-", "−"))
+
+
+WORTH = ("How many participants a model is worth: where the mean human curve first is as good as the model's mean on the same meshes, "
+         "with 95 % intervals from resampled meshes. The curve scores participants against as many others, a model is scored against "
+         "all: HS, one participant, should be at 1. Where it is not, the number is a place on the curve and not one of people.")
+
+
+def worth(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
+    columns = ["dataset", "metric", "model", "n", "n_shapes", "largest_group", "mean", "k", "ci95_low", "ci95_high", "k_bound",
+               "low_bound", "high_bound", "crossings", "remark"]
+    table = shop.results.table("human_equivalents.csv", *columns)
+    rows = []
+    for metric in metrics:
+        for row in table[(table["metric"] == metric) & (table["model"] != "")].to_dict("records"):
+            ends = [place(row[f"ci95_{end}"], row[f"{end}_bound"]) for end in ("low", "high")]
+            rows.append([Cell(shop.results.metric(metric).label), Cell(row["model"]), worth_cell(row),
+                         Cell(" to ".join(dict.fromkeys(ends))) if all(ends) else Cell("–"),
+                         count_cell(shop.results, row["dataset"], row["n"], row["n_shapes"]), cell(row["mean"]), Cell(row["remark"])])
+    if not rows:
+        raise Missing("The run has no model to compare with the participants.")
+    return Table(identifier, WORTH, ["Metric", "Model", "Participants", "95 % interval", HEAD, "Mean", "Remark"], rows,
+                 [False] * 2 + [True, False, True, True, False], filters=[0, 1])
+
+
+def place(number: float, bound: str) -> str:
+    """A place on the curve as text, "less than 1", or "" where it is not known."""
+    if number == number:
+        return f"{number:.1f}"
+    return bound.replace("<", "less than ").replace(">", "more than ")
+
+
+def worth_cell(row: Row) -> Cell:
+    text = place(row["k"], row["k_bound"])
+    if not text:
+        return cell(None)
+    key = row["k"] if row["k"] == row["k"] else 0.0 if row["k_bound"].startswith("<") else float("1e9")
+    several = f"the first of {row['crossings']:.0f} places" if row["crossings"] > 1 else ""
+    return Cell(text, key, below=several)
+
+
+def more_participants(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
+    rows = []
+    for metric in metrics:
+        try:
+            table = statistics.one_more(statistics.human_differences(shop.results, metric))
+        except Missing:
+            continue
+        for row in table.to_dict("records"):
+            rows.append([Cell(shop.results.metric(metric).label), cell(row["from_participants"], 0), cell(row["to_participants"], 0),
+                         count_cell(shop.results, "meshes", row["n"], row["n_shapes"]), signed(row["mean_difference"]),
+                         interval(row["ci95_low"], row["ci95_high"]), p_value(row["t_p"])])
+    if not rows:
+        raise Missing("What one more participant adds takes meshes with four of them.")
+    return Table(identifier, "What one more participant adds: differences within a mesh, with their paired 95 % interval and p "
+                 "(Student). human_curve_differences.csv has every number of participants beside every larger one.",
+                 ["Metric", "From", "To", HEAD, "Mean difference", "95 % interval", "p"], rows, [False] + [True] * 6, filters=[0])

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A results folder as the program writes it: its tables, run.yaml, and what of them is missing."""
+
+import csv
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy
+import pandas
+import yaml
+
+from salbench import _tables
+from salbench.conclusions import conclude_if_missing, text_columns
+from salbench.conclusions.csv_file import InputError
+from salbench.conclusions.folders import StorageError
+from salbench.conclusions.metrics import PAPERS, leading
+from salbench.pages.blocks import Missing
+from salbench.report import metrics
+from salbench.report.metrics import Metric
+
+NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
+Frame: TypeAlias = pandas.DataFrame
+Row = Mapping[Any, Any]  # of a table, by column
+BASE_LOADER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)  # every scalar is text
+LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
+
+
+@dataclass
+class Results:
+    """A results folder. Tables are read when first asked for; what cannot be read is Missing."""
+
+    folder: Path
+    record: dict[str, Any] = field(default_factory=dict)  # run.yaml with every scalar as text
+    remarks: list[str] = field(default_factory=list)  # lines of '#' at the head of run.yaml and of the tables
+    unusable: list[str] = field(default_factory=list)  # sentences on tables that hold infinite numbers
+    pivoted: dict[tuple[str, str | None], Any] = field(default_factory=dict)  # (data set, metric) -> scores, for statistics.scores
+    _tables: dict[str, Frame | Missing] = field(default_factory=dict)
+
+    def table(self, name: str, *columns: str) -> Frame:
+        """The table of a CSV file with at least the columns named, or Missing."""
+        if name not in self._tables:
+            self._tables[name] = self._read(name)
+        table = self._tables[name]
+        if isinstance(table, Missing):
+            raise table
+        absent = [column for column in columns if column not in table]
+        if absent:
+            raise Missing(f"{name} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench again.")
+        return table
+
+    def has(self, name: str) -> bool:
+        try:
+            return not self.table(name).empty
+        except Missing:
+            return False
+
+    def _read(self, name: str) -> Frame | Missing:
+        path = self.folder / name
+        if not path.is_file():
+            return Missing(f"{name} is not in the results folder: run salbench again, to its end.")
+        try:
+            table, unusable = read_table(path)
+        except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
+            return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
+        self._note_remarks(path)
+        if name not in ("results.csv", "leaders.csv") and "split" in table and not table.empty:  # all splits together come first
+            table = table[table["split"] == table["split"].iloc[0]].reset_index(drop=True)
+        if unusable:
+            self.unusable.append(f"{name} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
+                                 f"{LARGEST:g}: they count as undefined.")
+        return table
+
+    def _note_remarks(self, path: Path) -> None:
+        self.remarks += [remark for remark in _tables.remarks_of(path) if remark not in self.remarks]
+
+    @property
+    def unit(self) -> str:
+        """What counts as one observation in intervals, tests and ranks: "mesh", "class" or "shape"; empty if unknown."""
+        return self.option("statistics.unit") or ""
+
+    @cached_property
+    def simulated(self) -> bool:
+        """True if the program made the participants up: then scores say nothing about people."""
+        said = any("simulated" in remark.lower() for remark in self.remarks)
+        return said or self.option("dataset.participants") == "simulated"
+
+    @cached_property
+    def _listed(self) -> dict[str, Any]:
+        listed = self.record.get("metrics")
+        return listed if isinstance(listed, dict) else {}
+
+    @cached_property
+    def metrics(self) -> dict[str, Metric]:
+        """Every metric that run.yaml or a table has by its name, the leading ones first."""
+        found = list(self._listed)
+        if self.has("results.csv") and "model" in self.table("results.csv"):
+            found += [name for name in self.table("results.csv") if name not in text_columns().union(NO_METRICS)]
+        if self.has("summary.csv") and "metric" in self.table("summary.csv"):
+            found += [name for name in self.table("summary.csv")["metric"].unique() if name]
+        first = leading(self._listed or PAPERS)
+        return {name: metrics.described(name, self._listed.get(name)) for name in dict.fromkeys(first + found)}
+
+    @cached_property
+    def leading(self) -> dict[str, Metric]:
+        """The metrics that every page shows: the paper's, where the run has them."""
+        return {name: self.metrics[name] for name in leading(self._listed or PAPERS)}
+
+    def metric(self, name: str) -> Metric:
+        return self.metrics.get(name) or metrics.described(name)
+
+    @property
+    def state(self) -> str:
+        """"finished", "partial, 3 of 12 shapes ..." or why it is not known."""
+        return text_of(self.record.get("results")) or "unknown: run.yaml is missing or was not completed"
+
+    def option(self, path: str) -> str | None:
+        """An option of the configuration as text, such as option("fpfh.radius"); None if it is not recorded."""
+        value = self.record.get("configuration")
+        for part in path.split("."):
+            if not isinstance(value, dict) or part not in value:
+                return None
+            value = value[part]
+        return value if isinstance(value, str) else None
+
+    @cached_property
+    def evaluated(self) -> list[str]:
+        """Names of the models whose maps another program made (salbench evaluate)."""
+        value = self.record.get("evaluated") or []
+        entries = value if isinstance(value, list) else [value]
+        return [entry["model"] for entry in entries if isinstance(entry, dict) and "model" in entry]
+
+
+def text_of(value: Any) -> str:
+    return value if isinstance(value, str) else ""
+
+
+def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
+    """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
+    flat: dict[str, str] = {}
+    for key, value in values.items():
+        if isinstance(value, dict):
+            flat |= flatten(value, f"{prefix}{key}.")
+        else:
+            flat[f"{prefix}{key}"] = str(value)
+    return flat
+
+
+def number_of(value: Any, otherwise: float = float("nan")) -> float:
+    """A number that run.yaml holds as text; `otherwise` in place of one that is none, infinite or too large."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return otherwise
+    return number if abs(number) <= LARGEST else otherwise
+
+
+def read_table(path: Path) -> tuple[Frame, int]:
+    """A table with its texts and float64 alone, and how many of its numbers cannot be used: infinite ones and those beyond LARGEST.
+    What is no number is NaN, and so is what a last line that was cut short lacks."""
+    table, unusable = _tables.read(path, errors="replace"), 0
+    for column in table.columns.difference(list(text_columns())):
+        values = pandas.to_numeric(table[column], errors="coerce").astype(float)
+        too_large = values.abs() > LARGEST
+        unusable += int(too_large.sum())
+        table[column] = values.mask(too_large)
+    return table, unusable
+
+
+def read_record(path: Path) -> dict[str, Any]:
+    """run.yaml with every scalar as text: a model named NO stays one. Empty if there is no such file or it is broken."""
+    try:
+        record = yaml.load(path.read_text(encoding="utf-8", errors="replace"), Loader=BASE_LOADER)
+    except (OSError, yaml.YAMLError):
+        return {}
+    return record if isinstance(record, dict) else {}
+
+
+def read_results(folder: Path) -> Results:
+    """The results in a folder, or InputError if the folder holds none."""
+    if not folder.is_dir():
+        raise InputError(f"{folder}: no such folder; name the results folder of a run (salbench run ... --out OUT)")
+    if not any((folder / name).is_file() for name in ("run.yaml", "results.csv", "summary.csv")):
+        raise InputError(f"{folder}: not a results folder (no run.yaml, no results.csv); name the one of salbench run")
+    if not (folder / "summary.csv").is_file():
+        with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
+            conclude_if_missing(folder)
+    results = Results(folder, read_record(folder / "run.yaml"))
+    if (folder / "run.yaml").is_file():
+        results._note_remarks(folder / "run.yaml")
+    for name in ("results.csv", "summary.csv"):
+        results.has(name)  # gathers their remarks
+    return results
+
+
+def write_csv(table: Frame, path: Path) -> None:
+    """Floats as the shortest text that reads back to the same bits."""
+    def text(value: Any) -> Any:
+        if isinstance(value, (float, numpy.floating)):
+            return "" if value != value else repr(float(value))
+        return value
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(table.columns)
+        writer.writerows([text(value) for value in row] for row in table.itertuples(index=False))

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A page per mesh or point cloud: its scores and ranks, its pictures, the scans of a mesh, and the viewer."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy
+from markupsafe import Markup
+
+from salbench.conclusions.units import DATASETS
+from salbench.pages.blocks import Block, Cell, Gallery, Missing, Note, Table, Tile, attempt, cell
+from salbench.pages.names import KIND_NAMES, spoken
+from salbench.pages.viewer_parts import section
+from salbench.report import run_page, statistics
+from salbench.report.exports import Shape, Shapes
+from salbench.report.gallery import Painter, describe
+from salbench.report.names import natural
+from salbench.report.pages import Pages
+from salbench.report.results import Results
+from salbench.report.shape_files import DIFFERENCE
+from salbench.report.viewer import entries, label_of
+from salbench.report.workshop import Workshop
+
+
+class Scores:
+    """Scores and ranks of all shapes under the leading metrics, looked up by shape: read once for all pages."""
+
+    def __init__(self, results: Results) -> None:
+        self.metrics = results.leading
+        self.wide, self.ranks = {}, {}
+        for dataset in DATASETS:
+            for metric, of in self.metrics.items():
+                try:
+                    wide = statistics.scores(results, dataset, metric)
+                except Missing:
+                    continue
+                ranks = statistics.ranks(wide, of)
+                self.wide[dataset, metric] = wide.to_dict("index")
+                self.ranks[dataset, metric] = (ranks.to_dict("index"), wide.notna().sum().to_dict())
+
+    def of(self, dataset: str, metric: str, item: str, view: str = "") -> dict[str, tuple[float, float, int]]:
+        """model -> (score, rank, number of ranked shapes) of the models that the shape has rows of."""
+        row = self.wide.get((dataset, metric), {}).get((item, view), {})
+        ranks, counts = self.ranks.get((dataset, metric), ({}, {}))
+        return {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
+
+    def best(self, dataset: str, metric: str, item: str, view: str = "") -> set[str]:
+        """The models with the best score of the shape."""
+        found = self.of(dataset, metric, item, view)
+        return self.metrics[metric].best({model: value for model, (value, _, _) in found.items()})
+
+    def pieces(self, shape: Shape, model: str) -> list[tuple[str, bool]]:
+        """The scores of a map as text, and whether each is the best of the shape."""
+        found = []
+        for metric in self.metrics:
+            key = (shape.dataset, metric, shape.item, shape.view)
+            value = self.of(*key).get(model, (float("nan"),))[0]
+            found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key)))
+        return found
+
+    def dataset_of(self, item: str) -> str:
+        """Of a mesh or point cloud that has scores."""
+        clouds = any(dataset == "clouds" and (item, "") in rows for (dataset, _), rows in self.wide.items())
+        return "clouds" if clouds else "meshes"
+
+    def views(self, item: str) -> list[str]:
+        found = {key[1] for (dataset, _), rows in self.wide.items() if dataset == "scans" for key in rows if key[0] == item}
+        return sorted(found, key=natural)
+
+
+def items(results: Results, shapes: Shapes) -> dict[str, str]:
+    """item -> class of every mesh and point cloud that has scores or is in an export."""
+    found = {item: (shapes.itself(item) or shapes.scans(item)[0]).category for item in shapes.items}
+    try:
+        found |= statistics.classes(results)
+    except Missing:
+        pass
+    return {item: found[item] for item in sorted(found, key=natural)}
+
+
+def score_cells(scores: Scores, dataset: str, item: str, view: str, model: str) -> list[Cell]:
+    """Per metric the score and its rank; best of the shape in bold."""
+    cells = []
+    for metric in scores.metrics:
+        value, rank, of = scores.of(dataset, metric, item, view).get(model, (numpy.nan, numpy.nan, 0))
+        cells.append(cell(value, bold=model in scores.best(dataset, metric, item, view)))
+        cells.append(Cell(f"{int(rank)} of {of}", int(rank)) if rank == rank else Cell("–", ""))
+    return cells
+
+
+def heads_of(scores: Scores) -> list[str]:
+    return [head for of in scores.metrics.values() for head in (of.label, f"Rank by {of.label}")]
+
+
+def score_table(shop: Workshop, scores: Scores, dataset: str, item: str) -> Table:
+    models = [model for model in shop.models if any(model in scores.of(dataset, metric, item) for metric in scores.metrics)]
+    kind = KIND_NAMES[dataset]
+    if not models:
+        left_out = ", its jobs failed, or the run left meshes out" if dataset == "meshes" else " or its jobs failed"
+        raise Missing(f"The {kind} has no scores: it has no ground truth{left_out}.")
+    heads = heads_of(scores)
+    rows = [[Cell(model)] + score_cells(scores, dataset, item, "", model) for model in models]
+    return Table("mesh-scores", f"Scores of the {kind}, best in bold, and its rank among all {spoken(dataset)} under the same model "
+                 "(1: best score).", ["Model"] + heads, rows, [False] + [True] * len(heads))
+
+
+def scan_table(shop: Workshop, scores: Scores, item: str) -> Table:
+    rows = []
+    for view in scores.views(item):
+        for model in shop.models:
+            if any(model in scores.of("scans", metric, item, view) for metric in scores.metrics):
+                rows.append([Cell(view, int(view) if view.isdigit() else None), Cell(model)]
+                            + score_cells(scores, "scans", item, view, model))
+    if not rows:
+        raise Missing("The scans of the mesh have no scores.")
+    heads = heads_of(scores)
+    return Table("scan-scores", "Scores of the scans, best of each scan in bold, and their rank among all scans.",
+                 ["Scan", "Model"] + heads, rows, [True, False] + [True] * len(heads), filters=[0, 1])
+
+
+def tile(painter: Painter, scores: Scores, what: str, when: str) -> Tile:
+    """One painted map with the scores of the matched map below."""
+    title = label_of(what, when)
+    if not painter.has(what, when):
+        return Tile("", title, "Not in the export.")
+    picture = painter.paint(what, when)
+    if not picture:
+        return Tile("", title, "The picture does not fit the shape: damaged export.")
+    return Tile(picture, title, painter.alt(what, when, title), scores.pieces(painter.shape, what) if when == "after" else [])
+
+
+def gallery(painter: Painter, scores: Scores, models: Sequence[str], caption: str) -> Gallery:
+    rows = []
+    for when, label in (("before", "Before histogram matching"), ("after", "After histogram matching")):
+        tiles = [tile(painter, scores, model, when) for model in models if painter.has(model, when)]
+        if when == "before" and painter.has("ground truth"):
+            tiles.insert(0, tile(painter, scores, "ground truth", "before"))
+        rows.append((label, tiles))
+    return Gallery(caption, [row for row in rows if row[1]])
+
+
+def difference_gallery(painter: Painter, scores: Scores, models: Sequence[str]) -> list[Block]:
+    """Where each model is wrong; none where no map can be compared."""
+    tiles = [tile(painter, scores, model, DIFFERENCE) for model in models if painter.has(model, DIFFERENCE)]
+    return [Gallery(f"Errors on {describe(painter.shape)}: ranks of the points on each model's map less those on the ground truth; "
+                    "a point's rank is the share of points with lower values.", [("Difference to the ground truth", tiles)], differences=True)] if tiles else []
+
+
+def models_of(shop: Workshop, maps: Iterable[tuple[str, str]]) -> list[str]:
+    """Models in the order of the report; those that only the export knows come last."""
+    found = {model for model, _ in maps if model != "ground truth"}
+    return [model for model in shop.models if model in found] + sorted(found - set(shop.models))
+
+
+def pictures(shop: Workshop, shape: Shape, painter: Painter, scores: Scores) -> list[Block]:
+    if not painter.has_picture:
+        raise Missing(f"The export holds no picture of {describe(shape)}: salbench pictures makes it, salbench export "
+                      "then contains it.")
+    score_text = f"Below: {', '.join(of.label for of in scores.metrics.values())}; best in bold."
+    models = models_of(shop, painter.maps)
+    return [gallery(painter, scores, models, f"Saliency on {describe(shape)}. {score_text}"),
+            *difference_gallery(painter, scores, models)]
+
+
+def notes(shop: Workshop, item: str, exported: bool) -> list[Note]:
+    """What a reader has to know first: what failed, and why there may be no pictures."""
+    made = []
+    for entry in run_page.failed(shop.results):
+        if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
+            made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
+    if not exported:
+        made.append(Note("No export given to the report holds this shape, so that its pictures and the viewer are missing: "
+                         f"salbench export CONFIG --items {item} --to OUT/shapes.h5, then make the report again.", missing=True))
+    return made
+
+
+def write_page(shop: Workshop, pages: Pages, scores: Scores, item: str, category: str) -> None:
+    """shapes/ITEM.html with its pictures and the viewer's data."""
+    itself, views = shop.shapes.itself(item), shop.shapes.scans(item)
+    dataset = itself.dataset if itself else scores.dataset_of(item)
+    kind = KIND_NAMES[dataset]
+    shapes = ([itself] if itself else []) + views
+    painters = {shape.name: Painter(shop, shape) for shape in shapes}
+    titles = {shape.name: f"Scan {shape.view}" if shape.view else kind.capitalize() for shape in shapes}
+    shown = entries(shapes, titles, shop.drawn)
+    own_blocks = attempt(score_table, shop, scores, dataset, item)
+    if itself:
+        own_blocks += attempt(pictures, shop, itself, painters[itself.name], scores)
+    scans = [(f"Scan {shape.view}", attempt(pictures, shop, shape, painters[shape.name], scores)) for shape in views
+             if painters[shape.name].has_picture]
+    scan_blocks = attempt(scan_table, shop, scores, item) if dataset == "meshes" else []
+    if views and not scans:
+        scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
+    first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
+    pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
+                viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
+                own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans, notes=notes(shop, item, bool(shapes)))

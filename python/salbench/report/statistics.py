@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of the program's tables, and what pages of single shapes need of results.csv: scores by shape and their ranks."""
+
+from typing import Any
+
+import numpy
+import pandas
+
+from salbench.conclusions.units import DATASETS
+from salbench.pages.blocks import Missing
+from salbench.report.metrics import Metric
+from salbench.report.names import natural
+from salbench.report.results import Frame, Results, Row
+
+OF_METRIC = ("dataset", "metric")
+MEAN = ("mean", "ci95_low", "ci95_high")
+RANKING = (*OF_METRIC, "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first", "group")
+DIFFERENCES = ("from_participants", "to_participants", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low",
+               "ci90_high")
+SHARES = (*OF_METRIC, "model", "share", "ci95_low", "ci95_high", "remark")
+COMPACT = (*OF_METRIC, "better", "model", "kind", "n", "n_shapes", "n_missing", "mean", "low", "high", "half", "rank", "group", "best")
+LEADERS = (*OF_METRIC, "verdict", "leaders", *MEAN, "second", "lead", "lead_low", "lead_high", "n", "n_shapes", "sentence")
+SUMMARY = (*OF_METRIC, "model", "n", "sd", *MEAN, "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean")
+
+def datasets(results: Results) -> list[str]:
+    """The data sets that have scores, in the program's order."""
+    try:
+        present = set(results.table("results.csv", "dataset")["dataset"])
+    except Missing:
+        present = set(results.table("summary.csv", "dataset")["dataset"])
+    return [dataset for dataset in DATASETS if dataset in present]
+
+
+def shown(results: Results) -> list[str]:
+    """The data sets that every report speaks of, which are the paper's, and point clouds where they have scores."""
+    try:
+        scored = datasets(results)
+    except Missing:
+        scored = []
+    return [dataset for dataset in DATASETS if dataset != "clouds" or dataset in scored]
+
+
+def models(results: Results) -> list[str]:
+    """Every model that any table names, in the order of the configuration."""
+    found = list(results.record.get("configuration", {}).get("models") or []) if results.record else []
+    for name in ("summary.csv", "results.csv"):
+        if results.has(name) and "model" in results.table(name):
+            found += list(results.table(name)["model"].unique())
+    return list(dict.fromkeys(model for model in found if model))
+
+
+def scores(results: Results, dataset: str, metric: str) -> Frame:
+    """One row per shape (index item, view), one column per model; NaN where a score is undefined or missing. Made once
+    per data set and metric: callers leave it as it is."""
+    known = results.pivoted.get((dataset, metric))
+    if known is None:
+        known = results.pivoted[dataset, metric] = pivot_scores(results, dataset, metric)
+    return known
+
+
+def pivot_scores(results: Results, dataset: str, metric: str) -> Frame:
+    table = results.table("results.csv", "dataset", "item", "view", "model", metric)
+    rows = table[table["dataset"] == dataset]
+    if rows.empty:
+        raise Missing(f"results.csv has no scores of {dataset}: none of them has ground truth, or the run left them out.")
+    index, columns, at = placed(results, dataset, rows)
+    values = numpy.full((len(index), len(columns) + 1), numpy.nan)
+    values[at] = rows[metric].to_numpy(dtype=float)
+    return pandas.DataFrame(values[:, :-1], index, columns)
+
+
+def placed(results: Results, dataset: str, rows: Frame) -> Any:
+    """Index and columns of every metric's scores of a data set, and where each row stands: one without a model, which was
+    cut short, behind the last column. Made once."""
+    if (dataset, None) not in results.pivoted:
+        shapes = list(zip(rows["item"], rows["view"]))
+        order = sorted(set(shapes), key=lambda key: (natural(key[0]), natural(key[1])))
+        present = set(rows["model"])
+        columns = [model for model in models(results) if model in present]
+        row_of, column_of = {shape: at for at, shape in enumerate(order)}, {model: at for at, model in enumerate(columns)}
+        at = ([row_of[shape] for shape in shapes], [column_of.get(model, len(columns)) for model in rows["model"]])
+        results.pivoted[dataset, None] = (pandas.MultiIndex.from_tuples(order, names=["item", "view"]),
+                                          pandas.Index(columns, name="model"), at)
+    return results.pivoted[dataset, None]
+
+
+def classes(results: Results) -> dict[str, str]:
+    """item -> class."""
+    table = results.table("results.csv", "item", "class")
+    return dict(zip(table["item"], table["class"]))
+
+
+def mean_per_shape(results: Results, dataset: str, metric: str) -> pandas.Series:
+    """Mean over the models per shape, worst first; shapes without any score are left out."""
+    means = scores(results, dataset, metric).mean(axis=1).dropna()
+    return means.sort_values(ascending=not results.metric(metric).lower, kind="stable")
+
+
+def ranks(wide: Frame, metric: Metric) -> Frame:
+    """Rank of each shape within its data set per model, 1 for the best score; NaN where there is no score."""
+    return wide.rank(ascending=metric.lower, method="min")
+
+
+def compact(results: Results, dataset: str, metric: str) -> Frame:
+    """Rows of compact.csv of one metric, in its order: competitors by rank, then references."""
+    rows = of_metric(results.table("compact.csv", *COMPACT), dataset, metric)
+    if rows.empty:
+        raise Missing(f"compact.csv has no {metric} of {dataset}.")
+    return rows.reset_index(drop=True)
+
+
+def leaders(results: Results, dataset: str, metric: str = "") -> Frame:
+    """Rows of leaders.csv: of one metric, or the sentences of the data set. All splits together come first, then each."""
+    return of_metric(results.table("leaders.csv", *LEADERS), dataset, metric).reset_index(drop=True)
+
+
+def summary(results: Results, dataset: str, metric: str) -> Frame:
+    """Rows of summary.csv of one metric, best mean first."""
+    rows = of_metric(results.table("summary.csv", *SUMMARY), dataset, metric)
+    if rows.empty:
+        raise Missing(f"summary.csv has no {metric} of {dataset}.")
+    lower = results.metric(metric).lower
+    return rows.sort_values("mean", ascending=lower, kind="stable", na_position="last").reset_index(drop=True)
+
+
+def of_metric(table: Frame, dataset: str, metric: str) -> Frame:
+    return table[(table["dataset"] == dataset) & (table["metric"] == metric)]
+
+
+def ranking(results: Results, dataset: str, metric: str) -> Frame:
+    """Rows of ranking.csv of one metric, in its order: best first, without references."""
+    return of_metric(results.table("ranking.csv", *RANKING), dataset, metric).reset_index(drop=True)
+
+
+def agreement(results: Results, dataset: str, first: str, second: str) -> tuple[float, float, float]:
+    """Kendall's tau of the rankings by two metrics and its interval, from ranking_agreement.csv; NaN where it has none."""
+    columns = ["tau", "ci95_low", "ci95_high"]
+    table = results.table("ranking_agreement.csv", "dataset", "metric_a", "metric_b", *columns)
+    pairs = zip(table["dataset"], table["metric_a"], table["metric_b"])
+    rows = table[[key in ((dataset, first, second), (dataset, second, first)) for key in pairs]]
+    tau, low, high = rows[columns].iloc[0] if len(rows) else (float("nan"),) * 3
+    return tau, low, high
+
+
+def per_class(results: Results, dataset: str, metric: str) -> Frame:
+    """Rows of per_class.csv of one metric: class, model, n, n_shapes, mean, ci95, half of the interval as the paper prints it.
+    The model "Avg" is the mean over the competitors."""
+    rows = of_metric(results.table("per_class.csv", "class", "model", *OF_METRIC, "n", "n_shapes", *MEAN), dataset, metric)
+    if rows.empty:
+        raise Missing(f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no classes.")
+    return rows.assign(ci95=(rows["ci95_high"] - rows["ci95_low"]) / 2).reset_index(drop=True)
+
+
+def human_differences(results: Results, metric: str) -> Frame:
+    """Rows of human_curve_differences.csv of one metric: what more participants add, over the meshes that have both numbers."""
+    table = results.table("human_curve_differences.csv", "metric", *DIFFERENCES)
+    rows = table[(table["metric"] == metric) & (table["n"] > 0)].dropna(subset=["from_participants", "to_participants"])
+    if rows.empty:
+        raise Missing(f"human_curve_differences.csv has no {results.metric(metric).label}: it takes four participants of a mesh.")
+    return rows.reset_index(drop=True)
+
+
+def one_more(table: Frame) -> Frame:
+    """The rows of human_differences from each number of participants to the next."""
+    return table[table["to_participants"] == table["from_participants"] + 1]
+
+
+def human_shares(results: Results, dataset: str, metric: str) -> dict[str, Row]:
+    """model -> its row of human_share.csv; empty where there are none."""
+    try:
+        table = results.table("human_share.csv", *SHARES)
+    except Missing:
+        return {}
+    return {row["model"]: row for row in of_metric(table, dataset, metric).to_dict("records")}
+
+
+def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[str, Any]:
+    """The row of significance.csv of a pair: n, n_shapes, mean_difference, its two intervals and t_p, turned so that the
+    difference is a less b."""
+    signed = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high")
+    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", *signed)
+    rows = of_metric(table, dataset, metric)
+    for first, second, turned in ((a, b, False), (b, a, True)):
+        match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
+        if match.empty:
+            continue
+        row: dict[str, Any] = match.iloc[0].to_dict()
+        if turned:
+            row |= {column: -row[column] for column in signed}
+            for level in ("ci95", "ci90"):
+                row[f"{level}_low"], row[f"{level}_high"] = row[f"{level}_high"], row[f"{level}_low"]
+        return row
+    raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")
+
+
+def by_unit(results: Results, values: Any) -> Any:
+    """Values by shape, a Series or DataFrame with the index (item, view), as means by unit of inference: for what compares
+    two runs, which no table of either holds."""
+    if results.unit == "shape":
+        return values
+    key = values.index.get_level_values("item")
+    return values.groupby(key.map(classes(results)) if results.unit == "class" else key, sort=False).mean()

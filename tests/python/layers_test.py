@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The layers of the Python package, as tests/layers.sh holds those of C++: what a part imports of the package, also within functions."""
+
+import ast
+import unittest
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[2] / "python/salbench"
+ONLY = {  # beside itself
+    "conclusions": {"_core"},
+    "pages": {"_types"},
+    "report": {"_core", "_tables", "conclusions", "pages"},
+}
+NEVER = {
+    "": {"report"},  # modules of the package itself, but for the one that starts subcommands
+    "datasets": {"conclusions", "leaderboard", "pages", "report"},
+    "leaderboard": {"datasets", "report"},
+}
+STARTS_SUBCOMMANDS = "__main__.py"
+
+
+def imported(text):
+    """(line, part of the package) of each import; the package as a whole is "salbench"."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ImportFrom) and node.level == 0:
+            names = [f"{node.module}.{name.name}" for name in node.names]
+        elif isinstance(node, ast.Import):
+            names = [name.name for name in node.names]
+        else:
+            continue
+        for first, *others in (name.split(".") for name in names):
+            if first == "salbench":
+                yield node.lineno, others[0] if others else first
+
+
+def breaches(part, text):
+    """part: a subpackage, or "" for the package itself."""
+    for line, name in imported(text):
+        if name in NEVER.get(part, ()) or (part in ONLY and name != part and name not in ONLY[part]):
+            yield line, name
+
+
+class Layers(unittest.TestCase):
+    def test_each_part_imports_what_stands_above_it(self):
+        found = []
+        for path in sorted(PACKAGE.rglob("*.py")):
+            inside = path.relative_to(PACKAGE)
+            if str(inside) != STARTS_SUBCOMMANDS:
+                part = inside.parts[0] if len(inside.parts) > 1 else ""
+                found += [f"{inside}:{line}: imports {name}" for line, name in breaches(part, path.read_text(encoding="utf-8"))]
+        self.assertEqual(found, [])
+
+    def test_no_import_is_relative(self):
+        for path in PACKAGE.rglob("*.py"):
+            nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            self.assertFalse([node.lineno for node in nodes if isinstance(node, ast.ImportFrom) and node.level], path)
+
+    def test_breaches_are_found(self):
+        for part, text, expected in (("conclusions", "from salbench.datasets import read", [(1, "datasets")]),
+                                     ("conclusions", "from salbench import _core", []),
+                                     ("conclusions", "import salbench", [(1, "salbench")]),
+                                     ("datasets", "def read():\n    from salbench import conclusions", [(2, "conclusions")]),
+                                     ("leaderboard", "import salbench.report.latex as l\nfrom salbench.conclusions import conclude", [(1, "report")]),
+                                     ("report", "from salbench.report import latex\nfrom salbench import pages, stats", [(2, "stats")]),
+                                     ("", "import salbench.report", [(1, "report")]), ("", "from salbench.conclusions import words", [])):
+            self.assertEqual(list(breaches(part, text)), expected, text)
+
+
+if __name__ == "__main__":
+    unittest.main()
