@@ -83,7 +83,7 @@ def parts_of(rows: list[Row]) -> list[Part]:
 
 
 def mean_cell(row: Row, rank: Row | None) -> Cell:
-    """Mean, half of its interval, and the group of those that cannot be told apart."""
+    """Mean, half of its interval, and its group."""
     value = number(row["mean"])
     half = (number(row["ci95_high"]) - number(row["ci95_low"])) / 2
     below = (f"± {half:.3f}" if half == half else "") + (f", group {rank['group']}" if rank and rank["group"] else "")
@@ -99,7 +99,7 @@ def ranking(board: Board) -> list[Block]:
         rows = [[board.named(model), *(compact_cell(by_cell.get((model, metric))) for metric in metrics)]
                 for model in dict.fromkeys(model for model, _ in by_cell)]
         caption = (f"{heading(part)}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best in "
-                   "bold. Models that share a letter cannot be told apart. Models without a letter are people or chance.")
+                   "bold. Models that share a letter are not shown to differ. Models without a letter are people or chance.")
         found.append(Table("ranking-" + "-".join(filter(None, part)), caption, ["Model", *map(label_of, metrics)], rows,
                             [False] + [True] * len(metrics), better=["", *(board.metrics[metric]["better"] for metric in metrics)]))
     return found or [Note("No submission could be ranked.", missing=True)]
@@ -111,10 +111,11 @@ def compact_cell(row: Row | None) -> Cell:
 
 def by_metric(board: Board) -> list[Block]:
     rows = [[Cell(heading(part_of(row))), Cell(row["metric"]), board.named(row["model"]), cell(number(row["mean"])),
-             Cell(row["rank"]), Cell(f"{row['rank_low']} to {row['rank_high']}"), cell(number(row["first"]), 2),
+             Cell(row["rank"]), Cell(f"{row['rank_low']} to {row['rank_high']}" if row["rank_low"] else "–"),
+             Cell(f"{100 * number(row['first']):.0f} %" if row["first"] else "–"),
              Cell(row["group"])] for row in board.ranking]
-    heads = ["Data set", "Metric", "Model", "Mean", "Rank", "95 % of ranks", "Share first", "Group"]
-    return [Table("ranks", "Ranks, with the ranks that 95 % of the resamples give, and the share of them in which a model is first.",
+    heads = ["Data set", "Metric", "Model", "Mean", "Rank", "95 % of ranks", "Best in resamples", "Group"]
+    return [Table("ranks", "Ranks with joint 95 % intervals, and in how many of the resamples a model has the best mean.",
                   heads, rows, [False] * 3 + [True] * 4 + [False], filters=[0, 1])]
 
 
