@@ -8,7 +8,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.compact import within_range
-from salbench.conclusions.metrics import Metric, leading
+from salbench.conclusions.metrics import Metric, leading_metrics
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import RankedMetric, Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, SPLIT, Part, framed, number, optional_count, text
@@ -36,7 +36,7 @@ class LevelLeaders:
 
 def find_leaders(study: Study) -> list[LevelLeaders]:
     """One per data set and split, each with the metrics that have competitors."""
-    spoken_of = leading(metric.name for metric in study.scores.metrics)
+    spoken_of = leading_metrics(metric.name for metric in study.scores.metrics)
     found = []
     for level, ranked in study.ranked:
         leaders = [leader_of(level, of_metric, metric) for metric, of_metric in zip(level.metrics, ranked)
