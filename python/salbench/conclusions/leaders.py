@@ -8,7 +8,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.compact import within_range
-from salbench.conclusions.metrics import leading
+from salbench.conclusions.metrics import leading_metrics
 from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import RankedMetric, Study
@@ -40,7 +40,7 @@ class LevelLeaders:
 
 def find_leaders(study: Study) -> list[LevelLeaders]:
     """One per data set and split, each with the metrics that have competitors."""
-    spoken_of = leading(metric.name for metric in study.scores.metrics)
+    spoken_of = leading_metrics(metric.name for metric in study.scores.metrics)
     found = []
     for level, ranked in study.ranked:
         places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.scores.models)]

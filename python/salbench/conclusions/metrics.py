@@ -41,7 +41,7 @@ def lower_is_better(name: str) -> bool:
     return not of_program().get(name, Metric(name)).higher_is_better
 
 
-def leading(names: Iterable[str]) -> list[str]:
+def leading_metrics(names: Iterable[str]) -> list[str]:
     """The paper's metrics among some, filled up to three with the first of the others."""
     known = list(names)
     papers = [name for name in PAPERS if name in known]
