@@ -30,7 +30,7 @@ results = salbench.run("shrec07_meshes", data="SchellingData", items="scored", m
 results
 
 # %% [markdown]
-# Means of the paper's metrics with their 95 % intervals, and the groups of models that cannot be told apart.
+# Means of the paper's metrics with their 95 % intervals, and the groups of models that are not shown to differ.
 
 # %%
 table = results.summary.pivot_table(index="model", columns="metric", values="mean")

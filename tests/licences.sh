@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$1"
 folders=()
-for folder in .ci cache cmake docs io models pipeline python report scripts stages tests; do
+for folder in .ci cache cmake docs io models pipeline python scripts stages tests; do
   [[ ! -d $folder ]] || folders+=("$folder")
 done
 

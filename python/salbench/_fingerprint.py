@@ -174,7 +174,7 @@ class _Walk:
     def _follow(self, chain: tuple[str, ...], function: types.FunctionType) -> tuple[str, Any]:
         """The value of a global that code names, or of an attribute of a module."""
         unbound = Origin("no value", chain[0])
-        value = function.__globals__.get(chain[0], function.__builtins__.get(chain[0], unbound))
+        value = function.__globals__.get(chain[0], getattr(function, "__builtins__").get(chain[0], unbound))
         at, origin = 1, None
         while isinstance(value, types.ModuleType) and at < len(chain) and chain[at] in vars(value):
             origin = self._origin_of(vars(value))

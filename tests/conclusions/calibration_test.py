@@ -4,6 +4,7 @@ same over thousands, with the variances of a run."""
 
 import unittest
 
+import calibration_joint as joint
 import numpy as np
 
 from calibration import PeopleModel, ScoreModel, calibrate, calibrate_people, score_model
@@ -39,6 +40,20 @@ class Calibration(unittest.TestCase):
         self.assertEqual(len(found), 3)
         for what, expected, rate in found:
             self.assertAlmostEqual(rate, expected, delta=allowance(expected, 200), msg=what)
+
+    def test_any_pair_of_equal_models_is_told_apart_as_rarely_as_said(self):
+        for noise in (joint.normal, joint.heavy, joint.tied):
+            for meshes in (6, 19):
+                for models, rate in joint.any_pair(noise, meshes, 1, 200, 1).items():
+                    self.assertLess(rate, .05 + allowance(.05, 200), (noise, meshes, models))
+        rates = joint.missing(20)
+        self.assertEqual(rates["the first model leads"], rates["and its sentence says what it lacks"])
+
+    def test_a_lead_on_these_classes_is_rarely_one_on_new_classes(self):
+        rates = joint.new_classes(.03, .03, 40)
+        self.assertLess(rates["mesh"], .8)
+        self.assertGreater(rates["class"], .95 - allowance(.95, 40))
+        self.assertGreater(rates["on these"], rates["new classes"])
 
     def test_variances_are_found_again(self):
         model = ScoreModel(mesh=3, view=2, model_of_mesh=1.5, model_of_view=1, models=4, meshes=4000, views=6)

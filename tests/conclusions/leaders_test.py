@@ -10,7 +10,7 @@ from support import NAN, row, study_of
 from salbench.conclusions.compact import compact
 from salbench.conclusions.leaders import find_leaders, leaders
 from salbench.conclusions.means import summary
-from salbench.conclusions.metrics import Metric, leading, of_program
+from salbench.conclusions.metrics import Metric, leading_metrics, of_program
 from salbench.conclusions.ranking import ranking
 
 
@@ -96,7 +96,7 @@ class LeadersTest(unittest.TestCase):
 
     def test_long_lists_are_cut_and_leading_metrics_are_the_papers(self):
         self.assertIn(" or 8 others may be best.", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .5), 20)).sentence)
-        self.assertEqual(leading(("lcc", "kl", "auc", "sim", "mse")), ["auc", "lcc", "kl"])
+        self.assertEqual(leading_metrics(("lcc", "kl", "auc", "sim", "mse")), ["auc", "lcc", "kl"])
 
     def test_no_sentence_claims_more_than_its_interval(self):  # over many made-up data sets
         seen = collections.Counter()

@@ -89,7 +89,7 @@ class SlipsTest(unittest.TestCase):
     def test_python_has_leaders_and_the_compact_table(self):
         scores = pandas.read_csv(io.StringIO(table()), dtype={"item": str})
         found = stats.conclude(scores)
-        self.assertEqual(list(found.leaders["leaders"].dropna()), ["A"])
+        self.assertEqual(list(found.leaders["leaders"])[1:], ["A"])
         self.assertEqual(list(found.compact["model"]), ["A", "B", "C"])
         none = scores.assign(model=scores["model"].where(scores["model"] != "B", np.nan))
         with self.assertRaisesRegex(ValueError, "^table:1: the row names no model$"):

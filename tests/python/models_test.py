@@ -322,7 +322,7 @@ class Statistics(unittest.TestCase):
     def scores(self, **more):
         rng = np.random.default_rng(5)
         items = [str(i) for i in range(12)]
-        table = pandas.DataFrame([{"item": item, "model": model, "auc": rng.random() + gain, "mine": rng.random() - gain}
+        table = pandas.DataFrame([{"item": item, "model": model, "auc": rng.random() / 2 + gain, "mine": rng.random() - gain}
                                   for model, gain in (("A", 0.5), ("B", 0.1), ("C", 0.1)) for item in items])
         return table.assign(**more)
 

@@ -287,7 +287,6 @@ class Table(support.ReportTest):
         self.assertGreater(shown, 20)
         counts = support.section(index, "claims")
         self.assertRegex(counts, rf"Of {len(rows)} claims: \d+ hold, \d+ do(es)? not, \d+ undecided; {len(rows) - shown} without the ")
-        self.assertIn("Whether options of the run differ from the protocol is not known", counts)
 
     def test_other_data_get_no_verdict_and_nothing_of_the_papers(self):
         index = self.made("other", "layout: schelling", "layout: sal3d")

@@ -45,7 +45,7 @@ class Kept(support.ReportTest):
         def save(figure, svg, pdf, original=style.save):
             figures.append(svg.name.partition(".")[0])
             original(figure, svg, pdf)
-        with unittest.mock.patch("salbench.report.shape_files.draw", draw), unittest.mock.patch("report.style.save", save):
+        with unittest.mock.patch("salbench.report.shape_files.draw", draw), unittest.mock.patch("salbench.report.style.save", save):
             self.made(name, out=out)
         return shapes, figures
 
@@ -99,8 +99,8 @@ class Kept(support.ReportTest):
 
     def test_a_call_that_was_ended_is_gone_on_with(self):
         self.copied("ended")
-        with self.assertRaises(KeyboardInterrupt), unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
-            self.made("ended")
+        with unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
+            self.assertEqual(support.make(self.out, self.folder / "ended"), (130, ""))
         (self.folder / "ended" / "pictures/1/mesh-LS-before.webp.part").write_text("half of a")
         with open(self.folder / "ended" / LEDGER, "a") as ledger:
             ledger.write('["cut')
@@ -125,8 +125,9 @@ class Kept(support.ReportTest):
             return original(work)
         for processes in (1, 2):
             with self.subTest(processes), unittest.mock.patch("salbench.report.shape_files.draw", draw):
-                with self.assertRaisesRegex(RuntimeError, "drawing 2_0: ZeroDivisionError: no light"):
-                    self.made(f"error-{processes}", processes)
+                status, errors = support.make(self.out, self.folder / f"error-{processes}", "--processes", processes)
+                self.assertEqual(status, 70)
+                self.assertIn("drawing 2_0: ZeroDivisionError: no light", errors)
 
     def test_a_process_that_is_killed_ends_the_call_with_a_sentence(self):
         with unittest.mock.patch("salbench.report.shape_files.draw", lambda work: os.kill(os.getpid(), 9)):

@@ -84,7 +84,7 @@ class Files(support.ReportTest):
 
 
 class Looks(unittest.TestCase):
-    MODELS = [*names.MODELS, *(f"own {number}" for number in range(20))]
+    MODELS = [*fixture.MODELS, *(f"own {number}" for number in range(20))]
 
     @staticmethod
     def luminance(colour):
@@ -99,8 +99,8 @@ class Looks(unittest.TestCase):
     def test_no_two_models_look_alike_and_built_in_ones_differ_without_colour(self):
         colours, dashes, markers = (look(self.MODELS) for look in (names.colours, names.dashes, names.markers))
         self.assertEqual(len({(colours[model], str(dashes[model]), markers[model]) for model in self.MODELS}), len(self.MODELS))
-        self.assertEqual(len({markers[model] for model in names.MODELS}), len(names.MODELS))
-        self.assertEqual(len({str(dashes[model]) for model in names.MODELS}), len(names.MODELS))
+        self.assertEqual(len({markers[model] for model in fixture.MODELS}), len(fixture.MODELS))
+        self.assertEqual(len({str(dashes[model]) for model in fixture.MODELS}), len(fixture.MODELS))
 
 
 if __name__ == "__main__":

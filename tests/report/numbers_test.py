@@ -122,8 +122,8 @@ class OddNumbers(support.ReportTest):
             file["2/mesh/vertices"][:2] = [[1.7e308], [-1.7e308]]
             file["3/ground_truth/saliency"][...] = numpy.nan
             file["3/picture/view_projection"][3] = 0
-        done = subprocess.run([sys.executable, "-B", "-P", "-W", "error::RuntimeWarning", "-m", "salbench", "report", out, "--to", self.folder / "drawn-report", "--quiet"],
-                              capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-B", "-P", "-W", "error::RuntimeWarning", "-m", "salbench", "report", out, "--to",
+                               self.folder / "drawn-report", "--quiet"], capture_output=True, text=True)
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.returncode, 0)
 

@@ -19,7 +19,7 @@ def shown(row):
     """A row of human_share.csv as the ranking shows it."""
     if row["share"] != row["share"]:
         return "–" if row["remark"].startswith("no scores") else f"– {row['remark']}"
-    mark = ", above HS" if row["ci95_low"] > 1 else ", not shown below HS" if row["ci95_high"] >= 1 else ""
+    mark = ", above HS" if row["ci95_low"] > 1 else ", undecided" if row["ci95_high"] >= 1 else ""
     text = f"{row['share']:.2f} {row['ci95_low']:.2f} to {row['ci95_high']:.2f}{mark}"
     return text.replace("-", "−")
 
@@ -31,8 +31,8 @@ class Shares(unittest.TestCase):
 
     def test_a_model_is_marked_where_the_data_do_not_show_it_behind_one_participant(self):
         self.assertEqual(self.cell(0.7, 0.5, 0.9), ("0.70", "0.50 to 0.90", False))
-        self.assertEqual(self.cell(0.9, 0.7, 1.1), ("0.90", "0.70 to 1.10, not shown below HS", False))
-        self.assertEqual(self.cell(1.1, 0.9, 1.0), ("1.10", "0.90 to 1.00, not shown below HS", False))
+        self.assertEqual(self.cell(0.9, 0.7, 1.1), ("0.90", "0.70 to 1.10, undecided", False))
+        self.assertEqual(self.cell(1.1, 0.9, 1.0), ("1.10", "0.90 to 1.00, undecided", False))
         self.assertEqual(self.cell(2.1, 1.6, 2.5), ("2.10", "1.60 to 2.50, above HS", True))
 
     def test_without_an_interval_there_is_no_mark(self):
@@ -58,7 +58,8 @@ class Worth(unittest.TestCase):
                                         ({"k": 1.54, "low_bound": "<1", "ci95_high": 2.88}, "1.5", "less than 1 to 2.9"),
                                         ({"k_bound": "<1", "low_bound": "<1", "high_bound": "<1"}, "less than 1", "less than 1"),
                                         ({"k_bound": ">11", "ci95_low": 8.2, "high_bound": ">11"}, "more than 11", "8.2 to more than 11"),
-                                        ({"k": 2.83, "remark": "no interval: fewer than 6 units"}, "2.8", "–"), ({}, "–", "–")):
+                                        ({"k": 2.83, "remark": "no interval: fewer than 6 units"}, "2.8", "–"),
+                                        ({"k": 2.83, "ci95_low": 1.9, "high_bound": ">11", "remark": "not a number of people: one participant"}, "–", "–"), ({}, "–", "–")):
             row = self.rows(**columns)
             self.assertEqual((row[2].text, row[3].text, row[6].text), (place, between, columns.get("remark", "")))
 
@@ -111,7 +112,7 @@ class Pages(support.ReportTest):
 
     def test_without_human_performance_there_are_no_shares(self):
         index = self.made("nobody", fixture.eight_meshes(), models=("LS", "CS", "RS"))
-        self.assertEqual({row[9] for row in support.rows(index, "ranking")}, {"–"})
+        self.assertEqual({row[8] for row in support.rows(index, "ranking")}, {"–"})
 
     def test_reliability_without_cc_or_people_is_missing(self):
         empty = pandas.DataFrame(columns=["n", "n_shapes", "fewest_participants", "most_participants", "split_half", "mean", "ci95_low",

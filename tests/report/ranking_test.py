@@ -29,13 +29,14 @@ class Ranking(support.ReportTest):
         for row in table[table["metric"].isin(labels)].itertuples():
             mean = means.loc[row.dataset, row.metric, row.model]
             cells = [" ".join(cell.split()) for cell in shown[row.dataset.capitalize(), labels[row.metric], row.model]]
-            self.assertEqual(cells[:4], [str(row.rank), f"{row.rank_low:.0f} to {row.rank_high:.0f}", f"{row.first:.2f}", row.group])
-            self.assertEqual(cells[4:], [f"{row.mean:.3f}", f"{mean['ci95_low']:.3f} to {mean['ci95_high']:.3f}",
+            first = f" best in {100 * row.first:.0f} % of resamples" if row.first > 0 else ""
+            self.assertEqual(cells[:3], [f"{row.rank}{first}", f"{row.rank_low:.0f} to {row.rank_high:.0f}", row.group])
+            self.assertEqual(cells[3:], [f"{row.mean:.3f}", f"{mean['ci95_low']:.3f} to {mean['ci95_high']:.3f}",
                                          people_test.shown(shares.loc[row.dataset, row.metric, row.model]),
                                          "8 meshes" if row.dataset == "meshes" else "8 meshes, 96 scans"])
             expected += 1
         self.assertEqual(expected, 2 * 3 * 4)
-        self.assertEqual(shown["Meshes", "AUC", "HS"][:4], ["–", "–", "–", "reference"])
+        self.assertEqual(shown["Meshes", "AUC", "HS"][:3], ["–", "–", "reference"])
         self.assertEqual({key[2] for key in shown if key not in [
             (row.dataset.capitalize(), labels.get(row.metric), row.model) for row in table.itertuples()]}, {"HS", "RS"})
         self.assertEqual(len(shown), expected + 3 * 2 + 3)
@@ -63,14 +64,14 @@ class Ranking(support.ReportTest):
         fixture.write_results(self.folder / "no-means", fixture.eight_meshes())
         (self.folder / "no-means/summary.csv").unlink()
         shown = support.rows(support.page(self.report("no-means")), "ranking")
-        self.assertEqual({row[8] for row in shown}, {"–"})
+        self.assertEqual({row[7] for row in shown}, {"–"})
 
-    def test_one_mesh_has_ranks_and_says_why_they_have_no_interval(self):
+    def test_one_mesh_has_no_ranks_and_says_why(self):
         items = fixture.eight_meshes()[:1]
         fixture.write_results(self.folder / "one", items, results=fixture.results_table(items, views=2))
         index = support.page(self.report("one"))
-        self.assertRegex(support.section(index, "ranking"), "On meshes, [A-Z, ]*: one unit by auc")
-        self.assertEqual({tuple(row[4:7]) for row in support.rows(index, "ranking") if row[3] != "–"}, {("–", "–", "–")})
+        self.assertRegex(support.section(index, "ranking"), "On 1 mesh, one observation does not tell how the models rank by AUC")
+        self.assertEqual({tuple(row[3:6]) for row in support.rows(index, "ranking") if row[5] != "reference"}, {("–", "–", "–")})
 
 
 if __name__ == "__main__":

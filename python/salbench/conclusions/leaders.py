@@ -8,7 +8,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.compact import within_range
-from salbench.conclusions.metrics import Metric, leading
+from salbench.conclusions.metrics import leading_metrics
 from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import RankedMetric, Study
@@ -40,7 +40,7 @@ class LevelLeaders:
 
 def find_leaders(study: Study) -> list[LevelLeaders]:
     """One per data set and split, each with the metrics that have competitors."""
-    spoken_of = leading(metric.name for metric in study.scores.metrics)
+    spoken_of = leading_metrics(metric.name for metric in study.scores.metrics)
     found = []
     for level, ranked in study.ranked:
         places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.scores.models)]
@@ -49,8 +49,8 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
             classes, of_classes = study.of_classes[level.dataset, level.split]
             for leader, place in zip(leaders, places):
                 leader.new_classes = leader_of(classes, of_classes[place], place)
-        spoken = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
-        found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, spoken)))
+        chief = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
+        found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, chief)))
     return found
 
 

@@ -8,7 +8,7 @@ from functools import cache
 
 PAPERS = ("auc", "nss", "lcc")
 _LEADING = 3  # metrics that every page shows, and a sentence speaks of
-_CHANCE = {"auc": .5, "sauc": .5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}  # by maps that know nothing; of others RS alone knows
+_CHANCE = {"auc": .5, "sauc": .5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}  # by the part of the name before the first "_"
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Metric:
     low: float = -math.inf
     high: float = math.inf
     label: str = ""
-    chance: float = math.nan  # the mean score of maps that know nothing; NaN: not known
+    chance: float = math.nan  # the mean score of maps that know nothing; NaN: not known, but by RS
 
 
 @cache
@@ -41,7 +41,7 @@ def lower_is_better(name: str) -> bool:
     return not of_program().get(name, Metric(name)).higher_is_better
 
 
-def leading(names: Iterable[str]) -> list[str]:
+def leading_metrics(names: Iterable[str]) -> list[str]:
     """The paper's metrics among some, filled up to three with the first of the others."""
     known = list(names)
     papers = [name for name in PAPERS if name in known]

@@ -108,8 +108,10 @@ def compact_letters(differ: NDArray[np.bool_], order: Sequence[int] | Numbers) -
 
     Groups are filled up in this order, each around the first pair that no group has yet; none of them has letters beyond 26.
     """
-    same = ~np.asarray(differ)[np.ix_(order, order)]  # items are numbered by their place in the order
-    missing, groups = np.triu(same), []
+    places = np.asarray(order, dtype=np.intp)
+    same = ~differ[np.ix_(places, places)]  # items are numbered by their place in the order
+    missing = np.triu(same)
+    groups: list[list[int]] = []
     while missing.any():
         if len(groups) == _MOST_LETTERS:
             return [""] * len(order)

@@ -52,7 +52,8 @@ class Bootstrap:
             words = np.random.PCG64([self._seed, n, 1]).random_raw(-(-self._resamples * n // 64))
             flipped = np.unpackbits(words.astype("<u8").view(np.uint8), count=self._resamples * n).reshape(self._resamples, n)
             flipped[0] = 0
-        return 1 - 2 * flipped.astype(np.int8)
+        signs: Draws = 1 - 2 * flipped.astype(np.int8)
+        return signs
 
     def _drawn(self, n: int) -> Iterator[NDArray[np.uint8]]:
         """Block by block. Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that taking

@@ -29,7 +29,7 @@ class ScoreFile:
 
 def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> list[Metric]:
     """The program's metrics, and columns that are named by their direction."""
-    metrics = of_program()
+    metrics = dict(of_program())
     for name, higher_is_better in (*((name, True) for name in higher), *((name, False) for name in lower)):
         if metrics.setdefault(name, Metric(name, higher_is_better)).higher_is_better != higher_is_better:
             known = "both higher and lower values" if name not in of_program() else f"{'lower' if higher_is_better else 'higher'} values"

@@ -56,7 +56,7 @@ def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
     """Each in a sentence; what metrics say alike in one."""
     alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
     for leader, text in zip(leaders, figures):
-        key = leader.verdict, *map(frozenset, (leader.models, leader.near, leader.behind))
+        key = leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind)
         _, labels, metrics = alike.setdefault(key, (leader, [], []))
         labels.append(_label(leader.metric.name))
         metrics.append(f"{labels[-1]} ({text})" if text else labels[-1])

@@ -9,7 +9,8 @@ from typing import Any
 
 from salbench._errors import InputError
 
-_work: tuple[Callable[[Any], Any], Sequence[tuple[str, Any]]] | None = None  # (function, tasks): processes are forked when they are known, so that nothing is sent to them
+# (function, tasks): processes are forked when they are known, so that nothing is sent to them
+_work: tuple[Callable[[Any], Any], Sequence[tuple[str, Any]]] | None = None
 
 
 def _do(at: int) -> Any:

@@ -97,9 +97,6 @@ class Drawing(Part):
     def get_figwidth(self) -> float:
         return float(self._size[0])
 
-    def get_figheight(self) -> float:
-        return float(self._size[1])
-
     def subplots(self, nrows: int = 1, ncols: int = 1, *, squeeze: bool = True, **named: Any) -> Any:
         """Axes in an array, as the figure gives them."""
         all_axes = self.record(None, (self.record(getattr, (self, "subplots")), nrows, ncols), {**named, "squeeze": False})

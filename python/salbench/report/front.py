@@ -121,7 +121,7 @@ def first_of(results: Results, dataset: str, metric: str) -> list[str]:
         rows = statistics.leaders(results, dataset, metric)
     except Missing:
         return []
-    return str(rows["leaders"].iloc[0]).split(", ") if len(rows) else []
+    return [name for name in str(rows["leaders"].iloc[0]).split(", ") if name] if len(rows) else []
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -139,10 +139,10 @@ def limits(metric: str, shown: Frame, references: Frame) -> tuple[float, float]:
 
 
 def add_shapes(shop: Workshop, made: Front) -> None:
-    """The best, the median and the worst of the shapes with pictures, by the score of the leader."""
+    """The best, the median and the worst of the shapes with pictures, by the score of the leader, or of the best mean where none is named."""
     metric = next(iter(shop.results.leading))
     for dataset in statistics.shown(shop.results):
-        leaders = first_of(shop.results, dataset, metric)
+        leaders = first_of(shop.results, dataset, metric) or list(statistics.ranking(shop.results, dataset, metric)["model"])
         if not leaders:
             continue
         scores = statistics.scores(shop.results, dataset, metric)[leaders[0]].dropna()

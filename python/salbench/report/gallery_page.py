@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas
 
+from salbench.conclusions.units import REFERENCES
 from salbench.pages.blocks import Gallery, Missing, Tile
 from salbench.pages.names import spoken
 from salbench.report import statistics
@@ -22,7 +23,6 @@ from salbench.report.shape_pages import models_of
 from salbench.report.viewer import label_of
 from salbench.report.workshop import Workshop
 
-REFERENCES = ("HS", "RS")  # no models: they neither agree nor disagree
 WORST = 3  # shapes per model
 
 

@@ -8,15 +8,6 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
-MODELS = {
-    "LS": "Saliency of large point sets (Shtrom, Leifman, Tal 2013)",
-    "CS": "Cluster-based point set saliency (Tasse, Kosinka, Dodgson 2015)",
-    "PS": "Principal components of descriptors (Tasse, Kosinka, Dodgson 2016)",
-    "MS": "Mesh saliency by spectral processing (Song, Liu, Martin, Rosin 2014)",
-    "HS": "Human performance: one participant against the others",
-    "RS": "Chance",
-}
-
 # Okabe and Ito's colours, which colour-blind readers tell apart, darkened where they have less than 3:1 beside white. Ground truth
 # is black.
 _COLOURS = {"GS": "#000000", "LS": "#0072B2", "CS": "#D55E00", "PS": "#009E73", "MS": "#BF5F96", "HS": "#A87400",

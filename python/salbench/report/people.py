@@ -9,10 +9,13 @@ from salbench.report.tables import HUMAN, signed
 from salbench.report.units import HEAD, count_cell, counted
 from salbench.report.workshop import Workshop
 
-NOT_BELOW, ABOVE = "not shown below HS", "above HS"
+UNDECIDED, ABOVE = "undecided", "above HS"
 SHARE = ("Of HS: which share of the way from chance to human performance the model goes, with its 95 % interval. "
-         f"“{NOT_BELOW}”: the interval contains 1, and these data cannot tell the model from one participant; "
+         f"“{UNDECIDED}”: the interval contains 1, and these data do not show whether the model is above or below one participant; "
          f"“{ABOVE}”: it lies beyond 1.")
+
+
+NO_NUMBER = "not a number of people"  # the remark begins so where one participant is not worth one
 
 
 def tables(shop: Workshop) -> list[Block]:
@@ -32,7 +35,7 @@ def share_cell(row: Row | None) -> Cell:
     low, high = row["ci95_low"], row["ci95_high"]
     if low != low or high != high:
         return cell(row["share"], 2, below=row["remark"])
-    mark = ABOVE if low > 1 else NOT_BELOW if high >= 1 else ""
+    mark = ABOVE if low > 1 else UNDECIDED if high >= 1 else ""
     return cell(row["share"], 2, bold=mark == ABOVE, below=", ".join(filter(None, [interval(low, high, 2).text, mark])))
 
 
@@ -51,7 +54,7 @@ def reliability(shop: Workshop) -> Note:
 
 WORTH = ("How many participants a model is worth: where the mean human curve first is as good as the model's mean on the same meshes, "
          "with 95 % intervals from resampled meshes. The curve scores participants against as many others, a model is scored against "
-         "all: HS, one participant, should be at 1. Where it is not, the number is a place on the curve and not one of people.")
+         "all: HS, one participant, should be at 1. Where it is not, no number is given: it would not be one of people.")
 
 
 def worth(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
@@ -61,6 +64,8 @@ def worth(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
     rows = []
     for metric in metrics:
         for row in table[(table["metric"] == metric) & (table["model"] != "")].to_dict("records"):
+            if row["remark"].startswith(NO_NUMBER):
+                row |= {"k": float("nan"), "ci95_low": float("nan"), "ci95_high": float("nan"), "k_bound": "", "low_bound": "", "high_bound": ""}
             ends = [place(row[f"ci95_{end}"], row[f"{end}_bound"]) for end in ("low", "high")]
             rows.append([Cell(shop.results.metric(metric).label), Cell(row["model"]), worth_cell(row),
                          Cell(" to ".join(dict.fromkeys(ends))) if all(ends) else Cell("–"),

@@ -8,11 +8,12 @@ from salbench.report.results import Row
 from salbench.report.units import HEAD, count_cell
 from salbench.report.workshop import Workshop
 
-CAPTION = ("Models by their mean. Ranks have joint 95 % intervals: all pairs of models under one metric are compared at once. First: "
-           "in how large a share of the resamples the model has the best mean. Group: two models without a letter in common differ; "
-           "two with one cannot be told apart, which does not say that they are equal. Means have 95 % intervals of their own "
+CAPTION = ("Models by their mean. Ranks have joint 95 % intervals: all pairs of models under one metric are compared at once. Below the "
+           "rank: how often a model has the best mean when the units are resampled, which is no probability that it is the best; and its rank "
+           "if scores that are missing were at chance. Group: two models without a letter in common differ; two with one are not shown to "
+           "differ, which does not say that they are equal. Means have 95 % intervals of their own "
            f"(Student). HS and RS, human performance and chance, are references: they have no rank. {people.SHARE}")
-HEADS = ["Data set", "Metric", "Model", "Rank", "95 % ranks", "First", "Group", "Mean", "95 % interval", "Of HS", HEAD]
+HEADS = ["Data set", "Metric", "Model", "Rank", "95 % ranks", "Group", "Mean", "95 % interval", "Of HS", HEAD]
 
 
 def tables(shop: Workshop) -> list[Block]:
@@ -48,7 +49,7 @@ def table(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
     rows = [row for dataset in statistics.shown(shop.results) for metric in metrics for row in rows_of(shop, dataset, metric)]
     if not rows:
         raise Missing("ranking.csv ranks no model: none has scores.")
-    return Table(identifier, CAPTION, HEADS, rows, [False] * 3 + [True] * 3 + [False] + [True] * 4, filters=[0, 1])
+    return Table(identifier, CAPTION, HEADS, rows, [False] * 3 + [True] * 2 + [False] + [True] * 4, filters=[0, 1])
 
 
 def rows_of(shop: Workshop, dataset: str, metric: str) -> list[list[Cell]]:
@@ -63,13 +64,19 @@ def rows_of(shop: Workshop, dataset: str, metric: str) -> list[list[Cell]]:
     rows = []
     for row in statistics.ranking(shop.results, dataset, metric).to_dict("records"):
         known = means.pop(row["model"], {})
-        ranks = [cell(row["rank"], 0), interval(row["rank_low"], row["rank_high"], 0), cell(row["first"], 2), Cell(row["group"] or "–")]
+        ranks = [cell(row["rank"], 0, below=beside(row)), interval(row["rank_low"], row["rank_high"], 0), Cell(row["group"] or "–")]
         rows.append(head + [Cell(row["model"]), *ranks] + mean_cells(shop, dataset, row, known, shares.get(row["model"])))
     for model, row in means.items():
         if row["n"] > 0:
-            rows.append(head + [Cell(model), cell(None), cell(None), cell(None), Cell("reference")]
+            rows.append(head + [Cell(model), cell(None), cell(None), Cell("reference")]
                         + mean_cells(shop, dataset, row, row))
     return rows
+
+
+def beside(row: Row) -> str:
+    """Below a rank: what it hangs on."""
+    said = [f"best in {100 * row['first']:.0f} % of resamples"] if row["first"] > 0 else []
+    return ", ".join(said + ([f"{row['rank_at_chance']:.0f} with missing scores at chance"] if row["rank_at_chance"] == row["rank_at_chance"] else []))
 
 
 def mean_cells(shop: Workshop, dataset: str, row: Row, known: Row, share: Row | None = None) -> list[Cell]:

@@ -15,9 +15,8 @@ import yaml
 
 from salbench import _tables
 from salbench.conclusions import conclude_if_missing, text_columns
-from salbench._errors import InputError
-from salbench._errors import StorageError
-from salbench.conclusions.metrics import PAPERS, leading
+from salbench._errors import InputError, StorageError
+from salbench.conclusions.metrics import PAPERS, leading_metrics
 from salbench.pages.blocks import Missing
 from salbench.report import metrics
 from salbench.report.metrics import Metric
@@ -101,13 +100,13 @@ class Results:
             found += [name for name in self.table("results.csv") if name not in text_columns().union(NO_METRICS)]
         if self.has("summary.csv") and "metric" in self.table("summary.csv"):
             found += [name for name in self.table("summary.csv")["metric"].unique() if name]
-        first = leading(self._listed or PAPERS)
+        first = leading_metrics(self._listed or PAPERS)
         return {name: metrics.described(name, self._listed.get(name)) for name in dict.fromkeys(first + found)}
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
         """The metrics that every page shows: the paper's, where the run has them."""
-        return {name: self.metrics[name] for name in leading(self._listed or PAPERS)}
+        return {name: self.metrics[name] for name in leading_metrics(self._listed or PAPERS)}
 
     def metric(self, name: str) -> Metric:
         return self.metrics.get(name) or metrics.described(name)

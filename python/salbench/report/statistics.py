@@ -14,7 +14,7 @@ from salbench.report.results import Frame, Results, Row
 
 OF_METRIC = ("dataset", "metric")
 MEAN = ("mean", "ci95_low", "ci95_high")
-RANKING = (*OF_METRIC, "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first", "group")
+RANKING = (*OF_METRIC, "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first", "group", "rank_at_chance")
 DIFFERENCES = ("from_participants", "to_participants", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low",
                "ci90_high")
 SHARES = (*OF_METRIC, "model", "share", "ci95_low", "ci95_high", "remark")
