@@ -220,7 +220,7 @@ class Runs(Folders):
                                progress=False)
         self.assertEqual(len(results.scores), 3 * 26)
         for row in results.scores.to_dict("records"):
-            item = row["item"] if row["view"] != row["view"] else f"{row['item']}_{row['view']}"
+            item = f"{row['item']}_{row['view']}" if row["view"] else row["item"]
             scores = results.score(results.maps(row["model"])[item], item)
             for metric, score in scores.items():
                 self.assertEqual(repr(score), repr(row[metric]), (item, row["model"], metric))
