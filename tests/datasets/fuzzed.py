@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from salbench import datasets
-from salbench.datasets._arrays import parse_mat
+from salbench.datasets._mat import parse_mat
 from salbench.datasets.records import Form, InputError
 from support import cells, mat, npy, off
 
