@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 import scipy.io
 
-import salbench
+import salbench.datasets.sets
 import toy
 
 
@@ -225,7 +225,7 @@ class Layouts(Folder):
     def test_every_description_of_the_program_has_a_test_here(self):
         tested = {"automatic", "schelling", "gs", "princeton", "folder", "dutagaci", "3dva", "sal3d", "sal3d_meshes",
                   "meshmamba", "meshmamba_textured", "zaragoza", "hdf5"}
-        self.assertEqual(set(salbench._core.layouts()), tested)
+        self.assertEqual(set(salbench.datasets.sets.LAYOUTS), tested)
 
 
 class Clouds(Folder):
@@ -546,12 +546,12 @@ class Artefacts(Folder):
 
 
 class OneForm(Folder):
-    """What `salbench convert` writes is the same data set."""
+    """What `salbench import` writes is the same data set."""
 
     def compare(self, layout):
         before = salbench.Dataset(layout, self.root)
         with tempfile.TemporaryDirectory() as to:
-            subprocess.run([toy.PROGRAM, "convert", layout, "--data", self.root, "--to", to, "--quiet"], check=True)
+            subprocess.run([toy.PROGRAM, "import", layout, "--data", self.root, "--to", to, "--quiet"], check=True)
             after = salbench.Dataset("hdf5", to)
             self.assertEqual((after.ids, after.categories, after.splits), (before.ids, before.categories, before.splits))
             for shape, expected in zip(after, before, strict=True):
