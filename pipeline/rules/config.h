@@ -38,7 +38,7 @@ struct DatasetOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("layout", self.layout,
-          {"how the folder is laid out: automatic, a name in configs/datasets, or a description of your own "
+          {"how the folder is laid out: automatic, a name of docs/data_sets.md, or a description of your own "
            "(.yaml)"});
     visit("split", self.split, {"only the items of this split, such as test; none: all items"});
     visit("twins", self.twins, {"of several shape files of one name, the extension of the one that counts"});
