@@ -33,7 +33,8 @@ class Npy(unittest.TestCase):
                             (npy(np.zeros((2, 3))), r"its shape is \(2, 3\), expected one value per point"),
                             (good[:-1], r"its shape is \(3,\), and it holds 23 bytes of values"), (good[:11], "it is cut short"),
                             (good[:50], "it is cut short"), (good.replace(b"(3,)", b"(x,)"), "its header names no shape"),
-                            (good.replace(b"(3,)", b"()  "), "its header names no shape"), (good.replace(b"(3,), }   ", b"(9999999)}"), ".* 24 bytes")]:
+                            (good.replace(b"(3,)", b"()  "), "its header names no shape"),
+                            (good.replace(b"(3,), }   ", b"(9999999)}"), ".* 24 bytes")]:
             with self.assertRaisesRegex(InputError, refused + wrong):
                 parse_npy(data, "a.npy")
 
@@ -47,7 +48,8 @@ class Mat(unittest.TestCase):
         return parse_mat(self.data if data is None else data, "a.mat", variable, cell, **how).tolist()
 
     def test_numbers_of_any_type(self):
-        for variable, expected in [("values", [0.5, -2, 3e7]), ("bytes", [1, 255]), ("whole", [-7]), ("single", [0.25]), ("none", []), ("flags", [1, 0])]:
+        for variable, expected in [("values", [0.5, -2, 3e7]), ("bytes", [1, 255]), ("whole", [-7]), ("single", [0.25]), ("none", []),
+                                   ("flags", [1, 0])]:
             self.assertEqual(self.numbers(variable), expected)
         self.assertEqual(self.numbers("square", data=mat(square=[[1, 3], [2, 4]])), [1, 2, 3, 4])  # column by column
 
@@ -71,7 +73,8 @@ class Mat(unittest.TestCase):
                   sparse=scipy.sparse.eye(2), struct={"a": 1}, square=np.eye(2))
         self.assertEqual(self.numbers("largest", data=odd), [2.0 ** 53, -2.0 ** 53])
         for data, variable, cell, wrong in [
-                (None, "value", (), "no variable \"value\"; the file has \"values\", \"bytes\""), (None, "", (), "a MAT file, and the description names no `variable:`"),
+                (None, "value", (), "no variable \"value\"; the file has \"values\", \"bytes\""),
+                (None, "", (), "a MAT file, and the description names no `variable:`"),
                 (None, "cells", (), "variable \"cells\": it is a cell array: name one with `cell: [row, column]`"),
                 (None, "cells", "38", "variable \"cells\": it has 2 x 2 cells, expected cell 3, 8"),
                 (None, "values", "11", "variable \"values\": it is not a cell array: leave out `cell:`"), (None, "text", (), "it holds no numbers"),
@@ -79,7 +82,8 @@ class Mat(unittest.TestCase):
                 (odd, "unsigned", (), "it holds 9223372036854775808: whole"), (odd, "complex", (), "it holds no real numbers"),
                 (odd, "sparse", (), "it holds no numbers"), (odd, "struct", (), "it holds no numbers"),
                 (self.data[:124] + b"\0\2" + self.data[126:], "values", (), "version 7.3 is HDF5; save it with -v7"),
-                (self.data[:124] + b"\7\7" + self.data[126:], "values", (), "its version is unknown"), (self.data[:99], "values", (), "it is cut short")]:
+                (self.data[:124] + b"\7\7" + self.data[126:], "values", (), "its version is unknown"),
+                (self.data[:99], "values", (), "it is cut short")]:
             with self.assertRaises(InputError) as caught:
                 self.numbers(variable, cell, data)
             self.assertTrue(str(caught.exception).startswith("a.mat: "))

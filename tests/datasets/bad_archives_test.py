@@ -31,7 +31,8 @@ CASES = (  # layout, files (None: removed), problems by item; all other items ar
      {"cat": "ROOT/maps/cat.csv: has values per face, but ROOT/off/cat.xyz is a point cloud, which has none"}),
     (MAPS + "values: {unseen: 0}\n", {"maps/cat.csv": "0\n0\n0\n0\n"}, {"cat": "ROOT/maps/cat.csv: no point of the shape has a value; expected are "
                                                                                "values of what was seen, and points within max_distance of it"}),
-    (MAPS, {"off/cat.off": "OFF\n4 4\n0 0\n"}, {"cat": "ROOT/off/cat.off:3: "}), (MAPS, {"off/cat.off": ""}, {"cat": "ROOT/off/cat.off: the file is empty"}),
+    (MAPS, {"off/cat.off": "OFF\n4 4\n0 0\n"}, {"cat": "ROOT/off/cat.off:3: "}),
+    (MAPS, {"off/cat.off": ""}, {"cat": "ROOT/off/cat.off: the file is empty"}),
     (MAPS, {"maps/cat.csv": npy([1.0, 2, 3])}, {"cat": "ROOT/maps/cat.csv: the file has 3 values, but the mesh has 4 vertices"}),
     (MAPS, {"maps/cat.csv": npy([1.0, 2, float("inf"), 3])}, {"cat": "ROOT/maps/cat.csv: value 2 (0-based) is inf, expected a finite number"}),
     (MAPS, {"maps/cat.csv": mat(a=[1.0])}, {"cat": "ROOT/maps/cat.csv: a MAT file, and the description names no `variable:` in it"}),
@@ -56,7 +57,8 @@ class Cases(WithArchive):
     def test_each_fails_its_items_alone(self):
         for layout, changed, problems in CASES:
             self.setUp()
-            self.write({name: content for name, content in ((MINIATURES[layout][0] if layout in MINIATURES else FLAT) | changed).items() if content is not None})
+            files = (MINIATURES[layout][0] if layout in MINIATURES else FLAT) | changed
+            self.write({name: content for name, content in files.items() if content is not None})
             with self.subTest(layout=layout, changed=list(changed)):
                 items = self.list(layout).items
                 self.assertLessEqual(set(problems), {item.name for item in items})
@@ -77,7 +79,8 @@ class Cases(WithArchive):
 
     def test_what_is_no_file(self):
         self.write(FLAT)
-        for replace, wrong in [(lambda path: path.mkdir(), "is a folder, where a file is expected"), (lambda path: path.symlink_to("/nowhere"), "cannot be read: No such file"),
+        for replace, wrong in [(lambda path: path.mkdir(), "is a folder, where a file is expected"),
+                               (lambda path: path.symlink_to("/nowhere"), "cannot be read: No such file"),
                                (lambda path: path.symlink_to("/dev/zero"), "is not a regular file")]:
             path = self.root / "maps/cat.csv"
             path.rmdir() if path.is_dir() else path.unlink()
@@ -108,7 +111,8 @@ class Splits(WithArchive):
         self.assertEqual(listed.notes, [f"1 of 5 items are in no split ({self.own}:2): dog"])
         self.write({"splits.csv": "name,part\nbee,test\n"})
         self.assertEqual(self.splits("splits: {file: splits.csv, item: name, split: part}\n")["bee"], "test")
-        self.assertEqual(self.error_of(lambda: self.splits("splits: {file: splits.csv}\n")), 'ROOT/splits.csv: there is no column "item"; there are "name", "part"')
+        self.assertEqual(self.error_of(lambda: self.splits("splits: {file: splits.csv}\n")),
+                         'ROOT/splits.csv: there is no column "item"; there are "name", "part"')
 
     def test_the_first_lines_of_a_list_are_one_split(self):
         self.write({"paths.txt": "rgb/dog.obj\nD:\\data\\ant.obj,maps/ant.csv\n\nbee\nrgb/eel.obj\nrgb/cat.obj\n"})

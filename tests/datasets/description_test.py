@@ -76,7 +76,8 @@ class Descriptions(unittest.TestCase):
                 (ALL + "columns: {normalise_normals: yes}\n", "2: columns.normalise_normals is 'yes', not true or false"),
                 ("domain: faces\n" + ALL, "1: domain is 'faces', not one of any, meshes, points"),
                 (ALL + "units: miles\n", "2: units is 'miles', expected one of m, dm, cm, mm, um, in, ft; or use scale"),
-                (ALL + "scale: -1\n", "2: scale must be a number above 0, not -1"), (ALL + "scale: .inf\n", "2: scale is '.inf', not a finite number"),
+                (ALL + "scale: -1\n", "2: scale must be a number above 0, not -1"),
+                (ALL + "scale: .inf\n", "2: scale is '.inf', not a finite number"),
                 (ALL + "scale: 2\nunits: mm\n", "2: scale is there beside units: expected one of them"),
                 (ALL + "splits: {file: a.csv, list: b.txt}\n", "2: splits must have one of file (a CSV file), list (with shares), or items"),
                 (ALL + "splits: {list: b.txt, shares: {train: 80%, test: 30%}}\n", "2: splits.shares must name each split's share of the lines of "

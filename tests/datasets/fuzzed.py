@@ -17,16 +17,18 @@ from salbench.datasets.records import Form, InputError
 from support import cells, mat, npy, off
 
 SEED, SECONDS, BYTES = 41, 20, 4 << 30
-WORDS = (b"nan", b"inf", b"-1", b"1e999", b"\0", b"\n", b"\r", b",", b";", b"#", b'"', b"\xff\xfe", b"9" * 40, b"{item}", b"*a", b"&a", b"[", b"{", b": ", b"- ",
-         b"../", b"'", b"!!python/name:os.system ", b"vertex", b"0,5")
+WORDS = (b"nan", b"inf", b"-1", b"1e999", b"\0", b"\n", b"\r", b",", b";", b"#", b'"', b"\xff\xfe", b"9" * 40, b"{item}", b"*a", b"&a", b"[", b"{", b": ",
+         b"- ", b"../", b"'", b"!!python/name:os.system ", b"vertex", b"0,5")
 TEXT = b"vertex,x,y,z,s\n" + b"".join(b"%d,%d,%d,%d,0.%d\n" % (k, k & 1, k >> 1 & 1, k >> 2, k) for k in range(4))
 OWN = (b"places:\n  - &p {meshes: 'off/*', truth: {saliency: 'maps/{item}.csv', picks: 'clicks/{item}.pid'}}\n  - *p\n"
        b"values: {per: vertex, column: s, unseen: -1, variable: a}\nindices: {base: 0, variable: c, cell: [1, 2]}\nunits: mm\n"
        b"splits: {list: paths.txt, shares: {train: 80%, test: 0.2}}\nlicence: ask\n")
 POINTS = OWN.replace(b"per: vertex", b"per: point, points: [x, y, z]")
 FILES = {"off/cat.off": off().encode(), "maps/cat.csv": TEXT, "clicks/cat.pid": b"0\n3\n# c\n1\n", "paths.txt": b"a/cat.off\n", "own.yaml": OWN}
-SEEDS = (("own.yaml", OWN), ("own.yaml", POINTS), ("maps/cat.csv", TEXT), ("maps/cat.csv", TEXT.replace(b",", b" ")), ("maps/cat.csv", npy(np.arange(4.0))),
-         ("maps/cat.csv", mat(a=np.arange(4.0))), ("clicks/cat.pid", mat(c=cells(2, 2, r1c2=[1, 2]), b={"x": [1, "y"]})), ("clicks/cat.pid", b"0\n3\n# c\n1\n"),
+SEEDS = (("own.yaml", OWN), ("own.yaml", POINTS), ("maps/cat.csv", TEXT), ("maps/cat.csv", TEXT.replace(b",", b" ")),
+         ("maps/cat.csv", npy(np.arange(4.0))),
+         ("maps/cat.csv", mat(a=np.arange(4.0))), ("clicks/cat.pid", mat(c=cells(2, 2, r1c2=[1, 2]), b={"x": [1, "y"]})),
+         ("clicks/cat.pid", b"0\n3\n# c\n1\n"),
          ("paths.txt", b"a/cat.off\n"), ("off/cat.off", off().encode()))
 
 

@@ -96,8 +96,10 @@ class Folders(WithArchive):
         self.write({"off/cat.off": off(), "maps/cat.csv": "1\n2\n3\n4\n", "more_maps/cat.csv": "1\n2\n3\n4\n"})
         none = "ROOT: no .off, .obj or .ply meshes found, and no .ply, .pcd or .xyz point clouds; looked in "
         for layout, expected in [
-                ("# own\nplaces:\n  - meshes: of/*.off\n", none + "own: ROOT/of/*.off (own.yaml:3)"), ("gs", none + "gs: ROOT (with neither GS/ nor Saliency/ in it)"),
-                ("places: [{meshes: '*', root_is: all}]\n", none + "own: ROOT (is not named all)"), ("sal3d_meshes", none + "sal3d_meshes: ROOT/Meshes/*.obj"),
+                ("# own\nplaces:\n  - meshes: of/*.off\n", none + "own: ROOT/of/*.off (own.yaml:3)"),
+                ("gs", none + "gs: ROOT (with neither GS/ nor Saliency/ in it)"),
+                ("places: [{meshes: '*', root_is: all}]\n", none + "own: ROOT (is not named all)"),
+                ("sal3d_meshes", none + "sal3d_meshes: ROOT/Meshes/*.obj"),
                 ("domain: points\n" + MAPS, none + "own: ROOT/off (own.yaml:2)"),
                 (MAPS.replace("csv", "val"), "own.yaml:1: 'maps/{item}.val' fits no file of an item; expected are such as ROOT/maps/{item}.val"),
                 (MAPS.replace("maps", "absent"), "own.yaml:1: 'absent/{item}.csv' fits no file of an item; expected are such as ROOT/absent/{item}.csv"),
@@ -127,7 +129,8 @@ class Folders(WithArchive):
                 ("saliency: 'm/{item}.val'", "splits: {items: {test: [a]}}\n", True), ("saliency: 'm/{item}.txt'", "", False),
                 ("saliency: 'm/{item}_{view}.val'", "", False), ("saliency: 'm/{item}.val', mask: 'm/{item}.val'", "", False),
                 ("saliency: 'm/{item}.val', visible_from: [0, 0, 5]", "", False), ("saliency: 'm/{item}.val', visible_from: cameras.csv", "", False),
-                ("saliency: 'm/{item}.val'", "values: {positives: top 20%}\n", False), ("picks: 'm/{item}_{participant}.pid'", "indices: {base: 1}\n", False)]:
+                ("saliency: 'm/{item}.val'", "values: {positives: top 20%}\n", False),
+                ("picks: 'm/{item}_{participant}.pid'", "indices: {base: 1}\n", False)]:
             item = self.list(place % truth + more).items[0]
             self.assertEqual(item.native is not None, native, truth + more)
             self.assertEqual(item.native is None, bool(item.files and item.how))
@@ -157,7 +160,8 @@ class Folders(WithArchive):
         self.assertEqual([item.problem for item in self.list(MAPS).items], [""] * 4)
         listed = self.list(MAPS + "units: mm\n")
         self.assertEqual((listed.scale, [bool(item.problem) for item in listed.items]), (0.001, [False, False, True, False]))
-        self.assertRegex(listed.items[2].problem, f"^{self.root}/off/cat.off: its diagonal, 1732, is 1e\\+03 times the median .*/own.yaml:2 says: scale it")
+        self.assertRegex(listed.items[2].problem,
+                         f"^{self.root}/off/cat.off: its diagonal, 1732, is 1e\\+03 times the median .*/own.yaml:2 says: scale it")
 
 
 class Documents(WithArchive):
@@ -179,7 +183,8 @@ class Documents(WithArchive):
     def test_a_listing_imports_no_numpy(self):
         self.write({"Meshes/a.obj": "", "Gaze/a.txt": ""})
         code = ("import sys, types; package = types.ModuleType('salbench'); package.__path__ = [sys.argv[1]]; sys.modules['salbench'] = package\n"
-                "from salbench.datasets import listing; listing.document('sal3d_meshes', sys.argv[2]); print('numpy' in sys.modules, 'yaml' in sys.modules)")
+                "from salbench.datasets import listing; listing.document('sal3d_meshes', sys.argv[2])\n"
+                "print('numpy' in sys.modules, 'yaml' in sys.modules)")
         import salbench
         found = subprocess.run([sys.executable, "-c", code, os.path.dirname(salbench.__file__), self.root], capture_output=True, text=True, check=True)
         self.assertEqual(found.stdout, "False False\n")

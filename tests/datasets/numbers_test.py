@@ -148,12 +148,14 @@ class RowsOfElements(Texts):
 
 class Picks(unittest.TestCase):
     def test_order_and_repetitions_are_kept(self):
-        for text, base, expected in [(b"7\r\n0\r\n7\r\n", 0, [7, 0, 7]), (b"", 0, []), (b"# from 0\n7 # here\n+0\n", 0, [7, 0]), (b"1\n8\n", 1, [0, 7])]:
+        for text, base, expected in [(b"7\r\n0\r\n7\r\n", 0, [7, 0, 7]), (b"", 0, []), (b"# from 0\n7 # here\n+0\n", 0, [7, 0]),
+                                     (b"1\n8\n", 1, [0, 7])]:
             self.assertEqual(read_picks(text, "9_0.pid", Indices(base), Elements(8)).tolist(), expected)
 
     def test_file_and_line_of_a_bad_pick(self):
         for text, base, wrong in [
-                (b"7\n8\n", 0, ":2: vertex 8 is out of range: the mesh has 8 vertices, numbered from 0"), (b"-1\n", 0, ":1: vertex -1 is out of range"),
+                (b"7\n8\n", 0, ":2: vertex 8 is out of range: the mesh has 8 vertices, numbered from 0"),
+                (b"-1\n", 0, ":1: vertex -1 is out of range"),
                 (b"3\n0\n", 1, ":2: vertex 0 is out of range: the mesh has 8 vertices, numbered from 1"), (b"1.5\n", 0, ':1: "1.5" is not a whole'),
                 (b"1 2\n", 0, ":1: the line has more than one value"), (b"99999999999999999999\n", 0, "does not fit 64 bits"),
                 (b"1_0\n", 0, "is not a whole number")]:

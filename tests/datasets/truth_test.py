@@ -63,7 +63,8 @@ class Saliency(WithArchive):
         density = np.arange(len(points)) % 7.0
         density[:9] = NAN
         self.write({"off/cat.off": off(points, faces), "maps/cat.csv": lines(density)})
-        for rule, positive in [("above mean", density > np.nanmean(density)), ("top 20%", density >= np.sort(density[9:])[-int(np.ceil(0.2 * len(density[9:])))])]:
+        for rule, positive in [("above mean", density > np.nanmean(density)),
+                               ("top 20%", density >= np.sort(density[9:])[-int(np.ceil(0.2 * len(density[9:])))])]:
             truth = self.truth(MAPS + f"values: {{unseen: nan, positives: {rule}}}\n")
             self.equal(truth.picks[0], np.flatnonzero(positive))
         self.write({"maps/cat.csv": lines(np.full(len(points), 5.0))})
@@ -212,13 +213,16 @@ class Cameras(WithArchive):
     def test_wrong_files_are_named_with_their_line(self):
         own = self.described("visible_from_direction: cameras.csv")
         for text, wrong in [("x,y,z\n0,0,1\n", "1: has neither a column 'item' nor 'view' (own.yaml:6)"),
-                            ("view,x,y,z\nfront,0,0,1\ntop,0,0,0\n", "3: a direction has a length"), ("view,x,y,z\nfront,0,0,\n", "2: a coordinate is not a "
+                            ("view,x,y,z\nfront,0,0,1\ntop,0,0,0\n", "3: a direction has a length"),
+                            ("view,x,y,z\nfront,0,0,\n", "2: a coordinate is not a "
                                                                                                                                 "finite number"),
-                            ("view,x,y,z\nfront,0,0,1e999\n", '2: "1e999" is not a number'), ("view,x,y\nfront,0,0\n", ' there is no column "z"; there are "view", '
+                            ("view,x,y,z\nfront,0,0,1e999\n", '2: "1e999" is not a number'),
+                            ("view,x,y\nfront,0,0\n", ' there is no column "z"; there are "view", '
                                                                                                                       '"x", "y"'),
                             ("view,x,y,z\nfront,0,0,1\nfront,0,0,1\n", "3: ROOT/cameras.csv:2 has this camera already: keep one of them"),
                             ("view,x,y,z\n\nfront,0,0\n", "3: the line has 3 fields, the header 4"), ("x,x\n", '1: two columns are named "x"'),
-                            ('view,x\n"a,1\n', "2: a quote opens a field that nothing closes"), ('view\n"a"b\n', "2: there is text after the quote that closes a field"),
+                            ('view,x\n"a,1\n', "2: a quote opens a field that nothing closes"),
+                            ('view\n"a"b\n', "2: there is text after the quote that closes a field"),
                             ("", " the file is empty, where a line of column names is expected")]:
             self.write({"cameras.csv": text})
             self.assertEqual(self.error_of(lambda: self.list(own)), f"ROOT/cameras.csv:{wrong}")
