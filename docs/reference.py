@@ -9,7 +9,6 @@ import unicodedata
 from pathlib import Path
 
 import salbench
-import yaml
 
 DOCS = Path(__file__).resolve().parent
 ACCENTS = {'"': "\u0308", "'": "\u0301", "`": "\u0300", "v": "\u030c"}  # of TeX, as combining characters
@@ -92,13 +91,12 @@ def models():
 
 
 def data_sets():
-    """Terms of use, which stand in the descriptions."""
-    found = []
-    for path in sorted((DOCS.parent / "configs/datasets").glob("*.yaml")):
-        description = yaml.safe_load(path.read_text(encoding="utf-8"))
-        found.append((f"`{path.stem}`", description["licence"]))
+    """Terms of use, which stand in the importers."""
+    from salbench.datasets import ARCHIVES, NATIVE, find
+    terms = {name: find(name).LAYOUT.licence for name in ARCHIVES} | {name: terms for name, terms in NATIVE.items() if terms}
+    found = [(f"`{name}`", terms[name]) for name in sorted(terms)]
     return ("# Terms of data sets\n\nNone of the data is part of salbench; [Data sets](../data_sets.md) says whose it is. On which terms its\n"
-            "authors give it, as far as that is known (`licence:` in `configs/datasets/NAME.yaml`):\n\n" + table(("layout", "terms"), found))
+            "authors give it, as far as that is known:\n\n" + table(("layout", "terms"), found))
 
 
 def python():

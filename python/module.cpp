@@ -2,10 +2,13 @@
 #include "python/module.h"
 
 #include <exception>
+#include <filesystem>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "pipeline/config/section.h"
+#include "pipeline/package/package.h"
 #include "python/computing.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
@@ -32,6 +35,16 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
+// What a run starts to list and import data sets: this interpreter, and this package.
+void use_own_package() {
+  const auto sys = py::module_::import("sys");
+  const py::object executable = sys.attr("executable"), modules = sys.attr("modules");
+  if (!executable.is_none() && py::len(executable) > 0 && modules.contains("salbench")) {
+    const auto folder = py::cast<std::string>(modules["salbench"].attr("__path__")[py::int_(0)]);
+    use_package(py::cast<std::string>(executable), std::filesystem::path(folder).parent_path());
+  }
+}
+
 }  // namespace
 
 std::string hint(std::string_view name, const std::vector<std::string_view>& known) {
@@ -50,6 +63,7 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
   options_are_arguments = true;
+  use_own_package();
   keep_log();
   wait_at_exit();
   bind_cache(module);

@@ -2,13 +2,15 @@
 """Numbers in binary files: .npy and MATLAB's files of version 5."""
 
 import io
+import struct
 import unittest
 
 import numpy as np
 import scipy.io
 import scipy.sparse
 
-from salbench.datasets._arrays import parse_mat, parse_npy
+from salbench.datasets._mat import parse_mat
+from salbench.datasets._npy import parse_npy
 from salbench.datasets.records import InputError
 from support import cells, mat, npy
 
@@ -48,6 +50,17 @@ class Mat(unittest.TestCase):
         for variable, expected in [("values", [0.5, -2, 3e7]), ("bytes", [1, 255]), ("whole", [-7]), ("single", [0.25]), ("none", []), ("flags", [1, 0])]:
             self.assertEqual(self.numbers(variable), expected)
         self.assertEqual(self.numbers("square", data=mat(square=[[1, 3], [2, 4]])), [1, 2, 3, 4])  # column by column
+
+    def test_packed_or_not_and_of_either_order_of_bytes(self):
+        file = io.BytesIO()
+        scipy.io.savemat(file, {"a": [1.5, 2], "longer_name": cells(1, 2, r1c2=[3])})
+        self.assertEqual((self.numbers("a", data=file.getvalue()), self.numbers("longer_name", "12", file.getvalue())), ([1.5, 2], [3]))
+
+        def element(kind, content):
+            return struct.pack(">II", kind, len(content)) + content + bytes(-len(content) % 8)
+
+        matrix = element(6, struct.pack(">II", 6, 0)) + element(5, struct.pack(">ii", 1, 2)) + element(1, b"a") + element(9, struct.pack(">dd", 1.5, 2))
+        self.assertEqual(self.numbers("a", data=b"MATLAB 5.0 MAT-file".ljust(124) + b"\1\0MI" + element(14, matrix)), [1.5, 2])
 
     def test_a_cell_by_row_and_column(self):
         for cell, expected in [("11", [11]), ("21", [21, 22]), ("12", [12]), ("22", [])]:

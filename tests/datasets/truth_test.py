@@ -3,6 +3,8 @@
 
 import numpy as np
 
+from salbench import Shape
+from salbench.datasets import one_form
 from support import FACES, NAN, POINTS, WithArchive, cells, lines, mat, npy, obj, off, sphere
 
 MAPS = "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"
@@ -305,6 +307,18 @@ class Columns(WithArchive):
         self.rows = [row[:-3] + "0" for row in self.rows[:3] + self.rows[4:]]
         own = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], flag: 8}\n"
         self.assertEqual(self.error_of(lambda: self.read_rows(own)), "ROOT/Gaze/cat.txt: no point has its flag set: there is nothing to compare with")
+
+
+class OneForm(WithArchive):
+    def test_a_description_may_name_a_set_in_the_one_form(self):
+        own = "index: index.csv\nlicence: ask\n"
+        self.assertEqual(self.error_of(lambda: self.list(own)), "ROOT/index.csv: cannot be read: there is no such file")
+        one_form.write(self.root, [Shape("cat", POINTS, FACES, ground_truth=np.arange(4.0), category="pet"), Shape("dog", POINTS, FACES)])
+        listed = self.list(own)
+        self.assertEqual([(item.name, item.category, item.truth, item.native) for item in listed.items], [("cat", "pet", True, None), ("dog", "", False, None)])
+        self.assertEqual((listed.licence, listed.read), ("ask", [str(self.root / "index.csv")]))
+        self.equal(self.truth(own, "cat").saliency, np.arange(4))
+        self.assertEqual(self.read(own, "dog").truths, ())
 
 
 class Obj(WithArchive):

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "io/file.h"
-#include "io/hdf5_file.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/cloud_text.h"
+#include "tests/support/exported_file.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
@@ -98,7 +98,7 @@ TEST(CloudsCommand, ExportHoldsThemWithTheirPictures) {
   const fs::path file = toy / "all.h5";
   const Outcome ended = toy.salbench("export", {"--to", file.string()});
   ASSERT_EQ(ended.status, 0) << ended.err;
-  const Hdf5File all(file);
+  const ExportedFile all(file);
   EXPECT_THAT(all.arrays(),
               AllOf(Contains("c/cloud/points"), Contains("c/cloud_normals/normals"),
                     Contains("c/surface/faces"), Contains("c/picture/primitive"),

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "io/file.h"
-#include "io/hdf5_file.h"
 #include "tests/e2e/small_disk.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/exported_file.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/toy_data.h"
 
@@ -69,7 +69,7 @@ TEST(Export, ChoosesItemsAndStages) {
   const Outcome ended =
       toy.salbench("export", {"--to", (toy / "toy.h5").string(), "--items", "2", "--stage", "normals, map"});
   ASSERT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(Hdf5File(toy / "toy.h5").arrays(),
+  EXPECT_THAT(ExportedFile(toy / "toy.h5").arrays(),
               testing::ElementsAre("2/map.PS/saliency", "2/map.RS/saliency", "2/normals/normals"));
 }
 
@@ -92,7 +92,7 @@ TEST(Export, IsReadByTheExampleCopiedAndLinked) {
   ASSERT_EQ(linked.status, 0) << linked.err;
   EXPECT_EQ(linked.out, copy.out);
 
-  const Hdf5File exported(toy / "copy.h5");
+  const ExportedFile exported(toy / "copy.h5");
   double at_picks = 0;
   for (const std::string item : {"1", "2"}) {
     const auto map = std::get<std::vector<double>>(exported.read(item + "/map.PS/saliency").values);

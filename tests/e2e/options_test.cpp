@@ -49,8 +49,6 @@ class Options : public testing::Test {
         {"config", {config}},
         {"verify", {config, "--deep"}},
         {"gc", {config, "--dry-run"}},
-        {"inspect", {"automatic"}},
-        {"convert", {"schelling", "--to", below("one_form")}},
     };
     EXPECT_TRUE(all.contains(name)) << name << " is new: give its smallest form here";
     return all.at(name);

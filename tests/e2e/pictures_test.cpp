@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "io/file.h"
-#include "io/hdf5_file.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/exported_file.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/toy_data.h"
 
@@ -30,7 +30,7 @@ std::vector<std::string> arrays_of_export(const Workspace& toy,
   words.insert(words.end(), further.begin(), further.end());
   const Outcome ended = toy.salbench("export", words);
   EXPECT_EQ(ended.status, 0) << ended.err;
-  return Hdf5File(toy / "toy.h5").arrays();
+  return ExportedFile(toy / "toy.h5").arrays();
 }
 
 // Names without the checksum, which is also of the seconds that it took.
@@ -55,7 +55,7 @@ TEST(PicturesCommand, TakesThemAndExportContainsThem) {
   EXPECT_EQ(std::count_if(arrays.begin(), arrays.end(),
                           [](const std::string& name) { return name.ends_with("/picture/primitive"); }),
             13);
-  const Hdf5File file(toy / "toy.h5");
+  const ExportedFile file(toy / "toy.h5");
   EXPECT_EQ(file.read("2/picture/primitive").shape, (std::vector<std::size_t>{400, 400}));
   EXPECT_EQ(file.read("2_5/picture/weights").shape, (std::vector<std::size_t>{400, 400, 3}));
   EXPECT_EQ(file.read("2_5/picture/view_projection").count(), 16U);

@@ -28,15 +28,4 @@ void fuzz_config(std::string_view bytes) {
   CHECK_EQ(read_and_written(written, "written by salbench"), written);
 }
 
-void fuzz_layout(std::string_view bytes) {
-  const std::string file = "folder/file.yaml";
-  try {
-    const Layout layout = read_layout(Section::from_text(std::string(bytes), file), "name");
-    CHECK_EQ(layout.places.empty(), false);
-    for (const Place& place : layout.places) CHECK_EQ(wrong_with_mesh_pattern(place.meshes.text), "");
-  } catch (const ConfigError& error) {
-    check_message(error.what(), file);
-  }
-}
-
 }  // namespace salbench

@@ -41,12 +41,9 @@ TEST(FuzzCorpus, PlyCloud) {
 TEST(FuzzCorpus, Pcd) { replay("pcd", fuzz_pcd); }
 TEST(FuzzCorpus, Xyz) { replay("xyz", fuzz_xyz); }
 TEST(FuzzCorpus, Val) { replay("val", fuzz_val); }
-TEST(FuzzCorpus, Csv) { replay("csv", fuzz_csv); }
 TEST(FuzzCorpus, Pid) { replay("pid", fuzz_pid); }
-TEST(FuzzCorpus, Hdf5) { replay("hdf5", fuzz_hdf5); }
-TEST(FuzzCorpus, Hdf5Bytes) { replay("hdf5_file", fuzz_hdf5_bytes, 29); }
+TEST(FuzzCorpus, Hdf5Image) { replay("hdf5_image", fuzz_hdf5_image, 29); }
 TEST(FuzzCorpus, Config) { replay("config", fuzz_config); }
-TEST(FuzzCorpus, Layout) { replay("layout", fuzz_layout); }
 
 TEST(FuzzMessage, IsOneLineThatNamesTheFile) {
   EXPECT_NO_THROW(check_message("a.off:3: \"x\" is not a number", "a.off"));

@@ -2,14 +2,16 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "io/cloud_file.h"
 #include "io/ground_truth_file.h"
+#include "io/hdf5_image.h"
 #include "io/mesh_file.h"
-#include "io/number_table.h"
+#include "io/one_form.h"
 #include "io/shape_file.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -106,17 +108,6 @@ std::size_t count_words(std::string_view text) {
   return n;
 }
 
-// A point cloud in columns, with and without normals and duplicates, by the length of the text.
-PointCloud parse_some_columns(std::string_view text, std::string_view name) {
-  ColumnsFormat format;
-  format.position = {"1", "2", "3"};
-  if (text.size() % 2 == 1) format.normal = {"1", "3", "2"};
-  format.padding = Padding::any;
-  format.duplicates = text.size() % 3 == 0 ? Duplicates::dropped : Duplicates::kept;
-  format.density = "2";
-  return parse_column_cloud(text, name, format);
-}
-
 }  // namespace
 
 void fuzz_off(std::string_view bytes) { check_mesh_reader(parse_off, bytes); }
@@ -139,24 +130,6 @@ void fuzz_val(std::string_view bytes) {
   CHECK_EQ(read(n_vertices + 1).has_value(), false);
 }
 
-void fuzz_csv(std::string_view bytes) {
-  check_cloud_reader(parse_some_columns, bytes);
-  for (const std::vector<std::string>& columns :
-       {std::vector<std::string>{""}, {"2"}, {"value", "1"}, {"1", "value", "2", "3"}}) {
-    const auto values = read_or_refuse([&] { return parse_columns(bytes, kFile, columns, "-1"); });
-    if (!values) continue;
-    CHECK_EQ(values->size(), columns.size());
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      CHECK_EQ((*values)[c].size(), (*values)[0].size());
-      for (const double value : (*values)[c])
-        CHECK_EQ(std::isfinite(value) || (c == 0 && std::isnan(value)), true);
-    }
-    const Elements one_more{(*values)[0].size() + 1};
-    CHECK_EQ(read_or_refuse([&] { return parse_columns(bytes, kFile, columns, "-1", one_more); }).has_value(),
-             false);
-  }
-}
-
 void fuzz_pid(std::string_view bytes) {
   const auto read = [&](std::size_t n_vertices) {
     return read_or_refuse([&] { return parse_picks(bytes, kFile, {n_vertices}); });
@@ -171,6 +144,14 @@ void fuzz_pid(std::string_view bytes) {
   const auto last = static_cast<std::size_t>(*std::max_element(picks->begin(), picks->end()));
   CHECK_EQ(read(last + 1) == picks, true);
   CHECK_EQ(read(last).has_value(), false);
+}
+
+void fuzz_hdf5_image(std::string_view bytes) {
+  const auto content = hdf5::parsed_image(std::as_bytes(std::span(bytes)));
+  if (!content) return;
+  for (const Array& array : content->arrays)
+    CHECK_EQ(std::visit([](const auto& values) { return values.size(); }, array.values), array.count());
+  read_or_refuse([&] { return shape_in_form(bytes, kFile); });
 }
 
 }  // namespace salbench

@@ -21,16 +21,10 @@ void fuzz_pcd(std::string_view bytes);
 void fuzz_xyz(std::string_view bytes);
 
 void fuzz_val(std::string_view bytes);  // finite values, and for no more than one number of vertices
-void fuzz_csv(std::string_view bytes);  // columns of one length, of finite numbers and what was not seen
 void fuzz_pid(std::string_view bytes);  // vertices of the mesh, and of no smaller one
 
-// The bytes are a recipe: a well-formed file is made by it, of whatever a file of HDF5 may hold, and read. An
-// array has as many values as its shape says, and one that is sound is read whatever stands beside it.
-void fuzz_hdf5(std::string_view bytes);
-void fuzz_hdf5_bytes(std::string_view bytes);  // of a file; not for libFuzzer (hdf5_target.cpp)
+// An image in the form that artefacts have: an array has as many values as its shape says.
+void fuzz_hdf5_image(std::string_view bytes);
 
 void fuzz_config(std::string_view bytes);  // a configuration that is read back from its own text as the same
-
-void fuzz_layout(std::string_view bytes);  // a description of places with meshes, in patterns without faults
-
 }  // namespace salbench

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/config/data_layout.h"
+#include "io/text_scanner.h"
 #include "stages/core/errors.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
@@ -29,7 +29,7 @@ class DatasetFolder : public TemporaryFolder {
 };
 
 Dataset found(const std::filesystem::path& root, const char* layout, Twins twins = Twins::refuse) {
-  return find_dataset(root, layouts_of(layout), twins);
+  return native_dataset(data_folder(root), layout, twins);
 }
 
 // "2 cup Meshes/22.off Distributions/22.val RawData/22_0.pid", paths relative to `base`.
@@ -41,7 +41,7 @@ std::vector<std::string> summary(const Dataset& dataset, const std::filesystem::
       line += " " + path.lexically_relative(base).string();
     };
     add(item.mesh);
-    for (const auto& path : item.saliency) add(path);
+    if (!item.saliency.empty()) add(item.saliency);
     for (const auto& path : item.picks) add(path);
     lines.push_back(line);
   }
@@ -61,14 +61,10 @@ TEST(Dataset, FindsTheSchellingLayoutFromAnyOfItsFolders) {
   const auto inner = folder / "SchellingData" / "SchellingData";
   for (const auto& root : {folder.path(), folder / "SchellingData", inner, folder / "SchellingData/"}) {
     SCOPED_TRACE(root);
-    for (const char* layout : {"automatic", "schelling"}) {
-      const Dataset dataset = found(root, layout);
-      EXPECT_EQ(dataset.layout, "schelling");
-      EXPECT_THAT(summary(dataset, inner),
-                  ElementsAre("3 human Meshes/3.off",
-                              "21 cup Meshes/21.off Distributions/21.val RawData/21_0.pid "
-                              "RawData/21_9.pid RawData/21_10.pid"));
-    }
+    EXPECT_THAT(summary(found(root, "schelling"), inner),
+                ElementsAre("3 human Meshes/3.off",
+                            "21 cup Meshes/21.off Distributions/21.val RawData/21_0.pid "
+                            "RawData/21_9.pid RawData/21_10.pid"));
   }
 }
 
@@ -76,53 +72,17 @@ TEST(Dataset, NamesMayHaveDigitsAndUnderscores) {
   const DatasetFolder folder = {"Meshes/michael3.off", "Meshes/michael.off",     "Meshes/a_1.off",
                                 "Meshes/a.off",        "RawData/michael3_0.pid", "RawData/michael_30.pid",
                                 "RawData/a_1.pid",     "RawData/a_1_2.pid"};
-  EXPECT_THAT(summary(found(folder.path(), "automatic"), folder.path()),
+  EXPECT_THAT(summary(found(folder.path(), "schelling"), folder.path()),
               ElementsAre("a - Meshes/a.off RawData/a_1.pid", "a_1 - Meshes/a_1.off RawData/a_1_2.pid",
                           "michael - Meshes/michael.off RawData/michael_30.pid",
                           "michael3 - Meshes/michael3.off RawData/michael3_0.pid"));
-}
-
-TEST(Dataset, FindsThePrincetonMeshesWithGroundTruthBesideThem) {
-  for (const std::string off : {"off", "data/off", "MeshsegBenchmark-1.0/data/off"}) {
-    for (const std::string truth :
-         {"Distributions", "SchellingData/Distributions", "SchellingData/SchellingData/Distributions"}) {
-      SCOPED_TRACE(off + " " + truth);
-      const TemporaryFolder folder;
-      folder.write(off + "/400.off", "");
-      folder.write(truth + "/400.val", "");
-      const Dataset dataset = found(folder.path(), "automatic");
-      EXPECT_EQ(dataset.layout, "princeton");
-      EXPECT_THAT(summary(dataset, folder.path()),
-                  ElementsAre("400 four-legged " + off + "/400.off " + truth + "/400.val"));
-    }
-  }
-  const DatasetFolder folder = {"off/1.off", "RawData/1_0.pid"};
-  EXPECT_THAT(summary(found(folder / "off", "princeton"), folder.path()),
-              ElementsAre("1 human off/1.off RawData/1_0.pid"));
-}
-
-TEST(Dataset, FindsTheGsLayout) {
-  for (const std::string meshes : {"off", "Meshes"}) {
-    SCOPED_TRACE(meshes);
-    const TemporaryFolder folder;
-    folder.write(meshes + "/41.off", "");
-    folder.write("GS/Saliency/41.val", "");
-    folder.write("GS/RawData/41_0.pid", "");
-    for (const auto& root : {folder.path(), folder / "GS"}) {
-      const Dataset dataset = found(root, "automatic");
-      EXPECT_EQ(dataset.layout, "gs");
-      EXPECT_THAT(summary(dataset, folder.path()),
-                  ElementsAre("41 glasses " + meshes + "/41.off GS/Saliency/41.val GS/RawData/41_0.pid"));
-    }
-  }
 }
 
 TEST(Dataset, TakesAnyFolderOfMeshes) {
   const DatasetFolder folder = {
       "all/10.off",      "all/2.OBJ",      "all/horse.ply",           "all/readme.txt",
       "all/.hidden.off", "all/more/4.off", "Distributions/horse.val", "RawData/2_0.pid"};
-  const Dataset dataset = found(folder / "all", "automatic");
-  EXPECT_EQ(dataset.layout, "folder");
+  const Dataset dataset = found(folder / "all", "folder");
   EXPECT_THAT(summary(dataset, folder.path()), ElementsAre("2 - all/2.OBJ RawData/2_0.pid", "10 - all/10.off",
                                                            "horse - all/horse.ply Distributions/horse.val"));
   EXPECT_THAT(dataset.notes, IsEmpty());
@@ -131,7 +91,7 @@ TEST(Dataset, TakesAnyFolderOfMeshes) {
 TEST(Dataset, OnlyNumbersOfTheBenchmarkHaveAClass) {
   const DatasetFolder folder = {"Meshes/1.off", "Meshes/20.off",  "Meshes/261.off", "Meshes/400.off",
                                 "Meshes/0.off", "Meshes/401.off", "Meshes/007.off", "Meshes/1b.off"};
-  EXPECT_THAT(summary(found(folder.path(), "automatic"), folder.path()),
+  EXPECT_THAT(summary(found(folder.path(), "schelling"), folder.path()),
               ElementsAre("0 - Meshes/0.off", "1 human Meshes/1.off", "1b - Meshes/1b.off",
                           "007 - Meshes/007.off", "20 human Meshes/20.off", "261 spring Meshes/261.off",
                           "400 four-legged Meshes/400.off", "401 - Meshes/401.off"));
@@ -141,7 +101,7 @@ TEST(Dataset, NotesGroundTruthWithoutAMesh) {
   const DatasetFolder folder = {"Meshes/horse.off",  "Distributions/261.val", "RawData/261_0.pid",
                                 "RawData/261_1.pid", "RawData/cow_0.pid",     "RawData/readme.pid",
                                 "RawData/notes.txt"};
-  const Dataset dataset = found(folder.path(), "automatic");
+  const Dataset dataset = found(folder.path(), "schelling");
   EXPECT_THAT(dataset.notes, ElementsAre(HasSubstr("readme.pid: is not named NAME_NUMBER.pid"),
                                          HasSubstr("261: ground truth without a mesh"),
                                          HasSubstr("cow: ground truth without a mesh")));
@@ -150,69 +110,55 @@ TEST(Dataset, NotesGroundTruthWithoutAMesh) {
 TEST(Dataset, NotesMeshesThatTheBenchmarkHasAndTheFolderHasNot) {
   const TemporaryFolder folder;
   for (int i = 1; i <= 400; ++i)
-    if ((i < 261 || i > 280) && i != 399) folder.write("off/" + std::to_string(i) + ".off", "");
-  EXPECT_THAT(found(folder.path(), "automatic").notes,
+    if ((i < 261 || i > 280) && i != 399) folder.write("Meshes/" + std::to_string(i) + ".off", "");
+  EXPECT_THAT(found(folder.path(), "schelling").notes,
               ElementsAre("379 of the 400 meshes of SHREC'07 are here, without 261-280, 399"));
 }
 
 TEST(Dataset, NamesAllShapesThatHaveTwoFiles) {
   const DatasetFolder folder = {"a.off", "a.ply", "b.off", "c.XYZ", "c.obj", "c.pcd"};
-  expect_refusal(folder.path(), "automatic",
+  expect_refusal(folder.path(), "folder",
                  AllOf(HasSubstr("several files of one name: a.off and a.ply, c.XYZ and c.obj and c.pcd;"),
                        HasSubstr("dataset.twins: off")));
 }
 
 TEST(Dataset, NoExtensionIsAdvisedThatTellsNoTwinsApart) {
   const DatasetFolder folder = {"a.ply", "a.PLY"};
-  expect_refusal(folder.path(), "automatic",
+  expect_refusal(folder.path(), "folder",
                  AllOf(HasSubstr("a.PLY and a.ply; an item has one file: rename or remove the others"),
                        Not(HasSubstr("twins"))));
 }
 
-TEST(Dataset, TwinsInSeveralFoldersAreNamedWithThem) {
-  const DatasetFolder folder = {"cat/1.off", "dog/1.off"};
-  const Section own =
-      Section::from_text("ground_truth: optional\nplaces: [{meshes: '*/*.off'}]\n", "own.yaml");
-  const Layout layout = read_layout(own, "own");
-  EXPECT_THAT(
-      [&] { find_dataset(folder.path(), std::span(&layout, 1)); },
-      ThrowsMessage<InputError>(HasSubstr((folder / "cat/1.off").string() + " and " +
-                                          (folder / "dog/1.off").string() + "; an item has one file")));
-}
-
 TEST(Dataset, TakesTheKindOfFileThatIsChosenAmongTwins) {
   const DatasetFolder folder = {"a.off", "a.ply", "b.off", "c.PLY", "c.xyz"};
-  const Dataset dataset = found(folder.path(), "automatic", Twins::ply);
+  const Dataset dataset = found(folder.path(), "folder", Twins::ply);
   EXPECT_THAT(summary(dataset, folder.path()), ElementsAre("a - a.ply", "b - b.off", "c - c.PLY"));
   EXPECT_THAT(dataset.notes, ElementsAre("files left out, as there is a .ply file of the same name: 2"));
-  EXPECT_THROW(found(folder.path(), "automatic", Twins::off), InputError);
+  EXPECT_THROW(found(folder.path(), "folder", Twins::off), InputError);
   const DatasetFolder cases = {"a.ply", "a.PLY"};
-  EXPECT_THROW(found(cases.path(), "automatic", Twins::ply), InputError);
+  EXPECT_THROW(found(cases.path(), "folder", Twins::ply), InputError);
 }
 
 TEST(Dataset, SaysWhatItLookedForAndWhere) {
   const DatasetFolder folder = {"Meshes/readme.txt"};
-  expect_refusal(folder.path(), "automatic",
-                 AllOf(HasSubstr("no .off, .obj or .ply meshes found"), HasSubstr("gs: "),
-                       HasSubstr("schelling: " + (folder / "Meshes").string()), HasSubstr("princeton: "),
-                       HasSubstr("folder: " + folder.path().string())));
-  expect_refusal(folder.path(), "princeton", HasSubstr((folder / "MeshsegBenchmark-1.0/data/off").string()));
-  expect_refusal(folder / "absent", "automatic", HasSubstr("absent: there is no such folder"));
+  expect_refusal(folder.path(), "schelling",
+                 AllOf(HasSubstr("no .off, .obj or .ply meshes found"),
+                       HasSubstr("looked in schelling: " + (folder / "Meshes").string())));
+  expect_refusal(folder / "absent", "folder", HasSubstr("absent: there is no such folder"));
   expect_refusal(folder / "Meshes/readme.txt", "folder", HasSubstr("there is no such folder"));
 }
 
 TEST(Dataset, FindsTheRealData) {
   const auto data = real_data();
   if (!data) GTEST_SKIP() << kNoRealData;
-  const Dataset study = found(*data, "automatic");
-  EXPECT_EQ(study.layout, "schelling");
+  const Dataset study = found(*data, "schelling");
   EXPECT_EQ(study.items.size(), 380U);
   EXPECT_EQ(std::count_if(study.items.begin(), study.items.end(),
                           [](const DatasetItem& item) { return item.picks.size() >= 22; }),
             19);
   EXPECT_THAT(study.notes, ElementsAre("380 of the 400 meshes of SHREC'07 are here, without 261-280"));
 
-  const Dataset tracked = found(*data / "eyetracking", "automatic");
+  const Dataset tracked = found(*data / "eyetracking", "schelling");
   EXPECT_EQ(tracked.items.size(), 23U);
   for (const DatasetItem& item : tracked.items) {
     EXPECT_EQ(item.category, "");

@@ -8,13 +8,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <hdf5.h>
-#include <unistd.h>
 
 #include "io/hdf5_writer.h"
 #include "io/packed_chunks.h"
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "tests/support/exported_file.h"
 #include "tests/support/hdf5_content.h"
 #include "tests/support/temporary_folder.h"
 
@@ -70,7 +69,7 @@ TEST(Hdf5Writer, WritesWhatIsReadBackAndTheSameBytesAgain) {
   write_all(folder / "a.h5");
   write_all(folder / "b.h5");
   EXPECT_EQ(read_file(folder / "a.h5"), read_file(folder / "b.h5"));
-  const Hdf5File file(folder / "a.h5");
+  const ExportedFile file(folder / "a.h5");
   EXPECT_THAT(file.arrays(), testing::ElementsAre("52/all/a", "52/all/deep/er", "52/all/empty", "52/all/fpfh",
                                                   "52/all/one", "52/fpfh/fpfh"));
   for (const Array& array : sample().arrays) {
@@ -152,60 +151,6 @@ TEST(Hdf5File, SeveralThreadsAtOnceEachGetTheirOwnFile) {
     });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(equal, 1200);
-}
-
-// 0 if every file was read or refused by its name, and some were refused.
-int read_damaged(const std::filesystem::path& path) {
-  const Bytes sound = hdf5_image({{{"52", {3}, std::vector<double>{1, 2, 3}, "1", "a map"},
-                                   {"52_3", {2}, std::vector<float>{4, 5}, "1", "of a scan"}},
-                                  {{"program", std::string("other")}}});
-  Rng rng(1, "damage", "");
-  int refused = 0;
-  for (int trial = 0; trial < 300; ++trial) {
-    Bytes bytes = sound;
-    for (int change = 0; change < 4; ++change)
-      bytes[rng.below(bytes.size())] = static_cast<std::byte>(rng.below(256));
-    write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    try {
-      const Hdf5File file(path);
-      for (const std::string& name : file.arrays()) file.read(name);
-    } catch (const InputError& error) {
-      if (!std::string_view(error.what()).starts_with(path.string())) return 1;
-      ++refused;
-    }
-  }
-  return refused > 10 ? 0 : 2;
-}
-
-// libhdf5 crashes on some of these, which a child process does in our place, and leaks memory on others,
-// which is why all of this is in one.
-TEST(Hdf5File, DamagedBytesNeverEndTheProgram) {
-  const TemporaryFolder folder;
-  EXPECT_EXIT(::_exit(read_damaged(folder / "maps.h5")), testing::ExitedWithCode(0), "");
-}
-
-// 3 GB on a disk that need not hold a byte of them.
-void write_sparse(const std::filesystem::path& path) {
-  const hsize_t count = 3'000'000'000;
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  const hid_t space = H5Screate_simple(1, &count, nullptr), plan = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_alloc_time(plan, H5D_ALLOC_TIME_EARLY);
-  H5Pset_fill_time(plan, H5D_FILL_TIME_NEVER);
-  H5Dclose(H5Dcreate2(file, "52", H5T_STD_U8LE, space, H5P_DEFAULT, plan, H5P_DEFAULT));
-  H5Pclose(plan);
-  H5Sclose(space);
-  H5Fclose(file);
-}
-
-TEST(Hdf5File, ADataSetLargerThanCanBeReadIsNamed) {
-  const TemporaryFolder folder;
-  write_sparse(folder / "maps.h5");
-  const Hdf5File file(folder / "maps.h5");
-  EXPECT_THAT(file.arrays(), testing::ElementsAre("52"));
-  EXPECT_THAT([&] { file.read("52"); },
-              testing::ThrowsMessage<InputError>(
-                  testing::AllOf(testing::HasSubstr("maps.h5: data set \"52\": "),
-                                 testing::HasSubstr("3000000000 bytes: at most 2147483648 can be read"))));
 }
 
 }  // namespace

@@ -244,10 +244,10 @@ TEST(AddALayout, ItIsOneFile) {
                                     "places:\n  - meshes: ply/*.off\n    truth:\n      saliency: "
                                     "fixations/{item}.val\n");
   const Config config = toy_config("dataset: {layout: " + scanner.string() + "}");
-  const Dataset dataset = find_dataset(folder / "data", layouts_of(config.dataset.layout));
+  const Dataset dataset = find_dataset(folder / "data", config.dataset.layout);
   EXPECT_EQ(dataset.layout, "scanner");
   ASSERT_THAT(dataset.items, SizeIs(1));
-  EXPECT_THAT(dataset.items[0].saliency, testing::ElementsAre(folder / "data/fixations/statue.val"));
+  EXPECT_EQ(dataset.items[0].saliency, folder / "data/fixations/statue.val");
 }
 
 // --- a subcommand: a function, and a row of the table ----------------------------------------------------

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Archives in which something is missing or wrong: one error that names file, line and remedy, and the other
-// items go on.
+// Archives in which something is missing or wrong, in a run: one error that names file, line and remedy, and
+// the other items go on. tests/datasets has what each importer says.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/inputs/inspection.h"
 #include "pipeline/results/record.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
@@ -22,85 +21,75 @@ using testing::SizeIs;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
-// Two meshes with two views each, in the names of 3DVA.
+// Four meshes, of which "bee" is spoilt.
 class Archive : public DataSets {
  protected:
   Archive() {
-    for (const char* mesh : {"bunny", "dragon"}) {
-      data_.write(fmt::format("3DModels-Simplif/{}.off", mesh), off_text(shapes::tetrahedron()));
-      for (const int view : {300, 413}) {
-        data_.write(fixations(mesh, view), "1\n2\n3\n4\n");
-        data_.write(mask(mesh, view), "1\n1\n1\n0\n");
-      }
-    }
-  }
-  static std::string fixations(const std::string& mesh, int view) {
-    return fmt::format("FixationMaps/{}_{}norm.txt", mesh, view);
-  }
-  static std::string mask(const std::string& mesh, int view) {
-    return fmt::format("CentricityAndVisibilityMaps/{}_{}_visibility.txt", mesh, view);
-  }
-  // Runs, and returns the only failure, once all other views have scores.
-  std::string only_failure(const std::string& layout = "3dva", const std::string& more = "scans: false") {
-    run(layout, more);
-    const std::size_t views = toy_->inputs.units.families().size();
-    EXPECT_THAT(failures(), SizeIs(1));
-    EXPECT_THAT(toy_->results(), SizeIs(views - 1)) << "RS of all others; HS does not apply";
-    return failures().at(0);
-  }
-};
-
-TEST_F(Archive, ThatIsWholeHasNoFailure) {
-  run("3dva");
-  EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(toy_->results(), SizeIs(4));
-}
-
-TEST_F(Archive, WithoutAMask) {
-  std::filesystem::remove(data_ / mask("dragon", 413));
-  EXPECT_THAT(only_failure(), AllOf(StartsWith(place(mask("dragon", 413)) + ": is missing, the mask of"),
-                                    HasSubstr("add it"), HasSubstr("3dva.yaml:11")));
-}
-
-TEST_F(Archive, WithAWrongCountByOne) {
-  data_.write(fixations("bunny", 300), "1\n2\n3\n4\n5\n");
-  EXPECT_EQ(only_failure(),
-            place(fixations("bunny", 300)) + ":5: the file has 5 values, but the mesh has 4 vertices");
-  data_.write(fixations("bunny", 300), "1\n2\n3\n4\n");
-  data_.write(mask("bunny", 300), "1\n0\n1\n");
-  EXPECT_EQ(only_failure(),
-            place(mask("bunny", 300)) + ":3: the file has 3 values, but the mesh has 4 vertices");
-}
-
-TEST_F(Archive, WithAViewWithoutGroundTruth) {
-  std::filesystem::remove(data_ / fixations("bunny", 413));
-  EXPECT_THAT(only_failure(),
-              AllOf(StartsWith(place(fixations("bunny", 413)) + ": is missing, the ground truth"),
-                    HasSubstr(place(mask("bunny", 413))), HasSubstr("add it, or take the mask"),
-                    HasSubstr("3dva.yaml:10")));
-  EXPECT_THAT(units(), ElementsAre("bunny_300", "bunny_413", "dragon_300", "dragon_413"));
-}
-
-TEST_F(Archive, WithAMaskThatHidesEverything) {
-  data_.write(mask("bunny", 300), "0\n0\n0\n0\n");
-  EXPECT_THAT(only_failure(),
-              AllOf(StartsWith(place(mask("bunny", 300)) + ": hides everything"), HasSubstr("correct it")));
-}
-
-class FlatArchive : public DataSets {
- protected:
-  FlatArchive() {
     for (const char* name : {"ant", "bee", "cat", "dog"}) {
       data_.write(fmt::format("off/{}.off", name), off_text(shapes::tetrahedron()));
       data_.write(fmt::format("maps/{}.txt", name), "0\n1\n2\n3\n");
+      data_.write(fmt::format("seen/{}.txt", name), "1\n1\n1\n0\n");
+      data_.write(fmt::format("clicks/{}_0.pid", name), "1\n2\n");
     }
   }
-  std::string described(const std::string& more) {
-    return description("places:\n  - meshes: off/*\n    truth: {saliency: 'maps/{item}.txt'}\n" + more);
+  std::string described(const std::string& more = "",
+                        const std::string& truth = "saliency: 'maps/{item}.txt'") {
+    return description("places:\n  - meshes: off/*\n    truth: {" + truth + "}\n" + more);
   }
 };
 
-TEST_F(FlatArchive, WhoseSplitNamesUnknownItems) {
+TEST_F(Archive, FailsTheSpoiltItemByNameAndNoOther) {
+  struct Case {
+    const char *file, *text, *truth, *more, *says;
+  };
+  const char *const kMap = "saliency: 'maps/{item}.txt'",
+                    *const kMasked = "saliency: 'maps/{item}.txt', mask: 'seen/{item}.txt'",
+                    *const kPicks = "picks: 'clicks/{item}_{participant}.pid'";
+  const Case cases[] = {
+      {"maps/bee.txt", "0\n1\n2\n", kMap, "values: {unseen: -1}",
+       "maps/bee.txt:3: the file has 3 values, but the mesh has 4 vertices"},
+      {"maps/bee.txt", "0\n1\n2\n3\n4\n", kMap, "values: {per: face}",
+       "maps/bee.txt:5: the file has 5 values, but the mesh has 4 faces"},
+      {"maps/bee.txt", "0\n1\nx\n3\n", kMap, "values: {unseen: -1}", "maps/bee.txt:3: \"x\" is not a number"},
+      {"maps/bee.txt", "a,b\n0,1\n", kMap, "values: {column: 2}", "maps/bee.txt:2: the file has 1 values"},
+      {"maps/bee.txt", "\x89HDF\r\n\x1a\n", kMap, "values: {unseen: -1}", "maps/bee.txt"},
+      {"maps/bee.txt", "MATLAB 5.0 MAT-file", kMap, "values: {variable: map}", "maps/bee.txt"},
+      {"off/bee.off", "OFF\n4 4 0\n0 0 0\n", kMap, "values: {unseen: -1}",
+       "off/bee.off:3: the file ends after 1 of 4 vertices"},
+      {"seen/bee.txt", "1\n1\n1\n", kMasked, "", "seen/bee.txt:3: the file has 3 values"},
+      {"seen/bee.txt", "1\n1\n0.5\n0\n", kMasked, "", "seen/bee.txt:3: a mask has 0 for hidden"},
+      {"seen/bee.txt", "0\n0\n0\n0\n", kMasked, "", "seen/bee.txt: hides everything"},
+      {"seen/bee.txt", nullptr, kMasked, "", "seen/bee.txt: is missing, the mask of"},
+      {"clicks/bee_0.pid", "1\n0\n", kPicks, "indices: {base: 1}",
+       "clicks/bee_0.pid:2: vertex 0 is out of range: the mesh has 4 vertices, numbered from 1"},
+      {"clicks/bee_0.pid", "", kPicks, "indices: {base: 1}", "clicks/bee_0.pid: nobody picked a point"},
+      {"splits.csv", "item,split\nbee,test\nbee,train\n", kMap, "splits: {file: splits.csv}",
+       "splits.csv:3: 'bee' is in the split 'train'"},
+  };
+  for (const Case& spoilt : cases) {
+    SCOPED_TRACE(fmt::format("{} {}", spoilt.file, spoilt.more));
+    const std::string before =
+        std::filesystem::exists(data_ / spoilt.file) ? read_file(data_ / spoilt.file) : "";
+    if (spoilt.text != nullptr)
+      data_.write(spoilt.file, spoilt.text);
+    else
+      std::filesystem::remove(data_ / spoilt.file);
+    run(described(spoilt.more, spoilt.truth));
+    EXPECT_THAT(failures(), ElementsAre(HasSubstr(place(spoilt.says))));
+    EXPECT_THAT(toy_->results(), SizeIs(3)) << "RS of the others";
+    data_.write(spoilt.file, before);
+    if (before.empty()) std::filesystem::remove(data_ / spoilt.file);
+  }
+}
+
+TEST_F(Archive, WhoseGroundTruthCannotBeUsedStillHasMaps) {
+  data_.write("splits.csv", "item,split\nbee,test\nbee,train\n");
+  run(described("splits: {file: splits.csv}\nvalues: {unseen: -1}\n"));
+  EXPECT_EQ(toy_->decision("ground_truth", 1).verdict, Verdict::failed);
+  EXPECT_EQ(toy_->decision("map.RS", 1).verdict, Verdict::done);
+}
+
+TEST_F(Archive, WhoseSplitNamesUnknownItems) {
   data_.write("splits.csv", "item,split\nant,test\nbe,test\ncat,train\ndogg,train\nee,test\n");
   const std::string own = described("splits: {file: splits.csv}\n");
   const std::string error = place("splits.csv") +
@@ -119,64 +108,26 @@ TEST_F(FlatArchive, WhoseSplitNamesUnknownItems) {
               Contains(StartsWith(place("splits.csv") + ":3: the split 'test' names 'be'")));
 }
 
-TEST_F(FlatArchive, WithAnItemInTwoSplits) {
-  data_.write("splits.csv", "item,split\nant,test\nbee,test\nant,train\n");
-  run(described("splits: {file: splits.csv}\n"), "scans: false, split: test");
-  EXPECT_THAT(failures(),
-              ElementsAre(AllOf(StartsWith(place("splits.csv") + ":4: 'ant' is in the split 'train'"),
-                                HasSubstr("keep one of them"))));
-  EXPECT_EQ(truth(1).saliency, (ScalarField{0, 1, 2, 3}));
-}
-
-TEST_F(FlatArchive, InMixedUnits) {
+TEST_F(Archive, InMixedUnits) {
   Mesh mesh = shapes::tetrahedron();
   for (Vec3& v : mesh.vertices) v *= 1000;
   data_.write("off/cat.off", off_text(mesh));
-  const std::string own = described("units: mm\n");
-  run(own);
+  run(described("units: mm\n"));
   EXPECT_THAT(failures(), ElementsAre(AllOf(StartsWith(place("off/cat.off") + ": its diagonal, "),
                                             HasSubstr("1e+03 times the median"),
                                             HasSubstr("own.yaml:4 says: scale it"))));
-  run(own, "scans: false, split: ''");
-  EXPECT_THAT(toy_->results(), SizeIs(3));
-  const DataInspection found = inspect_data(data_.path(), layouts_of(own));
-  EXPECT_THAT(found.problems(), ElementsAre(StartsWith("cat: " + place("off/cat.off") + ": its diagonal")));
-  const DataInspection plain = inspect_data(data_.path(), layouts_of(described("")));
-  EXPECT_DOUBLE_EQ(found.items[0].diagonal, 0.001 * plain.items[0].diagonal) << "in metres";
-  EXPECT_THAT(plain.problems(), ElementsAre(AllOf(StartsWith("cat: its diagonal"), HasSubstr("`units:`"))));
-  EXPECT_THAT(plain.items[2].problem, IsEmpty()) << "without units it is a hint";
-  run(described(""));
+  run(described());
   EXPECT_THAT(failures(), IsEmpty());
 }
 
-TEST_F(FlatArchive, UnitsMustBeKnownAndScalesPositive) {
-  const auto refused = [&](const std::string& more, const std::string& why) {
-    EXPECT_THAT([&] { run(described(more)); },
-                ThrowsMessage<ConfigError>(AllOf(HasSubstr("own.yaml:4"), HasSubstr(why))))
-        << more;
+TEST_F(Archive, ThatIsNoneIsRefusedAsAWhole) {
+  const auto refused = [&](const std::string& layout, const std::string& why) {
+    EXPECT_THAT([&] { run(layout); }, ThrowsMessage<InputError>(HasSubstr(why))) << layout;
   };
-  refused("units: miles\n", "is 'miles', expected one of m, dm, cm, mm");
-  refused("scale: 0\n", "scale must be a number above 0");
-  refused("scale: -1\n", "scale must be a number above 0");
-  refused("scale: .inf\n", "not a finite number");
-  refused("values: {scale: 0}\n", "values.scale must be a number above 0");
-  refused("values: {scale: .nan}\n", "not a finite number");
-  EXPECT_THAT([&] { run(described("scale: 2\nunits: mm\n")); },
-              ThrowsMessage<ConfigError>(HasSubstr("is there beside units")));
-}
-
-TEST_F(FlatArchive, PointsBesideValuesMayBeInAnotherUnit) {
-  const Mesh mesh = shapes::tetrahedron();
-  std::string lines = "x,y,z,s\n";
-  for (const Vec3& v : mesh.vertices)
-    lines += fmt::format("{},{},{},{}\n", 1000 * v.x(), 1000 * v.y(), 1000 * v.z(), v.x());
-  for (const char* name : {"ant", "bee", "cat", "dog"}) data_.write(fmt::format("maps/{}.txt", name), lines);
-  const std::string per_point = "values: {per: point, points: [x, y, z], column: s";
-  run(described(per_point + "}\n"));
-  EXPECT_THAT(failures(), SizeIs(4)) << "too far away";
-  run(described(per_point + ", scale: 0.001}\n"));
-  EXPECT_THAT(failures(), IsEmpty());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) EXPECT_EQ(truth().saliency[i], mesh.vertices[i].x());
+  refused(described("units: miles\n"), "own.yaml:4: units is 'miles', expected one of m, dm, cm, mm");
+  refused(description("places: [{meshes: 'of/*'}]\n"), "no .off, .obj or .ply meshes found");
+  refused("3dvaa", "there is no layout '3dvaa'; did you mean '3dva'?");
+  refused("3dva", place("3DModels-Simplif"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A generated miniature of the layout of each data set that a description names: none of the data is ours to
-// publish.
+// Runs over the layouts that the program lists by itself, and over what importers make: their readers are
+// tested in tests/datasets.
 #include "tests/pipeline/data_sets.h"
 
 #include <cmath>
@@ -9,8 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/seen.h"
-#include "stages/ground_truth/carried.h"
-#include "tests/support/mat.h"
 
 namespace salbench {
 namespace {
@@ -21,13 +19,6 @@ using testing::IsNan;
 using testing::SizeIs;
 
 const Mesh kSphere = shapes::bumpy_sphere(2);
-
-std::string obj_text(const Mesh& mesh) {
-  std::string text;
-  for (const Vec3& v : mesh.vertices) text += fmt::format("v {} {} {}\n", v.x(), v.y(), v.z());
-  for (const Triangle& f : mesh.faces) text += fmt::format("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1);
-  return text;
-}
 
 // A value per vertex of another shape each time.
 ScalarField heights(const Mesh& mesh, double offset) {
@@ -42,7 +33,7 @@ std::string lines_of(const ScalarField& values) {
   return text;
 }
 
-// --- the descriptions of the program ----------------------------------------------------------------------
+// --- layouts -------------------------------------------------------------------------
 
 TEST_F(DataSets, Schelling) {
   write_toy_item(data_.path(), "21", kSphere);
@@ -79,18 +70,6 @@ TEST_F(DataSets, Folder) {
   EXPECT_THAT(toy_->inputs.truth_files->files[0], IsEmpty()) << "ground truth is optional";
 }
 
-TEST_F(DataSets, Dutagaci) {
-  data_.write("MODEL_DATASET/ant.off", off_text(kSphere));
-  data_.write("GROUND_TRUTH_B/readme.txt", "");
-  std::vector<std::vector<double>> cells(10 * 11, std::vector<double>{1});
-  cells[2 + 7 * 10] = {1, 12, 162};  // row 3, column 8
-  MatWriter(data_ / "GROUND_TRUTH_B/ant.mat").write_cells("GT_POINTS", 10, 11, cells);
-  run("dutagaci");
-  EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(truth().picks, ElementsAre(ElementsAre(0, 11, 161)));
-  EXPECT_TRUE(std::isfinite(score_of("RS", "nss")));
-}
-
 TEST_F(DataSets, ThreeDva) {
   data_.write("Meshes/bunny.off", off_text(kSphere));
   ScalarField front = heights(kSphere, 0), back = heights(kSphere, 0.5);
@@ -120,57 +99,6 @@ TEST_F(DataSets, ThreeDva) {
     }
     EXPECT_TRUE(std::isfinite(value_of(row.scores, "cc"))) << row.item << " " << row.view;
   }
-}
-
-TEST_F(DataSets, Sal3d) {
-  data_.write("Models_3D/cat.obj", obj_text(kSphere));
-  std::string text;
-  for (std::size_t i = 0; i < kSphere.vertices.size(); ++i) {
-    const Vec3& v = kSphere.vertices[i];
-    if (v.x() < -0.5) continue;  // not sampled
-    text += fmt::format("{:.18e} {:.18e} {:.18e} 0.0 0.0 1.0 {} {}\n", v.x(), v.y(), v.z() * 1.0001,
-                        0.5 + 0.1 * static_cast<double>(i % 4), i % 4 > 2 ? 1 : 0);
-  }
-  data_.write("dataset_train/cat.txt", text);
-  run("sal3d");
-  EXPECT_THAT(failures(), IsEmpty());
-  for (std::size_t i = 0; i < kSphere.vertices.size(); ++i) {
-    const double x = kSphere.vertices[i].x();
-    if (x < -0.6) {
-      EXPECT_THAT(truth().saliency[i], IsNan());
-    }
-    if (x >= -0.5) {
-      EXPECT_EQ(truth().saliency[i], 0.5 + 0.1 * static_cast<double>(i % 4));
-    }
-  }
-  EXPECT_TRUE(std::isfinite(score_of("RS", "cc")));
-}
-
-TEST_F(DataSets, MeshMamba) {
-  // A face that is dropped, since it has no area, has its line all the same.
-  Mesh mesh = kSphere;
-  mesh.faces.insert(mesh.faces.begin(), {0, 0, 1});
-  ScalarField values;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
-    values.push_back(f == 0 ? 77 : static_cast<double>(f % 5));
-  for (const std::string kind : {"non_texture", "rgb_texture"}) {
-    data_.write("MeshFile/" + kind + "/Apple_Red/Apple_v01.obj", obj_text(mesh));
-    data_.write("MeshFile/" + kind + "/Apple_Red/Apple_v01.obj.meta", "");
-    data_.write("SaliencyMap/" + kind + "/Apple_v01.csv", lines_of(values));
-    for (double& value : values) value += 1;
-  }
-  const ScalarField on_vertices = vertex_values_of_faces(
-      kSphere.vertices, kSphere.faces, std::vector<double>(values.begin() + 1, values.end()));
-  run("meshmamba_textured");
-  EXPECT_THAT(failures(), IsEmpty());
-  for (std::size_t i = 0; i < on_vertices.size(); ++i)
-    EXPECT_NEAR(truth().saliency[i], on_vertices[i] - 1, 1e-12);
-  run("meshmamba");
-  EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_EQ(toy_->inputs.units.families()[0].name, "Apple_v01");
-  for (std::size_t i = 0; i < on_vertices.size(); ++i)
-    EXPECT_NEAR(truth().saliency[i], on_vertices[i] - 2, 1e-12);
-  EXPECT_TRUE(std::isfinite(score_of("RS", "cc")));
 }
 
 // --- viewers ----------------------------------------------------------------------------------------------

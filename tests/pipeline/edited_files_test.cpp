@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/engine/file.h"
-#include "pipeline/inputs/given_maps.h"
 #include "pipeline/results/results.h"
+#include "pipeline/rules/given_maps.h"
 #include "pipeline/rules/models.h"
 #include "stages/core/errors.h"
 #include "tests/support/memory_store.h"

@@ -221,22 +221,5 @@ TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricsThatHaveTheRule) {
   EXPECT_GT(truth().picks.at(0).size(), top);
 }
 
-TEST_F(MaskedScores, OfPositivesByRuleTakeThePlaceOfPicks) {
-  data_.write("shapes/cat.off", off_text(mesh_));
-  data_.write("maps/cat.txt", values(1));
-  const auto refused = [&](const std::string& truth, const std::string& rule, const std::string& why) {
-    EXPECT_THAT(
-        [&] {
-          run(description("places:\n  - meshes: shapes/*\n    truth: {saliency: 'maps/{item}.txt'" + truth +
-                          "}\nvalues: {positives: " + rule + "}\n"));
-        },
-        testing::ThrowsMessage<ConfigError>(
-            testing::AllOf(testing::HasSubstr("own.yaml:4: values.positives is"), testing::HasSubstr(why))));
-  };
-  refused(", picks: 'clicks/{item}.pid'", "top 20%", "but there are picks");
-  for (const char* rule : {"top 0%", "top 100%", "top 20", "top x%", "top -5%", "below mean", "'top nan%'"})
-    refused("", rule, "not picks, above mean, or a share such as top 20%");
-}
-
 }  // namespace
 }  // namespace salbench

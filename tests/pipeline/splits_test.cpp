@@ -11,13 +11,10 @@
 namespace salbench {
 namespace {
 
-using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 using testing::SizeIs;
-using testing::StartsWith;
 using testing::ThrowsMessage;
 
 const Mesh kTetrahedron = shapes::tetrahedron();
@@ -49,23 +46,6 @@ TEST_F(WithSplits, ATableNamesTheSplitOfEachItem) {
               ElementsAre("ant:train", "bee:test", "cat:train", "dog:", "eel:val"));
   EXPECT_THAT(toy_->inputs.notes, Contains(HasSubstr("own.yaml:4): dog")));
   EXPECT_THAT(run_splits("splits: {file: splits.csv}\n", "train"), ElementsAre("ant:train", "cat:train"));
-  data_.write("parts.csv", "part;name\n");
-  EXPECT_THAT([&] { run_splits("splits: {file: parts.csv}\n"); },
-              ThrowsMessage<InputError>(HasSubstr("parts.csv")));
-}
-
-TEST_F(WithSplits, TheFirstLinesOfAListAreOneSplit) {
-  data_.write("paths.txt", "rgb/dog.obj\nD:\\data\\ant.obj,maps/ant.csv\n\nbee\nrgb/eel.obj\nrgb/cat.obj\n");
-  EXPECT_THAT(run_splits("splits: {list: paths.txt, shares: {train: 80%, test: 0.2}}\n"),
-              ElementsAre("ant:train", "bee:train", "cat:test", "dog:train", "eel:train"));
-  EXPECT_THAT(run_splits("splits: {list: paths.txt, shares: {train: 0.5, test: 0.5}}\n"),
-              ElementsAre("ant:train", "bee:test", "cat:test", "dog:train", "eel:test"))
-      << "int(5 * 0.5) lines";
-}
-
-TEST_F(WithSplits, ADescriptionMayNameTheItems) {
-  EXPECT_THAT(run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n"),
-              ElementsAre("ant:train", "bee:train", "cat:train", "dog:test", "eel:test"));
 }
 
 TEST_F(WithSplits, TablesHaveMeansPerSplit) {
@@ -118,15 +98,6 @@ TEST_F(WithSplits, AnItemInTwoSplitsFailsAlone) {
   EXPECT_EQ(truth(1).saliency, (ScalarField{0, 1, 2, 3}));
 }
 
-TEST_F(WithSplits, ANameThatIsNoItemIsNotedWithItsLine) {
-  data_.write("splits.csv", "item,split\nant,train\nbeee,test\n");
-  run_splits("splits: {file: splits.csv}\n");
-  EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(
-      toy_->inputs.notes,
-      Contains(StartsWith(place("splits.csv") + ":3: the split 'test' names 'beee', which is no item")));
-}
-
 TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {
   const std::string splits = "splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n";
   EXPECT_THAT(
@@ -138,19 +109,6 @@ TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {
               ThrowsMessage<UnknownNameError>(HasSubstr("split 'test': the data set has no splits")));
   EXPECT_THAT([&] { run_splits("splits: {file: splits.csv}\n", "test"); },
               ThrowsMessage<ConfigError>(HasSubstr(place("splits.csv") + ": is missing (")));
-}
-
-TEST_F(WithSplits, WrongDescriptionsAreNamedWithTheirLine) {
-  const auto refused = [&](const std::string& splits, const std::string& why) {
-    EXPECT_THAT([&] { run_splits(splits); },
-                ThrowsMessage<ConfigError>(AllOf(HasSubstr("own.yaml:4"), HasSubstr(why))))
-        << splits;
-  };
-  refused("splits: {file: a.csv, list: b.txt}\n", "one of file");
-  refused("splits: {list: b.txt, shares: {train: 80%, test: 30%}}\n", "sum to 1");
-  refused("splits: {list: b.txt}\n", "sum to 1");
-  refused("splits: {list: b.txt, shares: {train: 180%}}\n", "splits.shares.train is not a share");
-  refused("splits: {fle: b.txt}\n", "did you mean 'file'?");
 }
 
 }  // namespace

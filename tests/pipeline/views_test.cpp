@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views of a shape that are averaged or scored by themselves, and masks of what they show.
+// Views of a shape that are scored by themselves.
 #include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
-#include "pipeline/inputs/given_maps.h"
 #include "pipeline/results/raw_tables.h"
-#include "stages/core/errors.h"
+#include "pipeline/rules/given_maps.h"
 #include "tests/pipeline/data_sets.h"
 
 namespace salbench {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsNan;
-using testing::StartsWith;
-using testing::ThrowsMessage;
 
 const Mesh kTetrahedron = shapes::tetrahedron();
 
@@ -36,20 +30,12 @@ class WithViews : public DataSets {
     data_.write("fix/cat_" + view + ".txt", values);
     data_.write("seen/cat_" + view + "_visibility.txt", mask);
   }
-  std::string described(const std::string& more = "    views: scored\n") {
+  std::string described() {
     return description(
         "places:\n  - meshes: off/*\n    truth: {saliency: 'fix/{item}_{view}.txt', mask: "
-        "'seen/{item}_{view}_visibility.txt'}\n" +
-        more);
+        "'seen/{item}_{view}_visibility.txt'}\n    views: scored\n");
   }
 };
-
-TEST_F(WithViews, AreAveragedWhereTheyHaveAVertexSeen) {
-  run(described(""));
-  EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_EQ(truth().saliency, (ScalarField{3, 1, 0, 4}));
-  EXPECT_THAT(units(), ElementsAre("cat"));
-}
 
 TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
   run(described());
@@ -79,20 +65,20 @@ TEST_F(WithViews, ShareWhatIsComputedOfTheirMesh) {
   const auto computed = [&](std::string_view stage) {
     return toy.resolver->records()[toy.index(stage)].seconds.size();
   };
-  EXPECT_EQ(computed("mesh"), 1U);
+  EXPECT_EQ(computed("import"), 8U);
   EXPECT_EQ(computed("map.MS"), 1U);
   EXPECT_EQ(computed("map.RS"), 8U) << "random numbers are of the unit";
   EXPECT_EQ(computed("ground_truth"), 2U) << "six views are as the first";
 }
 
 TEST_F(WithViews, AreChosenByTheirNameOrByThatOfTheirMesh) {
-  const Dataset dataset = find_dataset(data_.path(), layouts_of(described()));
+  const Dataset dataset = find_dataset(data_.path(), described());
   EXPECT_EQ(read_inputs(dataset, "cat").count(kMeshes), 2U);
   EXPECT_EQ(read_inputs(dataset, "cat_2").count(kMeshes), 1U);
 }
 
 TEST_F(WithViews, ShareAGivenMapUnlessTheyHaveTheirOwn) {
-  const Inputs inputs = read_inputs(find_dataset(data_.path(), layouts_of(described())));
+  const Inputs inputs = read_inputs(find_dataset(data_.path(), described()));
   const auto maps = [&] {
     const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
     std::vector<std::string> places;
@@ -105,55 +91,6 @@ TEST_F(WithViews, ShareAGivenMapUnlessTheyHaveTheirOwn) {
   EXPECT_THAT(maps(), ElementsAre("cat.val", "cat.val"));
   folder_.write("given/cat_2.val", "1\n2\n3\n4\n");
   EXPECT_THAT(maps(), ElementsAre("cat.val", "cat_2.val"));
-}
-
-TEST_F(WithViews, FailAloneWithoutTheirMask) {
-  std::filesystem::remove(data_ / "seen/cat_2_visibility.txt");
-  run(described());
-  EXPECT_THAT(failures(), ElementsAre(AllOf(StartsWith(place("seen/cat_2_visibility.txt") + ": is missing"),
-                                            HasSubstr("own.yaml:3"))));
-  EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, IsNan(), 4));
-}
-
-TEST_F(WithViews, FailAloneWithAWrongMask) {
-  const auto failure = [&](const std::string& mask) {
-    data_.write("seen/cat_2_visibility.txt", mask);
-    run(described());
-    return failures();
-  };
-  const std::string file = place("seen/cat_2_visibility.txt");
-  EXPECT_THAT(failure("1\n1\n0\n"),
-              ElementsAre(file + ":3: the file has 3 values, but the mesh has 4 vertices"));
-  EXPECT_THAT(failure("1\n1\n0.5\n1\n"), ElementsAre(StartsWith(file + ":3: a mask has 0 for hidden")));
-  EXPECT_THAT(failure("0\n0\n0\n0\n"), ElementsAre(StartsWith(file + ": hides everything")));
-}
-
-TEST_F(WithViews, MasksWithoutGroundTruthAreNotedIfViewsAreAveraged) {
-  data_.write("seen/cat_3_visibility.txt", "1\n1\n0\n1\n");
-  run(described(""));
-  EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(toy_->inputs.notes,
-              Contains(place("seen/cat_3_visibility.txt") + ": mask without ground truth"));
-}
-
-TEST_F(WithViews, WhatAMaskHoldsIsPartOfTheKey) {
-  run(described());
-  const Digest before = toy_->decision("ground_truth", 0).key;
-  data_.write("seen/cat_1_visibility.txt", "1\n1\n1\n0\n");
-  run(described());
-  EXPECT_NE(toy_->decision("ground_truth", 0).key, before);
-  EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, 3, IsNan()));
-}
-
-TEST_F(WithViews, WrongDescriptionsAreNamedWithTheirLine) {
-  const auto refused = [&](const std::string& place, const std::string& why) {
-    EXPECT_THAT([&] { run(description("places:\n  - " + place)); },
-                ThrowsMessage<ConfigError>(AllOf(HasSubstr("own.yaml:2"), HasSubstr(why))));
-  };
-  refused("{meshes: 'off/*', views: scored, truth: {saliency: 'fix/{item}.txt'}}\n", "has no {view}");
-  refused("{meshes: 'off/*', truth: {saliency: 'fix/{item}.txt', mask: 'm/{item}_{view}'}}\n",
-          "must have the");
-  refused("{meshes: 'off/*', truth: {picks: 'fix/{item}.txt', mask: 'm/{item}'}}\n", "without saliency");
 }
 
 }  // namespace

@@ -27,7 +27,12 @@ ARCHIVES = {
     "sal3d_meshes": "sal3d_meshes",
     "zaragoza": "zaragoza",
 }
-NATIVE = ("automatic", "folder", "hdf5", "schelling")  # which C++ lists by itself
+NATIVE = {  # which C++ lists by itself, and on what terms their authors give them
+    "automatic": "",
+    "folder": "not known; ask whoever made the files",
+    "hdf5": "each item's file says on what terms its source is given",
+    "schelling": "not known; cite the study, and ask its authors before you pass the data on",
+}
 DESCRIPTION = ".yaml"
 
 
@@ -65,6 +70,8 @@ def read(layout: str, root: str, item: Item) -> Form:
     """The one form of an item of a listing, with what is known about it."""
     archive = find(layout)
     form: Form = archive.read(item)
+    if "form" in item.how:
+        return form
     folder = os.path.normpath(root)
     lines = [f"{digest}  {os.path.relpath(path, folder)}\n" for path, digest in sorted(form.digests.items())]
     form.about = {"item": item.shape or item.name, "class": item.category, "split": item.split, "source": archive.LAYOUT.name,

@@ -17,7 +17,8 @@ from salbench.datasets._section import MAX_BYTES, Section
 from salbench.datasets._text import finite_number, is_number
 from salbench.datasets.records import InputError
 
-KNOWN = ("automatic", "domain", "classes", "ground_truth", "places", "values", "indices", "columns", "splits", "units", "scale", "licence")
+KNOWN = ("automatic", "domain", "classes", "ground_truth", "places", "values", "indices", "columns", "splits", "units", "scale", "index",
+         "licence")
 METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 LF = b"\n"
 ROUNDING = 1e-9  # of shares that sum to 1
@@ -36,12 +37,13 @@ def read_description(path: str) -> Layout:
 
 
 def layout_of(root: Section, name: str) -> Layout:
-    if "index" in root:
-        root.fail("index", "is for sets in the one form: name the layout hdf5 and the folder that has the index")
     root.reject_unknown(KNOWN)
     values, indices, columns = _values(root.child("values")), _indices(root.child("indices")), _columns(root.child("columns"))
     places = tuple(_place(place) for place in root.list("places"))
-    if not places:
+    index = root.text("index") or ""
+    if index and places:
+        root.fail("index", "is there beside `places`: a set is in the one form or in files of its own")
+    if not places and not index:
         root.fail("places", "is missing; expected a list of places with meshes")
     scale, unit_where = _unit(root)
     rule = positive_rule(values.positives)
@@ -50,7 +52,7 @@ def layout_of(root: Section, name: str) -> Layout:
     return Layout(name, places, root.choice("classes", ("none", "folder", "shrec07"), "none"),
                   root.choice("domain", ("any", "meshes", "points"), "any"),
                   root.choice("ground_truth", ("required", "optional"), "required") == "required",
-                  values, indices, columns, _splits(root), scale, unit_where, root.text("licence") or "")
+                  values, indices, columns, _splits(root), scale, unit_where, index, root.text("licence") or "")
 
 
 def _names(options: type[Options]) -> list[str]:

@@ -119,6 +119,7 @@ class Layout:
     splits: Splits = Splits()
     scale: float = 1.0
     unit_where: str = ""  # where a unit of length is given; "": nowhere
+    index: str = ""  # file below the folder that lists items in the one form; no places then
     licence: str = ""  # on what terms the authors give the data, as far as is known
 
     def where(self, written: str) -> str:

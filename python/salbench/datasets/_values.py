@@ -7,8 +7,9 @@ import re
 
 import numpy as np
 
-from salbench.datasets._arrays import MAT, NPY, parse_mat, parse_npy
 from salbench.datasets._layout import Indices, Values, number_text
+from salbench.datasets._mat import MAT, parse_mat
+from salbench.datasets._npy import NPY, parse_npy
 from salbench.datasets._numbers import read_columns
 from salbench.datasets._order import Elements
 from salbench.datasets._text import in_quotes, lines_of, number_in

@@ -27,6 +27,10 @@ _FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ 
 
 def items(layout: Layout, root: str, twins: str = "refuse", beside: Callable[[str], list[Source]] | None = None) -> Listing:
     """What the folder holds, in natural order. `beside`: files that belong to a shape's, such as its texture."""
+    if layout.index:
+        from salbench.datasets import _indexed
+
+        return _indexed.items(layout, root)
     found = find(layout, root, twins)
     native = _is_native(found)
     rows = [_item(found, entry, native) for entry in found.entries]
@@ -46,6 +50,10 @@ def read(item: Item) -> Form:
     """The one form of an item that `items` listed."""
     from salbench.datasets._truth import read_item
 
+    if "form" in item.how:
+        from salbench.datasets import sets
+
+        return sets.read("", "", item)
     if item.native is not None:
         item = _imported(item, item.native)
     path = item.files[0].path

@@ -34,6 +34,7 @@ def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]
     known = {field.name for field in fields(Listing)}
     listing = Listing(**{key: value for key, value in found.items() if key in known})
     listing.items = [_item(row) for row in found["items"]]
+    listing.licence = NATIVE[found["layout"]]
     return found["layout"], listing
 
 

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""fuzzed.py COUNT: that many files, changed from valid ones at random with a fixed seed. Each ends in a form or in an InputError of one line,
+soon, and with little memory; another end is a traceback or a signal."""
+
+import random
+import resource
+import signal
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from salbench import datasets
+from salbench.datasets._mat import parse_mat
+from salbench.datasets.records import Form, InputError
+from support import cells, mat, npy, off
+
+SEED, SECONDS, BYTES = 41, 20, 4 << 30
+WORDS = (b"nan", b"inf", b"-1", b"1e999", b"\0", b"\n", b"\r", b",", b";", b"#", b'"', b"\xff\xfe", b"9" * 40, b"{item}", b"*a", b"&a", b"[", b"{", b": ", b"- ",
+         b"../", b"'", b"!!python/name:os.system ", b"vertex", b"0,5")
+TEXT = b"vertex,x,y,z,s\n" + b"".join(b"%d,%d,%d,%d,0.%d\n" % (k, k & 1, k >> 1 & 1, k >> 2, k) for k in range(4))
+OWN = (b"places:\n  - &p {meshes: 'off/*', truth: {saliency: 'maps/{item}.csv', picks: 'clicks/{item}.pid'}}\n  - *p\n"
+       b"values: {per: vertex, column: s, unseen: -1, variable: a}\nindices: {base: 0, variable: c, cell: [1, 2]}\nunits: mm\n"
+       b"splits: {list: paths.txt, shares: {train: 80%, test: 0.2}}\nlicence: ask\n")
+POINTS = OWN.replace(b"per: vertex", b"per: point, points: [x, y, z]")
+FILES = {"off/cat.off": off().encode(), "maps/cat.csv": TEXT, "clicks/cat.pid": b"0\n3\n# c\n1\n", "paths.txt": b"a/cat.off\n", "own.yaml": OWN}
+SEEDS = (("own.yaml", OWN), ("own.yaml", POINTS), ("maps/cat.csv", TEXT), ("maps/cat.csv", TEXT.replace(b",", b" ")), ("maps/cat.csv", npy(np.arange(4.0))),
+         ("maps/cat.csv", mat(a=np.arange(4.0))), ("clicks/cat.pid", mat(c=cells(2, 2, r1c2=[1, 2]), b={"x": [1, "y"]})), ("clicks/cat.pid", b"0\n3\n# c\n1\n"),
+         ("paths.txt", b"a/cat.off\n"), ("off/cat.off", off().encode()))
+
+
+def changed(draw, data):
+    """A few bytes, words, or pieces that are exchanged, repeated, or gone."""
+    data = bytearray(data)
+    for _ in range(draw.choice((1, 1, 2, 3, 8))):
+        at, end = sorted((draw.randrange(len(data) + 1), draw.randrange(len(data) + 1)))
+        how = draw.randrange(6)
+        if how == 0 and data:
+            data[at - 1] ^= 1 << draw.randrange(8)
+        elif how == 1:
+            data[at:at] = draw.choice(WORDS)
+        elif how == 2:
+            data[at:min(end, at + 8)] = draw.randbytes(draw.randrange(1, 9))
+        elif how == 3:
+            del data[at:min(end, at + draw.choice((1, 4, 64)))]
+        elif how == 4:
+            data[at:at] = data[at:end] * draw.choice((1, 2, 50))
+        else:
+            del data[at:]
+    return bytes(data)
+
+
+def outcome(root, folder):
+    """What becomes of the archive: forms of its items, or one line."""
+    layout = str(root / "own.yaml")
+    try:
+        forms = [datasets.read(layout, str(folder), item) for item in datasets.find(layout).items(str(folder)).items if not item.problem]
+        assert all(isinstance(form, Form) for form in forms)
+        return bool(forms)
+    except InputError as error:
+        assert "\n" not in str(error), error
+        return False
+
+
+def main(count):
+    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
+    draw, read = random.Random(SEED), 0
+    with tempfile.TemporaryDirectory() as folder:
+        for k in range(count):
+            name, seed = SEEDS[k % len(SEEDS)]
+            data = changed(draw, seed)
+            for file, content in (FILES | {name: data}).items():
+                path = Path(folder) / file
+                path.parent.mkdir(exist_ok=True)
+                path.write_bytes(content)
+            signal.alarm(SECONDS)
+            try:
+                read += outcome(Path(folder), Path(folder))
+                if data.startswith(b"MATLAB"):  # every variable, whatever the description asks for
+                    for variable in "abc":
+                        try:
+                            parse_mat(data, "a.mat", variable)
+                        except InputError:
+                            pass
+            except BaseException:
+                print(f"case {k}: {name}: {data!r}", file=sys.stderr)
+                raise
+            signal.alarm(0)
+    print(read)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))

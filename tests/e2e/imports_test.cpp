@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs over a data set that the Python package lists and imports.
+#include <csignal>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/file.h"
+#include "tests/e2e/workspace.h"
+#include "tests/support/processes.h"
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+constexpr int kItems = 6;
+
+class Imports : public testing::Test {
+ protected:
+  Imports() {
+    for (int item = 0; item < kItems; ++item) {
+      const Mesh mesh = shapes::bumpy_sphere(1, 0.05 * item);
+      toy_.write(fmt::format("data set/off/{}.off", item), off_text(mesh));
+      std::string values = "a,b\n";
+      for (std::size_t i = 0; i < mesh.vertices.size(); ++i) values += fmt::format("{},{}\n", i % 7, i % 5);
+      toy_.write(fmt::format("data set/maps/{}.csv", item), values);
+    }
+    own_ = toy_.write(
+        "own.yaml",
+        "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\nvalues: {column: a}\n");
+    toy_.configure(
+        fmt::format("dataset: {{scans: false, layout: '{}'}}\nmodels: {{PS: , RS: }}\n", own_.string()));
+  }
+  // An interpreter that refuses one of the served commands.
+  std::string without(const std::string& command) const {
+    const fs::path file = toy_.write(
+        "python.sh",
+        fmt::format("#!/bin/sh\nfor word; do [ \"$word\" = {} ] && {{ echo refused >&2; exit 9; }}; "
+                    "done\nexec /usr/bin/python3 \"$@\"\n",
+                    command));
+    fs::permissions(file, fs::perms::owner_all);
+    return file.string();
+  }
+  Outcome run_with(const std::string& python, const std::string& verb,
+                   const std::vector<std::string>& further = {}) const {
+    std::vector<std::string> words = toy_.command(verb, further);
+    words.insert(words.begin(), {"/usr/bin/env", "SALBENCH_PYTHON=" + python});
+    return run_process(words);
+  }
+
+  Workspace toy_;
+  fs::path own_;
+};
+
+TEST_F(Imports, TwoProcessesImportEachItemOnce) {
+  ASSERT_EQ(toy_.salbench("run").status, 0);
+  const std::string results = toy_.results();
+  const auto contents = toy_.contents();
+  EXPECT_THAT(toy_.artefacts("import"), SizeIs(kItems));
+  toy_.forget_everything();
+  std::vector<std::unique_ptr<Process>> processes;
+  for (const char* out : {"out1", "out2"})
+    processes.push_back(
+        std::make_unique<Process>(toy_.command("run", {"--threads", "2", "--out", (toy_ / out).string()})));
+  std::size_t imported = 0;
+  for (const auto& process : processes) {
+    const Outcome run = process->wait();
+    ASSERT_EQ(run.status, 0) << run.err;
+  }
+  for (const char* out : {"out1", "out2"}) {
+    EXPECT_EQ(read_file(toy_ / out / "results.csv"), results);
+    for (const std::string& line : lines_with(read_file(toy_ / out / "run.yaml"), "stage: import,"))
+      imported += std::stoul(line.substr(line.find("computed: ") + 10));
+  }
+  EXPECT_EQ(imported, static_cast<std::size_t>(kItems));
+  EXPECT_EQ(toy_.contents(), contents);
+}
+
+TEST_F(Imports, AKillInTheMiddleIsResumedAndLeavesNoProcess) {
+  ASSERT_EQ(toy_.salbench("run").status, 0);
+  const auto contents = toy_.contents();
+  toy_.forget_everything();
+  const std::string word = own_.string();
+  const Outcome killed = run_process(with_signal_at_rename(toy_.command("run"), "3 after", SIGKILL));
+  EXPECT_EQ(killed.status, 128 + SIGKILL) << killed.err;
+  EXPECT_TRUE(soon([] { return processes_with("_import").empty(); }));
+  const Outcome resumed = toy_.salbench("run");
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_LT(toy_.computed(), contents.size());
+  EXPECT_EQ(toy_.contents(), contents);
+  EXPECT_THAT(toy_.left_over(), IsEmpty());
+}
+
+TEST_F(Imports, WhatIsInTheCacheNeedsNoImporter) {
+  ASSERT_EQ(toy_.salbench("run").status, 0);
+  const std::string results = toy_.results(), importer = without("_import");
+  for (const char* verb : {"run", "plan", "gc", "status"}) {
+    const Outcome ended = run_with(importer, verb);
+    EXPECT_EQ(ended.status, 0) << verb << ended.err;
+  }
+  EXPECT_EQ(run_with(importer, "explain", {"0", "import"}).status, 0);
+  EXPECT_EQ(toy_.results(), results);
+  toy_.forget_everything();
+  for (const char* verb : {"plan", "status"}) EXPECT_EQ(run_with(importer, verb).status, 0) << verb;
+  const Outcome run = run_with(importer, "run");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(lines_with(run.err, "its importer failed: "), SizeIs(kItems)) << run.err;
+}
+
+TEST_F(Imports, ACollectionWhoseListFailedRemovesNothing) {
+  ASSERT_EQ(toy_.salbench("run").status, 0);
+  const auto contents = toy_.contents();
+  const Outcome crashed = run_with(without("_list"), "gc");
+  EXPECT_EQ(crashed.status, 70) << crashed.err;
+  EXPECT_THAT(crashed.err, HasSubstr("the list of the data set's items failed: "));
+  toy_.write("own.yaml", "places: [{meshes: 'of/*'}]\n");
+  EXPECT_EQ(toy_.salbench("gc").status, 2);
+  EXPECT_EQ(toy_.contents(), contents);
+}
+
+TEST_F(Imports, WithoutPythonAreRefusedInOneLineThatNamesThePackage) {
+  for (const char* verb : {"run", "plan", "gc"}) {
+    const Outcome ended = run_with("/no/python", verb);
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_THAT(lines_with(ended.err, ""), SizeIs(1)) << ended.err;
+    EXPECT_THAT(ended.err, AllOf(HasSubstr("needs Python: /no/python: not found"),
+                                 HasSubstr("install python3-salbench")));
+  }
+  const Workspace native(kMeshesOnly);
+  std::vector<std::string> words = native.command("run");
+  words.insert(words.begin(), {"/usr/bin/env", "SALBENCH_PYTHON=/no/python"});
+  EXPECT_EQ(run_process(words).status, 0);
+}
+
+TEST_F(Imports, AreVerifiedAndExportedAsOtherStages) {
+  ASSERT_EQ(toy_.salbench("run").status, 0);
+  EXPECT_EQ(toy_.salbench("verify", {"--deep"}).status, 0);
+  EXPECT_EQ(toy_.salbench("export", {"--to", (toy_ / "all.h5").string()}).status, 0);
+  EXPECT_THAT(toy_.salbench("explain", {"0", "import"}).out, HasSubstr("import"));
+  EXPECT_THAT(toy_.salbench("plan").out, Not(HasSubstr("not in the cache")));
+}
+
+}  // namespace
+}  // namespace salbench
