@@ -3,6 +3,7 @@
 
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -207,6 +208,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Carries out a subcommand; returns its exit status."""
     from salbench._errors import InputError, StorageError
 
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="surrogateescape")  # names of files may be no UTF-8
     name, *others = sys.argv[1:] if arguments is None else arguments or [""]
     subcommand = (SUBCOMMANDS | SERVED).get(name)
     if subcommand is None:
@@ -230,8 +234,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _fail(status: int, message: str) -> int:
-    sys.stderr.buffer.write(f"error: {message}\n".encode("utf-8", "surrogateescape"))
-    sys.stderr.flush()
+    print(f"error: {message}", file=sys.stderr)
     return status
 
 

@@ -61,15 +61,12 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
     """Prints the document, or else the text."""
     if given.format == "json":
         text = json.dumps({"schema": SCHEMA, "command": name, **document}, ensure_ascii=False, separators=(",", ":")) + "\n"
+        text = text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # of names that are no UTF-8
     elif getattr(given, "quiet", False):
         return
-    data = text.encode("utf-8", "surrogateescape")
-    if given.format == "json":
-        data = data.decode("utf-8", "replace").encode()  # U+FFFD in place of bytes that are not UTF-8
     try:
+        sys.stdout.write(text)
         sys.stdout.flush()
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
     except OSError as error:
         raise StorageError(f"standard output: cannot be written: {error.strerror}") from None
 
@@ -96,7 +93,5 @@ def _cell(value: Any, decimals: int) -> str:
 
 
 def warn(kind: str, line: str) -> None:
-    """ "warning: ..." on standard error, whatever bytes a name has."""
-    sys.stderr.flush()
-    sys.stderr.buffer.write(f"{kind}: {line}\n".encode("utf-8", "surrogateescape"))
-    sys.stderr.buffer.flush()
+    """ "warning: ..." on standard error."""
+    print(f"{kind}: {line}", file=sys.stderr, flush=True)

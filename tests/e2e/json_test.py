@@ -225,14 +225,14 @@ class JsonTest(unittest.TestCase):
         (problem,) = document["problems"]
         self.assertIn("maps/dog_2.txt:3: the file has 3 values, but the mesh has 4 vertices", problem)
         self.assertIn(f"\n1 problems:\n  {problem}\n", said[0])
-        done = subprocess.run([PROGRAM, "convert", own, "--data", data, "--to", self.folder / "one_form", "--quiet", "--format", "json"],
+        done = subprocess.run([PROGRAM, "import", own, "--data", data, "--to", self.folder / "one_form", "--quiet", "--format", "json"],
                               capture_output=True)
         self.assertEqual(done.returncode, 1)
         document = json.loads(done.stdout)
         self.assertEqual([(shape["name"], shape["outcome"]) for shape in document["shapes"]], [("cat", "written"), ("dog", "written")])
         self.assertEqual((document["written"], document["n_problems"]), (2, 1))
         for key, kind in keys_of(document):
-            self.seen.setdefault("convert", {}).setdefault(key, set()).add(kind)
+            self.seen.setdefault("import", {}).setdefault(key, set()).add(kind)
         self.assertRegex(said[0], r"(?m)^dog_1 +test +4 +4 +1.7321 +0.7500 +1.0000 +4.5000 ")
 
     def summary(self, subcommand, *words, status=0, option="--format"):

@@ -38,7 +38,7 @@ std::vector<std::string> command_of(const Workspace& toy, const std::string& cal
     return words;
   }
   if (call == "inspect") return {SALBENCH_PROGRAM, call, "schelling", "--data", data};
-  if (call == "convert")
+  if (call == "import")
     return {SALBENCH_PROGRAM, call, "schelling", "--data", data, "--to", (toy / "one_form").string()};
   if (call == "config") return {SALBENCH_PROGRAM, call, config};
   if (call == "verify" || call == "gc")
@@ -85,7 +85,7 @@ TEST_P(StandardOutput, ThatNobodyReadsEndsTheProgramSilently) {
 INSTANTIATE_TEST_SUITE_P(Calls, StandardOutput,
                          testing::Values("run", "maps", "evaluate", "pictures", "export", "plan", "graph",
                                          "explain", "status", "doctor", "config", "verify", "gc", "inspect",
-                                         "convert", "--help", "run --help", "--version"),
+                                         "import", "--help", "run --help", "--version"),
                          [](const auto& test) {
                            std::string name;
                            for (const char c : std::string(test.param))

@@ -79,7 +79,7 @@ std::vector<std::string> subcommands_in(const std::string& help) {
 TEST(Usage, EverySubcommandHasExamples) {
   const std::string all = run_process({SALBENCH_PROGRAM, "--help"}).out;
   const std::vector<std::string> names = subcommands_in(all);
-  ASSERT_THAT(names, AllOf(Contains("run"), Contains("convert")));
+  ASSERT_THAT(names, Contains("run"));
   for (const std::string& name : names) {
     const Outcome help = run_process({SALBENCH_PROGRAM, name, "--help"});
     ASSERT_EQ(help.status, 0);

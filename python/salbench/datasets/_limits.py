@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import resource
 
@@ -26,7 +27,7 @@ def limit(seconds: int = SECONDS, memory: int | None = None) -> None:
     """Bounds what this process uses from now on: processor time in seconds, and bytes beyond what it has (None: the machine's memory). A
     request for more memory is then a MemoryError; one second more ends the process."""
     used = sum(resource.getrusage(resource.RUSAGE_SELF)[:2])
-    _lower(resource.RLIMIT_CPU, int(used) + seconds)
+    _lower(resource.RLIMIT_CPU, math.ceil(used) + seconds)
     _lower(resource.RLIMIT_AS, own_memory() + (physical_memory() if memory is None else memory))
 
 
