@@ -16,9 +16,9 @@
 
 #include "cache/digest.h"
 #include "pipeline/commands/commit.h"
-#include "pipeline/inputs/given_maps.h"
 #include "pipeline/inputs/given_reference.h"
 #include "pipeline/results/map_counts.h"
+#include "pipeline/rules/given_maps.h"
 #include "python/arrays.h"
 #include "python/caller.h"
 #include "python/computing.h"

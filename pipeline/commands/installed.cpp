@@ -45,6 +45,4 @@ Section configuration(const std::string& given) {
   throw ConfigError(fmt::format("{}: cannot be read: there is no such configuration; {}", given, hint));
 }
 
-}
-
 }  // namespace salbench

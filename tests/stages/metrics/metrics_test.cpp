@@ -261,7 +261,7 @@ TEST(MetricTable, ANewMetricIsAFunctionAndARow) {
 }
 
 TEST(MetricTable, EveryMetricDrawsFromTheSameStream) {
-  const Metric draw{"draw", "1", "a random number", [](const MetricInput& in) {
+  const Metric draw{"draw", "Draw", "1", "a random number", [](const MetricInput& in) {
                       Rng rng = in.rng;
                       return rng.uniform();
                     }};
