@@ -227,7 +227,7 @@ TEST(Preparation, ThoseWhoAskAtOnceGetTheSame) {
 // --- a metric: its function, and a row of the table ------------------------------------------------------
 
 TEST(AddAMetric, ItIsOneRow) {
-  const Metric largest{"largest", "1", "largest value of the map",
+  const Metric largest{"largest", "Largest", "1", "largest value of the map",
                        [](const MetricInput& in) { return *std::max_element(in.map.begin(), in.map.end()); }};
   const GroundTruth truth{{0.5, 0, 1}, {{1}}};
   const Scores scores = score({&largest, 1}, {1, 7, 3}, truth, {}, Rng(1, "", ""));
