@@ -51,7 +51,7 @@ TEST_F(Archive, FailsTheSpoiltItemByNameAndNoOther) {
       {"maps/bee.txt", "0\n1\n2\n3\n4\n", kMap, "values: {per: face}",
        "maps/bee.txt:5: the file has 5 values, but the mesh has 4 faces"},
       {"maps/bee.txt", "0\n1\nx\n3\n", kMap, "values: {unseen: -1}", "maps/bee.txt:3: \"x\" is not a number"},
-      {"maps/bee.txt", "a,b\n0,1\n", kMap, "values: {column: 2}", "maps/bee.txt:2: the file has 1 values"},
+      {"maps/bee.txt", "0,1\n", kMap, "values: {column: 1}", "maps/bee.txt:1: the file has 1 values"},
       {"maps/bee.txt", "\x89HDF\r\n\x1a\n", kMap, "values: {unseen: -1}", "maps/bee.txt"},
       {"maps/bee.txt", "MATLAB 5.0 MAT-file", kMap, "values: {variable: map}", "maps/bee.txt"},
       {"off/bee.off", "OFF\n4 4 0\n0 0 0\n", kMap, "values: {unseen: -1}",

@@ -147,8 +147,9 @@ TEST_F(DataSets, HowFilesAreReadIsPartOfTheKeyUnlessItIsAsEver) {
   store_.take_saved();
   run(description(places));
   EXPECT_THAT(store_.take_saved(), IsEmpty()) << "what the program's own description led to is found";
-  EXPECT_THAT(names(places + "values: {column: 1, unseen: -1}\n")[0],
-              "saliency file (column: 1, unseen: \"-1\"), rows by their numbers");
+  run(description(places + "values: {column: 1, unseen: -1}\n"));
+  EXPECT_EQ(toy_->inputs.shape_files->files[0].at(1).name,
+            "saliency file (column: 1, unseen: \"-1\"), rows by their numbers");
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ class Imported : public DataSets {
     run(layout);
     EXPECT_THAT(failures(), IsEmpty());
     std::vector<std::string> stages;
-    for (const std::string& saved : store_.take_saved()) stages.push_back(saved.substr(0, saved.find(' ')));
+    for (const std::string& saved : store_.take_saved()) stages.push_back(saved.substr(0, saved.find('@')));
     return stages;
   }
   std::size_t count(const std::vector<std::string>& stages, const char* stage) {
@@ -65,7 +65,7 @@ TEST_F(Imported, ItemsAreImportedOnceAndFoundAgain) {
 
 TEST_F(Imported, AnotherFormatImportsAgainAndNothingElseWhereTheFormIsTheSame) {
   for (const char* name : {"ant", "bee", "cat"})
-    data_.write(fmt::format("maps/{}.csv", name), "a,b\n0,0\n1,1\n2,2\n3,3\n");
+    data_.write(fmt::format("maps/{}.csv", name), fmt::format("a,b\n0,0\n1,1\n2,2\n{0},{0}\n", int{name[0]}));
   stored(described());
   EXPECT_THAT(stored(described("column: b")), SizeIs(3));
   EXPECT_THAT(stored(described("column: b, unseen: 3")), Contains("ground_truth"));

@@ -68,7 +68,7 @@ TEST_F(WithViews, ShareWhatIsComputedOfTheirMesh) {
   EXPECT_EQ(computed("import"), 8U);
   EXPECT_EQ(computed("map.MS"), 1U);
   EXPECT_EQ(computed("map.RS"), 8U) << "random numbers are of the unit";
-  EXPECT_EQ(computed("ground_truth"), 2U) << "six views are as the first";
+  EXPECT_EQ(computed("ground_truth"), 8U) << "each form names its view";
 }
 
 TEST_F(WithViews, AreChosenByTheirNameOrByThatOfTheirMesh) {

@@ -7,9 +7,9 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "python/salbench"
 ONLY = {  # beside itself
-    "conclusions": {"_core"},
+    "conclusions": {"_core", "_errors", "_version"},
     "pages": {"_types"},
-    "report": {"_core", "_tables", "conclusions", "pages"},
+    "report": {"_core", "_errors", "_tables", "conclusions", "pages"},
 }
 NEVER = {
     "": {"report"},  # modules of the package itself, but for the one that starts subcommands

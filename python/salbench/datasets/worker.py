@@ -20,6 +20,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, BinaryIO
 
 from salbench.datasets import _limits
@@ -31,7 +32,8 @@ ERROR = ".error"
 def item(request: dict[str, Any]) -> bytes:
     from salbench.datasets import one_form, sets
 
-    return one_form.image(sets.read(request["layout"], request["root"], Item.from_json(request["item"]), request.get("licence", "")))
+    asked = replace(Item.from_json(request["item"]), problem="")  # of its ground truth, which the program says; maps need the shape alone
+    return one_form.image(sets.read(request["layout"], request["root"], asked, request.get("licence", "")))
 
 
 def shape(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
