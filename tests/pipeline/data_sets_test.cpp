@@ -149,7 +149,7 @@ TEST_F(DataSets, HowFilesAreReadIsPartOfTheKeyUnlessItIsAsEver) {
   EXPECT_THAT(store_.take_saved(), IsEmpty()) << "what the program's own description led to is found";
   run(description(places + "values: {column: 1, unseen: -1}\n"));
   EXPECT_EQ(toy_->inputs.shape_files->files[0].at(1).name,
-            "saliency file (column: 1, unseen: \"-1\"), rows by their numbers");
+            "saliency file (column: 1, unseen: -1), rows by their numbers");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ import numpy as np
 import pandas
 
 import salbench
+from salbench.conclusions import tables
 import toy
 
 SEED = 2016
@@ -135,7 +136,7 @@ class Artefacts:
                            ("agreement", "ranking_agreement"), ("per_class", "per_class"), ("human_share", "human_share")):
             expected = (out / f"{file}.csv").read_text()
             expected = expected[expected.index("dataset,"):]
-            self.assertEqual(found._text(file), expected, name)
+            self.assertEqual(tables.csv(found._made(file)), expected, name)
             frame = getattr(found, name)
             self.assertEqual(list(frame.columns), expected.split("\n", 1)[0].split(","))
             self.assertEqual(len(frame), expected.count("\n") - 1)
