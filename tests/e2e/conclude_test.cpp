@@ -145,7 +145,7 @@ TEST(Conclude, WithoutPythonMeansAreShownAndThePackageIsNamed) {
   const Outcome concluded = run_process(with_python(kNoPython, {SALBENCH_PROGRAM, "conclude", toy.out()}));
   EXPECT_EQ(concluded.status, 2);
   EXPECT_THAT(concluded.err, AllOf(HasSubstr("/no/python: No such file"), HasSubstr("python3-salbench"),
-                                   HasSubstr("everything else works")));
+                                   HasSubstr("end with scores and their means")));
 }
 
 TEST(Conclude, WithoutALibraryOfPythonThePackageIsNamed) {
