@@ -44,6 +44,12 @@ class Smoothing(unittest.TestCase):
         plain = smoothing(study).query("steps == '0'").reset_index(drop=True)
         pd.testing.assert_frame_equal(plain[columns], summary(study)[columns])
 
+    def test_where_every_item_failed_there_is_no_row(self):
+        study = study_of(self.by_steps)
+        none = Study(study.scores, "mesh", smoothed=study.smoothed[:0])
+        self.assertEqual(smoothing(none).columns.tolist(), smoothing(study).columns.tolist())
+        self.assertEqual(len(smoothing(none)), 0)
+
     def test_the_best_is_chosen_by_shape_model_and_metric(self):
         rows = {"0": [row("1", "A", .2, 5), row("2", "A", .9, nan)], "10": [row("1", "A", .4, 7), row("2", "A", .1, 3)]}
         found = smoothing(study_of(rows)).set_index(["metric", "steps"])["mean"]

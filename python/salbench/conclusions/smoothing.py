@@ -26,6 +26,8 @@ def smoothing(study: Study) -> pandas.DataFrame:
         raise LookupError("no scores of smoothed maps")
     by_steps = {str(steps): Scores(rows.reset_index(drop=True), study.scores.metrics)
                 for steps, rows in study.smoothed.groupby("smoothing", sort=False)}
+    if not by_steps:  # every item failed
+        return framed(COLUMNS, (), study.scores.in_splits)
     by_steps[_BEST] = best_of(list(by_steps.values()))
     parts = zip(*(levels(scores, study.unit) for scores in by_steps.values()))  # a part of the data by each number of steps
     return framed(COLUMNS, chain.from_iterable(_parts(part, list(by_steps)) for part in parts), by_steps[_BEST].in_splits)
