@@ -2,7 +2,10 @@
 """What the subcommands of the package have in common with those of the program: help, reports, exit statuses."""
 
 import argparse
+import errno
 import json
+import os
+import signal
 import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
@@ -67,8 +70,12 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
+    except BrokenPipeError:  # nobody reads: an end without a word, as of the program
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGPIPE)
     except OSError as error:
-        raise StorageError(f"standard output: cannot be written: {error.strerror}") from None
+        closed = error.errno == errno.EBADF
+        raise StorageError(f"standard output: {'it is closed' if closed else f'cannot be written: {error.strerror}'}") from None
 
 
 def aligned(names: Sequence[str], rows: Sequence[Sequence[Any]], decimals: int = 4) -> str:
