@@ -27,7 +27,7 @@ struct IndexReader {
   std::string text(std::string_view column) const {
     for (std::size_t i = 0; i < table.columns.size(); ++i)
       if (table.columns[i] == column) return std::get<std::string>(table.rows[row][i]);
-    throw InputError(fmt::format("{}: has no column '{}': it is no index of `salbench convert`; there are {}",
+    throw InputError(fmt::format("{}: has no column '{}': expected the index of a set in the one form; there are {}",
                                  table.name, column, fmt::join(table.columns, ", ")));
   }
   std::size_t count(std::string_view column) const {

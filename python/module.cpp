@@ -18,18 +18,22 @@ namespace {
 
 namespace py = pybind11;
 
+void raise(const char* type, const std::exception& error) {
+  PyErr_SetString(py::module_::import("salbench._errors").attr(type).ptr(), error.what());
+}
+
 // std::bad_alloc is a MemoryError, and what an array says is a ValueError: pybind11 has these.
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const InputError& error) {
-    PyErr_SetString(PyExc_ValueError, error.what());
+    raise("InputError", error);
   } catch (const UnknownNameError& error) {
     PyErr_SetString(PyExc_KeyError, error.what());
   } catch (const ConfigError& error) {
-    PyErr_SetString(PyExc_ValueError, error.what());
+    raise("InputError", error);
   } catch (const StorageError& error) {
-    PyErr_SetString(PyExc_OSError, error.what());
+    raise("StorageError", error);
   } catch (const std::logic_error& error) {
     PyErr_SetString(PyExc_RuntimeError, current_defect().c_str());
   }

@@ -70,10 +70,10 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
-    except BrokenPipeError:  # nobody reads: an end without a word, as of the program
-        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-        os.kill(os.getpid(), signal.SIGPIPE)
     except OSError as error:
+        if isinstance(error, BrokenPipeError) and "broken_pipe_is_an_error" not in sys._xoptions:  # an end without a word, as of the program
+            signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+            os.kill(os.getpid(), signal.SIGPIPE)
         closed = error.errno == errno.EBADF
         raise StorageError(f"standard output: {'it is closed' if closed else f'cannot be written: {error.strerror}'}") from None
 

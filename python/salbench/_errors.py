@@ -6,5 +6,5 @@ class InputError(ValueError):
     """A file, a table or a description that cannot be used: one line that says what, where, and what to do."""
 
 
-class StorageError(RuntimeError):
+class StorageError(OSError):
     """A folder or file that cannot be written."""

@@ -133,10 +133,7 @@ class Results(Tables):
     def _conclude(self) -> None:
         from salbench import conclusions
 
-        try:
-            conclusions.conclude_if_missing(self.folder)
-        except conclusions.folders.StorageError as error:
-            raise OSError(str(error)) from None
+        conclusions.conclude_if_missing(self.folder)
 
     @cached_property
     def scores(self) -> "pandas.DataFrame":

@@ -32,11 +32,10 @@ struct ShapeError : InputError {
   using InputError::InputError;
 };
 
-// A file cannot be used: the message begins with its name, which `reason` is without.
+// A file cannot be used: the message begins with its name.
 struct FileError : InputError {
-  FileError(const std::string& file, std::string what_is_wrong)
-      : InputError(file + ": " + what_is_wrong), reason(std::move(what_is_wrong)) {}
-  std::string reason;  // "truncated: 512 of 4096 bytes"
+  FileError(const std::string& file, const std::string& what_is_wrong)
+      : InputError(file + ": " + what_is_wrong) {}
 };
 
 // Arguments or configuration cannot be used (exit status 2).

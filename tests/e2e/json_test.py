@@ -236,7 +236,7 @@ class JsonTest(unittest.TestCase):
         self.assertRegex(said[0], r"(?m)^dog_1 +test +4 +4 +1.7321 +0.7500 +1.0000 +4.5000 ")
 
     def summary(self, subcommand, *words, status=0, option="--format"):
-        """The document of a command over two good meshes and one that cannot be read."""
+        """The document of a command over six good meshes, as few as are ranked, and one that cannot be read."""
         done = subprocess.run([PROGRAM, subcommand, *words, option, "json"], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout.count("\n")), (status, 1), done.stderr)
         document = json.loads(done.stdout)
@@ -248,27 +248,28 @@ class JsonTest(unittest.TestCase):
     def check_summaries(self):
         folder = self.folder / "summaries"
         data, mine, out = folder / "data", folder / "maps/PS", folder / "out"
-        shutil.copytree(self.folder / "data", data)
-        (data / f"{ODD}.off").rename(data / "2.off")
-        (data / "3.off").write_text("OFF\n")
+        subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", data, "6", "16", "8"], check=True)
+        (data / "7.off").write_text("OFF\n")
         config = folder / "toy.yaml"
         config.write_text(CONFIG)
         over = ["--data", data, "--cache", folder / "cache", "--threads", "1"]
         run = [config, *over]
         document = self.summary("run", *run, "--out", out, status=1)
-        self.assertEqual([(failed["item"], failed["stage"]) for failed in document["failed"]], [("3", "mesh")])
+        self.assertEqual([(failed["item"], failed["stage"]) for failed in document["failed"]], [("7", "mesh")])
         rows = {(row["model"], row["metric"]): row for row in document["scores"]}
         text = (out / "summary.csv").read_text()
         for (model, metric), row in rows.items():
             self.assertIn(f"\nmeshes,{model},{metric},{row['n']},{row['mean']},", text)
         self.assertEqual(self.summary("run", *run, "--out", out, "--shard", "1/1", status=1)["shard"], "1/1")
-        self.assertEqual(self.summary("maps", *run, "--to", folder / "maps", status=1)["written"], 4)
+        self.assertEqual(self.summary("maps", *run, "--to", folder / "maps", status=1)["written"], 12)
         words = ["--maps", mine, "--name", "OWN"]
         self.assertIn("OWN", {row["model"] for row in self.summary("evaluate", *run, "--out", out, *words, status=1)["scores"]})
-        self.assertEqual(self.summary("pictures", *run, status=1)["pictures"], 2)
-        self.assertEqual(self.summary("export", *run, "--to", folder / "all.h5", status=1, option="--summary")["shapes"], 3)
+        self.assertEqual(self.summary("pictures", *run, status=1)["pictures"], 6)
+        self.assertEqual(self.summary("export", *run, "--to", folder / "all.h5", status=1, option="--summary")["shapes"], 7)
         self.assertEqual(self.summary("conclude", out / "results.csv", "--out", folder / "conclusions")["unit"], "mesh")
         self.assertEqual(len(self.summary("power", out / "results.csv")["pairs"]), 3 * len({metric for _, metric in rows}))
+        page = Path(self.summary("report", out, "--processes", "1")["page"])
+        self.assertEqual((page.name, page.is_file()), ("index.html", True))
         self.assertIn("\nseed: 2016\n", self.summary("config")["yaml"])
         (mine / "card.yaml").write_text("name: OWN\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n")
         archive = folder / "submissions/own.zip"
@@ -279,7 +280,7 @@ class JsonTest(unittest.TestCase):
         archive.write_text("no archive")
         document = self.summary("leaderboard", *site, status=1)
         self.assertEqual([row["status"] for row in document["submissions"]], ["refused"])
-        (data / "3.off").unlink()
+        (data / "7.off").unlink()
         self.assertEqual(self.summary("submit", *submit)["to"], str(archive))
         document = self.summary("leaderboard", *site)
         self.assertEqual([row["status"] for row in document["submissions"]], ["ranked"])

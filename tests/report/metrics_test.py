@@ -109,7 +109,7 @@ class AllMetrics(support.ReportTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.out = cls.folder / "all"
-        table = fixture.results_table(fixture.eight_meshes()[:4], MODELS, views=2)
+        table = fixture.results_table(fixture.eight_meshes()[:6], MODELS, views=2)
         cls.table = fixture.with_metrics(table, fixture.ALL_METRICS)
         cls.table.loc[cls.table["model"] == "LS", "auc_judd_area"] -= 0.5  # last under this convention
         remarks = "remarks:\n  - {item: \"1\", remark: \"odd\"}\n"
@@ -177,7 +177,7 @@ class AllMetrics(support.ReportTest):
         script = (self.to / data["files"]["kl"]).read_text()
         rows = json.loads(script.removeprefix('salbench.scores.scores["kl"] = ').removesuffix(";\n"))
         expected = statistics.scores(self.results, "meshes", "kl")["LS"].round(5).tolist()
-        self.assertEqual([row[0] for row in rows[:4]], expected)
+        self.assertEqual([row[0] for row in rows[:6]], expected)
 
     def test_orders_and_ranks_start_with_the_best(self):
         self.assertTrue(statistics.summary(self.results, "meshes", "kl")["mean"].is_monotonic_increasing)
@@ -214,7 +214,7 @@ class AllMetrics(support.ReportTest):
         for name, first in (("auc_judd_area", "auc"), ("cc", "lcc"), ("mae", "mse")):
             pair = table[(table["dataset"] == "scans") & table[["metric_a", "metric_b"]].isin([name, first]).all(axis=1)].iloc[0]
             shown = numbers[numbers["metric"] == name].iloc[0]
-            self.assertEqual([shown["n"], shown["n_shapes"]], [4, 8])
+            self.assertEqual([shown["n"], shown["n_shapes"]], [6, 12])
             numpy.testing.assert_array_equal(shown[["kendall_tau", "ci95_low", "ci95_high"]].astype(float),
                                              pair[["tau", "ci95_low", "ci95_high"]].astype(float))
 
@@ -251,7 +251,7 @@ class FewMetrics(support.ReportTest):
         numpy.testing.assert_array_less(heat[heat.columns[3]].mean() - 1e-12, heat[heat.columns[4:]].mean())
 
     def test_another_run_adds_its_conventions(self):
-        items = fixture.eight_meshes()[:4]
+        items = fixture.eight_meshes()[:6]
         table = fixture.results_table(items, views=1)
         fixture.write_results(self.folder / "matched", items, results=table)
         other = table[table["model"] != "HS"].copy()

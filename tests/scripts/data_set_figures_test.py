@@ -57,7 +57,7 @@ class Figures(unittest.TestCase):
                          ["| LS |  | 0.500 (0.250 to 0.750) |", "| RS | floor | 0.500 (0.250 to 0.750) |"])
 
     def test_rows_of_single_splits_are_left_out_where_there_are_several(self):
-        table = pd.DataFrame({"split": [np.nan, "test", "train"], "n": [3, 1, 2]})
+        table = pd.DataFrame({"split": ["", "test", "train"], "n": [3, 1, 2]})
         self.assertEqual(self.figures.of_all(table)["n"].tolist(), [3])
         self.assertEqual(self.figures.of_all(table[1:2])["n"].tolist(), [1])
 

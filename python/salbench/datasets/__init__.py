@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.datasets.records import InputError, Item, Listing
 
 if TYPE_CHECKING:
+    from salbench.datasets.one_form import write as write
     from salbench.datasets.records import Form
 
 ARCHIVES = {
@@ -34,6 +35,15 @@ NATIVE = {  # which C++ lists by itself, and on what terms their authors give th
     "schelling": "not known; cite the study, and ask its authors before you pass the data on",
 }
 DESCRIPTION = ".yaml"
+
+
+def __getattr__(name: str) -> Any:
+    """`write`, which needs h5py; listing does not."""
+    if name != "write":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from salbench.datasets.one_form import write
+
+    return write
 
 
 class _Described:

@@ -100,7 +100,7 @@ def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | Non
     lock, stop = threading.Lock(), threading.Event()
     failures: list[BaseException] = []
 
-    def work() -> None:
+    def work(ended: threading.Event) -> None:
         worker = Worker()
         try:
             while not stop.is_set():
@@ -116,16 +116,17 @@ def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | Non
             stop.set()
         finally:
             worker.close()
+            ended.set()
 
     count = min(processes or len(os.sched_getaffinity(0)), len(requests))
-    threads = [threading.Thread(target=work, daemon=True) for _ in range(count)]
-    for thread in threads:
-        thread.start()
+    ends = [threading.Event() for _ in range(count)]  # Thread.join() takes a thread for ended once Ctrl-C interrupts it
+    for ended in ends:
+        threading.Thread(target=work, args=(ended,), daemon=True).start()
     interrupted = False
-    for thread in threads:
-        while thread.is_alive():
+    for ended in ends:
+        while not ended.is_set():
             try:
-                thread.join()
+                ended.wait()
             except KeyboardInterrupt:
                 if interrupted:
                     raise

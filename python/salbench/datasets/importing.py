@@ -125,7 +125,7 @@ def _selected(listing: Listing, items: str, split: str) -> list[Item]:
     """Shapes as a whole, whichever of their views are named."""
     try:
         chosen = sets.chosen(listing, items or None, split)
-    except (KeyError, ValueError) as error:  # a name that there is not, or no name at all
+    except KeyError as error:  # a name that there is not
         raise InputError(error.args[0]) from None
     shapes = {item.shape or item.name for item in chosen}
     return [item for item in listing.items if (item.shape or item.name) in shapes]

@@ -51,8 +51,6 @@ def _automatic(root: str, twins: str) -> tuple[str, Listing]:
             return listed(layout, root, twins)
         except InputError:
             continue
-        except ValueError:  # of the program
-            continue
     return listed("folder", root, twins)
 
 
