@@ -74,6 +74,14 @@ class Inspect(WithArchive):
         document = json.loads(subprocess.run([*line, "--format", "json"], capture_output=True, text=True).stdout)
         self.assertEqual((document["command"], document["n_problems"], document["scale"], document["items"][0]["low"]), ("inspect", 1, "1", "1"))
 
+    def test_a_folder_that_cannot_be_listed_is_no_defect(self):
+        for layout in ("hdf5", "schelling", "automatic", "sal3d"):
+            with self.subTest(layout):
+                line = [sys.executable, "-P", "-m", "salbench", "inspect", layout, "--data", str(self.root / "none")]
+                done = subprocess.run(line, capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                self.assertRegex(done.stderr, r"\Aerror: .*none.*\n\Z")
+
 
 def cloud_ply(points):
     head = f"ply\nformat ascii 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
