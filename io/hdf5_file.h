@@ -6,11 +6,11 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "io/arrays.h"
 #include "io/file.h"
-#include "stages/core/library_version.h"
 
 namespace salbench {
 
@@ -29,6 +29,10 @@ Bytes hdf5_image(const Hdf5Content& content);
 // image is not such a file.
 Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name);
 
+// Of the library that is loaded, which need not be the one that the program was built with.
+struct LibraryVersion {
+  std::string built, loaded;
+};
 LibraryVersion hdf5_version();
 
 }  // namespace salbench

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -23,10 +24,13 @@ namespace fs = std::filesystem;
 
 struct ExportOptions {
   std::string stages;  // "scan,fpfh,map": stages, or what stands before the point in theirs; empty: all
-  std::string format = "h5";  // one HDF5 file; or the name of a ShapeFormat: a folder of shapes
+  std::string format = "h5";  // one HDF5 file; the name of a ShapeFormat: a folder of shapes; or kMaps
   bool link = false;          // h5: refer to the artefacts in the cache, do not copy them
+  bool pictures = false;      // h5: compute those that the cache lacks
   FormatWord summary = default_format();
 };
+
+constexpr std::string_view kMaps = "maps";  // TO/MODEL/ITEM.val, one value per line
 
 // All but the tables of scores, which are exported with the scores.
 std::vector<std::string> stages_of(const Rules& rules) {
@@ -119,31 +123,77 @@ std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames&
   return written;
 }
 
+// --- maps -------------------------------------------------------------------------------------------------
+
+std::string val_text(const ScalarField& field) {
+  std::string lines;
+  for (const double value : field) lines += fmt::format("{}\n", value);
+  return lines;
+}
+
+// The role of the maps that are written: as models compute them, or matched where --stage says so.
+Role role_of_maps(const std::string& stages) {
+  if (stages.empty() || stages == "map") return Role::map;
+  if (stages == "matched") return Role::matched;
+  throw ConfigError(fmt::format("--stage {}: with --format maps it must be map or matched", stages));
+}
+
+// Writes TO/MODEL/ITEM.val for every map that is known; returns how many. Ends early once `stop` is set.
+std::size_t write_maps(Session& session, const fs::path& folder, Role role, const std::atomic<bool>& stop) {
+  const RunState run = session.state();
+  for (const Model& model : session.setup.config.models)
+    if (model.add_map) make_folder(folder / model.name, "choose another with --to");
+  const std::vector<Unit> shapes = run.shapes();
+  std::size_t written = 0;
+  session.progress->begin("writing", shapes.size());
+  for (const Unit shape : shapes) {
+    for (const Job& job : run.project().jobs_of(shape)) {
+      if (stop) return written;
+      const Rule& rule = run.project().rule(job);
+      if (!has_role(rule, role) || !run.decision(job).known()) continue;
+      const ValuePtr map = run.resolver.value(job);
+      write_file(folder / rule.subject / (run.units().name(shape) + ".val"),
+                 val_text(value_as<ScalarField>(*map)));
+      ++written;
+    }
+    session.progress->item_done();
+  }
+  session.progress->end();
+  return written;
+}
+
 ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
                       const std::atomic<bool>& stop) {
   const ReportFormat summary = format_of(options.summary, false, "--summary");
+  const bool one_file = options.format == "h5", maps = options.format == kMaps;
+  const Role role = maps ? role_of_maps(options.stages) : Role::shape;
   ShapeFormat format{};
-  const bool shapes = options.format != "h5";
-  if (shapes && !parse_option(options.format, format))
+  if (!one_file && !maps && !parse_option(options.format, format))
     throw ConfigError(
-        fmt::format("--format {}: must be h5 or {}", options.format, expected_of<ShapeFormat>()));
-  if (shapes && options.link) throw ConfigError("--link: only one HDF5 file (--format h5) can hold links");
+        fmt::format("--format {}: must be h5, {} or {}", options.format, kMaps, expected_of<ShapeFormat>()));
+  if (!one_file && (options.link || options.pictures))
+    throw ConfigError(fmt::format("--{}: only one HDF5 file (--format h5) can hold {}",
+                                  options.link ? "link" : "pictures", options.link ? "links" : "them"));
 
-  Session session(arguments, stop, {}, shapes ? Pictures::none : Pictures::cached);
-  const StageNames stages = selected_stages(options.stages, session.setup.project.rules);
+  Session session(arguments, stop, {},
+                  options.pictures ? Pictures::computed : one_file ? Pictures::cached : Pictures::none);
+  const StageNames stages =
+      maps ? StageNames() : selected_stages(options.stages, session.setup.project.rules);
   const OrderlyEnd orderly;
   session.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);
 
   std::string done = fmt::format("exported to {}\n", arguments.to);
   std::size_t written = session.state().shapes().size();
-  if (shapes) {
-    written = write_shapes(session, format, stages, arguments.to, stop);
+  if (one_file) {
+    if (!export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages,
+                     arguments.to, options.link, stop))
+      return interrupted_status(arguments);
+  } else {
+    written = maps ? write_maps(session, arguments.to, role, stop)
+                   : write_shapes(session, format, stages, arguments.to, stop);
     if (stop) return interrupted_status(arguments);
-    done = fmt::format("{} shapes written to {}\n", written, arguments.to);
-  } else if (!export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages,
-                          arguments.to, options.link, stop)) {
-    return interrupted_status(arguments);
+    done = fmt::format("{} {} written to {}\n", written, maps ? "maps" : "shapes", arguments.to);
   }
   Json document = {{"to", arguments.to}, {"format", options.format}, {"shapes", written}};
   document.update(summary_of(session));
@@ -156,14 +206,19 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
 Subcommand export_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<ExportOptions>();
   return {
-      "export", "write what is known of some items to one HDF5 file, or to shapes for viewers",
+      "export",
+      "write what is known of some items to one HDF5 file, to shapes for viewers, or the maps alone",
       running_parameters(
           arguments, {{"--stage", &options->stages,
                        "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
                       {"--models", &arguments.models, "only these, such as LS,PS"},
-                      {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes", true},
-                      {"--format", &options->format, "h5 (default), or one shape per item: csv, ply, vtp"},
+                      {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes or maps", true},
+                      {"--format", &options->format,
+                       "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value "
+                       "per line, after histogram matching with --stage matched"},
                       {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"},
+                      {"--pictures", &options->pictures,
+                       "compute the pictures that the cache lacks, for reports that show shapes"},
                       {"--summary", options->summary.get(),
                        "text (default), or json: what was done, for programs (docs/json.md)"}}),
       [&arguments, options](const std::atomic<bool>& stop) { return run_export(arguments, *options, stop); }};

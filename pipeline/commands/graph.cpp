@@ -7,10 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/commands/installed.h"
-#include "pipeline/commands/report.h"
-#include "pipeline/commands/session.h"
-#include "pipeline/commands/subcommands.h"
 #include "pipeline/engine/run.h"
 
 namespace salbench {
@@ -37,39 +33,6 @@ std::string dot_text(std::string_view text) {
 
 std::string jobs_text(const GraphNode& node) {
   return node.to_do ? fmt::format(", {} to do", *node.to_do) : "";
-}
-
-Json json_of(const Graph& graph) {
-  const auto words = [](const std::vector<std::string>& list) { return Json(list); };
-  return {{"nodes", list_of(graph.nodes, [&](const GraphNode& node) {
-             return Json{{"node", node.name},
-                         {"stage", node.stage},
-                         {"shapes", node.shapes},
-                         {"per", node.per},
-                         {"version", node.version},
-                         {"options", words(node.options)},
-                         {"inputs", words(node.inputs)},
-                         {"cuts", words(node.cuts)},
-                         {"stratum", node.stratum},
-                         {"to_do", node.to_do}};
-           })}};
-}
-
-Graph graph_of_run(const Arguments& arguments) {
-  if (arguments.data.empty()) return graph_of(make_rules(read_config(configuration(arguments.config), "")));
-  const Setup setup(arguments);
-  const FolderStore store(setup.cache, Access::read_only);
-  const Plan plan = make_plan(setup.project, store);
-  Graph graph = graph_of(setup.project.rules);
-  for (std::size_t rule = 0; rule < graph.nodes.size(); ++rule) graph.nodes[rule].to_do = plan.open(rule);
-  return graph;
-}
-
-ExitStatus print_graph(const Arguments& arguments, ReportFormat format) {
-  const Graph graph = graph_of_run(arguments);
-  print_report(format, "graph", json_of(graph),
-               format == ReportFormat::dot ? graph_dot(graph) : graph_text(graph));
-  return kAllDone;
 }
 
 }  // namespace
@@ -126,14 +89,20 @@ std::string graph_dot(const Graph& graph) {
          nodes + edges + "}\n";
 }
 
-Subcommand graph_subcommand(Arguments& arguments) {
-  const FormatWord format = default_format();
-  return {"graph", "print the flow graph of a run: a node per rule, an edge per input, dashed across a cut",
-          needing(planning_parameters(arguments, {format_parameter(format, ", or dot for Graphviz")}),
-                  "--data", {"--cache", "--items", "--split", "--reference"}),
-          [&arguments, format](const std::atomic<bool>&) {
-            return print_graph(arguments, format_of(format, true));
-          }};
+Json graph_json(const Graph& graph) {
+  const auto words = [](const std::vector<std::string>& list) { return Json(list); };
+  return {{"nodes", list_of(graph.nodes, [&](const GraphNode& node) {
+             return Json{{"node", node.name},
+                         {"stage", node.stage},
+                         {"shapes", node.shapes},
+                         {"per", node.per},
+                         {"version", node.version},
+                         {"options", words(node.options)},
+                         {"inputs", words(node.inputs)},
+                         {"cuts", words(node.cuts)},
+                         {"stratum", node.stratum},
+                         {"to_do", node.to_do}};
+           })}};
 }
 
 }  // namespace salbench

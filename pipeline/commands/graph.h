@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Subcommand `graph`: the flow graph that a configuration runs, with its cuts.
+// The flow graph that a configuration runs, with its cuts, as `salbench plan --graph` shows it.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/commands/report.h"
 #include "pipeline/engine/rule.h"
 
 namespace salbench {
@@ -30,5 +31,6 @@ struct Graph {
 Graph graph_of(const Rules& rules);
 std::string graph_text(const Graph& graph);  // a line per node, and one of its options; by stratum
 std::string graph_dot(const Graph& graph);   // for Graphviz
+Json graph_json(const Graph& graph);
 
 }  // namespace salbench

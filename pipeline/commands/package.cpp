@@ -21,8 +21,6 @@ constexpr PackageSubcommand kSubcommands[] = {
     {"import", "write a data set in one form, an HDF5 file per shape and an index, which is the layout hdf5"},
     {"inspect",
      "read all files of a data set and print what its description finds: items, splits, ranges, problems"},
-    {"power",
-     "which differences between models the scores can show, and how many units would show those seen"},
     {"submit", "check maps of your own and write the file that a leaderboard takes"},
     {"leaderboard", "check and score submissions, and make a site that ranks them"},
     {"report", "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes"},

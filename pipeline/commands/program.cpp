@@ -14,13 +14,16 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
+#include "pipeline/commands/commit.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/package.h"
 #include "pipeline/commands/session.h"
 #include "pipeline/commands/standard_streams.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/config/section.h"
+#include "pipeline/results/libraries.h"
 #include "stages/core/errors.h"
+#include "stages/models/chi2_kernel.h"
 
 namespace salbench {
 namespace {
@@ -39,27 +42,25 @@ constexpr Example kExamples[] = {
     {"run configs/shrec07.yaml --data SchellingData --items 1-20,52", "these, matched to the mean over all"},
     {"run configs/shrec07.yaml --data SchellingData --items scored", "all shapes that have ground truth"},
     {"run configs/shrec07.yaml --data SchellingData --shard 2/4", "the second of four shares"},
-    {"maps configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps",
-     "maps/LS/52.val and others"},
-    {"evaluate configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE",
-     "scores of your maps: mine/52.val"},
-    {"evaluate configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
+    {"run configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE",
+     "and your maps: mine/52.val"},
+    {"run configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
      "beside chance alone"},
     {"submit mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"},
     {"leaderboard submissions --to site --data SchellingData", "site/index.html ranks those that pass"},
-    {"pictures configs/shrec07.yaml --data SchellingData --items 52", "for a report that shows shapes"},
     {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
      "all that is known of one shape"},
+    {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5 --pictures",
+     "with pictures, for a report that shows shapes"},
     {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"},
+    {"export configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps --format maps",
+     "maps/LS/52.val and others"},
     {"conclude results.csv --unit class --out tables", "with classes as observations"},
-    {"power salbench-out/shrec07", "which differences a run could show"},
     {"report salbench-out/shrec07", "salbench-out/shrec07/report/index.html"},
-    {"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"},
-    {"graph configs/shrec07.yaml --format dot | dot -Tsvg", "the flow graph of a run, as a picture"},
+    {"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, why, and what it needs"},
+    {"plan configs/shrec07.yaml --graph --format dot | dot -Tsvg", "the flow graph of a run, as a picture"},
     {"explain configs/shrec07.yaml 52_3 --data SchellingData", "what differs from what the cache has"},
     {"explain configs/shrec07.yaml 52 map.LS --data SchellingData", "one stage, and its artefact"},
-    {"status configs/shrec07.yaml --data SchellingData", "what is there already"},
-    {"doctor configs/shrec07.yaml --data SchellingData", "whether machine and disk are fit for it"},
     {"config", "every option, its default, unit and range"},
     {"config shrec07", "a configuration with all that it leaves out"},
     {"verify configs/shrec07.yaml --data SchellingData --deep", "read all, and compute 20 jobs again"},
@@ -75,15 +76,35 @@ constexpr const char* kExitStatus =
 130 interrupted, the line that resumes was printed.)";
 
 constexpr std::array kSubcommands = {
-    run_subcommand,    maps_subcommand,   evaluate_subcommand, pictures_subcommand, export_subcommand,
-    plan_subcommand,   graph_subcommand,  explain_subcommand,  status_subcommand,   doctor_subcommand,
+    run_subcommand,    export_subcommand, plan_subcommand, explain_subcommand,
     config_subcommand, verify_subcommand, gc_subcommand,
+};
+
+// Names of version 0.2, and what has taken their place.
+struct FormerName {
+  std::string_view name, line;
+};
+constexpr FormerName kFormerNames[] = {
+    {"convert", "import LAYOUT --data DIR --to DIR2"},
+    {"doctor", "plan CONFIG --data DIR"},
+    {"evaluate", "run CONFIG --data DIR --maps MAPS --name NAME"},
+    {"graph", "plan CONFIG --graph"},
+    {"maps", "export CONFIG --data DIR --format maps --to MAPS"},
+    {"pictures", "export CONFIG --data DIR --pictures --to FILE.h5"},
+    {"power", "conclude OUT, which writes power.csv"},
+    {"status", "plan CONFIG --data DIR"},
 };
 
 std::string joined(std::span<const char* const> words) {
   std::string line;
   for (const char* word : words) line += (line.empty() ? "" : " ") + shell_word(word);
   return line;
+}
+
+std::string version_text() {
+  return fmt::format("salbench {}\n{}instructions {}, {}", SALBENCH_VERSION,
+                     commit().empty() ? "" : fmt::format("commit {}, ", commit()),
+                     chi2_kernel::kernel().instructions, fmt::join(libraries(), ", "));
 }
 
 // A remark stands behind its line, or below one that is long.
@@ -123,8 +144,8 @@ std::string unknown_word(const CLI::App& app, std::span<const char* const> words
   }
   for (const PackageSubcommand& subcommand : package_subcommands()) known.push_back(subcommand.name);
   if (words.size() < 2 || std::string_view(words[1]).starts_with("-")) return {};
-  if (std::string_view(words[1]) == "convert")
-    return "convert is called import now: salbench import LAYOUT --data DIR --to DIR2";
+  for (const auto& [name, line] : kFormerNames)
+    if (name == words[1]) return fmt::format("there is no {} any more: salbench {}", name, line);
   return fmt::format("there is no subcommand '{}'; {}", words[1],
                      did_you_mean(words[1], known, "salbench --help names them"));
 }
@@ -153,7 +174,7 @@ struct Declare {
 
 int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> rows) {
   CLI::App app{"Benchmark of 3D saliency models on meshes, simulated range scans and point clouds."};
-  app.set_version_flag("--version", "salbench " SALBENCH_VERSION);
+  app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   if (words.size() > 1 && is_of_package(words[1])) become_package(words.subspan(1));
   Arguments arguments;

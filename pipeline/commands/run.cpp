@@ -2,6 +2,7 @@
 #include "pipeline/commands/run.h"
 
 #include <cstdio>
+#include <memory>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -108,8 +109,9 @@ Json summary_of(const Session& session) {
            })}};
 }
 
-ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,
-                       ReportFormat format) {
+namespace {
+
+ExitStatus run_session(Session& session, const Arguments& arguments, ReportFormat format) {
   const Setup& setup = session.setup;
   Json document = {{"results", setup.output},
                    {"protocol", name_of(setup.config.protocol)},
@@ -132,7 +134,7 @@ ExitStatus run_session(Session& session, const std::string& name, const Argument
     return Json{{"model", count.model}, {"computed", count.computed}, {"read", count.read}};
   });
   document.update(summary_of(session));
-  print_report(format, name, document, arguments.quiet ? "" : text);
+  print_report(format, "run", document, arguments.quiet ? "" : text);
   const bool in_trouble = report_trouble(concluded, setup.output);
   if (!session.stop) return in_trouble ? kDefect : finished_status(session);
   if (!setup.inputs.shard)
@@ -141,15 +143,38 @@ ExitStatus run_session(Session& session, const std::string& name, const Argument
   return interrupted_status(arguments);
 }
 
+}  // namespace
+
 Subcommand run_subcommand(Arguments& arguments) {
+  struct Own {
+    std::string maps, name;
+    bool matched = false;
+  };
+  const auto own = std::make_shared<Own>();
   const FormatWord word = default_format();
-  return {"run", "compute what is missing and write the tables",
-          running_parameters(
-              arguments, {output_parameter(arguments), shard_parameter(arguments), format_parameter(word)}),
-          [&arguments, word](const std::atomic<bool>& stop) {
+  Parameters further = {
+      output_parameter(arguments),
+      shard_parameter(arguments),
+      {"--models", &arguments.models, "only these of the configuration, such as LS,PS"},
+      {"--maps", &own->maps,
+       "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; "
+       "one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, if --items "
+       "does not name others"},
+      {"--name", &own->name, "what to call them in the tables"},
+      {"--matched", &own->matched, "their values are histogram-matched already"},
+      format_parameter(word)};
+  further = needing(needing(further, "--maps", {"--name", "--matched"}), "--name", {"--maps"});
+  return {"run", "compute what is missing and write the tables", running_parameters(arguments, further),
+          [&arguments, own, word](const std::atomic<bool>& stop) {
             const ReportFormat format = format_of(word);
-            Session session(arguments, stop);
-            return run_session(session, "run", arguments, format);
+            if (own->maps.empty()) {
+              Session session(arguments, stop);
+              return run_session(session, arguments, format);
+            }
+            Arguments scored = arguments;
+            if (scored.items.empty()) scored.items = kScoredItems;
+            Session session(scored, stop, given_model(own->name, find_given_maps(own->maps, own->matched)));
+            return run_session(session, scored, format);
           }};
 }
 

@@ -17,8 +17,4 @@ std::string carry_out(Session& session, int threads);
 // whether a signal ended it.
 Json summary_of(const Session& session);
 
-// The same as a command of this name, with what it prints.
-ExitStatus run_session(Session& session, const std::string& name, const Arguments& arguments,
-                       ReportFormat format);
-
 }  // namespace salbench

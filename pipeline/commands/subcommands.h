@@ -12,26 +12,16 @@
 
 namespace salbench {
 
-// Everybody: the benchmark of a configuration, and again after any change or interruption.
+// Everybody: the benchmark of a configuration, and again after any change or interruption. Authors of a model
+// whose maps are made already: its scores beside the others'.
 Subcommand run_subcommand(Arguments& arguments);
-// Users of saliency, who want the values in a program of their own.
-Subcommand maps_subcommand(Arguments& arguments);
-// Authors of a model whose maps are made already, for its scores beside the others'.
-Subcommand evaluate_subcommand(Arguments& arguments);
 // Whoever goes on in Python or a viewer, or archives a study: when the run is done.
 Subcommand export_subcommand(Arguments& arguments);
-// Authors of a report that shows shapes: once, before the export.
-Subcommand pictures_subcommand(Arguments& arguments);
-// Before a long run, to see what it would compute, and why.
+// Before a long run, to see what it would compute, why, and whether the disk has room; during one, from another
+// terminal. Whoever changes the table of rules: its graph.
 Subcommand plan_subcommand(Arguments& arguments);
-// Whoever changes the table of rules, or explains the pipeline to others.
-Subcommand graph_subcommand(Arguments& arguments);
 // Whoever sees more computed than expected.
 Subcommand explain_subcommand(Arguments& arguments);
-// During a run, from another terminal, or when coming back to an old cache.
-Subcommand status_subcommand(Arguments& arguments);
-// Before a long run on a machine or disk that is new, and when a run takes longer than it should.
-Subcommand doctor_subcommand(Arguments& arguments);
 // Whoever writes a configuration, for what there is to choose.
 Subcommand config_subcommand(Arguments& arguments);
 // Owners of a cache, after trouble with a disk, and before results are published.

@@ -14,6 +14,7 @@
 #include "io/file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
+#include "pipeline/results/libraries.h"
 #include "stages/core/errors.h"
 #include "stages/core/quantile.h"
 
@@ -168,6 +169,7 @@ std::string run_yaml(const RunRecord& record) {
   if (config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
   yaml += fmt::format("program: salbench {}\nresults: {}\nhost: {}\n", SALBENCH_VERSION, state_line(record),
                       yaml_quoted(host_name()));
+  yaml += fmt::format("libraries: {}\n", yaml_quoted(fmt::format("{}", fmt::join(libraries(), ", "))));
   yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {:.1f}\nartefacts_computed: {}\n",
                       record.threads, record.seconds, peak_memory_mb(), resolver.computed());
   if (inputs.shard) yaml += fmt::format("shard: {}\n", inputs.shard->text());

@@ -4,26 +4,9 @@
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    import argparse
+from typing import Any
 
 UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 2, 3, 70, 130
-
-
-def _scores_parser(name: str, summary: str, scores: str, **of_scores: Any) -> Any:
-    from salbench._command_line import Parser
-
-    parser = Parser(name, summary, scores)
-    parser.add_argument("scores", metavar=scores, help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
-                        **of_scores)
-    parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")
-    parser.add_argument("--unit", help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)")
-    parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
-    parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
-    parser.add_report("no table; warnings and errors only")
-    return parser
 
 
 def conclude(arguments: Sequence[str]) -> int:
@@ -31,44 +14,30 @@ def conclude(arguments: Sequence[str]) -> int:
     from dataclasses import replace
 
     from salbench import conclusions
-    from salbench._command_line import ALL_DONE, report
+    from salbench._command_line import ALL_DONE, Parser, report
     from salbench.conclusions.statements import read_statements
 
-    parser = _scores_parser("conclude", conclude.__doc__ or "", "OUT|SCORES.csv")
+    parser = Parser("conclude", conclude.__doc__ or "", "OUT|SCORES.csv")
+    parser.add_argument("scores", metavar="OUT|SCORES.csv",
+                        help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans")
+    parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")
+    parser.add_argument("--unit", help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)")
+    parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
+    parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
+    parser.add_report("no table; warnings and errors only")
     parser.add_argument("--statements", metavar="FILE", help="CSV file of what a text says of pairs of models, like configs/paper/claims.csv: "
                         "each beside what the scores say, in statements.csv")
     parser.add_argument("--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)")
     parser.add_argument("--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats")
     given = parser.parsed(arguments)
     claims = read_statements(given.statements) if given.statements else None
-    source = _source(given)
+    source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=_names(given.higher), lower=_names(given.lower))
+    for note in source.notes:
+        print(f"warning: {note}", file=sys.stderr)
     concluded = conclusions.conclude(replace(source, study=replace(source.study, claims=claims)), given.out, given.of)
     text = f"{concluded.text}one observation per {concluded.unit}; tables in {concluded.folder}\n"
     document = {"results": str(concluded.folder), "unit": concluded.unit, "scores": concluded.scores, "leaders": concluded.leaders}
     report(given, "conclude", document, text)
-    return ALL_DONE
-
-
-def power(arguments: Sequence[str]) -> int:
-    """Which differences between models the scores can show, and how many units would show those seen."""
-    from pathlib import Path
-
-    from salbench._command_line import ALL_DONE, report
-    from salbench.conclusions import folders, tables
-    from salbench.conclusions.power import power as power_of
-
-    parser = _scores_parser("power", power.__doc__ or "", "OUT", nargs="?")
-    parser.add_argument("--to", metavar="FILE", help="CSV file to write the table to")
-    given = parser.parsed(arguments)
-    given.scores = given.scores or _only_results()
-    source = _source(given)
-    table = power_of(source.study)
-    if given.to:
-        folders.write(Path(given.to), tables.csv(table))
-    unit = source.study.unit
-    text = (f"{tables.aligned(table)}\none observation per {unit}; detectable: the difference of means that n of them show with probability 0.8 at "
-            "0.05;\nn_to_detect: how many would show a true difference as large as the one seen\n")
-    report(given, "power", {"unit": unit, "pairs": tables.records(table)}, text)
     return ALL_DONE
 
 
@@ -134,10 +103,10 @@ def report_(arguments: Sequence[str]) -> int:
     from salbench._command_line import ALL_DONE, Parser, report
 
     parser = Parser("report", report_.__doc__ or "", "OUT")
-    parser.add_argument("results", metavar="OUT", help="results folder of salbench run or evaluate")
+    parser.add_argument("results", metavar="OUT", help="results folder of salbench run")
     parser.add_argument("--to", metavar="DIR", help="folder of the report (default: OUT/report)")
     parser.add_argument("--export", metavar="FILE.h5", nargs="+", action="extend", default=[],
-                        help="exports of shapes to show, with the pictures of salbench pictures (default: OUT/shapes.h5 if it exists)")
+                        help="exports of shapes to show, with the pictures that --pictures of salbench export takes (default: OUT/shapes.h5 if it exists)")
     parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
     parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
     parser.add_argument("--processes", metavar="N", type=int, default=len(os.sched_getaffinity(0)),
@@ -173,35 +142,12 @@ def _import(arguments: Sequence[str]) -> int:
     return serve()
 
 
-SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "power": power, "submit": submit, "leaderboard": leaderboard,
-               "report": report_}
+SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "submit": submit, "leaderboard": leaderboard, "report": report_}
 SERVED = {"_import": _import, "_list": _list}  # for the program alone
-
-
-def _source(given: "argparse.Namespace") -> Any:
-    """The scores, with a warning of columns that are left out."""
-    from salbench import conclusions
-
-    source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=_names(given.higher), lower=_names(given.lower))
-    for note in source.notes:
-        print(f"warning: {note}", file=sys.stderr)
-    return source
 
 
 def _names(text: str) -> list[str]:
     return [name for name in text.split(",") if name]
-
-
-def _only_results() -> str:
-    """The only results below salbench-out."""
-    from pathlib import Path
-
-    from salbench._errors import InputError
-
-    found = sorted(str(path.parent) for path in Path("salbench-out").glob("*/results.csv"))
-    if len(found) == 1:
-        return found[0]
-    raise InputError(f"name one of the results: {', '.join(found)}" if found else "salbench-out has no results: name their folder")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

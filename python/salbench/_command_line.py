@@ -19,7 +19,6 @@ _EXAMPLES = {  # as `salbench --help` has them
     "conclude": "results.csv --unit class --out tables",
     "import": "3dva --data 3DVA --to 3DVA-hdf5",
     "inspect": "3dva --data 3DVA",
-    "power": "salbench-out/shrec07",
     "report": "salbench-out/shrec07",
     "submit": "mine --to mine.zip --data SchellingData",
     "leaderboard": "submissions --to site --data SchellingData",

@@ -164,7 +164,7 @@ def run(
 
 def carry_out(settings: dict[str, Any], functions: Iterable[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
     """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
-    stay beside the functions; maps: folders of maps, as `salbench evaluate` takes them, by the name of the model."""
+    stay beside the functions; maps: folders of maps, as `salbench run --maps` takes them, by the name of the model."""
     threads = len(os.sched_getaffinity(0)) if threads is None else threads
     if threads < 1:
         raise ValueError(f"threads must be at least 1, not {threads}")

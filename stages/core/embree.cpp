@@ -166,10 +166,6 @@ float append_hits(const Scene& scene, const Eigen::Vector3f& origin, const Eigen
   return noting.limit;
 }
 
-LibraryVersion library_version() {
-  const ssize_t loaded = rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION);  // 31305: 3.13.5
-  const auto part = [loaded](ssize_t unit) { return std::to_string(loaded / unit % 100); };
-  return {RTC_VERSION_STRING, part(10000) + "." + part(100) + "." + part(1)};
-}
+const char* version() { return RTC_VERSION_STRING; }
 
 }  // namespace salbench::embree

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "stages/core/library_version.h"
 #include "stages/core/types.h"
 
 struct RTCSceneTy;
@@ -42,6 +41,6 @@ struct Hit {
 float append_hits(const Scene& scene, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                   float margin, std::vector<Hit>& hits);
 
-LibraryVersion library_version();  // throws std::runtime_error if the library fails
+const char* version();  // of its headers: the library says its own only once a device is started
 
 }  // namespace salbench::embree

@@ -124,14 +124,6 @@ class ConcludeTest(FolderTest):
             made.append(self.files(self.folder / threads))
         self.assertEqual(*made)
 
-    def test_power_prints_its_table(self):
-        self.write_run()
-        status, out, _ = self.call("power", self.folder, "--to", self.folder / "mine.csv")
-        self.assertEqual(status, 0)
-        self.assertIn("n_to_detect: how many would show", out)
-        self.call("conclude", self.folder, "--quiet")
-        self.assertEqual((self.folder / "mine.csv").read_text(), (self.folder / "power.csv").read_text())
-
 
 class FailureTest(FolderTest):
     def test_unusable_arguments(self):

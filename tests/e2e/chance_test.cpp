@@ -76,7 +76,7 @@ TEST(RealData, ChanceAndAConstantMapRankBelowTheModelsUnlessARemarkSaysNot) {
   const Workspace toy("dataset: {scans: false}\nmetrics: all\n");
   const auto items = write_flat_maps(*data / "SchellingData/Distributions", toy / "flat");
   const Outcome run =
-      run_process({SALBENCH_PROGRAM, "evaluate", toy.config().string(), "--data", data->string(), "--items",
+      run_process({SALBENCH_PROGRAM, "run", toy.config().string(), "--data", data->string(), "--items",
                    fmt::format("{}", fmt::join(items, ",")), "--maps", (toy / "flat").string(), "--name",
                    "FLAT", "--cache", toy.cache().string(), "--out", toy.out().string(), "--quiet"});
   ASSERT_EQ(run.status, 0) << run.err;

@@ -58,7 +58,7 @@ TEST(CloudsCommand, RunScoresThemInTablesOfTheirOwn) {
   EXPECT_THAT(record, AllOf(HasSubstr("meshes: 1, clouds: 3, files:"),
                             HasSubstr("{stage: map.PS, of: clouds, scope: cloud, items: 3, settled: 3,")));
   EXPECT_THAT(toy.salbench("plan").out, HasSubstr("\n0 jobs to do"));
-  EXPECT_THAT(toy.salbench("status").out, HasSubstr("data set: 1 meshes, 3 point clouds, 3 models"));
+  EXPECT_THAT(toy.salbench("plan").out, HasSubstr("data set: 1 meshes, 3 point clouds, 3 models"));
   EXPECT_THAT(toy.salbench("explain", {"b"}).out,
               AllOf(HasSubstr("cloud_normals"), Not(HasSubstr("to compute"))));
   const Outcome sound =
@@ -118,12 +118,12 @@ TEST(CloudsCommand, ExportHoldsThemWithTheirPictures) {
 // One value per point that is left, as `maps` writes them, or per point of the file, as others do.
 TEST(CloudsCommand, EvaluateTakesMapsOfThePointsLeftAndOfTheFiles) {
   const CloudWorkspace toy;
-  ASSERT_EQ(toy.salbench("maps", {"--models", "PS", "--to", (toy / "maps").string()}).status, 0);
+  ASSERT_EQ(toy.salbench("export", {"--format", "maps", "--models", "PS", "--to", (toy / "maps").string()}).status, 0);
   const std::string left = read_file(toy / "maps/PS/b.val");
   EXPECT_EQ(std::count(left.begin(), left.end(), '\n'), 161);
   const auto scores = [&](const std::string& of_b) {
     write_file(toy / "maps/PS/b.val", of_b);
-    const Outcome run = toy.salbench("evaluate", {"--maps", (toy / "maps/PS").string(), "--name", "OWN"});
+    const Outcome run = toy.salbench("run", {"--maps", (toy / "maps/PS").string(), "--name", "OWN"});
     EXPECT_EQ(run.status, 0) << run.err;
     return lines_with(toy.results(), "clouds,b,,,OWN");
   };
@@ -133,7 +133,7 @@ TEST(CloudsCommand, EvaluateTakesMapsOfThePointsLeftAndOfTheFiles) {
   for (int line = 0; line < 4; ++line) fifth = left.find('\n', fifth) + 1;
   EXPECT_EQ(scores(left.substr(0, fifth) + "77\n" + left.substr(fifth)), of_left);
   write_file(toy / "maps/PS/b.val", "1\n2\n");
-  const Outcome wrong = toy.salbench("evaluate", {"--maps", (toy / "maps/PS").string(), "--name", "OWN"});
+  const Outcome wrong = toy.salbench("run", {"--maps", (toy / "maps/PS").string(), "--name", "OWN"});
   EXPECT_EQ(wrong.status, 1);
   EXPECT_THAT(wrong.err, HasSubstr("2 values, but the shape has 161 points"));
 }
@@ -153,11 +153,11 @@ TEST(CloudsCommand, ACommandOfTheUsersGetsThePointsThatAreLeft) {
 
 TEST(CloudsCommand, GraphShowsThemWhereTheDataSetHoldsThem) {
   const CloudWorkspace toy;
-  EXPECT_THAT(toy.salbench("graph").out,
+  EXPECT_THAT(toy.salbench("plan", {"--graph"}).out,
               AllOf(HasSubstr("map.MS of clouds (version 1, one per cloud, 3 to do) <- "
                               "cloud of clouds, surface of clouds"),
                     HasSubstr("map.MS of meshes")));
-  EXPECT_THAT(toy.salbench("graph", {"--items", "a"}).out, Not(HasSubstr("of meshes")));
+  EXPECT_THAT(toy.salbench("plan", {"--graph", "--items", "a"}).out, Not(HasSubstr("of meshes")));
 }
 
 TEST(CloudsCommand, TwinsStopARunUntilTheConfigurationChooses) {

@@ -67,7 +67,7 @@ TEST(Command, AModelInPythonEqualsTheBuiltInOne) {
     for (std::size_t c = kAuc; c < own[i].size(); ++c)
       EXPECT_NEAR(std::stod(own[i][c]), std::stod(built_in[i][c]), c == kAuc ? 0.1 : 1e-4) << i << " " << c;
 
-  ASSERT_EQ(toy.salbench("maps", {"--to", (toy / "maps").string()}).status, 0);
+  ASSERT_EQ(toy.salbench("export", {"--format", "maps", "--to", (toy / "maps").string()}).status, 0);
   for (const auto& entry : fs::directory_iterator(toy / "maps/PS")) {
     const std::string name = entry.path().filename().string();
     const auto a = parse_values(read_file(entry.path()), name);
@@ -200,7 +200,7 @@ TEST(ListCommand, GivesTheSameMapsAsACommandPerShapeAndIsStartedOnce) {
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(lines_of(toy / "log"), 1U);
 
-  ASSERT_EQ(toy.salbench("maps", {"--to", (toy / "maps").string()}).status, 0);
+  ASSERT_EQ(toy.salbench("export", {"--format", "maps", "--to", (toy / "maps").string()}).status, 0);
   std::size_t maps = 0;
   for (const auto& entry : fs::directory_iterator(toy / "maps/EACH")) {
     EXPECT_EQ(read_file(entry.path()), read_file(toy / "maps/ONCE" / entry.path().filename()));

@@ -220,11 +220,11 @@ TEST(Conclude, NothingOfItOutlivesTheProgram) {
 TEST(AHandedSubcommand, GetsItsWordsAndItsEndIsThatOfTheProgram) {
   const Workspace toy;
   const std::string echo = stand_in(toy, "printf '%s\\n' \"$@\"; exit 7\n");
-  const Outcome echoed = run_process(with_python(echo, {SALBENCH_PROGRAM, "power", "a b", "--to", "'"}));
+  const Outcome echoed = run_process(with_python(echo, {SALBENCH_PROGRAM, "report", "a b", "--to", "'"}));
   EXPECT_EQ(echoed.status, 7);
-  EXPECT_EQ(echoed.out, "power\na b\n--to\n'\n");
+  EXPECT_EQ(echoed.out, "report\na b\n--to\n'\n");
   const std::string killed = stand_in(toy, "kill -TERM $$\n");
-  EXPECT_EQ(run_process(with_python(killed, {SALBENCH_PROGRAM, "power"})).status, 128 + SIGTERM);
+  EXPECT_EQ(run_process(with_python(killed, {SALBENCH_PROGRAM, "report"})).status, 128 + SIGTERM);
   const Outcome help = run_process({SALBENCH_PROGRAM, "conclude", "--help"});
   EXPECT_EQ(help.status, 0) << help.err;
   EXPECT_THAT(help.out, AllOf(HasSubstr("\nUsage: salbench conclude "), HasSubstr("\n  --unit ")));

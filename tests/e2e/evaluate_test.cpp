@@ -24,15 +24,16 @@ constexpr std::size_t kVertices = 162;  // of either mesh
 
 // The workspace's maps of PS, written by the program itself: what comes of them is known.
 fs::path write_maps(const Workspace& toy, const std::vector<std::string>& further = {}) {
-  std::vector<std::string> options = {"--models", "PS", "--to", (toy / "maps").string()};
+  std::vector<std::string> options = {"--format", "maps", "--models", "PS",
+                                      "--to",     (toy / "maps").string()};
   options.insert(options.end(), further.begin(), further.end());
-  EXPECT_EQ(toy.salbench("maps", options).status, 0);
+  EXPECT_EQ(toy.salbench("export", options).status, 0);
   return toy / "maps/PS";
 }
 
 Outcome evaluate(const Workspace& toy, const fs::path& maps, std::vector<std::string> further = {}) {
   further.insert(further.begin(), {"--maps", maps.string(), "--name", "OWN"});
-  return toy.salbench("evaluate", further);
+  return toy.salbench("run", further);
 }
 
 std::vector<std::vector<double>> scores_of(const Workspace& toy, const std::string& model,
@@ -85,7 +86,7 @@ TEST(Evaluate, MapsThatTheProgramWroteScoreAsTheyDidInside) {
 
 TEST(Evaluate, MatchedMapsAreNotMatchedAgain) {
   const Workspace toy;
-  const fs::path maps = write_maps(toy, {"--matched"});
+  const fs::path maps = write_maps(toy, {"--stage", "matched"});
   ASSERT_EQ(evaluate(toy, maps, {"--matched"}).status, 0);
   EXPECT_EQ(seedless_scores(toy, "OWN"), seedless_scores(toy, "PS"));
   EXPECT_THAT(toy.artefacts("map.OWN"), IsEmpty());
@@ -185,7 +186,7 @@ TEST(Evaluate, NamesAndFoldersThatWillNotDo) {
   toy.write("empty/readme.txt", "");
   toy.write("no.h5", "not HDF5");
   const auto complaint = [&](const std::string& maps, const std::string& name) {
-    const Outcome run = toy.salbench("evaluate", {"--maps", (toy / maps).string(), "--name", name});
+    const Outcome run = toy.salbench("run", {"--maps", (toy / maps).string(), "--name", name});
     EXPECT_EQ(run.status, 2) << run.err;
     EXPECT_THAT(lines_with(run.err, ""), SizeIs(1)) << run.err;
     EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
@@ -209,7 +210,7 @@ TEST(Evaluate, MatchingByNameIsThatOfTheMapsThemselves) {
         fmt::join(names, ", "), matching);
   };
   const Workspace toy(with("histogram"));
-  const fs::path matched = write_maps(toy, {"--matched"});
+  const fs::path matched = write_maps(toy, {"--stage", "matched"});
   ASSERT_EQ(evaluate(toy, matched, {"--matched"}).status, 0);
   const auto of_matched = scores_of(toy, "OWN", names);
   EXPECT_EQ(scores_of(toy, "PS", names), of_matched);
@@ -229,7 +230,7 @@ TEST(Evaluate, AConstantMapIsLevelWithTheConstantMapOfTheRemarks) {
     fs::create_directories(toy / "flat");
     toy.write(name, flat);
   }
-  ASSERT_EQ(toy.salbench("evaluate", {"--maps", (toy / "flat").string(), "--name", "FLAT"}).status, 0);
+  ASSERT_EQ(toy.salbench("run", {"--maps", (toy / "flat").string(), "--name", "FLAT"}).status, 0);
   const std::string remarks = read_file(toy.out() / "chance.csv");
   for (const Metric& metric : metric_table())
     EXPECT_THAT(lines_with(remarks, fmt::format("meshes,{},", metric.name)),

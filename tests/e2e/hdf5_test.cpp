@@ -34,7 +34,7 @@ fs::path maps_by_h5py(const Workspace& toy, const std::string& further) {
 }
 
 Outcome score_maps(const Workspace& toy, const fs::path& maps) {
-  return toy.salbench("evaluate", {"--maps", maps.string(), "--name", "OWN"});
+  return toy.salbench("run", {"--maps", maps.string(), "--name", "OWN"});
 }
 
 // Before, 4096 numbers were read into the place of one.

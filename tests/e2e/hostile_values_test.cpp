@@ -81,7 +81,7 @@ TEST(HostileValues, OfMapsAreScoredLikeAnyMultipleOfThem) {
   const ScalarField values = values_in(toy.data() / "Distributions/1.val");
   const auto tables_with = [&](const ScalarField& map) {
     for (const char* name : {"own/1.val", "own/2.val"}) toy.write(name, lines_of(map));
-    return tables_of(toy, "evaluate", {"--maps", (toy / "own").string(), "--name", "OWN"});
+    return tables_of(toy, "run", {"--maps", (toy / "own").string(), "--name", "OWN"});
   };
   EXPECT_EQ(tables_with(spread(values, 1023)), tables_with(spread(values, 0)));
 

@@ -143,7 +143,7 @@ TEST(Interruption, HalfWayThereAreFinalScoresOfTheItemsThatWereFinished) {
   const std::vector<std::string> complete = lines_with(toy.results(), ",");
   const std::size_t half = toy.contents().size() / 2;
   const std::size_t shapes = 5 * (1 + kViews);
-  EXPECT_THAT(toy.salbench("status").out, HasSubstr("\nlast run: finished\n"));
+  EXPECT_THAT(toy.salbench("plan").out, HasSubstr("\nlast run: finished\n"));
   toy.forget_everything();
 
   const Outcome ended =
@@ -153,7 +153,7 @@ TEST(Interruption, HalfWayThereAreFinalScoresOfTheItemsThatWereFinished) {
   const std::vector<std::string> partial = lines_with(toy.results(), ",");
   EXPECT_THAT(complete, testing::IsSupersetOf(partial));
 
-  const std::string status = toy.salbench("status").out;
+  const std::string status = toy.salbench("plan").out;
   const std::size_t at = status.find("last run: partial, ");
   ASSERT_NE(at, std::string::npos) << status;
   const int finished = std::stoi(status.substr(at + std::strlen("last run: partial, ")));

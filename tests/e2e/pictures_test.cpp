@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures: `salbench pictures` takes them, `salbench export` hands them on.
+// Pictures: `salbench export` hands them on, and takes them first with --pictures.
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -43,14 +43,13 @@ std::vector<std::string> contents(const Workspace& toy) {
   return names;
 }
 
-TEST(PicturesCommand, TakesThemAndExportContainsThem) {
+TEST(Pictures, AreTakenOnceAndEveryExportContainsThem) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_THAT(toy.artefacts("picture"), IsEmpty());
   EXPECT_THAT(arrays_of_export(toy), Not(Contains(HasSubstr("picture"))));
-  const Outcome taken = toy.salbench("pictures", {"--items", "2"});
-  EXPECT_EQ(taken.status, 0) << taken.err;
-  EXPECT_THAT(taken.out, HasSubstr("13 pictures in " + toy.cache().string() + ", 13 of them computed now"));
+  arrays_of_export(toy, {"--pictures", "--items", "2"});
+  EXPECT_THAT(toy.artefacts("picture"), SizeIs(13));
   const auto arrays = arrays_of_export(toy);
   EXPECT_EQ(std::count_if(arrays.begin(), arrays.end(),
                           [](const std::string& name) { return name.ends_with("/picture/primitive"); }),
@@ -59,18 +58,13 @@ TEST(PicturesCommand, TakesThemAndExportContainsThem) {
   EXPECT_EQ(file.read("2/picture/primitive").shape, (std::vector<std::size_t>{400, 400}));
   EXPECT_EQ(file.read("2_5/picture/weights").shape, (std::vector<std::size_t>{400, 400, 3}));
   EXPECT_EQ(file.read("2_5/picture/view_projection").count(), 16U);
-  EXPECT_THAT(toy.salbench("pictures", {"--items", "2"}).out, HasSubstr("13 pictures"));
-  EXPECT_THAT(toy.salbench("pictures", {"--items", "2"}).out, HasSubstr(", 0 of them computed now"));
-  EXPECT_THAT(toy.salbench("status").out, HasSubstr("picture"));
 }
 
-TEST(PicturesCommand, AConfigurationThatHasThemComputesThemInEveryRunAndExport) {
+TEST(Pictures, AConfigurationThatHasThemComputesThemInEveryRunAndExport) {
   const Workspace toy(kSmallPictures);
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_THAT(toy.artefacts("picture"), SizeIs(26));
   const std::string with = toy.results();
-  EXPECT_EQ(toy.salbench("pictures", {"--quiet"}).out, "");
-  EXPECT_THAT(toy.artefacts("picture"), SizeIs(26));
   EXPECT_THAT(arrays_of_export(toy, {"--stage", "picture", "--items", "1"}), SizeIs(13 * 6));
   toy.configure(kToyConfig);
   ASSERT_EQ(toy.salbench("run").status, 0);
@@ -78,11 +72,11 @@ TEST(PicturesCommand, AConfigurationThatHasThemComputesThemInEveryRunAndExport) 
   EXPECT_EQ(toy.computed(), 0U);
 }
 
-TEST(PicturesCommand, TheSameBytesWithAnyNumberOfThreads) {
+TEST(Pictures, TheSameBytesWithAnyNumberOfThreads) {
   std::vector<std::string> first;
   for (const char* threads : {"1", "2", "4"}) {
     const Workspace toy(kSmallPictures);
-    ASSERT_EQ(toy.salbench("pictures", {"--threads", threads}).status, 0);
+    ASSERT_EQ(toy.salbench("run", {"--threads", threads}).status, 0);
     const auto now = contents(toy);
     ASSERT_THAT(now, SizeIs(26));
     if (first.empty()) first = now;
@@ -90,10 +84,10 @@ TEST(PicturesCommand, TheSameBytesWithAnyNumberOfThreads) {
   }
 }
 
-TEST(PicturesCommand, AMeshThatCannotBeSeenIsNamedAndTheOthersGoOn) {
+TEST(Pictures, AMeshThatCannotBeSeenIsNamedAndTheOthersGoOn) {
   const Workspace toy(kSmallPictures);
   toy.write("data set/Meshes/3.off", "OFF\n3 1 0\n0 0 0\n1 1 1\n2 2 2\n3 0 1 2\n");
-  const Outcome ended = toy.salbench("pictures");
+  const Outcome ended = toy.salbench("export", {"--to", (toy / "toy.h5").string(), "--pictures"});
   EXPECT_EQ(ended.status, 1) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("3: "));
   EXPECT_THAT(toy.artefacts("picture"), SizeIs(26));

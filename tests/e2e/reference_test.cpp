@@ -206,13 +206,13 @@ TEST(ScoredItems, AreThoseWithGroundTruth) {
 TEST(ScoredItems, AreWhatEvaluateTakesSoThatMapsOfThemAreEnough) {
   const Workspace toy(kMeshesOnly);
   add_mesh_without_truth(toy);
-  ASSERT_EQ(toy.salbench("maps", {"--models", "PS", "--to", (toy / "maps").string()}).status, 0);
+  ASSERT_EQ(toy.salbench("export", {"--format", "maps", "--models", "PS", "--to", (toy / "maps").string()}).status, 0);
   fs::remove(toy / "maps/PS/3.val");
   const std::vector<std::string> mine = {"--maps", (toy / "maps/PS").string(), "--name", "OWN"};
-  const Outcome run = toy.salbench("evaluate", mine);
+  const Outcome run = toy.salbench("run", mine);
   EXPECT_EQ(run.status, 0) << run.err;
   fs::remove(toy / "maps/PS/2.val");
-  const Outcome missing = toy.salbench("evaluate", mine);
+  const Outcome missing = toy.salbench("run", mine);
   EXPECT_EQ(missing.status, 1);
   EXPECT_THAT(lines_with(missing.err, "2.val: missing"), SizeIs(1)) << "named once: " << missing.err;
 }

@@ -80,20 +80,6 @@ TEST(Results, StatementsStandBesideWhatTheScoresSay) {
   EXPECT_THAT(text_column(read_csv(toy / "concluded/statements.csv"), "model_b"), ElementsAre("RS"));
 }
 
-TEST(Results, PowerIsReadFromTheResultsOfARun) {
-  const Workspace toy;
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  const Outcome power =
-      run_process({SALBENCH_PROGRAM, "power", toy.out(), "--to", (toy / "power.csv").string()});
-  ASSERT_EQ(power.status, 0) << power.err;
-  EXPECT_THAT(power.out, HasSubstr("n_to_detect"));
-  const Table table = read_csv(toy / "power.csv");
-  ASSERT_EQ(table.rows.size(), read_csv(toy.out() / "significance.csv").rows.size());
-  EXPECT_EQ(text_column(table, "mean_difference"),
-            text_column(read_csv(toy.out() / "significance.csv"), "mean_difference"));
-  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "power", toy / "nothing"}).status, 2);
-}
-
 // Two meshes of four participants, of whom two predict two others at most.
 TEST(Results, TablesOfPeopleHaveTheDocumentedColumnsAndRows) {
   const Workspace toy("dataset: {scans: false}\nmodels: {PS: , HS: , RS: }\n");

@@ -21,14 +21,15 @@ using testing::SizeIs;
 TEST(Usage, HelpAndVersionAreNoErrors) {
   const Outcome help = run_process({SALBENCH_PROGRAM, "--help"});
   EXPECT_EQ(help.status, 0);
-  EXPECT_THAT(help.out, AllOf(HasSubstr("\n  run  "), HasSubstr("\n  plan  "), HasSubstr("\n  status  "),
+  EXPECT_THAT(help.out, AllOf(HasSubstr("\n  run  "), HasSubstr("\n  plan  "), HasSubstr("\n  verify  "),
                               HasSubstr("\nExit status: 0 ")));
   EXPECT_THAT(
       run_process({SALBENCH_PROGRAM, "run", "--help"}).out,
       AllOf(HasSubstr("--data"), HasSubstr("--cache"), HasSubstr("--items"), HasSubstr("--reference")));
   const Outcome version = run_process({SALBENCH_PROGRAM, "--version"});
   EXPECT_EQ(version.status, 0);
-  EXPECT_THAT(version.out, testing::MatchesRegex("salbench [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(version.out, testing::MatchesRegex("salbench [0-9]+\\.[0-9]+\\.[0-9]+\n.*instructions [A-Z0-9_]+, "
+                                                 "oneTBB [0-9.]+.*, HDF5 [0-9.]+.*, Embree .*, CGAL .*\n"));
 }
 
 TEST(Usage, WordsThatTheProgramDoesNotKnow) {
@@ -182,23 +183,32 @@ TEST(Usage, AReferenceThatIsNone) {
   EXPECT_THAT(complaint(toy, {"--reference", "/no/such.csv"}), HasSubstr("/no/such.csv"));
 }
 
-TEST(Usage, PlanAndStatusChangeNothing) {
+TEST(Usage, PlanChangesNothing) {
   const Workspace toy;
-  const Outcome plan = toy.salbench("plan"), status = toy.salbench("status");
+  const std::string results_line = "\nresults: " + toy.out().string() + "\ndisk: ";
+  const Outcome plan = toy.salbench("plan");
   EXPECT_EQ(plan.status, 0) << plan.err;
-  EXPECT_EQ(status.status, 0) << status.err;
-  EXPECT_THAT(plan.out, AllOf(HasSubstr("map.PS"), HasSubstr("jobs to do")));
-  EXPECT_THAT(status.out, EndsWith("\nresults: " + toy.out().string() + "\n"));
+  EXPECT_THAT(plan.out, AllOf(HasSubstr("map.PS"), HasSubstr("jobs to do"), HasSubstr(results_line),
+                              testing::ContainsRegex("\ndisk: about [0-9.]+ MB in [0-9]+ files needed, ")));
   EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
 
   ASSERT_EQ(toy.salbench("run").status, 0);
   const auto artefacts = toy.artefacts();
   const std::string results = toy.results();
-  EXPECT_THAT(toy.salbench("plan").out, HasSubstr("\n0 jobs to do"));
-  EXPECT_THAT(toy.salbench("status").out,
-              EndsWith("\nlast run: finished\nresults: " + toy.out().string() + "\n"));
+  EXPECT_THAT(toy.salbench("plan").out,
+              AllOf(HasSubstr("\n0 jobs to do"), HasSubstr("\nlast run: finished" + results_line),
+                    testing::Not(HasSubstr("locks"))));
   EXPECT_EQ(toy.artefacts(), artefacts);
   EXPECT_EQ(toy.results(), results);
+  EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+
+TEST(Usage, FormerNamesSayWhatHasTakenTheirPlace) {
+  for (const char* name : {"convert", "doctor", "evaluate", "graph", "maps", "pictures", "power", "status"}) {
+    const Outcome former = run_process({SALBENCH_PROGRAM, name, "x.yaml", "--to", "y"});
+    EXPECT_EQ(former.status, 2) << name;
+    EXPECT_THAT(former.err, testing::StartsWith(fmt::format("error: there is no {} any more: salbench ", name)));
+  }
 }
 
 TEST(Usage, ConfigPrintsAConfigurationThatIsTheSameRun) {
@@ -219,7 +229,9 @@ TEST(Usage, ConfigPrintsAConfigurationThatIsTheSameRun) {
 TEST(Usage, GraphCountsWhatEachNodeHasToDo) {
   const Workspace toy;
   const auto lines = [&](const std::vector<std::string>& further) {
-    const Outcome graph = toy.salbench("graph", further);
+    std::vector<std::string> words = {"--graph"};
+    words.insert(words.end(), further.begin(), further.end());
+    const Outcome graph = toy.salbench("plan", words);
     EXPECT_EQ(graph.status, 0) << graph.err;
     return graph.out;
   };
@@ -229,8 +241,8 @@ TEST(Usage, GraphCountsWhatEachNodeHasToDo) {
   EXPECT_THAT(lines({}), HasSubstr("\nreference of meshes (version 1, one per set, 0 to do) <- ground_truth "
                                    "of meshes\n"));
   EXPECT_THAT(lines({"--format", "dot"}), testing::StartsWith("digraph salbench {"));
-  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "graph", toy.config().string(), "--format", "png"}).status, 2);
-  EXPECT_THAT(run_process({SALBENCH_PROGRAM, "graph", toy.config().string()}).out,
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "plan", toy.config().string(), "--format", "dot"}).status, 2);
+  EXPECT_THAT(run_process({SALBENCH_PROGRAM, "plan", toy.config().string(), "--graph"}).out,
               testing::Not(HasSubstr("to do")));
 }
 
@@ -252,7 +264,7 @@ TEST(Usage, WhatTakesLongSaysHowFarItIs) {
   const JobCounts jobs(kMeshesOnly);
   const std::size_t of_reference = jobs.of("mesh") + jobs.of("ground_truth") + jobs.of("reference");
   says(toy.command("run"), fmt::format("evaluation: {0}/{0} jobs", jobs.all() - of_reference));
-  says(toy.command("maps", {"--to", (toy / "maps").string()}), "writing: 2/2 items");
+  says(toy.command("export", {"--format", "maps", "--to", (toy / "maps").string()}), "writing: 2/2 items");
   says(toy.command("export", {"--to", (toy / "all.h5").string()}), "exporting: 2/2 items");
   says(toy.command("export", {"--to", (toy / "shapes").string(), "--format", "ply"}), "exporting: 2/2 items");
   const std::string n = std::to_string(toy.artefacts().size()), all = n + "/" + n + " items";

@@ -84,7 +84,7 @@ class Board(unittest.TestCase):
         self.assertFalse((self.toy.folder / "evil").exists())
         self.rank(1)
         self.assertEqual(everything(self.toy.site), site, "byte for byte")
-        done = self.toy.salbench("evaluate", self.toy.config, "--maps", self.toy.folder / "G3", "--name", "G3", "--out", self.toy.folder / "out")
+        done = self.toy.salbench("run", self.toy.config, "--maps", self.toy.folder / "G3", "--name", "G3", "--out", self.toy.folder / "out")
         self.assertEqual(done.returncode, 0, done.stderr)
         of_g3 = [[line for line in text.splitlines() if ",G3," in line]
                  for text in ((self.toy.folder / "out/results.csv").read_text(), site["data/results.csv"].decode())]

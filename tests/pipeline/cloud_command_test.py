@@ -34,7 +34,7 @@ class CloudCommand(unittest.TestCase):
         (self.folder / "mine.yaml").write_text(CONFIG)
 
     def check(self, data, *selection):
-        for subcommand, further in (("maps", ["--to", "maps"]), ("run", ["--out", "out"])):
+        for subcommand, further in (("export", ["--to", "maps", "--format", "maps"]), ("run", ["--out", "out"])):
             subprocess.run([PROGRAM, subcommand, "mine.yaml", "--data", data, "--cache", "cache", "--quiet", *selection, *further],
                            cwd=self.folder, check=True)
         table = pd.read_csv(self.folder / "out/results.csv")

@@ -58,7 +58,7 @@ class Converted(protocols_twin_test.Protocols):
 
     def scored(self, protocol):
         self.archive, self.data = self.data, self.agrees_converted(protocol, self.data)
-        for subcommand, further in (("run", ["--out", self.folder / "out"]), ("maps", ["--to", self.folder / "maps"])):
+        for subcommand, further in (("run", ["--out", self.folder / "out"]), ("export", ["--to", self.folder / "maps", "--format", "maps"])):
             subprocess.run([PROGRAM, subcommand, self.configured(protocol, "hdf5"), "--data", self.data, "--cache", self.folder / "cache",
                             "--quiet", *further], check=True)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}

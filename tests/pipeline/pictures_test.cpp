@@ -45,7 +45,7 @@ class PicturesTest : public testing::Test {
     results_ = to_csv(results_table(toy.results()));
     return store_.take_saved();
   }
-  // As `salbench pictures` does.
+  // As `salbench export --pictures` does.
   std::vector<std::string> take_pictures() {
     ToyRun toy(data_.path(), store_, toy_config_with(Pictures::computed));
     const auto rules = toy.project.ancestors({toy.index("picture"), toy.index("picture", kScans)});

@@ -163,7 +163,7 @@ class Protocols(unittest.TestCase):
             config.write_text(protocol)
         else:
             config = ROOT / f"configs/protocols/{protocol}.yaml"
-        for subcommand, further in (("run", ["--out", self.folder / "out"]), ("maps", ["--to", self.folder / "maps"])):
+        for subcommand, further in (("run", ["--out", self.folder / "out"]), ("export", ["--to", self.folder / "maps", "--format", "maps"])):
             subprocess.run([PROGRAM, subcommand, config, "--data", self.data, "--cache",
                             self.folder / "cache", "--quiet", *further], check=True)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}

@@ -36,8 +36,7 @@ class ToyResultsTest(unittest.TestCase):
         (folder / "toy.yaml").write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\n")
         options = [folder / "toy.yaml", "--data", folder / "meshes", "--cache", folder / "cache", "--quiet"]
         ran(PROGRAM, "run", *options, "--out", cls.out)
-        ran(PROGRAM, "pictures", *options)
-        ran(PROGRAM, "export", *options, "--to", cls.export)
+        ran(PROGRAM, "export", *options, "--to", cls.export, "--pictures")
 
     def test_report_pictures(self):
         report = self.out / "report"

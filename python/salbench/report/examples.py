@@ -18,8 +18,8 @@ from salbench.report.viewer import label_of
 from salbench.report.workshop import Workshop
 
 CHANCE = "RS"  # has a map, but shows nothing that the paper's figures show
-HOW = ("No export with pictures of {} was given. salbench pictures CONFIG --items LIST makes them, salbench export CONFIG "
-       "--items LIST --to OUT/shapes.h5 puts them where the report looks; {}")
+HOW = ("No export with pictures of {} was given. salbench export CONFIG --items LIST --pictures --to OUT/shapes.h5 "
+       "puts them where the report looks; {}")
 
 
 def scored_pictures(shop: Workshop, dataset: str) -> list[Painter]:

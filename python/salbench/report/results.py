@@ -127,7 +127,7 @@ class Results:
 
     @cached_property
     def evaluated(self) -> list[str]:
-        """Names of the models whose maps another program made (salbench evaluate)."""
+        """Names of the models whose maps another program made (salbench run --maps)."""
         value = self.record.get("evaluated") or []
         entries = value if isinstance(value, list) else [value]
         return [entry["model"] for entry in entries if isinstance(entry, dict) and "model" in entry]

@@ -153,8 +153,7 @@ def models_of(shop: Workshop, maps: Iterable[tuple[str, str]]) -> list[str]:
 
 def pictures(shop: Workshop, shape: Shape, painter: Painter, scores: Scores) -> list[Block]:
     if not painter.has_picture:
-        raise Missing(f"The export holds no picture of {describe(shape)}: salbench pictures makes it, salbench export "
-                      "then contains it.")
+        raise Missing(f"The export holds no picture of {describe(shape)}: salbench export --pictures makes it.")
     score_text = f"Below: {', '.join(of.label for of in scores.metrics.values())}; best in bold."
     models = models_of(shop, painter.maps)
     return [gallery(painter, scores, models, f"Saliency on {describe(shape)}. {score_text}"),
