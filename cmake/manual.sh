@@ -4,7 +4,7 @@
 #   manual.sh PROGRAM --help | --version
 set -euo pipefail
 program=$1
-[[ $2 == --help ]] || exec "$program" "$2"
+[[ $2 == --help ]] || { "$program" "$2" | sed -n 1p; exit; }
 help=$("$program" --help)
 sed '/^Subcommands:/,$d; s/-h,--help /-h, --help/' <<< "$help"
 echo '*Subcommands*'

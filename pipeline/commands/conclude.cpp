@@ -101,7 +101,7 @@ bool report_trouble(const Concluded& concluded, const fs::path& folder) {
   if (concluded.failure.empty()) return false;
   spdlog::error(
       "{}: the scores are there, but no conclusions from them: {}; salbench conclude {} tries again",
-      folder.string(), concluded.failure, shell_word(folder.string()));
+      folder.string(), concluded.failure, shell_quoted(folder.string()));
   return true;
 }
 

@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 
 #include "io/file.h"
+#include "io/process.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/package.h"
@@ -97,7 +98,7 @@ constexpr FormerName kFormerNames[] = {
 
 std::string joined(std::span<const char* const> words) {
   std::string line;
-  for (const char* word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  for (const char* word : words) line += (line.empty() ? "" : " ") + shell_quoted(word);
   return line;
 }
 

@@ -50,7 +50,7 @@ std::string summary_text(Session& session, const Concluded& concluded) {
   return fmt::format(
       "{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: salbench report {}\n",
       text, aligned(map_table(count_maps(session.resolver, session.store))), name_of(setup.config.protocol),
-      session.resolver.computed(), setup.output.string(), shell_word(setup.output.string()));
+      session.resolver.computed(), setup.output.string(), shell_quoted(setup.output.string()));
 }
 
 std::string write_results(const Session& session, RunRecord record) {

@@ -17,14 +17,6 @@ Parameters joined(Parameters parameters, const Parameters& further) {
 
 }  // namespace
 
-std::string shell_word(const std::string& word) {
-  constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 Parameter config_parameter(Arguments& arguments) {
   return {"CONFIG", &arguments.config,
           "configuration file (YAML), or the name of an installed one, such as shrec07", true};

