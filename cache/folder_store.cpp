@@ -16,7 +16,7 @@
 #include "cache/layout.h"
 #include "cache/verify.h"
 #include "io/file.h"
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 

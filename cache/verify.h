@@ -14,7 +14,7 @@
 
 #include "cache/artefact_name.h"
 #include "cache/key.h"
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "stages/core/progress.h"
 
 namespace salbench {

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/text_scanner.h"
+#include "io/shapes/text_scanner.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 

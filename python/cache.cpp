@@ -16,7 +16,7 @@
 #include "cache/layout.h"
 #include "cache/verify.h"
 #include "io/file.h"
-#include "io/text_scanner.h"
+#include "io/shapes/text_scanner.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/module.h"

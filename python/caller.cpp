@@ -6,7 +6,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "io/process.h"
+#include "io/commands/process.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
 

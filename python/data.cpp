@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data sets that the program lists and reads by itself (io/dataset.h, pipeline/inputs): files are read
+// Data sets that the program lists and reads by itself (io/shapes/dataset.h, pipeline/inputs): files are read
 // without the interpreter's lock, and arrays show the memory that they were read into.
 #include <algorithm>
 #include <any>
@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "io/cloud_file.h"
+#include "io/shapes/cloud_file.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What importers of data sets ask of the program: its strict readers, what a camera sees, the one form
-// (io/one_form.h) as bytes, and shapes as a run has them.
+// (io/hdf5/one_form.h) as bytes, and shapes as a run has them.
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,11 +13,11 @@
 #include <pybind11/stl.h>
 
 #include "cache/digest.h"
-#include "io/cloud_file.h"
-#include "io/hdf5_file.h"
-#include "io/mesh_file.h"
-#include "io/one_form.h"
-#include "io/one_form_index.h"
+#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/one_form.h"
+#include "io/hdf5/one_form_index.h"
+#include "io/shapes/cloud_file.h"
+#include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/loading.h"
 #include "python/arrays.h"
 #include "python/computing.h"

@@ -9,7 +9,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "io/one_form.h"
+#include "io/hdf5/one_form.h"
 #include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
 

@@ -62,14 +62,14 @@ done < <(includes)
 hides CGAL 'CGAL/'
 hides CLI11 'CLI/'
 hides Embree 'embree[34]/' stages/core/embree.cpp
-hides HDF5 'hdf5\.|H5' io/hdf5_library.h
+hides HDF5 'hdf5\.|H5' io/hdf5/hdf5_library.h
 hides PCL 'pcl/'
 hides Spectra 'Spectra/'
 hides 'the flow graph' '(tbb|oneapi/tbb)/flow_graph'
 hides xxHash 'xxhash'
 
 while IFS=: read -r path line included; do
-  [[ $included != io/hdf5_library.h || $path == io/hdf5_*.cpp ]] ||
+  [[ $included != io/hdf5/hdf5_library.h || $path == io/hdf5/hdf5_*.cpp ]] ||
     complain "$path:$line" "$included" "it brings the HDF5 library with it"
 done < <(includes)
 

@@ -9,8 +9,8 @@
 #include <spdlog/spdlog.h>
 
 #include "cache/digest.h"
+#include "io/commands/process.h"
 #include "io/file.h"
-#include "io/process.h"
 #include "pipeline/commands/subcommand.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/package/package.h"

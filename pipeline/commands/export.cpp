@@ -8,7 +8,7 @@
 
 #include "cache/artefact_name.h"
 #include "io/file.h"
-#include "io/shape_file.h"
+#include "io/shapes/shape_file.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
@@ -176,7 +176,9 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
                                   options.link ? "link" : "pictures", options.link ? "links" : "them"));
 
   Session session(arguments, stop, {},
-                  options.pictures ? Pictures::computed : one_file ? Pictures::cached : Pictures::none);
+                  options.pictures ? Pictures::computed
+                  : one_file       ? Pictures::cached
+                                   : Pictures::none);
   const StageNames stages =
       maps ? StageNames() : selected_stages(options.stages, session.setup.project.rules);
   const OrderlyEnd orderly;
@@ -209,18 +211,19 @@ Subcommand export_subcommand(Arguments& arguments) {
       "export",
       "write what is known of some items to one HDF5 file, to shapes for viewers, or the maps alone",
       running_parameters(
-          arguments, {{"--stage", &options->stages,
-                       "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
-                      {"--models", &arguments.models, "only these, such as LS,PS"},
-                      {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes or maps", true},
-                      {"--format", &options->format,
-                       "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value "
-                       "per line, after histogram matching with --stage matched"},
-                      {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"},
-                      {"--pictures", &options->pictures,
-                       "compute the pictures that the cache lacks, for reports that show shapes"},
-                      {"--summary", options->summary.get(),
-                       "text (default), or json: what was done, for programs (docs/json.md)"}}),
+          arguments,
+          {{"--stage", &options->stages,
+            "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
+           {"--models", &arguments.models, "only these, such as LS,PS"},
+           {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes or maps", true},
+           {"--format", &options->format,
+            "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value "
+            "per line, after histogram matching with --stage matched"},
+           {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"},
+           {"--pictures", &options->pictures,
+            "compute the pictures that the cache lacks, for reports that show shapes"},
+           {"--summary", options->summary.get(),
+            "text (default), or json: what was done, for programs (docs/json.md)"}}),
       [&arguments, options](const std::atomic<bool>& stop) { return run_export(arguments, *options, stop); }};
 }
 

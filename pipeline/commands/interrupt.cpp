@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-#include "io/process.h"
+#include "io/commands/process.h"
 #include "pipeline/commands/subcommand.h"
 
 namespace salbench {

@@ -34,7 +34,8 @@ void become_package(std::span<const char* const> words) {
   std::vector<std::string> line =
       package_words(kUnusableArguments, std::vector<std::string>(words.begin(), words.end()));
   // Python ignores SIGPIPE and forgets whether it was to end the program.
-  if (std::signal(SIGPIPE, SIG_IGN) == SIG_IGN) line.insert(line.begin() + 1, {"-X", "broken_pipe_is_an_error"});
+  if (std::signal(SIGPIPE, SIG_IGN) == SIG_IGN)
+    line.insert(line.begin() + 1, {"-X", "broken_pipe_is_an_error"});
   std::vector<char*> argv;
   for (std::string& word : line) argv.push_back(word.data());
   argv.push_back(nullptr);

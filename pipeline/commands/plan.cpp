@@ -42,32 +42,27 @@ Json reason_json(const std::pair<std::string, std::size_t>& reason) {
 Json stage_json(const PlanReport& report, const StageCount& count) {
   const auto used = report.usage.find(count.stage);
   const FolderStore::Usage usage = used == report.usage.end() ? FolderStore::Usage() : used->second;
-  return {{"stage", count.stage},
-          {"version", count.version},
-          {"cached", count.cached},
-          {"to_compute", count.compute},
-          {"waiting", count.wait},
-          {"not_applicable", count.not_applicable},
-          {"failed", count.failed},
-          {"artefacts", usage.artefacts},
-          {"bytes", usage.bytes},
-          {"reasons", list_of(count.reasons, reason_json)}};
+  return {{"stage", count.stage},   {"version", count.version},
+          {"cached", count.cached}, {"to_compute", count.compute},
+          {"waiting", count.wait},  {"not_applicable", count.not_applicable},
+          {"failed", count.failed}, {"artefacts", usage.artefacts},
+          {"bytes", usage.bytes},   {"reasons", list_of(count.reasons, reason_json)}};
 }
 
 Json json_of(const PlanReport& report) {
   const auto& [artefacts, by_cache, files, bytes] = report.need;
-  return {{"stages",
-           list_of(report.stages, [&](const StageCount& count) { return stage_json(report, count); })},
-          {"open", report.open},
-          {"meshes", report.meshes},
-          {"clouds", report.clouds},
-          {"models", report.models},
-          {"cache", report.cache},
-          {"results", report.results},
-          {"last_run", report.last_run},
-          {"need", {{"files", files}, {"bytes", bytes}}},
-          {"free", {{"files", report.free.files}, {"bytes", report.free.bytes}}},
-          {"locks", report.locks}};
+  return {
+      {"stages", list_of(report.stages, [&](const StageCount& count) { return stage_json(report, count); })},
+      {"open", report.open},
+      {"meshes", report.meshes},
+      {"clouds", report.clouds},
+      {"models", report.models},
+      {"cache", report.cache},
+      {"results", report.results},
+      {"last_run", report.last_run},
+      {"need", {{"files", files}, {"bytes", bytes}}},
+      {"free", {{"files", report.free.files}, {"bytes", report.free.bytes}}},
+      {"locks", report.locks}};
 }
 
 PlanReport plan_of(const Setup& setup) {
@@ -119,7 +114,8 @@ std::string disk_text(const PlanReport& report) {
   if (const std::string lacking = shortage(report.need, report.free); !lacking.empty())
     text += fmt::format("disk: {}\n", lacking);
   if (report.locks == false)
-    text += "disk: it has no locks: run one process at a time, or give each its --shard; others repeat work\n";
+    text +=
+        "disk: it has no locks: run one process at a time, or give each its --shard; others repeat work\n";
   return text;
 }
 
@@ -165,17 +161,20 @@ ExitStatus print_plan(const Arguments& arguments, bool graph, ReportFormat forma
 Subcommand plan_subcommand(Arguments& arguments) {
   const auto graph = std::make_shared<bool>(false);
   const FormatWord format = default_format();
-  return {"plan", "count what is in the cache, what a run would compute and why, and what it needs; changes nothing",
-          planning_parameters(
-              arguments,
-              {output_parameter(arguments), shard_parameter(arguments),
-               {"--graph", graph.get(),
-                "the flow graph in place of the counts: a node per rule, its inputs, and its open jobs if there "
-                "is a data set"},
-               format_parameter(format, ", or dot for Graphviz (of --graph)")}),
-          [&arguments, graph, format](const std::atomic<bool>&) {
-            return print_plan(arguments, *graph, format_of(format, true));
-          }};
+  return {
+      "plan",
+      "count what is in the cache, what a run would compute and why, and what it needs; changes nothing",
+      planning_parameters(
+          arguments,
+          {output_parameter(arguments),
+           shard_parameter(arguments),
+           {"--graph", graph.get(),
+            "the flow graph in place of the counts: a node per rule, its inputs, and its open jobs if there "
+            "is a data set"},
+           format_parameter(format, ", or dot for Graphviz (of --graph)")}),
+      [&arguments, graph, format](const std::atomic<bool>&) {
+        return print_plan(arguments, *graph, format_of(format, true));
+      }};
 }
 
 }  // namespace salbench

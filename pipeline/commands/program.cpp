@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "io/commands/process.h"
 #include "io/file.h"
-#include "io/process.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/package.h"

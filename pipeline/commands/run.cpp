@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "io/commands/process.h"
 #include "io/file.h"
-#include "io/process.h"
 #include "io/table.h"
 #include "pipeline/commands/conclude.h"
 #include "pipeline/commands/installed.h"
@@ -157,7 +157,8 @@ Subcommand run_subcommand(Arguments& arguments) {
       shard_parameter(arguments),
       {"--models", &arguments.models, "only these of the configuration, such as LS,PS"},
       {"--maps", &own->maps,
-       "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; "
+       "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its "
+       "scan 3; "
        "one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, if --items "
        "does not name others"},
       {"--name", &own->name, "what to call them in the tables"},

@@ -17,8 +17,8 @@ namespace salbench {
 Subcommand run_subcommand(Arguments& arguments);
 // Whoever goes on in Python or a viewer, or archives a study: when the run is done.
 Subcommand export_subcommand(Arguments& arguments);
-// Before a long run, to see what it would compute, why, and whether the disk has room; during one, from another
-// terminal. Whoever changes the table of rules: its graph.
+// Before a long run, to see what it would compute, why, and whether the disk has room; during one, from
+// another terminal. Whoever changes the table of rules: its graph.
 Subcommand plan_subcommand(Arguments& arguments);
 // Whoever sees more computed than expected.
 Subcommand explain_subcommand(Arguments& arguments);

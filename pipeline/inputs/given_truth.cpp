@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "io/cloud_file.h"
 #include "io/file.h"
-#include "io/ground_truth_file.h"
+#include "io/shapes/cloud_file.h"
+#include "io/shapes/ground_truth_file.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
 #include "stages/core/errors.h"

@@ -2,8 +2,8 @@
 // Ground truth from the files of an item: values per point and picks, the one form, or what was imported.
 #pragma once
 
-#include "io/dataset.h"
-#include "io/one_form.h"
+#include "io/hdf5/one_form.h"
+#include "io/shapes/dataset.h"
 #include "pipeline/engine/binding.h"
 #include "stages/core/point_cloud.h"
 

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "io/cloud_file.h"
 #include "io/file.h"
+#include "io/shapes/cloud_file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
 #include "stages/core/errors.h"

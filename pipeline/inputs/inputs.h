@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/dataset.h"
+#include "io/shapes/dataset.h"
 #include "pipeline/engine/file.h"
 #include "pipeline/engine/level.h"
 #include "pipeline/inputs/shard.h"

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "io/cloud_file.h"
-#include "io/mesh_file.h"
-#include "io/one_form.h"
+#include "io/hdf5/one_form.h"
+#include "io/shapes/cloud_file.h"
+#include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/inputs.h"
 #include "stages/core/mesh_check.h"
 #include "stages/core/scale.h"

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "io/polygons.h"
+#include "io/shapes/polygons.h"
 #include "pipeline/engine/binding.h"
 #include "stages/core/point_cloud.h"
 #include "stages/core/types.h"

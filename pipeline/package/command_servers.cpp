@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "io/process.h"
-#include "io/scratch_folder.h"
+#include "io/commands/process.h"
+#include "io/commands/scratch_folder.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

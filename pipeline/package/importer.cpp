@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 
 #include "cache/digest.h"
+#include "io/commands/process.h"
+#include "io/commands/scratch_folder.h"
 #include "io/file.h"
-#include "io/hdf5_image.h"
-#include "io/process.h"
-#include "io/scratch_folder.h"
+#include "io/hdf5/hdf5_image.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/package/listing.h"
 #include "pipeline/package/package.h"

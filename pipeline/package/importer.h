@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/dataset.h"
-#include "io/one_form.h"
+#include "io/hdf5/one_form.h"
+#include "io/shapes/dataset.h"
 #include "pipeline/engine/binding.h"
 #include "pipeline/package/command_servers.h"
 
@@ -16,7 +16,7 @@ namespace salbench {
 
 // A process is started when none is idle, and ended with the object; several threads may ask. What is wrong
 // with a file is InputError, one line that names it; so is a process that crashed on it, or took too long.
-// All functions throw Interrupted and StorageError as well (io/process.h).
+// All functions throw Interrupted and StorageError as well (io/commands/process.h).
 class Importer {
  public:
   // The data set as it was listed. Nothing is started yet.

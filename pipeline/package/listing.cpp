@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "io/commands/process.h"
+#include "io/commands/scratch_folder.h"
 #include "io/file.h"
-#include "io/process.h"
-#include "io/scratch_folder.h"
 #include "pipeline/package/package.h"
 #include "stages/core/errors.h"
 

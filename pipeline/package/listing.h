@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which items a data set has. Layouts of the program's own are listed by io/dataset.h; of every other layout,
-// and of a user's description, the Python package tells what there is, without reading a shape.
+// Which items a data set has. Layouts of the program's own are listed by io/shapes/dataset.h; of every other
+// layout, and of a user's description, the Python package tells what there is, without reading a shape.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/dataset.h"
+#include "io/shapes/dataset.h"
 
 namespace salbench {
 

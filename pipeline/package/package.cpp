@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "io/process.h"
+#include "io/commands/process.h"
 
 namespace salbench {
 namespace {

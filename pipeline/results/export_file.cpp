@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/hdf5_writer.h"
+#include "io/hdf5/hdf5_writer.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

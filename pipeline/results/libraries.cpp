@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <tbb/version.h>
 
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "stages/core/embree.h"
 
 namespace salbench {

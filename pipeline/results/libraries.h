@@ -7,7 +7,8 @@
 
 namespace salbench {
 
-// "oneTBB 2021.8.0", of the libraries that are loaded; "(built with 2021.7)" behind it if the headers were others.
+// "oneTBB 2021.8.0", of the libraries that are loaded; "(built with 2021.7)" behind it if the headers were
+// others.
 std::vector<std::string> libraries();
 
 }  // namespace salbench

@@ -23,7 +23,7 @@ constexpr std::size_t kLookedAt = 1000;  // of a rule's artefacts
 constexpr double kRowOfTable = 200;      // bytes of a shape in a table of scores
 constexpr double kBytesPerPixel = 1.3;   // of a picture, packed
 
-// Of an artefact: of its arrays, as they are laid out (io/value.cpp), and of all else in its file, as
+// Of an artefact: of its arrays, as they are laid out (io/hdf5/value.cpp), and of all else in its file, as
 // measured and rounded up.
 struct Size {
   std::string_view kind;

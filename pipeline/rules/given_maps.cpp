@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/ground_truth_file.h"
-#include "io/text_scanner.h"
+#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/text_scanner.h"
 #include "pipeline/package/importer.h"
 #include "stages/core/errors.h"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "io/text_scanner.h"
+#include "io/shapes/text_scanner.h"
 #include "stages/models/cb.h"
 #include "stages/models/cs.h"
 #include "stages/models/lce.h"

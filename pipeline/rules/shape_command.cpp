@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "io/commands/process.h"
+#include "io/commands/scratch_folder.h"
 #include "io/file.h"
-#include "io/hdf5_file.h"
-#include "io/process.h"
-#include "io/scratch_folder.h"
-#include "io/shape_file.h"
-#include "io/values_file.h"
+#include "io/hdf5/hdf5_file.h"
+#include "io/shapes/shape_file.h"
+#include "io/shapes/values_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

@@ -46,7 +46,7 @@ class ShapeCommand {
                std::shared_ptr<DependedFiles> depends);
 
   // The values that it writes, one per point. Several threads may ask. Throws InputError if it fails,
-  // Interrupted and StorageError (io/process.h).
+  // Interrupted and StorageError (io/commands/process.h).
   ScalarField map(const ShapeParts& shape);
 
  private:

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "io/value.h"
+#include "io/hdf5/value.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/engine/binding.h"
 

@@ -11,7 +11,7 @@
 
 #include "cache/artefact_name.h"
 #include "io/file.h"
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

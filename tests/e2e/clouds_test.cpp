@@ -118,7 +118,9 @@ TEST(CloudsCommand, ExportHoldsThemWithTheirPictures) {
 // One value per point that is left, as `maps` writes them, or per point of the file, as others do.
 TEST(CloudsCommand, EvaluateTakesMapsOfThePointsLeftAndOfTheFiles) {
   const CloudWorkspace toy;
-  ASSERT_EQ(toy.salbench("export", {"--format", "maps", "--models", "PS", "--to", (toy / "maps").string()}).status, 0);
+  ASSERT_EQ(
+      toy.salbench("export", {"--format", "maps", "--models", "PS", "--to", (toy / "maps").string()}).status,
+      0);
   const std::string left = read_file(toy / "maps/PS/b.val");
   EXPECT_EQ(std::count(left.begin(), left.end(), '\n'), 161);
   const auto scores = [&](const std::string& of_b) {

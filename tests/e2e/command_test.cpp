@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "io/file.h"
-#include "io/ground_truth_file.h"
+#include "io/shapes/ground_truth_file.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/processes.h"
 #include "tests/support/toy_data.h"

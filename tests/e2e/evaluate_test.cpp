@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "io/file.h"
-#include "io/ground_truth_file.h"
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
+#include "io/shapes/ground_truth_file.h"
 #include "io/table.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
@@ -24,8 +24,7 @@ constexpr std::size_t kVertices = 162;  // of either mesh
 
 // The workspace's maps of PS, written by the program itself: what comes of them is known.
 fs::path write_maps(const Workspace& toy, const std::vector<std::string>& further = {}) {
-  std::vector<std::string> options = {"--format", "maps", "--models", "PS",
-                                      "--to",     (toy / "maps").string()};
+  std::vector<std::string> options = {"--format", "maps", "--models", "PS", "--to", (toy / "maps").string()};
   options.insert(options.end(), further.begin(), further.end());
   EXPECT_EQ(toy.salbench("export", options).status, 0);
   return toy / "maps/PS";

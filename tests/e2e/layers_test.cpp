@@ -19,7 +19,7 @@ class Layers : public testing::Test {
     tree_.write("stages/core/embree.cpp", "#include <embree4/rtcore.h>\n#include <embree3/rtcore.h>\n");
     tree_.write("stages/scan/scan.cpp",
                 "#include \"stages/scan/scan.h\"\n#include \"stages/core/embree.h\"\n");
-    tree_.write("io/off.cpp", "#include \"stages/core/types.h\"\n");
+    tree_.write("io/shapes/off.cpp", "#include \"stages/core/types.h\"\n");
     tree_.write("cache/key.cpp", "#include \"io/arrays.h\"\n");
     tree_.write("pipeline/engine/graph.cpp", "#include <tbb/flow_graph.h>\n#include \"cache/key.h\"\n");
   }
@@ -42,7 +42,8 @@ TEST_F(Layers, AnOrderlyTreePasses) {
 }
 
 TEST_F(Layers, EveryKindOfBreachIsNamed) {
-  expect_breach("stages/fpfh/a.cpp", "\n#include \"io/off.h\"\n", "stages/fpfh/a.cpp:2: includes io/off.h");
+  expect_breach("stages/fpfh/a.cpp", "\n#include \"io/shapes/off.h\"\n",
+                "stages/fpfh/a.cpp:2: includes io/shapes/off.h");
   expect_breach("stages/fpfh/a.h", "#include \"stages/scan/scan.h\"\n",
                 "stages/fpfh/a.h:1: includes stages/scan");
   expect_breach("stages/core/a.h", "#include \"stages/fpfh/fpfh.h\"\n", "stages/core may include");
@@ -55,7 +56,7 @@ TEST_F(Layers, EveryKindOfBreachIsNamed) {
   expect_breach("pipeline/engine/a.h", "#include \"pipeline/rules/rules.h\"\n",
                 "pipeline/engine may include");
   expect_breach("pipeline/engine/a.h", "#include \"stages/core/types.h\"\n", "know nothing of shapes");
-  expect_breach("tests/engine/a_test.cpp", "#include \"io/value.h\"\n", "know nothing of shapes");
+  expect_breach("tests/engine/a_test.cpp", "#include \"io/hdf5/value.h\"\n", "know nothing of shapes");
   expect_breach("pipeline/inputs/a.h", "#include \"pipeline/rules/rules.h\"\n",
                 "pipeline/inputs may include");
   expect_breach("pipeline/rules/a.h", "#include \"pipeline/results/results.h\"\n",

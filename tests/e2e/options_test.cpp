@@ -92,10 +92,8 @@ TEST_F(Options, ThatASubcommandTakesAreUsedByIt) {
 }
 
 TEST_F(Options, ThatASubcommandDoesNotUseAreRefused) {
-  for (const auto& [subcommand, option] : {std::pair("plan", "--quiet"),
-                                           {"plan", "--threads"},
-                                           {"explain", "--quiet"},
-                                           {"export", "--out"}}) {
+  for (const auto& [subcommand, option] :
+       {std::pair("plan", "--quiet"), {"plan", "--threads"}, {"explain", "--quiet"}, {"export", "--out"}}) {
     const Outcome outcome = said(subcommand, {option, "1"});
     EXPECT_EQ(outcome.status, 2) << subcommand << option;
     EXPECT_THAT(outcome.err, HasSubstr(std::string("there is no option '") + option + "'")) << subcommand;

@@ -206,7 +206,9 @@ TEST(ScoredItems, AreThoseWithGroundTruth) {
 TEST(ScoredItems, AreWhatEvaluateTakesSoThatMapsOfThemAreEnough) {
   const Workspace toy(kMeshesOnly);
   add_mesh_without_truth(toy);
-  ASSERT_EQ(toy.salbench("export", {"--format", "maps", "--models", "PS", "--to", (toy / "maps").string()}).status, 0);
+  ASSERT_EQ(
+      toy.salbench("export", {"--format", "maps", "--models", "PS", "--to", (toy / "maps").string()}).status,
+      0);
   fs::remove(toy / "maps/PS/3.val");
   const std::vector<std::string> mine = {"--maps", (toy / "maps/PS").string(), "--name", "OWN"};
   const Outcome run = toy.salbench("run", mine);

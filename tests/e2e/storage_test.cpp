@@ -164,8 +164,7 @@ TEST_P(ReadOnlyCache, ThatSomethingIsToBeAddedToIsNamedBeforeTheWorkBegins) {
         << outcome.err;
   }
   EXPECT_EQ(toy_.results(), results);
-  EXPECT_THAT(toy_.salbench("plan").out, HasSubstr("last run: finished"))
-      << "the results of the run before";
+  EXPECT_THAT(toy_.salbench("plan").out, HasSubstr("last run: finished")) << "the results of the run before";
 }
 
 TEST_P(ReadOnlyCache, ThatIsDamagedIsReadAsFarAsItGoes) {

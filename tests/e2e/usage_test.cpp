@@ -28,8 +28,9 @@ TEST(Usage, HelpAndVersionAreNoErrors) {
       AllOf(HasSubstr("--data"), HasSubstr("--cache"), HasSubstr("--items"), HasSubstr("--reference")));
   const Outcome version = run_process({SALBENCH_PROGRAM, "--version"});
   EXPECT_EQ(version.status, 0);
-  EXPECT_THAT(version.out, testing::MatchesRegex("salbench [0-9]+\\.[0-9]+\\.[0-9]+\n.*instructions [A-Z0-9_]+, "
-                                                 "oneTBB [0-9.]+.*, HDF5 [0-9.]+.*, Embree .*, CGAL .*\n"));
+  EXPECT_THAT(version.out,
+              testing::MatchesRegex("salbench [0-9]+\\.[0-9]+\\.[0-9]+\n.*instructions [A-Z0-9_]+, "
+                                    "oneTBB [0-9.]+.*, HDF5 [0-9.]+.*, Embree .*, CGAL .*\n"));
 }
 
 TEST(Usage, WordsThatTheProgramDoesNotKnow) {
@@ -207,7 +208,8 @@ TEST(Usage, FormerNamesSayWhatHasTakenTheirPlace) {
   for (const char* name : {"convert", "doctor", "evaluate", "graph", "maps", "pictures", "power", "status"}) {
     const Outcome former = run_process({SALBENCH_PROGRAM, name, "x.yaml", "--to", "y"});
     EXPECT_EQ(former.status, 2) << name;
-    EXPECT_THAT(former.err, testing::StartsWith(fmt::format("error: there is no {} any more: salbench ", name)));
+    EXPECT_THAT(former.err,
+                testing::StartsWith(fmt::format("error: there is no {} any more: salbench ", name)));
   }
 }
 

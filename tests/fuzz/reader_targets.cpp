@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "io/cloud_file.h"
-#include "io/ground_truth_file.h"
-#include "io/hdf5_image.h"
-#include "io/mesh_file.h"
-#include "io/one_form.h"
-#include "io/shape_file.h"
+#include "io/hdf5/hdf5_image.h"
+#include "io/hdf5/one_form.h"
+#include "io/shapes/cloud_file.h"
+#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/mesh_file.h"
+#include "io/shapes/shape_file.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"

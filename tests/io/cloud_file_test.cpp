@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/cloud_file.h"
+#include "io/shapes/cloud_file.h"
 
 #include <bit>
 #include <cmath>

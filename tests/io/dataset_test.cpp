@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/dataset.h"
+#include "io/shapes/dataset.h"
 
 #include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/text_scanner.h"
+#include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/ground_truth_file.h"
+#include "io/shapes/ground_truth_file.h"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/dataset.h"
 #include "io/file.h"
-#include "io/mesh_file.h"
+#include "io/shapes/dataset.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
 #include "tests/support/data.h"
 

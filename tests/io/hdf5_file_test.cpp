@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 
 #include <atomic>
 #include <limits>
@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/hdf5_writer.h"
-#include "io/packed_chunks.h"
+#include "io/hdf5/hdf5_writer.h"
+#include "io/hdf5/packed_chunks.h"
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "tests/support/exported_file.h"

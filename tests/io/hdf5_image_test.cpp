@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writer and reader against the library: each reads what the other wrote.
-#include "io/hdf5_image.h"
+#include "io/hdf5/hdf5_image.h"
 
 #include <limits>
 

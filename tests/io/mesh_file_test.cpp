@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 
 #include <algorithm>
 

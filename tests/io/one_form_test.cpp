@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/one_form.h"
+#include "io/hdf5/one_form.h"
 
 #include <cmath>
 #include <limits>
@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/hdf5_file.h"
-#include "io/one_form_index.h"
+#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/one_form_index.h"
 #include "stages/core/errors.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"

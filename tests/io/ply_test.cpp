@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/polygons.h"
+#include "io/shapes/polygons.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_check.h"
 #include "stages/core/mesh_ops.h"

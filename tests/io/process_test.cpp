@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/process.h"
+#include "io/commands/process.h"
 
 #include <array>
 #include <csignal>
@@ -10,8 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/commands/scratch_folder.h"
 #include "io/file.h"
-#include "io/scratch_folder.h"
 #include "stages/core/errors.h"
 #include "tests/support/processes.h"
 #include "tests/support/temporary_folder.h"
@@ -75,11 +75,10 @@ struct Stray {
 };
 void PrintTo(const Stray& stray, std::ostream* out) { *out << stray.name; }
 
-constexpr std::array kStrays = {
-    Stray{"InTheBackground", "sh -c \"$child\" &"},
-    Stray{"InAnotherGroup", "timeout 100 sh -c \"$child\" &"},
-    Stray{"OfADeadParent", "(sh -c \"$child\" &)"},
-    Stray{"Stopped", "sh -c \"${child%exec*}kill -STOP \\$\\$\" &"}};
+constexpr std::array kStrays = {Stray{"InTheBackground", "sh -c \"$child\" &"},
+                                Stray{"InAnotherGroup", "timeout 100 sh -c \"$child\" &"},
+                                Stray{"OfADeadParent", "(sh -c \"$child\" &)"},
+                                Stray{"Stopped", "sh -c \"${child%exec*}kill -STOP \\$\\$\" &"}};
 
 // A shell's lines that start one, which writes its number and resists. It sleeps for longer than any test,
 // and no longer than a forgotten process may.
@@ -147,8 +146,9 @@ TEST(RunCommand, GetsNothingOfTheProgramButItsEnvironment) {
         run_command("ls /proc/self/fd > files; grep SigIgn /proc/self/status > ignored", folder.path(),
                     std::chrono::seconds(60));
         // But for two signals that the C library keeps for itself.
-        const bool none = read_file(folder.path() / "ignored").find("0000000180000000") != std::string::npos ||
-                          read_file(folder.path() / "ignored").find("0000000000000000") != std::string::npos;
+        const bool none =
+            read_file(folder.path() / "ignored").find("0000000180000000") != std::string::npos ||
+            read_file(folder.path() / "ignored").find("0000000000000000") != std::string::npos;
         // The last one is what ls lists.
         ::_exit(none && read_file(folder.path() / "files") == "0\n1\n2\n3\n" ? 7 : 1);
       },

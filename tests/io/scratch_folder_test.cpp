@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/scratch_folder.h"
+#include "io/commands/scratch_folder.h"
 
 #include <cstdlib>
 

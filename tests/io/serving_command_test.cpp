@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/process.h"
-
 #include <csignal>
 #include <string>
 #include <thread>
@@ -9,8 +7,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "io/commands/process.h"
+#include "io/commands/scratch_folder.h"
 #include "io/file.h"
-#include "io/scratch_folder.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/shape_file.h"
+#include "io/shapes/shape_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "io/table.h"
 #include "tests/support/shapes.h"
 

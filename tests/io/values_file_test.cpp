@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/values_file.h"
+#include "io/shapes/values_file.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/text_scanner.h"
+#include "io/shapes/text_scanner.h"
 #include "tests/pipeline/golden_table.h"
 #include "tests/support/cloud_text.h"
 #include "tests/support/memory_store.h"

@@ -18,8 +18,8 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/ground_truth_file.h"
-#include "io/mesh_file.h"
+#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"
 #include "tests/support/correlation.h"

@@ -16,8 +16,8 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/ground_truth_file.h"
-#include "io/mesh_file.h"
+#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/metrics/metrics.h"
 #include "stages/models/cs.h"

@@ -60,13 +60,6 @@ class ToyResultsTest(unittest.TestCase):
 
 
 class OwnDataTest(unittest.TestCase):
-    def test_perf_plan(self):
-        said = ran(*PYTHON, SCRIPTS / "perf_plan", "--build", PROGRAM.parent, "--meshes", "2")
-        self.assertRegex(said, r"(?m)^2 meshes, \d{3} artefacts$")
-        for command in ("plan", "run", "export"):
-            self.assertRegex(said, rf"\n  {command}: [\d.]+ s, of which [\d.]+ s on a core; \d+ MB\n")
-        self.assertIn("\n  0 jobs to do, 0 artefacts computed\n", said)
-
     def test_perf_shapes(self):
         said = ran(*PYTHON, SCRIPTS / "perf_shapes", PROGRAM.parent, "2", "4")
         self.assertRegex(said, r"\nfrom 2 to 4 shapes, and 100000 on paper\n(  .*exponents: wall .*\n){7}$")

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/hdf5_file.h"
+#include "io/hdf5/hdf5_file.h"
 
 namespace salbench {
 

@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "io/dataset.h"
 #include "io/file.h"
+#include "io/shapes/dataset.h"
 #include "pipeline/config/section.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/package/listing.h"

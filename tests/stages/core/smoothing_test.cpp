@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"

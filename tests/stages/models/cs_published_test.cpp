@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/models/cs.h"
 #include "stages/normals/normals.h"
 #include "tests/stages/metrics/published.h"

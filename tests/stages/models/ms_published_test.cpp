@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/core/field.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"

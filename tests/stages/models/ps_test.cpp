@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"

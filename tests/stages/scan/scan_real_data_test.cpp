@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/scan/scan.h"
 #include "tests/support/data.h"
 

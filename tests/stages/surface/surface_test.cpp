@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/mesh_file.h"
+#include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/normals/normals.h"

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/hdf5/hdf5_library.h"
+
+#include <algorithm>
+#include <atomic>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "io/hdf5/hdf5_file.h"
+
+namespace salbench::hdf5 {
+namespace {
+
+constexpr std::size_t kLongText = 60'000;  // bytes; an object header has no room for attributes beyond 64 KB
+constexpr std::ptrdiff_t kMaxDepth = 64;   // groups within groups; the library visits them by recursion
+constexpr std::uint64_t kMinObjectBytes = 16;  // of an object and its link, in any version of the format
+
+Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose, "H5Screate"}; }
+
+void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
+  const Handle space = scalar_space();
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                         "H5Acreate");
+  must(H5Awrite(attribute, type, value), "H5Awrite");
+}
+
+Handle creation_properties(const std::optional<PackedChunks>& packed) {
+  Handle properties = property_list(H5P_DATASET_CREATE);
+  must(H5Pset_obj_track_times(properties, false), "H5Pset_obj_track_times");
+  if (!packed) return properties;
+  const std::vector<hsize_t> chunk(packed->shape.begin(), packed->shape.end());
+  must(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
+  must(H5Pset_shuffle(properties), "H5Pset_shuffle");
+  must(H5Pset_deflate(properties, 1), "H5Pset_deflate");
+  return properties;
+}
+
+void write_chunks(hid_t set, const PackedChunks& packed) {
+  std::vector<hsize_t> at(packed.shape.size(), 0);
+  for (const Bytes& chunk : packed.chunks) {
+    must(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), chunk.size(), chunk.data()), "H5Dwrite_chunk");
+    at[0] += packed.shape[0];
+  }
+}
+
+std::mutex& entrance() {
+  static std::mutex the_entrance;
+  return the_entrance;
+}
+
+struct Visit {
+  std::vector<std::string> data_sets;
+  std::uint64_t objects_left;  // a file with more objects is damaged, and its links form a cycle
+};
+
+herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* data) {
+  auto& visit = *static_cast<Visit*>(data);
+  const std::string_view path(name);
+  if (visit.objects_left-- == 0 || std::count(path.begin(), path.end(), '/') > kMaxDepth) return -1;
+  if (info->type == H5O_TYPE_DATASET) visit.data_sets.emplace_back(path);
+  return 0;
+}
+
+}  // namespace
+
+// The library's clean-up at exit is disabled: it loops forever if a disk is full, and every file has been
+// closed by then.
+LibraryLock::LibraryLock() {
+  static const bool thread_safe = [] {
+    hbool_t safe = false;
+    return H5dont_atexit() >= 0 && H5is_library_threadsafe(&safe) >= 0 && safe;
+  }();
+  if (!thread_safe) alone_ = std::unique_lock(entrance());
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread: failures are exceptions, not text on stderr
+}
+
+void must(herr_t status, const char* what) {
+  if (status < 0) throw std::runtime_error(fmt::format("HDF5: {} failed", what));
+}
+
+Handle property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "H5Pcreate"}; }
+
+std::string image_name() {
+  static std::atomic<std::uint64_t> counter = 0;
+  return fmt::format("image {}", counter++);
+}
+
+Handle core_access() {
+  Handle access = property_list(H5P_FILE_ACCESS);
+  must(H5Pset_fapl_core(access, 1U << 16U, 0), "H5Pset_fapl_core");
+  return access;
+}
+
+Handle string_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "H5Tcopy");
+  must(H5Tset_size(type, std::max<std::size_t>(length, 1)), "H5Tset_size");
+  must(H5Tset_cset(type, H5T_CSET_UTF8), "H5Tset_cset");
+  if (length != H5T_VARIABLE) must(H5Tset_strpad(type, H5T_STR_NULLPAD), "H5Tset_strpad");
+  return type;
+}
+
+void write_attribute(hid_t object, const std::string& name, const AttributeValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    const bool on_heap = text->size() > kLongText;
+    const char* begin = text->c_str();
+    const Handle type = string_type(on_heap ? H5T_VARIABLE : text->size());
+    write_attribute(object, name, type, on_heap ? static_cast<const void*>(&begin) : begin);
+  } else if (const auto* real = std::get_if<double>(&value)) {
+    write_attribute(object, name, type_of<double>(), real);
+  } else {
+    write_attribute(object, name, type_of<std::int64_t>(), &std::get<std::int64_t>(value));
+  }
+}
+
+void write_array(hid_t file, hid_t links, const Array& array, const std::optional<PackedChunks>& packed) {
+  const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
+  const Handle space = shape.empty()
+                           ? scalar_space()
+                           : Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                                    H5Sclose, "H5Screate_simple");
+  const Handle properties = creation_properties(packed);
+  std::visit(
+      [&]<class T>(const std::vector<T>& values) {
+        if (values.size() != array.count())
+          throw std::logic_error(fmt::format("array {} has {} values for its shape of {}", array.name,
+                                             values.size(), array.count()));
+        const Handle set(
+            H5Dcreate2(file, array.name.c_str(), type_of<T>(), space, links, properties, H5P_DEFAULT),
+            H5Dclose, "H5Dcreate");
+        if (packed)
+          write_chunks(set, *packed);
+        else if (!values.empty())
+          must(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite");
+        write_attribute(set, "unit", array.unit);
+        write_attribute(set, "description", array.description);
+      },
+      array.values);
+}
+
+Handle created_file(const char* name, hid_t access) {
+  const Handle creation = property_list(H5P_FILE_CREATE);
+  must(H5Pset_obj_track_times(creation, false), "H5Pset_obj_track_times");
+  return {H5Fcreate(name, H5F_ACC_TRUNC, creation, access), H5Fclose, "H5Fcreate"};
+}
+
+Handle groups_between() {
+  Handle links = property_list(H5P_LINK_CREATE);
+  must(H5Pset_create_intermediate_group(links, 1), "H5Pset_create_intermediate_group");
+  return links;
+}
+
+Handle opened_image(std::span<const std::byte> image) {
+  const Handle access = core_access();
+  // The library copies the image; it never writes to it in read-only mode.
+  must(H5Pset_file_image(access, const_cast<std::byte*>(image.data()), image.size()), "H5Pset_file_image");
+  return {H5Fopen(image_name().c_str(), H5F_ACC_RDONLY, access), H5Fclose, "H5Fopen"};
+}
+
+std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes) {
+  Visit visit{{}, bytes / kMinObjectBytes};
+  must(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, append_data_set, &visit, H5O_INFO_BASIC),
+       "listing its objects");
+  return std::move(visit.data_sets);
+}
+
+}  // namespace salbench::hdf5
+
+namespace salbench {
+
+LibraryVersion hdf5_version() {
+  const auto guard = hdf5::library();
+  unsigned major = 0, minor = 0, release = 0;
+  hdf5::must(H5get_libversion(&major, &minor, &release), "H5get_libversion");
+  return {fmt::format("{}.{}.{}", H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE),
+          fmt::format("{}.{}.{}", major, minor, release)};
+}
+
+}  // namespace salbench

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shared by io/hdf5/hdf5_*.cpp, the only files of the program that know the HDF5 library (C API, 1.10).
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#define H5_USE_110_API  // newer libraries offer it too
+#include <hdf5.h>
+
+#include "io/arrays.h"
+#include "io/hdf5/packed_chunks.h"
+
+namespace salbench::hdf5 {
+
+// To be held while calling the library; one thread does not take it twice. Others are kept out unless the
+// library was built thread-safe.
+class LibraryLock {
+ public:
+  LibraryLock();
+  LibraryLock(const LibraryLock&) = delete;
+  LibraryLock& operator=(const LibraryLock&) = delete;
+
+ private:
+  std::unique_lock<std::mutex> alone_;
+};
+inline LibraryLock library() { return {}; }
+
+// An HDF5 identifier with the function that closes it. Throws if it is negative: the library failed.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*closer)(hid_t), const char* what) : id_(id), close_(closer) {
+    if (id_ < 0) throw std::runtime_error("HDF5: " + std::string(what) + " failed");
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() { close(); }
+  herr_t close() { return id_ < 0 ? 0 : close_(std::exchange(id_, -1)); }
+  operator hid_t() const { return id_; }  // NOLINT: that is what the C API takes
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void must(herr_t status, const char* what);  // throws std::runtime_error
+
+// Type as stored: little-endian, as on this machine.
+template <class T>
+hid_t type_of() {
+  if constexpr (std::is_floating_point_v<T>)
+    return sizeof(T) == 8 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+  else if constexpr (std::is_unsigned_v<T>)
+    return H5T_STD_U8LE;
+  else
+    return sizeof(T) == 8 ? H5T_STD_I64LE : H5T_STD_I32LE;
+}
+
+Handle property_list(hid_t kind);
+Handle string_type(std::size_t length);  // UTF-8; H5T_VARIABLE
+
+void write_attribute(hid_t object, const std::string& name, const AttributeValue& value);
+// `packed`: of the array, made before the lock is taken.
+void write_array(hid_t file, hid_t links, const Array& array, const std::optional<PackedChunks>& packed);
+
+Handle created_file(const char* name, hid_t access);
+Handle groups_between();  // link creation that makes the missing groups on a path
+Handle core_access();     // of a file in memory, which only its name tells from others
+std::string image_name();
+Handle opened_image(std::span<const std::byte> image);
+
+// Names of the data sets in a file of `bytes` bytes, group by group. Follows hard links only: other links may
+// lead out of the file.
+std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes);
+
+}  // namespace salbench::hdf5

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Read back are points, faces and normals below shape/, and the values on the points below truth/, or below
+// views/VIEW/ for views that are scored by themselves. The values of the source's files stand beside them,
+// below as_read/, for people. Version 1 had attributes in place of shape/polygons, and no values per face.
+#include "io/hdf5/one_form.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/hdf5_image.h"
+#include "io/shapes/mesh_parts.h"
+#include "io/shapes/text_scanner.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+constexpr const char* kForm = "salbench item";
+constexpr std::int64_t kFormVersion = 2;
+constexpr const char* kLength = "length unit of the source";
+constexpr const char* kNumber = "number";
+constexpr std::string_view kViewGroups = "views/";
+
+// --- writing ----------------------------------------------------------------------------------------------
+
+void add_shape(Arrays& arrays, const ShapeInForm& shape) {
+  arrays.push_back(triples("shape/points", shape.is_cloud ? shape.cloud.points : shape.mesh.vertices, kLength,
+                           "x, y and z of the points, or of the vertices of the mesh"));
+  if (!shape.is_cloud)
+    arrays.push_back(triples("shape/faces", shape.mesh.faces, kNumber,
+                             "0-based points at the corners of the triangles, in the order of the source"));
+  if (const auto& [split, concave] = shape.polygons; split > 0)
+    arrays.push_back(column<std::int64_t>("shape/polygons", {split, concave}, kNumber,
+                                          "polygons of the source that were split, those of them that were "
+                                          "concave"));
+  const PointCloud& cloud = shape.cloud;
+  if (!cloud.normals.empty())
+    arrays.push_back(triples("shape/normals", cloud.normals, "1", "unit normals of the points"));
+  if (const auto& place = cloud.viewpoint)
+    arrays.push_back(column("shape/viewpoint", std::vector<double>(place->begin(), place->end()), kLength,
+                            "x, y and z from where the points were seen"));
+  if (!cloud.dropped.empty())
+    arrays.push_back(column("shape/left_out", cloud.dropped, kNumber,
+                            "0-based numbers in the source of points that are left out here"));
+}
+
+void add_as_read(Arrays& arrays, const std::string& group, const ValuesAsRead& read) {
+  arrays.push_back(column(group + "values", read.values, "1",
+                          fmt::format("values per {} as {} has them; NaN: not seen", read.per, read.file)));
+  if (!read.points.empty())
+    arrays.push_back(triples(group + "points", read.points, kLength, "x, y and z that the values belong to"));
+  if (!read.mask.empty())
+    arrays.push_back(column(group + "mask", std::vector<std::uint8_t>(read.mask.begin(), read.mask.end()),
+                            "1", "0: hidden, 1: seen"));
+}
+
+std::string group_of(std::string_view view) {
+  return view.empty() ? "truth/" : fmt::format("{}{}/", kViewGroups, view);
+}
+
+void add_truth(Arrays& arrays, const TruthInForm& truth) {
+  const std::string group = group_of(truth.view);
+  const GroundTruth& known = truth.truth;
+  if (!known.saliency.empty())
+    arrays.push_back(column(group + "saliency", known.saliency, "1", "value of each point; NaN: not seen"));
+  if (!known.viewers.empty()) {
+    std::vector<double> all;
+    for (const ScalarField& viewer : known.viewers) all.insert(all.end(), viewer.begin(), viewer.end());
+    arrays.push_back({.name = group + "viewers",
+                      .shape = {known.viewers.size(), known.viewers[0].size()},
+                      .values = std::move(all),
+                      .unit = "1",
+                      .description = "row per viewer: value of each point; NaN: not seen"});
+  }
+  if (!known.picks.empty()) {
+    std::vector<std::int32_t> all, counts;
+    for (const auto& picks : known.picks) {
+      all.insert(all.end(), picks.begin(), picks.end());
+      counts.push_back(static_cast<std::int32_t>(picks.size()));
+    }
+    arrays.push_back(column(group + "picks", std::move(all), kNumber,
+                            "0-based points that people picked, one participant after the other"));
+    arrays.push_back(
+        column(group + "picks_of", std::move(counts), kNumber, "how many of these each participant picked"));
+  }
+  if (!truth.face_values.empty())
+    arrays.push_back(column(group + "faces", truth.face_values, "1",
+                            "value of each face of shape/faces, as published; NaN: not seen"));
+}
+
+// --- reading ----------------------------------------------------------------------------------------------
+
+// The content of a file with the messages of what is wrong with it.
+struct FormReader {
+  std::string_view name;
+  const Arrays& arrays;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}: {}", name, what));
+  }
+  [[noreturn]] void fail(const Array& array, const std::string& what) const {
+    fail(fmt::format("data set {}: {}", in_quotes(array.name), what));
+  }
+
+  bool has(std::string_view array) const { return find_array(arrays, array) != nullptr; }
+
+  // The array of rows x columns numbers; rows: any, if it is 0.
+  template <class T>
+  const std::vector<T>& read(std::string_view array_name, std::size_t rows, std::size_t columns = 0) const {
+    const Array* array = find_array(arrays, array_name);
+    if (array == nullptr)
+      fail(fmt::format("has no data set {}: import the set again", in_quotes(std::string(array_name))));
+    const auto* values = std::get_if<std::vector<T>>(&array->values);
+    if (values == nullptr)
+      fail(*array, std::is_same_v<T, double>
+                       ? std::string("expected numbers of type float64")
+                       : fmt::format("expected whole numbers of type int{}", 8 * sizeof(T)));
+    const std::size_t dimensions = columns == 0 ? 1 : 2;
+    if (array->shape.size() != dimensions || (rows != 0 && array->shape[0] != rows) ||
+        (columns != 0 && array->shape[1] != columns))
+      fail(*array, fmt::format("its shape is ({}), expected ({}{})", fmt::join(array->shape, ", "),
+                               rows == 0 ? "n" : std::to_string(rows),
+                               columns == 0 ? "" : fmt::format(", {}", columns)));
+    return *values;
+  }
+
+  std::vector<Vec3> vectors(std::string_view array_name, std::size_t rows) const {
+    const std::vector<double>& values = read<double>(array_name, rows, 3);
+    std::vector<Vec3> all(values.size() / 3);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i] = Vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+      if (const std::string_view wrong = wrong_with_point(all[i]); !wrong.empty())
+        fail(*find_array(arrays, array_name), fmt::format("row {} (0-based): {}", i, wrong));
+    }
+    return all;
+  }
+
+  // Numbers of points below n.
+  void check_indices(std::string_view array_name, std::span<const std::int32_t> indices,
+                     std::size_t n) const {
+    for (const std::int32_t i : indices)
+      if (i < 0 || static_cast<std::size_t>(i) >= n)
+        fail(fmt::format("data set {}: {} is out of range: there are {} points, numbered from 0",
+                         in_quotes(std::string(array_name)), i, n));
+  }
+
+  ScalarField values(std::string_view array_name, std::size_t n) const {
+    const ScalarField& values = read<double>(array_name, n);
+    check_values(array_name, values);
+    return values;
+  }
+  void check_values(std::string_view array_name, std::span<const double> values) const {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::isinf(values[i]))
+        fail(fmt::format("data set {}: value {} (0-based) is {}, expected a finite number, or NaN",
+                         in_quotes(std::string(array_name)), i, values[i]));
+  }
+};
+
+std::vector<std::vector<std::int32_t>> picks_in(const FormReader& in, const std::string& group,
+                                                std::size_t n) {
+  const auto& all = in.read<std::int32_t>(group + "picks", 0);
+  const auto& counts = in.read<std::int32_t>(group + "picks_of", 0);
+  in.check_indices(group + "picks", all, n);
+  const bool any_negative = std::ranges::any_of(counts, [](std::int32_t count) { return count < 0; });
+  if (any_negative || std::accumulate(counts.begin(), counts.end(), std::size_t{0}) != all.size())
+    in.fail(
+        fmt::format("the numbers in '{0}picks_of' do not sum to the {1} of '{0}picks'", group, all.size()));
+  std::vector<std::vector<std::int32_t>> picks;
+  for (auto first = all.begin(); const std::int32_t count : counts) {
+    picks.emplace_back(first, first + count);
+    first += count;
+  }
+  return picks;
+}
+
+Mesh mesh_in(const FormReader& in) {
+  Mesh mesh{.vertices = in.vectors("shape/points", 0), .faces = {}};
+  const auto& corners = in.read<std::int32_t>("shape/faces", 0, 3);
+  in.check_indices("shape/faces", corners, mesh.vertices.size());
+  mesh.faces.reserve(corners.size() / 3);
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+    mesh.faces.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  return mesh;
+}
+
+PolygonCounts polygons_in(const FormReader& in) {
+  if (!in.has("shape/polygons")) return {};
+  const auto& counts = in.read<std::int64_t>("shape/polygons", 2);
+  return {counts[0], counts[1]};
+}
+
+PointCloud cloud_in(const FormReader& in) {
+  PointCloud cloud;
+  cloud.points = in.vectors("shape/points", 0);
+  if (in.has("shape/faces")) in.fail("has faces, and index.csv says that it is a point cloud");
+  if (in.has("shape/normals")) cloud.normals = in.vectors("shape/normals", cloud.points.size());
+  if (in.has("shape/viewpoint")) {
+    const auto& place = in.read<double>("shape/viewpoint", 3);
+    cloud.viewpoint = Vec3(place[0], place[1], place[2]);
+  }
+  if (in.has("shape/left_out")) {
+    cloud.dropped = in.read<std::int32_t>("shape/left_out", 0);
+    in.check_indices("shape/left_out", cloud.dropped, cloud.size_in_file());
+    if (std::ranges::adjacent_find(cloud.dropped, std::greater_equal()) != cloud.dropped.end())
+      in.fail("data set 'shape/left_out': the numbers do not ascend");
+  }
+  return cloud;
+}
+
+TruthInForm truth_in(const FormReader& in, std::string_view view) {
+  const std::string group = group_of(view);
+  const std::size_t n = in.read<double>("shape/points", 0, 3).size() / 3;
+  if (n == 0) in.fail("data set 'shape/points': there are no points");
+  TruthInForm found{.view = std::string(view)};
+  GroundTruth& truth = found.truth;
+  if (in.has(group + "saliency")) {
+    truth.saliency = in.values(group + "saliency", n);
+    if (std::ranges::all_of(truth.saliency, [](double value) { return std::isnan(value); }))
+      in.fail(fmt::format("data set '{}saliency': no point has a value", group));
+  }
+  if (const std::string viewers = group + "viewers"; in.has(viewers)) {
+    const ScalarField& all = in.read<double>(viewers, 0, n);
+    in.check_values(viewers, all);
+    if (truth.saliency.empty()) in.fail(fmt::format("has '{0}viewers' without '{0}saliency'", group));
+    for (auto row = all.begin(); row != all.end(); row += static_cast<std::ptrdiff_t>(n))
+      truth.viewers.emplace_back(row, row + static_cast<std::ptrdiff_t>(n));
+  }
+  if (in.has(group + "picks")) truth.picks = picks_in(in, group, n);
+  if (truth.saliency.empty() && truth.picks.empty())
+    in.fail(fmt::format("has neither '{0}saliency' nor '{0}picks': there is nothing to compare with", group));
+  if (in.has(group + "faces"))
+    found.face_values = in.values(group + "faces", in.read<std::int32_t>("shape/faces", 0, 3).size() / 3);
+  return found;
+}
+
+// Views that have ground truth, by name; "" stands for the shape.
+std::set<std::string, std::less<>> views_in(const Arrays& arrays) {
+  std::set<std::string, std::less<>> views;
+  for (const Array& array : arrays) {
+    std::string_view path = array.name;
+    if (path.starts_with("truth/")) views.emplace();
+    if (!path.starts_with(kViewGroups)) continue;
+    path.remove_prefix(kViewGroups.size());
+    views.emplace(path.substr(0, path.find('/')));
+  }
+  return views;
+}
+
+// Those of a file whose attributes say that it is of this form, in the names of today's version.
+Arrays arrays_in_form(Hdf5Content&& content, std::string_view name) {
+  const FormReader in{name, content.arrays};
+  const auto integer = [&](std::string_view attribute) -> std::int64_t {
+    const AttributeValue* value = find_attribute(content.attributes, attribute);
+    if (value == nullptr) return 0;
+    const auto* number = std::get_if<std::int64_t>(value);
+    if (number == nullptr) in.fail(fmt::format("attribute '{}' is not a whole number", attribute));
+    return *number;
+  };
+  const AttributeValue* form = find_attribute(content.attributes, "form");
+  const auto* text = form == nullptr ? nullptr : std::get_if<std::string>(form);
+  if (text == nullptr || *text != kForm)
+    in.fail(fmt::format("has no attribute form = '{}': it is no file of an imported data set", kForm));
+  const std::int64_t version = integer("form_version");
+  if (version < 1 || version > kFormVersion)
+    in.fail(fmt::format("is of version {} of the form, and this program reads 1 to {}: import the set again",
+                        version, kFormVersion));
+  if (const std::int64_t split = version == 1 ? integer("polygons_split") : 0; split > 0)
+    content.arrays.push_back(
+        column<std::int64_t>("shape/polygons", {split, integer("polygons_concave")}, kNumber, ""));
+  return std::move(content.arrays);
+}
+
+Arrays arrays_in_form(std::string_view image, std::string_view name) {
+  auto content = hdf5::parsed_image(std::as_bytes(std::span(image)));
+  if (!content)
+    throw ForeignForm(
+        fmt::format("{}: is damaged, or no program of ours wrote it: import the set again", name));
+  return arrays_in_form(std::move(*content), name);
+}
+
+}  // namespace
+
+Arrays one_form_arrays(const ShapeInForm& shape) {
+  Arrays arrays;
+  add_shape(arrays, shape);
+  for (const TruthInForm& truth : shape.truths) add_truth(arrays, truth);
+  return arrays;
+}
+
+Bytes one_form_image(const ShapeInForm& shape) {
+  Hdf5Content content{.arrays = one_form_arrays(shape), .attributes = {}};
+  content.attributes = {{"form", std::string(kForm)}, {"form_version", kFormVersion}};
+  for (const auto& [key, text] : shape.about) content.attributes.emplace_back(key, text);
+  for (const TruthInForm& truth : shape.truths)
+    for (std::size_t k = 0; k < truth.as_read.size(); ++k)
+      add_as_read(content.arrays, fmt::format("{}as_read/{}/", group_of(truth.view), k), truth.as_read[k]);
+  return hdf5_image(content);
+}
+
+ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name) {
+  const FormReader in{name, arrays};
+  ShapeInForm shape{.polygons = polygons_in(in), .is_cloud = !in.has("shape/faces")};
+  if (shape.is_cloud)
+    shape.cloud = cloud_in(in);
+  else
+    shape.mesh = mesh_in(in);
+  for (const std::string& view : views_in(arrays)) shape.truths.push_back(truth_in(in, view));
+  return shape;
+}
+
+std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name) {
+  auto content = hdf5::parsed_image(std::as_bytes(std::span(image)));
+  if (!content) return {};
+  TextAttributes about;
+  for (const auto& [key, value] : content->attributes)
+    if (const auto* text = std::get_if<std::string>(&value); text != nullptr && key != "form")
+      about.emplace_back(key, *text);
+  ShapeInForm shape = shape_in_arrays(arrays_in_form(std::move(*content), name), name);
+  shape.about = std::move(about);
+  return shape;
+}
+
+Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts) {
+  const Arrays arrays = arrays_in_form(image, name);
+  const FormReader in{name, arrays};
+  if (counts != nullptr) *counts = polygons_in(in);
+  return mesh_in(in);
+}
+
+PointCloud cloud_in_form(std::string_view image, std::string_view name) {
+  const Arrays arrays = arrays_in_form(image, name);
+  return cloud_in({name, arrays});
+}
+
+GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view) {
+  const Arrays arrays = arrays_in_form(image, name);
+  return truth_in({name, arrays}, view).truth;
+}
+
+}  // namespace salbench

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A shape with its ground truth in the one HDF5 form that data sets are imported into; docs/hdf5_form.md has
+// it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/arrays.h"
+#include "io/file.h"
+#include "io/shapes/polygons.h"
+#include "stages/core/errors.h"
+#include "stages/core/point_cloud.h"
+#include "stages/core/types.h"
+
+namespace salbench {
+
+// One file of saliency, where what is scored is not what it holds.
+struct ValuesAsRead {
+  std::string file;               // its name, without folders
+  std::string_view per;           // "vertex", "face", "point"
+  ScalarField values;             // one per element, before the mask; NaN: not seen
+  std::vector<Vec3> points = {};  // of values per point: theirs
+  ScalarField mask = {};          // 0 hidden, 1 seen; empty: there is none
+};
+
+struct TruthInForm {
+  std::string view = {};  // that is scored by itself; empty: the shape
+  GroundTruth truth = {};
+  ScalarField face_values = {};  // f, as published; empty: values are not per face
+  std::vector<ValuesAsRead> as_read = {};
+};
+
+using TextAttributes = std::vector<std::pair<std::string, std::string>>;
+
+struct ShapeInForm {
+  Mesh mesh = {};            // as the file has it, polygons split
+  PolygonCounts polygons{};  // that were split
+  bool is_cloud = false;     // then there is no mesh
+  PointCloud cloud = {};     // as it is scored
+  std::vector<TruthInForm> truths = {};
+  TextAttributes about = {};  // item, source, licence and the like
+};
+
+Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal bytes
+
+// What the program reads of it: everything but `as_read` and `about`, which are for people. `shape_in_arrays`
+// is the inverse, with views by name, and throws as the functions below do.
+Arrays one_form_arrays(const ShapeInForm& shape);
+ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
+
+// The shape of an image, without `as_read`; nothing if no program of ours wrote the bytes. This and what
+// follows throw InputError, one line that begins with `name`, for what is no such file: damaged, or with
+// arrays that are missing, of another type or size, or refer to points that there are not.
+std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name);
+
+// Parts of it. Bytes that no program of ours wrote are ForeignForm.
+struct ForeignForm : InputError {
+  using InputError::InputError;
+};
+Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts = nullptr);
+PointCloud cloud_in_form(std::string_view image, std::string_view name);
+GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view);
+
+}  // namespace salbench

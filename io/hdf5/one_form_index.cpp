@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/hdf5/one_form_index.h"
+
+#include <charconv>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/shapes/text_scanner.h"
+#include "io/table.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Reads the columns of a row, and says where something is wrong with it.
+struct IndexReader {
+  Table table;
+  std::size_t row = 0;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", table.name, table.lines[row], what));
+  }
+  std::string text(std::string_view column) const {
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      if (table.columns[i] == column) return std::get<std::string>(table.rows[row][i]);
+    throw InputError(
+        fmt::format("{}: has no column '{}': expected the index of a set in the one form; there are {}",
+                    table.name, column, fmt::join(table.columns, ", ")));
+  }
+  std::size_t count(std::string_view column) const {
+    const std::string digits = text(column);
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+      fail(fmt::format("{} is {}, expected a whole number", column, in_quotes(digits)));
+    return number;
+  }
+  // True of the first word, false of the second.
+  bool is(std::string_view column, std::string_view yes, std::string_view no) const {
+    const std::string word = text(column);
+    if (word != yes && word != no)
+      fail(fmt::format("{} is {}, expected {} or {}", column, in_quotes(word), yes, no));
+    return word == yes;
+  }
+  // The name of a file, which leads nowhere else.
+  std::string name(std::string_view column) const {
+    const std::string word = text(column);
+    if (!may_be_name(word))
+      fail(fmt::format("{} is {}, expected the name of a file without its extension", column,
+                       in_quotes(word)));
+    return word;
+  }
+};
+
+}  // namespace
+
+bool may_be_name(std::string_view word) {
+  return !word.empty() && word != "." && word != ".." && word.find('/') == std::string_view::npos &&
+         word.find('\0') == std::string_view::npos;
+}
+
+std::string file_of_shape(const std::string& shape) { return fmt::format("items/{}.h5", shape); }
+
+std::string index_text(const std::vector<IndexRow>& rows) {
+  Table table{
+      .columns = {"item", "view", "class", "split", "kind", "truth", "participants", "viewers", "source"},
+      .rows = {}};
+  for (const IndexRow& row : rows)
+    table.rows.push_back({row.shape, row.view, row.category, row.split,
+                          std::string(row.facts.is_cloud ? "cloud" : "mesh"),
+                          std::string(row.facts.has_truth ? "yes" : "no"), cell_of(row.facts.participants),
+                          cell_of(row.facts.viewers), row.source});
+  return to_csv(table);
+}
+
+std::vector<IndexRow> read_index(const fs::path& file) {
+  IndexReader in{read_csv(file)};
+  std::vector<IndexRow> rows;
+  std::set<std::string> names;
+  for (; in.row < in.table.rows.size(); ++in.row) {
+    const std::string view = in.text("view");
+    rows.push_back({.shape = in.name("item"),
+                    .view = view.empty() ? "" : in.name("view"),
+                    .category = in.text("class"),
+                    .split = in.text("split"),
+                    .facts = {.is_cloud = in.is("kind", "cloud", "mesh"),
+                              .has_truth = in.is("truth", "yes", "no"),
+                              .participants = in.count("participants"),
+                              .viewers = in.count("viewers")},
+                    .source = in.text("source")});
+    if (!names.insert(rows.back().name()).second)
+      in.fail(fmt::format("item {} is listed already: keep one of the lines", in_quotes(rows.back().name())));
+  }
+  return rows;
+}
+
+Dataset indexed_dataset(const fs::path& root) {
+  const fs::path file = root / kIndexFile;
+  Dataset dataset{.layout = std::string(kOneForm), .items = {}, .notes = {}, .splits_where = file};
+  for (const IndexRow& row : read_index(file))
+    dataset.items.push_back({.name = row.name(),
+                             .category = row.category,
+                             .mesh = root / file_of_shape(row.shape),
+                             .shape = row.view.empty() ? "" : row.shape,
+                             .view = row.view,
+                             .split = row.split,
+                             .indexed = row.facts});
+  if (dataset.items.empty()) throw InputError(fmt::format("{}: lists no item", file.string()));
+  return dataset;
+}
+
+}  // namespace salbench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// index.csv of a data set in the one form (io/hdf5/one_form.h): a row per unit that is scored, so that items,
+// classes and splits are known before any file is read. docs/hdf5_form.md has its columns.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/shapes/dataset.h"
+
+namespace salbench {
+
+inline constexpr const char* kIndexFile = "index.csv";
+
+struct IndexRow {
+  std::string shape, view = {};  // empty: not scored by views
+  std::string category = {}, split = {};
+  KnownItem facts = {};
+  std::string source = {};  // layout that it was read with
+
+  std::string name() const { return view.empty() ? shape : shape + "_" + view; }
+};
+
+// True of what a file can be called, which leads nowhere else. A view's name is a group's.
+bool may_be_name(std::string_view word);
+
+std::string file_of_shape(const std::string& shape);  // "items/cow.h5"
+
+std::string index_text(const std::vector<IndexRow>& rows);
+
+// Throws InputError that names file and line: a column that is missing, a name that is no file's, an item
+// listed twice.
+std::vector<IndexRow> read_index(const std::filesystem::path& file);
+
+// The data set of a folder with an index. Throws InputError.
+Dataset indexed_dataset(const std::filesystem::path& root);
+
+}  // namespace salbench

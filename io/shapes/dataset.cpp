@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A layout is a list of places: where the shapes may lie and, for each, where their ground truth may. The
+// first place with a shape is taken, so the result depends on the names in the folders alone.
+#include "io/shapes/dataset.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/file.h"
+#include "io/hdf5/one_form_index.h"
+#include "io/shapes/cloud_file.h"
+#include "io/shapes/text_scanner.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Distributions/NAME.val and RawData/NAME_NUMBER.pid below one of these, the first that has either folder.
+struct Place {
+  std::string_view shapes;                   // below the folder that the user names
+  std::vector<std::string_view> truth = {};  // likewise
+};
+
+struct Layout {
+  std::string_view name;
+  bool has_classes;  // those of SHREC'07
+  std::vector<Place> places;
+};
+
+const std::array<Layout, 2>& layouts() {
+  static const std::array<Layout, 2> all = {
+      {{kSchelling,
+        true,
+        {{"Meshes", {"."}},
+         {"SchellingData/Meshes", {"SchellingData"}},
+         {"SchellingData/SchellingData/Meshes", {"SchellingData/SchellingData"}}}},
+       {kFolder, false, {{".", {".", ".."}}}}}};
+  return all;
+}
+
+const Layout& layout_named(std::string_view name) {
+  const auto* const found = std::ranges::find(layouts(), name, &Layout::name);
+  if (found == layouts().end()) throw std::logic_error(fmt::format("{} is no layout of this program", name));
+  return *found;
+}
+
+// The tracks of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
+constexpr std::array<std::string_view, 20> kCategories = {
+    "human",     "cup",   "glasses",  "airplane", "ant",  "chair",      "octopus",
+    "table",     "teddy", "hand",     "plier",    "fish", "bird",       "spring",
+    "armadillo", "buste", "mechanic", "bearing",  "vase", "four-legged"};
+constexpr int kMeshesPerCategory = 20;
+constexpr int kBenchmarkMeshes = static_cast<int>(kCategories.size()) * kMeshesPerCategory;
+
+// 1..400, or 0 for a name that is not such a number.
+int benchmark_number(const std::string& name) {
+  if (name.empty() || name.size() > 3 || name[0] == '0' || !is_digits(name)) return 0;
+  const int number = std::stoi(name);
+  return number <= kBenchmarkMeshes ? number : 0;
+}
+
+std::string category_of(const std::string& name) {
+  const int number = benchmark_number(name);
+  return number == 0 ? std::string()
+                     : std::string(kCategories[static_cast<std::size_t>((number - 1) / kMeshesPerCategory)]);
+}
+
+struct NaturalLess {
+  using is_transparent = void;
+  bool operator()(std::string_view a, std::string_view b) const { return natural_less(a, b); }
+};
+using ItemsByName = std::map<std::string, DatasetItem, NaturalLess>;
+
+fs::path below(const fs::path& root, std::string_view folder) { return (root / folder).lexically_normal(); }
+
+// Files of the folder that are not hidden, in natural order.
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (FolderEntry& entry : list_folder(folder))
+    if (!entry.is_folder && !entry.path.filename().native().starts_with('.'))
+      files.push_back(std::move(entry.path));
+  std::ranges::sort(
+      files, [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
+  return files;
+}
+
+std::vector<fs::path> shapes_in(const fs::path& folder) {
+  std::vector<fs::path> files = files_in(folder);
+  std::erase_if(files, [](const fs::path& file) { return !has_shape_extension(file); });
+  return files;
+}
+
+const Place* first_with_shapes(const fs::path& root, const Layout& layout) {
+  for (const Place& place : layout.places)
+    if (has_shapes(below(root, place.shapes))) return &place;
+  return nullptr;
+}
+
+ItemsByName items_in(const fs::path& folder, bool has_classes, Twins twins, std::vector<std::string>& notes) {
+  std::vector<NamedFile> files;
+  for (const fs::path& file : shapes_in(folder)) files.push_back({file.stem(), file});
+  ItemsByName items;
+  for (const auto& [name, file] : without_twins(files, twins, notes))
+    items.emplace(name,
+                  DatasetItem{.name = name, .category = has_classes ? category_of(name) : "", .mesh = file});
+  return items;
+}
+
+// Adds the ground truth in a folder to its items, and notes what belongs to none.
+void add_truth(const fs::path& folder, ItemsByName& items, std::vector<std::string>& notes) {
+  std::map<std::string, std::string, NaturalLess> without_shape;  // name -> one of its files
+  const auto item_named = [&](const std::string& name, const fs::path& file) {
+    const auto item = items.find(name);
+    if (item != items.end()) return &item->second;
+    without_shape.emplace(name, file);
+    return static_cast<DatasetItem*>(nullptr);
+  };
+  for (const fs::path& file : files_in(folder / "Distributions"))
+    if (file.extension() == ".val")
+      if (DatasetItem* item = item_named(file.stem(), file)) item->saliency = file;
+  for (const fs::path& file : files_in(folder / "RawData")) {
+    if (file.extension() != ".pid") continue;
+    const std::string stem = file.stem();
+    const std::size_t end = stem.rfind('_');
+    if (end == std::string::npos || end == 0 || end + 1 == stem.size() || !is_digits(stem.substr(end + 1)))
+      notes.push_back(fmt::format("{}: is not named NAME_NUMBER.pid and was left out", file.string()));
+    else if (DatasetItem* item = item_named(stem.substr(0, end), file))
+      item->picks.push_back(file);
+  }
+  for (const auto& [name, file] : without_shape)
+    notes.push_back(fmt::format("{}: ground truth without a mesh or point cloud ({})", name, file));
+}
+
+// "261-280, 399"
+std::string ranges(const std::vector<int>& ascending) {
+  std::vector<std::string> parts;
+  for (std::size_t first = 0, last; first < ascending.size(); first = last + 1) {
+    last = first;
+    while (last + 1 < ascending.size() && ascending[last + 1] == ascending[last] + 1) ++last;
+    parts.push_back(first == last ? fmt::format("{}", ascending[first])
+                                  : fmt::format("{}-{}", ascending[first], ascending[last]));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// Notes which meshes of the benchmark are not here; nothing unless all items are meshes of the benchmark.
+void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& notes) {
+  for (const auto& [name, item] : items)
+    if (item.category.empty()) return;
+  std::vector<int> missing;
+  for (int number = 1; number <= kBenchmarkMeshes; ++number)
+    if (!items.contains(std::to_string(number))) missing.push_back(number);
+  if (!missing.empty())
+    notes.push_back(fmt::format("{} of the {} meshes of SHREC'07 are here, without {}", items.size(),
+                                kBenchmarkMeshes, ranges(missing)));
+}
+
+}  // namespace
+
+bool DatasetItem::has_truth() const {
+  if (!problem.empty()) return true;
+  return known() != nullptr ? known()->has_truth : !saliency.empty() || !picks.empty();
+}
+
+fs::path data_folder(const fs::path& root) {
+  const fs::path folder = root.lexically_normal();
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+bool has_shapes(const fs::path& folder) { return !shapes_in(folder).empty(); }
+
+bool fits_layout(const fs::path& root, std::string_view layout) {
+  return layout == kOneForm ? size_of_file(root / kIndexFile).has_value()
+                            : first_with_shapes(root, layout_named(layout)) != nullptr;
+}
+
+std::string places_of(const fs::path& root, std::string_view layout) {
+  std::set<std::string> places;
+  for (const Place& place : layout_named(layout).places) places.insert(below(root, place.shapes));
+  return fmt::format("{}", fmt::join(places, ", "));
+}
+
+Dataset native_dataset(const fs::path& root, std::string_view layout, Twins twins) {
+  if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
+  if (layout == kOneForm) return indexed_dataset(root);
+  const Layout& known = layout_named(layout);
+  const Place* place = first_with_shapes(root, known);
+  if (place == nullptr)
+    throw InputError(fmt::format(
+        "{}: no .off, .obj or .ply meshes found, and no .ply, .pcd or .xyz point clouds; looked in {}: {}",
+        root.string(), layout, places_of(root, layout)));
+  Dataset dataset{.layout = std::string(layout), .items = {}, .notes = {}};
+  ItemsByName items = items_in(below(root, place->shapes), known.has_classes, twins, dataset.notes);
+  if (known.has_classes) note_missing_numbers(items, dataset.notes);
+  for (const std::string_view name : place->truth)
+    if (const fs::path folder = below(root, name);
+        is_folder(folder / "Distributions") || is_folder(folder / "RawData")) {
+      add_truth(folder, items, dataset.notes);
+      break;
+    }
+  for (auto& [name, item] : items) dataset.items.push_back(std::move(item));
+  return dataset;
+}
+
+}  // namespace salbench
