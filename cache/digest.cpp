@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/digest.h"
 
-#include <charconv>
 #include <map>
 #include <vector>
 
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include "stages/core/number.h"
+
 namespace salbench {
 
 std::string Digest::hex() const { return fmt::format("{:016x}{:016x}", high, low); }
 
 std::optional<std::uint64_t> number_from_hex(std::string_view hex) {
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(hex.data(), hex.data() + hex.size(), number, 16);
-  if (error != std::errc() || end != hex.data() + hex.size()) return {};
-  return number;
+  return number_in<std::uint64_t>(hex, 16);
 }
 
 std::optional<Digest> digest_from_hex(std::string_view hex) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "io/shapes/text_scanner.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/number.h"
 
 namespace salbench {
 namespace {
@@ -147,11 +147,8 @@ double number_of(const Table& table, std::size_t row, const Cell& cell) {
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*count);
   const auto& text = std::get<std::string>(cell);
   if (text.empty()) return std::numeric_limits<double>::quiet_NaN();
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw InputError(fmt::format("{}: {} is not a number", place_of_row(table, row), in_quotes(text)));
-  return value;
+  if (const auto value = number_in<double>(text)) return *value;
+  throw InputError(fmt::format("{}: {} is not a number", place_of_row(table, row), in_quotes(text)));
 }
 
 std::string console_cell(const Cell& cell, int decimals) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/hdf5/one_form_index.h"
 
-#include <charconv>
 #include <set>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "io/shapes/text_scanner.h"
 #include "io/table.h"
 #include "stages/core/errors.h"
+#include "stages/core/number.h"
 
 namespace salbench {
 namespace {
@@ -33,11 +33,8 @@ struct IndexReader {
   }
   std::size_t count(std::string_view column) const {
     const std::string digits = text(column);
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
-      fail(fmt::format("{} is {}, expected a whole number", column, in_quotes(digits)));
-    return number;
+    if (const auto number = number_in<std::size_t>(digits)) return *number;
+    fail(fmt::format("{} is {}, expected a whole number", column, in_quotes(digits)));
   }
   // True of the first word, false of the second.
   bool is(std::string_view column, std::string_view yes, std::string_view no) const {

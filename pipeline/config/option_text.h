@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "stages/core/number.h"
 #include "stages/core/options.h"
 
 namespace salbench {
@@ -21,11 +21,11 @@ namespace salbench {
 template <class Number>
 requires std::is_arithmetic_v<Number>
 bool parse_option(std::string_view text, Number& value) {
-  const char* end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stopped != end) return false;
-  if constexpr (std::is_floating_point_v<Number>) return std::isfinite(value);
-  return true;
+  const auto number = number_in<Number>(text);
+  if constexpr (std::is_floating_point_v<Number>)
+    if (number && !std::isfinite(*number)) return false;
+  value = number.value_or(value);
+  return number.has_value();
 }
 
 inline bool parse_option(std::string_view text, bool& value) {

@@ -2,7 +2,6 @@
 #include "pipeline/inputs/inputs.h"
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 #include <fmt/format.h>
@@ -12,18 +11,12 @@
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
 #include "stages/core/errors.h"
+#include "stages/core/number.h"
 #include "stages/core/parallel.h"
 #include "stages/scan/scan.h"
 
 namespace salbench {
 namespace {
-
-std::optional<int> as_number(std::string_view text) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return {};
-  return number;
-}
 
 struct Range {
   int first = 0, last = 0;
@@ -33,7 +26,7 @@ struct Range {
 std::optional<Range> as_range(std::string_view text) {
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos) return {};
-  const auto first = as_number(text.substr(0, dash)), last = as_number(text.substr(dash + 1));
+  const auto first = number_in<int>(text.substr(0, dash)), last = number_in<int>(text.substr(dash + 1));
   if (!first || !last || *first > *last) return {};
   return Range{*first, *last};
 }
@@ -61,7 +54,8 @@ std::set<std::string> selected_names(const ItemChoice& choice, const std::set<st
     }
     const std::size_t before = names.size();
     for (const std::string& name : present)
-      if (const auto number = as_number(name); number && range->first <= *number && *number <= range->last)
+      if (const auto number = number_in<int>(name);
+          number && range->first <= *number && *number <= range->last)
         names.insert(name);
     if (names.size() == before)
       throw ConfigError(

@@ -2,7 +2,6 @@
 #include "stages/metrics/metrics.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,6 +12,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
+#include "stages/core/number.h"
 #include "stages/core/seen.h"
 #include "stages/metrics/roc.h"
 #include "stages/metrics/sampled_roc.h"
@@ -65,9 +65,8 @@ std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options) {
   constexpr std::int32_t kMostSteps = 100000;
   std::vector<std::int32_t> steps;
   for (const std::string& word : options.smoothing) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), steps.emplace_back());
-    if (error != std::errc() || end != word.data() + word.size() || steps.back() < 0 ||
-        steps.back() > kMostSteps)
+    steps.push_back(number_in<std::int32_t>(word).value_or(-1));
+    if (steps.back() < 0 || steps.back() > kMostSteps)
       throw OptionError("smoothing",
                         "has '" + word + "', not a number of steps from 0 to " + std::to_string(kMostSteps));
     if (steps.size() > 1 && steps.back() <= steps.end()[-2])

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+namespace salbench {
+
+// The number that the whole of a text is, as std::from_chars takes it; nothing for any other text, and for a
+// number that the type cannot hold.
+template <class Number, class... Base>
+std::optional<Number> number_in(std::string_view text, Base... base) {
+  Number number{};
+  const char* end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number, base...);
+  return error == std::errc() && stopped == end ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace salbench
