@@ -109,6 +109,17 @@ class BadInput(BadInputTest):
         for path in (self.folder / "partial-report").rglob("*.html"):
             self.assertIn("partial, 3 of 8 shapes", path.read_text(encoding="utf-8"), path)
 
+    def test_tables_that_were_edited_by_hand_are_named_on_every_page(self):
+        for name in ("results.csv", "summary.csv"):
+            with self.subTest(name):
+                out = self.full(f"edited-{name}")
+                self.assertNotIn("changed after conclusions", self.made(out.name))
+                text = (out / name).read_text()
+                (out / name).write_text(text.replace(",0.", ",0.9", 1))
+                self.made(out.name)
+                for path in (self.folder / f"{out.name}-report").rglob("*.html"):
+                    self.assertIn(f"{name} changed after conclusions were drawn", path.read_text(encoding="utf-8"), path)
+
     def test_simulated_participants_have_no_verdicts_and_every_page_says_so(self):
         self.full("simulated", simulated=True)
         index = self.made("simulated")

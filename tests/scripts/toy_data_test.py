@@ -59,7 +59,7 @@ class ToyDataTest(unittest.TestCase):
 
     def test_bench(self):
         config = self.folder / "coarse.yaml"
-        config.write_text("scan: {step_degrees: 2}\n")
+        config.write_text("scan: {step_degrees: 1}\n")
         table = self.printed("bench", "--full", "2", "--rounds", "1", "--config", config, "--work", self.folder / "bench",
                              "--program", PROGRAM)
         self.assertRegex(table, r"^meshes 1,2, 1 threads, 1 rounds\n *what +seconds +all meshes\n *wall +[\d.]+ +[\d.]+\n")

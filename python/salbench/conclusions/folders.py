@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The folders that conclusions read and write: of a run, or of tables of anybody's scores."""
 
+import hashlib
 import json
 import os
 import tempfile
@@ -19,6 +20,7 @@ from salbench.conclusions.scores import read_people, read_results, read_scores, 
 from salbench.conclusions.study import DEFAULT_SEED, Study
 
 CONCLUDED = "conclusions.json"
+SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
 
 
 @dataclass(frozen=True)
@@ -71,8 +73,23 @@ def write_tables(folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None
 
 
 def write_document(folder: Path, document: dict[str, Any]) -> None:
-    """Last of all: who finds it finds all tables that it names."""
-    write(folder / CONCLUDED, json.dumps(document, ensure_ascii=False) + "\n")
+    """Last of all: who finds it finds all tables that it names, and what they were when it was written."""
+    files = digests(folder, (*SCORES, *document["tables"]))
+    write(folder / CONCLUDED, json.dumps({**document, "files": files}, ensure_ascii=False) + "\n")
+
+
+def digests(folder: Path, names: Iterable[str]) -> dict[str, str]:
+    """Of the files that are there."""
+    return {name: hashlib.blake2b((folder / name).read_bytes(), digest_size=16).hexdigest() for name in names if (folder / name).is_file()}
+
+
+def changed(folder: Path) -> list[str]:
+    """Scores and tables that somebody has changed since conclusions were drawn."""
+    try:
+        noted = json.loads((folder / CONCLUDED).read_text(encoding="utf-8"))["files"]
+        return [name for name, digest in digests(folder, noted).items() if digest != noted[name]]
+    except (OSError, ValueError, KeyError, TypeError):  # none were, or not by this version
+        return []
 
 
 def make(folder: Path) -> None:

@@ -71,7 +71,7 @@ class Worker:
         except BrokenPipeError:
             pass
         if status == -signal.SIGXCPU:
-            return f"it took more than {_limits.SECONDS} s: damaged, or too large; write the file again"
+            return f"damaged: reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB; write the file again"
         how = f"crashed (signal {-status}: {signal.strsignal(-status)})" if status < 0 else f"ended with status {status}"
         return f"damaged: the process that reads it {how}; write the file again"
 

@@ -108,6 +108,15 @@ def message(error: BaseException) -> str:
     return f"a defect of salbench, please report it: {type(error).__name__}: {error}"
 
 
+def _seconds(request: dict[str, Any]) -> int:
+    """What the files of a request may take."""
+    paths = {request["path"]} if "path" in request else set()
+    for row in [request["item"]] if "item" in request else request.get("items", []):
+        one = Item.from_json(row)
+        paths |= {file.path for file in one.files} | ({one.native.mesh} if one.native else set()) | {one.how.get("form", "")}
+    return _limits.SECONDS + _limits.SECONDS_PER_MB * (sum(os.path.getsize(path) for path in paths if os.path.isfile(path)) // 1_000_000)
+
+
 def answer(text: bytes, out: bytes) -> None:
     """Writes OUT or OUT.error, or both."""
     made: bytes | None = None
@@ -115,7 +124,7 @@ def answer(text: bytes, out: bytes) -> None:
     try:
         request = json.loads(text)
         of_map = request["do"] in ("values", "map", "maps")
-        _limits.limit(*((_limits.SECONDS_OF_A_MAP, _limits.BYTES_OF_A_MAP) if of_map else ()))
+        _limits.limit(*((_limits.SECONDS_OF_A_MAP, _limits.BYTES_OF_A_MAP) if of_map else (_seconds(request),)))
         answered = ANSWERS[request["do"]](request)
         made, problems = answered if isinstance(answered, tuple) else (answered, [])
     except Exception as error:  # the file of one item must not end the process that reads the others

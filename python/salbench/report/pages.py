@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from salbench.conclusions import folders
 from salbench.pages import rendering
 from salbench.pages.viewer_parts import three_js
 from salbench.report.folder import Folder
@@ -51,4 +52,7 @@ def banners(results: Results) -> list[str]:
         said.append(rendering.SIMULATED)
     if results.state != "finished":
         said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
+    if changed := folders.changed(results.folder):
+        said.append(f"{', '.join(changed)} changed after conclusions were drawn: what stands here is not all of one run. "
+                    "salbench conclude draws them again.")
     return said + results.unusable
