@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PCL's triangulation compares angles that it has from atan2f, to the last bit, so that its faces depend on
 // the rounding of that function. glibc rounds it correctly since 2.41 (Debian 13), and differently before.
-// This definition takes the place of the C library's in whatever is linked with it, PCL's templates included:
-// with the bits of glibc up to 2.40, whose formulas are those of fdlibm [sun1993], surfaces are the same with
-// all of them.
+// With this one, which surface.cpp puts in its place, surfaces are the same with all of them.
+#include "stages/surface/atan2f.h"
+
 #include <array>
 #include <bit>
 #include <cmath>
@@ -77,7 +77,7 @@ float upper_angle(float y, float x) {
 
 }  // namespace
 
-extern "C" float atan2f(float y, float x) noexcept {
+float salbench_atan2f(float y, float x) noexcept {
   if (std::isnan(x) || std::isnan(y)) return x + y;
   return std::copysign(upper_angle(std::fabs(y), x), y);
 }

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PCL's triangulation works in float, and its limits are lengths. The points are passed relative to their
 // mean and in units of the median spacing, so that neither the position nor the unit of the mesh matters.
+//
+// Before any header names it: PCL's std::atan2 of floats is to be atan2f.h's, under the name that it has
+// there.
+extern "C" float atan2f(float y, float x) noexcept __asm__("salbench_atan2f");
+
 #include "stages/surface/surface.h"
 
 #include <algorithm>
@@ -12,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-// PCL's triangulation is compiled here, so that it takes our atan2f wherever this file is linked, and rounds
-// as the rest does: Debian's own for arm64 fuses products and sums.
+// PCL's triangulation is compiled here, so that it takes our atan2f, and rounds as the rest does: Debian's
+// own for arm64 fuses products and sums.
 #define PCL_NO_PRECOMPILE
 #include <flann/algorithms/dist.h>
 #include <flann/algorithms/kdtree_single_index.h>

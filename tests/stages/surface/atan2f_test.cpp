@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/surface/atan2f.h"
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -12,7 +14,7 @@
 namespace salbench {
 namespace {
 
-float (*volatile angle)(float, float) = ::atan2f;  // volatile: the compiler may not compute it itself
+float angle(float y, float x) { return salbench_atan2f(y, x); }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
