@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -82,7 +83,11 @@ PlanReport plan_of(const Setup& setup) {
                     .free = free_space(existing_folder(setup.cache)),
                     .locks = locks_hold(setup.cache / kScratchFolder)};
   for (const StageCount& count : report.stages) report.open += count.compute + count.wait;
-  for (const FolderStore::Usage& stage : store.usage()) report.usage[stage.stage] = stage;
+  for (const FolderStore::Usage& used : store.usage()) {
+    report.usage[used.stage] = used;
+    if (std::ranges::find(report.stages, used.stage, &StageCount::stage) == report.stages.end())
+      report.stages.push_back({.stage = used.stage, .reasons = {}});  // of another configuration, or pictures
+  }
   if (std::string state = state_of_results(setup.output); !state.empty()) report.last_run = std::move(state);
   return report;
 }
@@ -146,6 +151,7 @@ ExitStatus print_plan(const Arguments& arguments, bool graph, ReportFormat forma
   if (format == ReportFormat::dot && !graph)
     throw ConfigError("--format dot: only a graph has that form; give --graph, too");
   if (graph) {
+    if (!arguments.output.empty()) throw ConfigError("--out: a graph names no results; leave out --graph");
     const Graph nodes = graph_of_run(arguments);
     print_report(format, "graph", graph_json(nodes),
                  format == ReportFormat::dot ? graph_dot(nodes) : graph_text(nodes));

@@ -145,8 +145,6 @@ std::string unknown_word(const CLI::App& app, std::span<const char* const> words
   }
   for (const PackageSubcommand& subcommand : package_subcommands()) known.push_back(subcommand.name);
   if (words.size() < 2 || std::string_view(words[1]).starts_with("-")) return {};
-  for (const auto& [name, line] : kFormerNames)
-    if (name == words[1]) return fmt::format("there is no {} any more: salbench {}", name, line);
   return fmt::format("there is no subcommand '{}'; {}", words[1],
                      did_you_mean(words[1], known, "salbench --help names them"));
 }
@@ -178,6 +176,9 @@ int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> 
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   if (words.size() > 1 && is_of_package(words[1])) become_package(words.subspan(1));
+  for (const auto& [name, line] : kFormerNames)
+    if (words.size() > 1 && name == words[1])
+      throw ConfigError(fmt::format("there is no {} any more: salbench {}", name, line));
   Arguments arguments;
   arguments.command_line = joined(words);
   std::string examples;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Job counts per stage, all levels together, for `salbench plan` and `status` and the record of a run.
+// Job counts per stage, all levels together, for `salbench plan` and the record of a run.
 #pragma once
 
 #include <functional>

@@ -63,7 +63,7 @@ class JsonTest(unittest.TestCase):
 
     def salbench(self, subcommand, *further, status=0, preload=None):
         folders = ["--data", self.folder / "data", "--cache", self.cache]
-        if subcommand in ("run", "plan"):
+        if subcommand in ("run", "plan") and "--graph" not in further:
             folders += ["--out", self.folder / "out"]
         if subcommand == "run":
             folders += ["--threads", "1"]

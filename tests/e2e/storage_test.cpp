@@ -151,9 +151,11 @@ TEST_P(ReadOnlyCache, ThatIsCompleteIsAllThatIsNeeded) {
 TEST_P(ReadOnlyCache, ThatSomethingIsToBeAddedToIsNamedBeforeTheWorkBegins) {
   const std::string results = toy_.results();
   toy_.configure("dataset: {scans: false}\nmodels: {PS: , RS: , CS: }\n");
-  for (const std::vector<std::string>& call : {std::vector<std::string>{"run"},
-                                               {"run", "--shard", "1/2"},
-                                               {"export", "--to", (toy_ / "all.h5").string()}}) {
+  for (const std::vector<std::string>& call :
+       {std::vector<std::string>{"run"},
+        {"run", "--shard", "1/2"},
+        {"export", "--format", "maps", "--to", (toy_ / "maps").string()},
+        {"export", "--to", (toy_ / "all.h5").string()}}) {
     const Outcome outcome = salbench(call[0], {call.begin() + 1, call.end()});
     EXPECT_EQ(outcome.status, 3) << call[0];
     EXPECT_THAT(

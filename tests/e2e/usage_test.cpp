@@ -206,10 +206,15 @@ TEST(Usage, PlanChangesNothing) {
 
 TEST(Usage, FormerNamesSayWhatHasTakenTheirPlace) {
   for (const char* name : {"convert", "doctor", "evaluate", "graph", "maps", "pictures", "power", "status"}) {
-    const Outcome former = run_process({SALBENCH_PROGRAM, name, "x.yaml", "--to", "y"});
-    EXPECT_EQ(former.status, 2) << name;
-    EXPECT_THAT(former.err,
-                testing::StartsWith(fmt::format("error: there is no {} any more: salbench ", name)));
+    for (const std::vector<std::string>& further :
+         {std::vector<std::string>{"x.yaml", "--to", "y"}, {"--help"}}) {
+      std::vector<std::string> words = {SALBENCH_PROGRAM, name};
+      words.insert(words.end(), further.begin(), further.end());
+      const Outcome former = run_process(words);
+      EXPECT_EQ(former.status, 2) << name;
+      EXPECT_THAT(former.err,
+                  testing::StartsWith(fmt::format("error: there is no {} any more: salbench ", name)));
+    }
   }
 }
 
@@ -244,6 +249,7 @@ TEST(Usage, GraphCountsWhatEachNodeHasToDo) {
                                    "of meshes\n"));
   EXPECT_THAT(lines({"--format", "dot"}), testing::StartsWith("digraph salbench {"));
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "plan", toy.config().string(), "--format", "dot"}).status, 2);
+  EXPECT_EQ(toy.salbench("plan", {"--graph", "--out", (toy / "x").string()}).status, 2);
   EXPECT_THAT(run_process({SALBENCH_PROGRAM, "plan", toy.config().string(), "--graph"}).out,
               testing::Not(HasSubstr("to do")));
 }

@@ -54,7 +54,8 @@ std::vector<std::string> Workspace::command(const std::string& verb,
   };
   add_default("--data", data().string());
   add_default("--cache", cache().string());
-  add_default("--out", out().string());
+  if (std::find(further.begin(), further.end(), "--graph") == further.end())
+    add_default("--out", out().string());
   add_default("--threads", "2");
   words.insert(words.end(), further.begin(), further.end());
   return words;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a leaderboard says: every submission checked, those that pass scored in one run, as evaluate scores maps, and conclusions from their scores.
+"""What a leaderboard says: every submission checked, those that pass scored in one run, as a run scores maps, and conclusions from their scores.
 
 Models are compared on the items that none of them was trained on. A model that has seen some stands beside the ranking.
 """
