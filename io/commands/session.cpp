@@ -51,15 +51,21 @@ Membership membership_of(const char* process) {
 
 }  // namespace
 
+// The group of the first process is signalled unseen: one that is always about to replace itself may be in no
+// listing of /proc.
 bool signal_session(pid_t session, int signal) {
-  std::set<pid_t> groups;
+  ::kill(-session, signal);
+  std::set<pid_t> signalled = {session};
+  bool any = false;
   const std::unique_ptr<DIR, int (*)(DIR*)> listed(::opendir("/proc"), ::closedir);
   while (const dirent* entry = listed ? ::readdir(listed.get()) : nullptr) {
     if (std::atol(entry->d_name) <= 0) continue;
     const Membership found = membership_of(entry->d_name);
-    if (found.session == session && groups.insert(found.group).second) ::kill(-found.group, signal);
+    if (found.session != session) continue;
+    any = true;
+    if (signalled.insert(found.group).second) ::kill(-found.group, signal);
   }
-  return !groups.empty();
+  return any;
 }
 
 void kill_session(pid_t session) {

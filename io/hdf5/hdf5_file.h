@@ -29,7 +29,7 @@ Bytes hdf5_image(const Hdf5Content& content);
 // image is not such a file.
 Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name);
 
-// Of the library that is loaded, which need not be the one that the program was built with.
+// Versions of a library: of the headers that the program was built with, and of the one that is loaded.
 struct LibraryVersion {
   std::string built, loaded;
 };

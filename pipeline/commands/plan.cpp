@@ -109,7 +109,7 @@ std::string table_text(const PlanReport& report) {
   return aligned(table, 1);
 }
 
-// What the run will take of the disk, and what is wrong with it.
+// Disk that the run needs and that is free, and advice where it does not suffice or has no locks.
 std::string disk_text(const PlanReport& report) {
   const std::string left = report.free.bytes < FreeSpace::kNoLimit
                                ? fmt::format("{} free", bytes_text(report.free.bytes))
@@ -132,7 +132,7 @@ std::string text_of(const PlanReport& report) {
                      report.open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : "");
 }
 
-// Where nothing names a data set, nor anything of one: the rules alone.
+// Without a data set, and options about one, the graph has the rules alone and counts no jobs.
 Graph graph_of_run(const Arguments& arguments) {
   const Config config = read_config(configuration(arguments.config), "");
   const bool of_data = arguments.split || !(arguments.data + arguments.cache + arguments.items +
