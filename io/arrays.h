@@ -47,6 +47,11 @@ Array column(std::string name, std::vector<T> values, std::string unit, std::str
   return {std::move(name), {n}, std::move(values), std::move(unit), std::move(description)};
 }
 
+// How files have a T: `kind`, the name of the layout, and the functions `Arrays arrays(const T&)` and
+// `T read(const Arrays&)`. Each type that a rule makes has one.
+template <class T>
+struct ArrayForm;
+
 const Array* find_array(const Arrays& arrays, std::string_view name);  // nullptr if there is none
 
 using AttributeValue = std::variant<std::string, double, std::int64_t>;

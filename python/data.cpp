@@ -29,7 +29,7 @@ namespace py = pybind11;
 
 std::shared_ptr<const Loaded> load(const std::any& source) {
   const DatasetItem& item = item_of(source);
-  const std::vector<FileData> of_shape = read_all({mesh_file_of(item)});
+  const std::vector<FileData> of_shape = read_all(FilesOfUnit{mesh_file_of(item)});
   const Files shape_file{source, item.name, of_shape};
   const std::vector<FileData> of_truth = read_all(truth_files_of(item));
   const Files truth_files{source, item.name, of_truth};
@@ -182,7 +182,7 @@ py::dict native_form(const std::string& name, const std::string& mesh, std::vect
   const std::any source = native_item(name, mesh, std::move(saliency), std::move(picks));
   return fields_of(computed(1, [&] {
     const DatasetItem& item = item_of(source);
-    const std::vector<FileData> of_shape = read_all({mesh_file_of(item)});
+    const std::vector<FileData> of_shape = read_all(FilesOfUnit{mesh_file_of(item)});
     const std::vector<FileData> of_truth = read_all(truth_files_of(item));
     const Files shape_file{source, name, of_shape}, truth_files{source, name, of_truth};
     ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};

@@ -28,11 +28,11 @@ constexpr std::array<const char*, 4> kPartNames = {"points", "normals", "faces",
 Rule rule_of(const Model& model, Level level) {
   RuleTable table;
   model.add_map(table, {.level = level,
-                        .points = Output<Points>(kPoints),
+                        .points = Output<PointCloud>(kPoints),
                         .normals = Output<Normals>(kNormals),
-                        .surface = Output<Surface>(kSurface),
+                        .surface = Output<Faces>(kSurface),
                         .fpfh = Output<Descriptors>(kFpfh)});
-  return table[0];
+  return table.rules().front();
 }
 
 // A shape whose other parts are made when they are asked for, with the default options of a run.

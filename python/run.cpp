@@ -84,15 +84,15 @@ ScalarField call(const FunctionModel& model, const std::string& id, const py::ob
 }
 
 // The name of a shape is part of what the function is given, and so of the key.
-Output<Map> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& model,
-                         Caller& caller) {
+Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& model,
+                                 Caller& caller) {
   const auto reads = [&](std::string_view part) {
     return std::ranges::find(model.reads, part) != model.reads.end();
   };
   RuleHead head = stage_of(model.name, Role::map, model.version);
   head.limit = 1;
   const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
-  return table.add<Map>(
+  return table.add(
       shape.level, head,
       [&model, &caller, reads_faces = reads("faces")](Points points, const Normals* normals, Surface faces,
                                                       const Descriptors* fpfh, const RandomSource& random,

@@ -98,7 +98,7 @@ std::optional<std::size_t> point_count(Session& session, const std::string& item
         for (std::size_t shape = 0; shape < rules.size(); ++shape)
           if (has_role(rules[shape], Role::shape) && rules[shape].over == job->unit.level)
             if (const ValuePtr value = known_value(session, Job{shape, job->unit}))
-              return Part<Points>::of(*value).size();
+              return points_in(*value).size();
   return {};
 }
 

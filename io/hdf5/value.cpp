@@ -48,13 +48,17 @@ std::vector<Triple> triples_of(const Arrays& arrays, std::string_view name) {
   return rows;
 }
 
-// --- the two directions of each kind ----------------------------------------------------------------------
+template <class T>
+struct Is {};
+
+// --- the two directions of each kind
+// ----------------------------------------------------------------------
 
 Arrays arrays_of(const Mesh& mesh) {
   return {triples("vertices", mesh.vertices, kMeshLength, "positions, n x 3"),
           triples("faces", mesh.faces, "1", "0-based vertex indices, f x 3, counter-clockwise")};
 }
-Value mesh_from(const Arrays& arrays) {
+Mesh from(const Arrays& arrays, Is<Mesh>) {
   return Mesh{triples_of<Vec3>(arrays, "vertices"), triples_of<Triangle>(arrays, "faces")};
 }
 
@@ -63,19 +67,19 @@ Arrays arrays_of(const Scan& scan) {
           column<double>("camera", {scan.camera.x(), scan.camera.y(), scan.camera.z()}, kMeshLength,
                          "centre of projection in the mesh's coordinates")};
 }
-Value scan_from(const Arrays& arrays) {
+Scan from(const Arrays& arrays, Is<Scan>) {
   const auto cameras = triples_of<Vec3>(arrays, "camera");
   if (cameras.size() != 1) throw InputError("the data set 'camera' is not one position");
   return Scan{triples_of<Vec3>(arrays, "points"), cameras[0]};
 }
 
 Arrays arrays_of(const Normals& normals) { return {triples("normals", normals, "1", "unit normals, n x 3")}; }
-Value normals_from(const Arrays& arrays) { return triples_of<Vec3>(arrays, "normals"); }
+Normals from(const Arrays& arrays, Is<Normals>) { return triples_of<Vec3>(arrays, "normals"); }
 
 Arrays arrays_of(const Faces& faces) {
   return {triples("faces", faces, "1", "0-based point indices of a partial mesh, f x 3")};
 }
-Value faces_from(const Arrays& arrays) { return triples_of<Triangle>(arrays, "faces"); }
+Faces from(const Arrays& arrays, Is<Faces>) { return triples_of<Triangle>(arrays, "faces"); }
 
 Arrays arrays_of(const Descriptors& d) {
   return {
@@ -83,7 +87,7 @@ Arrays arrays_of(const Descriptors& d) {
       scalar("radius", d.radius, kMeshLength, "support radius; 0 where neighbours were counted"),
       scalar("neighbours", d.neighbours, "1", "nearest points, itself included; 0 where a radius was used")};
 }
-Value descriptors_from(const Arrays& arrays) {
+Descriptors from(const Arrays& arrays, Is<Descriptors>) {
   return Descriptors{values_of<float>(arrays, "fpfh"), scalar_of<double>(arrays, "radius"),
                      scalar_of<std::int32_t>(arrays, "neighbours")};
 }
@@ -91,7 +95,7 @@ Value descriptors_from(const Arrays& arrays) {
 Arrays arrays_of(const ScalarField& field) {
   return {column("saliency", field, "1", "one value per point, larger = more salient")};
 }
-Value field_from(const Arrays& arrays) { return values_of<double>(arrays, "saliency"); }
+ScalarField from(const Arrays& arrays, Is<ScalarField>) { return values_of<double>(arrays, "saliency"); }
 
 // Picks of all participants lie in one column; offsets[k] .. offsets[k + 1] are participant k's.
 Arrays arrays_of(const GroundTruth& truth) {
@@ -117,7 +121,7 @@ Arrays arrays_of(const GroundTruth& truth) {
                     "saliency per viewer and point; NaN where the viewer did not see the point"});
   return arrays;
 }
-Value ground_truth_from(const Arrays& arrays) {
+GroundTruth from(const Arrays& arrays, Is<GroundTruth>) {
   GroundTruth truth{
       values_of<double>(arrays, "saliency"), {}, scalar_of<std::int32_t>(arrays, "simulated") != 0};
   const auto& picks = values_of<std::int32_t>(arrays, "picks");
@@ -140,7 +144,7 @@ Arrays arrays_of(const Histogram& histogram) {
   return {column<double>("density", {histogram.begin(), histogram.end()}, "1",
                          "density over 100 bins of [0, 1]")};
 }
-Value histogram_from(const Arrays& arrays) {
+Histogram from(const Arrays& arrays, Is<Histogram>) {
   const auto& values = values_of<double>(arrays, "density");
   Histogram histogram{};
   if (values.size() != histogram.size())
@@ -184,11 +188,11 @@ HumanCurve curve_of(const Arrays& arrays) {
   }
   return curve;
 }
-Value human_curve_from(const Arrays& arrays) { return curve_of(arrays); }
+HumanCurve from(const Arrays& arrays, Is<HumanCurve>) { return curve_of(arrays); }
 
 // As a curve has one row per group size, the table has one per shape.
 Arrays arrays_of(const ScoreTable& table) { return arrays_of(table.rows); }
-Value score_table_from(const Arrays& arrays) { return ScoreTable{curve_of(arrays)}; }
+ScoreTable from(const Arrays& arrays, Is<ScoreTable>) { return ScoreTable{curve_of(arrays)}; }
 
 // A curve of one point, without the dimension of the group size.
 Arrays arrays_of(const Scores& scores) {
@@ -196,7 +200,7 @@ Arrays arrays_of(const Scores& scores) {
   for (Array& array : arrays) array.shape.erase(array.shape.begin());
   return arrays;
 }
-Value scores_from(const Arrays& arrays) {
+Scores from(const Arrays& arrays, Is<Scores>) {
   const HumanCurve curve = curve_of(arrays);
   if (curve.size() != 1) throw InputError("the data sets 'scores' and 'counts' have other sizes");
   return curve[0];
@@ -234,7 +238,7 @@ const std::vector<T>& pixels_of(const Arrays& arrays, std::string_view name, std
   return values;
 }
 
-Value picture_from(const Arrays& arrays) {
+Picture from(const Arrays& arrays, Is<Picture>) {
   const Array* primitive = find_array(arrays, "primitive");
   if (primitive == nullptr || primitive->shape.size() != 2 || primitive->shape[0] != primitive->shape[1])
     throw InputError("the data set 'primitive' is not a square of pixels");
@@ -262,7 +266,7 @@ Arrays arrays_of(const PointCloud& cloud) {
               "where the points were seen from, 1 x 3; empty if unknown"),
       column("dropped", cloud.dropped, "1", "0-based numbers in the file of the points without a position")};
 }
-Value cloud_from(const Arrays& arrays) {
+PointCloud from(const Arrays& arrays, Is<PointCloud>) {
   PointCloud cloud{.points = triples_of<Vec3>(arrays, "points"),
                    .normals = triples_of<Vec3>(arrays, "normals"),
                    .dropped = values_of<std::int32_t>(arrays, "dropped")};
@@ -286,7 +290,7 @@ Arrays arrays_of(const CentreDensity& density) {
       bins("points", density.points, "share of the points by that distance"),
       scalar("shapes", density.shapes, "1", "shapes that these are sums over")};
 }
-Value centre_density_from(const Arrays& arrays) {
+CentreDensity from(const Arrays& arrays, Is<CentreDensity>) {
   CentreDensity density;
   for (auto [name, bins] : {std::pair("marked", &density.marked), {"points", &density.points}}) {
     const auto& values = values_of<double>(arrays, name);
@@ -300,44 +304,53 @@ Value centre_density_from(const Arrays& arrays) {
 }
 
 Arrays arrays_of(const ShapeInForm& shape) { return one_form_arrays(shape); }
-Value shape_in_form_from(const Arrays& arrays) { return shape_in_arrays(arrays, "the one form"); }
+ShapeInForm from(const Arrays& arrays, Is<ShapeInForm>) { return shape_in_arrays(arrays, "the one form"); }
 
-struct Kind {
-  std::string_view name;
-  Value (*read)(const Arrays&);
-};
+// --- names ----------------------------------------------------------------------------------------------
 
-// In the order of Value's alternatives.
-constexpr std::array<Kind, std::variant_size_v<Value>> kKinds = {{
-    {"mesh", mesh_from},
-    {"scan", scan_from},
-    {"normals", normals_from},
-    {"faces", faces_from},
-    {"descriptors", descriptors_from},
-    {"field", field_from},
-    {"ground_truth", ground_truth_from},
-    {"histogram", histogram_from},
-    {"scores", scores_from},
-    {"human_curve", human_curve_from},
-    {"picture", picture_from},
-    {"point_cloud", cloud_from},
-    {"score_table", score_table_from},
-    {"centre_density", centre_density_from},
-    {"shape_in_form", shape_in_form_from},
-}};
+constexpr std::string_view kind_of(Is<Mesh>) { return "mesh"; }
+constexpr std::string_view kind_of(Is<Scan>) { return "scan"; }
+constexpr std::string_view kind_of(Is<Normals>) { return "normals"; }
+constexpr std::string_view kind_of(Is<Faces>) { return "faces"; }
+constexpr std::string_view kind_of(Is<Descriptors>) { return "descriptors"; }
+constexpr std::string_view kind_of(Is<ScalarField>) { return "field"; }
+constexpr std::string_view kind_of(Is<GroundTruth>) { return "ground_truth"; }
+constexpr std::string_view kind_of(Is<Histogram>) { return "histogram"; }
+constexpr std::string_view kind_of(Is<Scores>) { return "scores"; }
+constexpr std::string_view kind_of(Is<HumanCurve>) { return "human_curve"; }
+constexpr std::string_view kind_of(Is<Picture>) { return "picture"; }
+constexpr std::string_view kind_of(Is<PointCloud>) { return "point_cloud"; }
+constexpr std::string_view kind_of(Is<ScoreTable>) { return "score_table"; }
+constexpr std::string_view kind_of(Is<CentreDensity>) { return "centre_density"; }
+constexpr std::string_view kind_of(Is<ShapeInForm>) { return "shape_in_form"; }
 
 }  // namespace
 
-Arrays arrays_from(const Value& value) {
-  return std::visit([](const auto& alternative) { return arrays_of(alternative); }, value);
+template <Storable T>
+const std::string_view ArrayForm<T>::kind = kind_of(Is<T>{});
+template <Storable T>
+Arrays ArrayForm<T>::arrays(const T& value) {
+  return arrays_of(value);
+}
+template <Storable T>
+T ArrayForm<T>::read(const Arrays& arrays) {
+  return from(arrays, Is<T>{});
 }
 
-std::string_view kind_of(const Value& value) { return kKinds[value.index()].name; }
-
-Value value_from(std::string_view kind, const Arrays& arrays) {
-  for (const Kind& known : kKinds)
-    if (known.name == kind) return known.read(arrays);
-  throw InputError(fmt::format("the kind '{}' is not known to this version", kind));
-}
+template struct ArrayForm<Mesh>;
+template struct ArrayForm<Scan>;
+template struct ArrayForm<Normals>;
+template struct ArrayForm<Faces>;
+template struct ArrayForm<Descriptors>;
+template struct ArrayForm<ScalarField>;
+template struct ArrayForm<GroundTruth>;
+template struct ArrayForm<Histogram>;
+template struct ArrayForm<Scores>;
+template struct ArrayForm<HumanCurve>;
+template struct ArrayForm<Picture>;
+template struct ArrayForm<PointCloud>;
+template struct ArrayForm<ScoreTable>;
+template struct ArrayForm<CentreDensity>;
+template struct ArrayForm<ShapeInForm>;
 
 }  // namespace salbench

@@ -3,8 +3,8 @@
 // data sets in an artefact (docs/data_dictionary.md).
 #pragma once
 
+#include <concepts>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "io/arrays.h"
@@ -21,14 +21,19 @@ struct ScoreTable {
   std::vector<Scores> rows;  // in the order of the shapes
 };
 
-using Value = std::variant<Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                           Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm>;
+template <class T, class... Known>
+concept OneOf = (std::same_as<T, Known> || ...);
 
-Arrays arrays_from(const Value& value);
+template <class T>
+concept Storable = OneOf<T, Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
+                         Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm>;
 
-std::string_view kind_of(const Value& value);  // "mesh", "scan", ... : the name of the layout
-
-// The inverse, exact to the bit. Throws InputError if an array is missing or has another shape or type.
-Value value_from(std::string_view kind, const Arrays& arrays);
+template <Storable T>
+struct ArrayForm<T> {
+  static const std::string_view kind;  // "mesh", "scan", ...
+  static Arrays arrays(const T& value);
+  // The inverse, exact to the bit. Throws InputError if an array is missing or has another shape or type.
+  static T read(const Arrays& arrays);
+};
 
 }  // namespace salbench

@@ -63,30 +63,26 @@ StageNames selected_stages(const std::string& list, const Rules& rules) {
 
 // --- shapes -----------------------------------------------------------------------------------------------
 
-// Gives a shape the part of it that a stage's value holds. The value must outlive the shape.
-struct Addition {
-  ShapeWithFields& shape;
-  const std::string& stage;
-
-  void operator()(const Mesh& mesh) const {
-    shape.points = mesh.vertices;
-    shape.faces = mesh.faces;
+// Gives a shape the part of it that a stage's value holds; other values are not per point. The value must
+// outlive the shape.
+void add_part(ShapeWithFields& shape, const std::string& stage, const std::any& value) {
+  if (const auto* mesh = value_if<Mesh>(value)) {
+    shape.points = mesh->vertices;
+    shape.faces = mesh->faces;
   }
-  void operator()(const Scan& scan) const { shape.points = scan.points; }
-  void operator()(const PointCloud& cloud) const { shape.points = cloud.points; }
-  void operator()(const Normals& normals) const { shape.normals = normals; }
-  void operator()(const Faces& faces) const { shape.faces = faces; }
-  void operator()(const ScalarField& field) const { shape.fields.push_back({item_label(stage), field}); }
-  void operator()(const GroundTruth& truth) const {
-    if (!truth.saliency.empty()) shape.fields.push_back({"ground_truth", truth.saliency});
+  if (const auto* scan = value_if<Scan>(value)) shape.points = scan->points;
+  if (const auto* cloud = value_if<PointCloud>(value)) shape.points = cloud->points;
+  if (const auto* normals = value_if<Normals>(value)) shape.normals = *normals;
+  if (const auto* faces = value_if<Faces>(value)) shape.faces = *faces;
+  if (const auto* field = value_if<ScalarField>(value)) shape.fields.push_back({item_label(stage), *field});
+  if (const auto* truth = value_if<GroundTruth>(value)) {
+    if (!truth->saliency.empty()) shape.fields.push_back({"ground_truth", truth->saliency});
     ScalarField picks(shape.points.size());
-    for (const auto& participant : truth.picks)
+    for (const auto& participant : truth->picks)
       for (const std::int32_t point : participant) ++picks[static_cast<std::size_t>(point)];
     shape.fields.push_back({"picks", std::move(picks)});
   }
-  template <class Other>
-  void operator()(const Other&) const {}  // not per point
-};
+}
 
 // Rules stand in the order of their inputs: the points come first.
 bool write_shape(Session& session, Unit unit, ShapeFormat format, const StageNames& stages,
@@ -100,7 +96,7 @@ bool write_shape(Session& session, Unit unit, ShapeFormat format, const StageNam
     if (!run.decision(job).known() || (!has_role(rule, Role::shape) && !stages.contains(rule.stage)))
       continue;
     values.push_back(run.resolver.value(job));
-    std::visit(Addition{shape, rule.stage}, value_of(*values.back()));
+    add_part(shape, rule.stage, *values.back());
   }
   if (shape.points.empty()) return false;
   write_file(folder / fmt::format("{}.{}", run.units().name(unit), name_of(format)),

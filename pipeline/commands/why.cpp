@@ -43,7 +43,7 @@ std::optional<Job> input_named(const Project& project, const Job& job, const std
 
 // "mesh file .off" -> "mesh file 52.off": keys hold no names of files. One that is read no more keeps its
 // name.
-std::string source_text(const FilesOfUnit& files, const std::string& name) {
+std::string source_text(std::span<const File> files, const std::string& name) {
   const auto file = std::ranges::find(files, name, &File::name);
   return file == files.end() || file->title.empty() ? name : file->title;
 }

@@ -11,6 +11,8 @@
 // UnitPlace, kName for a UnitName, kRemark for a Remark, a FilesOf for Files. Anything else does not compile.
 #pragma once
 
+#include <any>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -59,33 +61,47 @@ struct Members {
 
 // --- arguments: parameters that each fits, marks that it makes in the rule, and its value ----------
 
+// What a rule makes has a layout; a view of it has none.
 template <class T>
-struct Output {
-  static constexpr std::size_t kNotRead = static_cast<std::size_t>(-1);
-  std::size_t rule = kNotRead;
+concept Result = requires {
+  ArrayForm<T>::kind;
+};
 
+// Stands for what a rule makes, or for a view of it.
+template <class T>
+class Output {
+ public:
   Output() = default;
-  explicit Output(std::size_t the_rule) : rule(the_rule) {}
-  template <class Other>
-  requires kProvides<T, typename Tagged<Other>::Type> Output(const Output<Other>& other)
-      : rule(other.rule) {}  // NOLINT: a Mesh has Points
+  explicit Output(std::size_t rule) : rule_(rule) {}
+  template <class Made>
+  requires(!std::is_same_v<Made, T> && SeenIn<T, Made>)
+      Output(const Output<Made>& made)  // NOLINT: a Mesh has Points
+      : rule_(made.rule()),
+        view_([](const std::any& value) { return View<T, Made>::of(value_as<Made>(value)); }) {}
 
-  using Type = typename Tagged<T>::Type;
+  std::optional<std::size_t> rule() const { return rule_; }
+
   template <class Parameter>
-  static constexpr bool fits = kProvides<Parameter, Type> || std::is_same_v<Parameter, Members<Type>>;
+  static constexpr bool fits = SeenIn<Parameter, T> || std::is_same_v<Parameter, Members<T>>;
   void describe(Rule& reader) const {
-    if (rule != kNotRead) reader.inputs.push_back(rule);
+    if (rule_) reader.inputs.push_back(*rule_);
   }
   template <class Parameter>
   decltype(auto) take(const JobInputs& in, std::size_t& next) const {
-    if constexpr (std::is_same_v<Parameter, Members<Type>>) {
+    if constexpr (std::is_same_v<Parameter, Members<T>>) {
       return Parameter{in.members, in.member};
-    } else {
-      if constexpr (!std::is_reference_v<decltype(Part<Parameter>::of(*in.values[0]))>)  // a view
-        if (rule == kNotRead) return Parameter{};
-      return Part<Parameter>::of(*in.values[next++]);
+    } else if constexpr (!Result<T>) {
+      return rule_ ? view_(*in.values[next++]) : T{};
+    } else if constexpr (std::is_same_v<Parameter, T>) {
+      return value_as<T>(*in.values[next++]);
+    } else {  // a view, or a pointer
+      return rule_ ? View<Parameter, T>::of(value_as<T>(*in.values[next++])) : Parameter{};
     }
   }
+
+ private:
+  std::optional<std::size_t> rule_;       // nothing: it is not read
+  T (*view_)(const std::any&) = nullptr;  // of a view
 };
 
 // Otherwise a view, or a pointer, that is empty.
@@ -187,38 +203,42 @@ class RuleTable {
  public:
   explicit RuleTable(Rules rules = {}) : rules_(std::move(rules)) {}
 
-  // Adds the rule that a function makes of its arguments; Tag tells its output from others of its type.
-  template <class Tag = void, class Function, class... Arguments>
+  // Adds the rule that a function makes of its arguments.
+  template <class Function, class... Arguments>
   auto add(Level over, RuleHead head, const Function& function, const Arguments&... arguments) {
-    return add_rule<Tag>(over, std::move(head), std::function(function), arguments...);
+    return add_rule(over, std::move(head), std::function(function), arguments...);
   }
-  Rule& operator[](std::size_t rule) { return rules_[rule]; }
+  // What a rule makes is known, and it reads nothing.
+  template <class T>
+  void give(const Output<T>& output, T value) {
+    Rule& rule = rules_.at(output.rule().value());
+    rule.given = held(std::move(value));
+    rule.inputs.clear();
+  }
   const Rules& rules() const { return rules_; }
   Rules take() && { return std::move(rules_); }
 
  private:
-  template <class Tag, class Result, class... Parameters, class... Arguments>
-  auto add_rule(Level over, RuleHead head, const std::function<Result(Parameters...)>& function,
-                const Arguments&... arguments) {
+  template <class Made, class... Parameters, class... Arguments>
+  Output<Made> add_rule(Level over, RuleHead head, const std::function<Made(Parameters...)>& function,
+                        const Arguments&... arguments) {
     static_assert(sizeof...(Parameters) == sizeof...(Arguments), "one argument for each parameter");
     static_assert((Arguments::template fits<std::decay_t<Parameters>> && ...), "each argument fits");
     Rule rule{{std::move(head)}, over};
     (arguments.describe(rule), ...);
     rule.gathers = (kGathers<std::decay_t<Parameters>> || ...);
-    using Codec = typename Holder<Result>::Codec;
-    rule.kind = Codec::kind(Result());
-    rule.read = [kind = rule.kind](const Arrays& arrays) -> ValuePtr {
-      return std::make_shared<const Held<Codec>>(Codec::read(kind, arrays));
-    };
+    rule.kind = ArrayForm<Made>::kind;
+    rule.arrays = [](const std::any& value) { return ArrayForm<Made>::arrays(value_as<Made>(value)); };
+    rule.read = [](const Arrays& arrays) { return held(ArrayForm<Made>::read(arrays)); };
     rule.compute = [function, arguments...](const JobInputs& in) -> ValuePtr {
       std::size_t next = 0;
       // In braces the parameters are made from left to right.
       const std::tuple<decltype(arguments.template take<std::decay_t<Parameters>>(in, next))...> parameters{
           arguments.template take<std::decay_t<Parameters>>(in, next)...};
-      return held<Result>(std::apply(function, parameters));
+      return held<Made>(std::apply(function, parameters));
     };
     rules_.push_back(std::move(rule));
-    return Output<std::conditional_t<std::is_void_v<Tag>, Result, Tag>>(rules_.size() - 1);
+    return Output<Made>(rules_.size() - 1);
   }
 
   Rules rules_;

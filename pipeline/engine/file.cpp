@@ -38,7 +38,7 @@ void look(File& file, FileData* data) {
   if (data != nullptr) *data = std::move(now);
 }
 
-std::vector<FileData> read_again(FilesOfUnit& files) {
+std::vector<FileData> read_again(std::span<File> files) {
   std::vector<FileData> all;
   for (File& file : files) {
     const std::optional<Digest> planned = file.digest;
@@ -50,13 +50,13 @@ std::vector<FileData> read_again(FilesOfUnit& files) {
   return all;
 }
 
-std::vector<FileData> read_all(const FilesOfUnit& files) {
+std::vector<FileData> read_all(std::span<const File> files) {
   std::vector<FileData> all;
   for (const File& file : files) all.push_back(read(file));
   return all;
 }
 
-std::vector<FileData> read_unchanged(const FilesOfUnit& files) {
+std::vector<FileData> read_unchanged(std::span<const File> files) {
   std::vector<FileData> all = read_all(files);
   for (std::size_t i = 0; i < files.size(); ++i)
     if (all[i].digest != files[i].digest)

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -50,12 +51,12 @@ void look(File& file, FileData* data = nullptr);
 
 // Reads the files again. Where one holds something else by now, its digest follows it, with a warning that
 // names it.
-std::vector<FileData> read_again(FilesOfUnit& files);
+std::vector<FileData> read_again(std::span<File> files);
 
 // Reads the files, whatever was planned. Throws InputError where one cannot be read.
-std::vector<FileData> read_all(const FilesOfUnit& files);
+std::vector<FileData> read_all(std::span<const File> files);
 
 // Reads them as they were planned. Throws InputError where one cannot be read or has changed.
-std::vector<FileData> read_unchanged(const FilesOfUnit& files);
+std::vector<FileData> read_unchanged(std::span<const File> files);
 
 }  // namespace salbench

@@ -32,8 +32,8 @@ std::size_t add_needed(const Project& project, const Plan& plan, KeepSet& needed
 namespace {
 
 // Recomputes a cached job and describes the first difference; empty if there is none.
-std::string recomputed_fault(Resolver& resolver, const Job& job) try {
-  const Digest content = content_digest(resolver.recompute(job)->arrays());
+std::string recomputed_fault(const Project& project, Resolver& resolver, const Job& job) try {
+  const Digest content = content_digest(project.rule(job).arrays(*resolver.recompute(job)));
   if (content == resolver.plan()[job].content) return {};
   return fmt::format(
       "computed again, its content is {}: the stage is not deterministic, or its version was not raised",
@@ -59,7 +59,7 @@ Recomputation recompute_sample(const Project& project, const Plan& plan, FolderS
     std::swap(jobs[i], jobs[i + rng.below(jobs.size() - i)]);
     const std::string& stage = project.rule(jobs[i]).stage;
     const auto file = store.path(stage, plan[jobs[i]].key);
-    std::string fault = recomputed_fault(resolver, jobs[i]);
+    std::string fault = recomputed_fault(project, resolver, jobs[i]);
     resolver.forget_all();
     if (!fault.empty()) result.faults.push_back({file.value_or(stage), std::move(fault)});
     ++result.jobs;

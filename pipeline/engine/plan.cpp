@@ -57,7 +57,7 @@ std::optional<Decision> stopped_by_members(const Project& project, const Plan& p
 std::optional<Decision> stopped_by_files(const Project& project, const Job& job) {
   const FileColumnPtr& column = project.rule(job).files;
   if (column == nullptr) return {};
-  FilesOfUnit& files = project.files(job);
+  const std::span<File> files = project.files(job);
   if (files.empty())
     return without_key(Verdict::not_applicable, column->expected ? Reason::no_files : Reason::not_given);
   for (File& file : files) look(file);
@@ -131,10 +131,9 @@ std::vector<Job> Project::input_jobs(const Job& job, std::size_t input) const {
   return members;
 }
 
-FilesOfUnit& Project::files(const Job& job) const {
-  static FilesOfUnit none;
+std::span<File> Project::files(const Job& job) const {
   const FileColumnPtr& column = rule(job).files;
-  return column == nullptr ? none : column->files.at(job.unit.index);
+  return column == nullptr ? std::span<File>() : column->files.at(job.unit.index);
 }
 
 std::vector<bool> Project::ancestors(const std::vector<std::size_t>& rules_given) const {
@@ -179,7 +178,7 @@ Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
 Decision decide(const Project& project, const Plan& plan, const Job& job, const Lookup& lookup) {
   if (const ValuePtr& given = project.rule(job).given) {
     Decision known = without_key(Verdict::done, Reason::none);
-    known.content = content_digest(given->arrays());
+    known.content = content_digest(project.rule(job).arrays(*given));
     return known;
   }
   if (const auto no_key = stopped(project, plan, job)) return *no_key;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,7 @@ struct Project {
   // The job whose result a job reads through one of its inputs, unless it gathers; those of all units then.
   Job input_job(const Job& job, std::size_t input) const;
   std::vector<Job> input_jobs(const Job& job, std::size_t input) const;
-  FilesOfUnit& files(const Job& job) const;  // empty where it reads none
+  std::span<File> files(const Job& job) const;  // none where it reads none
 
   // The rules given and all that they read, directly or not: [rule].
   std::vector<bool> ancestors(const std::vector<std::size_t>& rules_given) const;

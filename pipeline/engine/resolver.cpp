@@ -34,7 +34,7 @@ Recipe recipe_of_remark(const std::string& stage, const Digest& key) {
   return {std::string(kRemarkStage), 1, {}, {}, {{stage, key}}};
 }
 
-std::string no_memory_text(const FilesOfUnit& files) {
+std::string no_memory_text(std::span<const File> files) {
   return fmt::format("{}{}: no memory for what it holds; use fewer {}, or leave the item out with {}",
                      files[0].place, files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1),
                      as_option("threads"), as_option("items"));
@@ -86,7 +86,7 @@ void Resolver::compute(const Job& job, std::vector<FileData> files) {
   } catch (const InputError& error) {
     fail(job, error.what());
   } catch (const std::bad_alloc&) {
-    const FilesOfUnit& read = project_.files(job);
+    const std::span<const File> read = project_.files(job);
     read.empty() ? fail(job, current_defect(), true) : fail(job, no_memory_text(read));
   } catch (...) {
     fail(job, current_defect(), true);
@@ -199,6 +199,7 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
 }
 
 Digest Resolver::save(const Job& job, const Result& result) {
+  const Rule& rule = project_.rule(job);
   const Recipe recipe = recipe_of(project_, plan_, job);
   const ArtefactNote note{project_.name(job), result.seconds, project_.attributes};
   // The remark first: who finds the result in the cache finds it.
@@ -207,7 +208,7 @@ Digest Resolver::save(const Job& job, const Result& result) {
     store_.save(recipe_of_remark(recipe.stage, key_of(recipe)), kRemarkStage,
                 {{"text", {text.size()}, text, "1", "UTF-8, one line"}}, note);
   }
-  const Digest content = store_.save(recipe, project_.rule(job).kind, result.value->arrays(), note);
+  const Digest content = store_.save(recipe, rule.kind, rule.arrays(*result.value), note);
   const std::lock_guard lock(mutex_);
   records_[job.rule].seconds.push_back(static_cast<float>(result.seconds));
   records_[job.rule].started.push_back(result.started);

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/arrays.h"
 #include "pipeline/engine/file.h"
 #include "pipeline/engine/level.h"
 #include "pipeline/engine/value.h"
@@ -76,8 +77,7 @@ struct RuleHead {
 };
 
 struct Rule : RuleHead {
-  Level over = kRoot;          // the level that the output is about
-  std::string_view kind = {};  // layout of its result
+  Level over = kRoot;  // the level that the output is about
   std::vector<OptionLines> options = {};
   std::vector<std::size_t> inputs = {};  // rules, each before this one
   FileColumnPtr files = {};
@@ -89,7 +89,9 @@ struct Rule : RuleHead {
   bool for_all = false;   // has jobs of families that are not chosen, too: what is gathered needs them
   ValuePtr given = {};    // in place of a result: known before the run, and not stored
   std::function<ValuePtr(const JobInputs&)> compute = {};
-  std::function<ValuePtr(const Arrays&)> read = {};  // the result from its artefact; throws InputError
+  std::string_view kind = {};  // layout of the result in its artefact, and the two ways
+  std::function<Arrays(const std::any&)> arrays = {};
+  std::function<ValuePtr(const Arrays&)> read = {};  // throws InputError
 
   Level level() const { return gathers ? kRoot : over; }  // of its units
 };

@@ -110,7 +110,7 @@ class Exporter {
     if (!requested(job)) return;
     const Rule& rule = project_.rule(job);
     if (rule.given) {
-      for (Array& array : rule.given->arrays()) {
+      for (Array& array : rule.arrays(*rule.given)) {
         array.name = group + "/" + array.name;
         file_->array(array);
       }

@@ -101,9 +101,9 @@ CommandOptions read_options(const Section& written) {
   return options;
 }
 
-Output<Map> add_command(RuleTable& table, const ShapeOutputs& shape, const std::string& name,
-                        const CommandOptions& options, const std::shared_ptr<DependedFiles>& depends,
-                        const std::shared_ptr<ShapeCommand>& command) {
+Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, const std::string& name,
+                                const CommandOptions& options, const std::shared_ptr<DependedFiles>& depends,
+                                const std::shared_ptr<ShapeCommand>& command) {
   const auto reads = [&](std::string_view part) {
     return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
   };
@@ -112,7 +112,7 @@ Output<Map> add_command(RuleTable& table, const ShapeOutputs& shape, const std::
   const OptionLines lines = {"models." + name, command_text(options, false),
                              fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),
                                          option_text(options.reads, true), depends->key_lines())};
-  return table.add<Map>(
+  return table.add(
       shape.level, head,
       [command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
                 const CommandOptions&) {

@@ -58,14 +58,14 @@ std::function<bool(const std::any&)> participants_of(const Config& config) {
 
 }  // namespace
 
-void add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const Output<Mesh>& mesh,
-                           const Config& config, const Model& model) {
+Output<Scores> add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const Output<Mesh>& mesh,
+                                     const Config& config, const Model& model) {
   const std::int32_t version =
       model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // grows with either
   RuleHead scores = stage_of(model.name, Role::scores, version);
   RuleHead curve = stage_of(model.name, Role::curve, version);
   scores.applies = curve.applies = participants_of(config);
-  table.add(
+  const Output<Scores> scored = table.add(
       kMeshes, scores,
       [name = scores.stage](const Mesh& shape, const GroundTruth& truth, const Histogram& reference,
                             const CentreDensity* own, const CentreDensity* set, const MetricsOptions& options,
@@ -89,6 +89,7 @@ void add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const O
       },
       mesh, meshes.ground_truth, meshes.reference, meshes.centre_density, meshes.centre_densities,
       section("models." + model.name, *model.human), section("metrics", config.metrics), kRandom);
+  return scored;
 }
 
 }  // namespace salbench

@@ -105,9 +105,8 @@ Model given_model(const std::string& name, GivenMaps given) {
   const auto add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
     const RuleHead head = stage_of(name, maps->matched ? Role::matched : Role::map, 1);
     const FilesOf files{shape.map_files};
-    return shape.level == kClouds
-               ? table.add<Map>(shape.level, head, of_cloud, Output<PointCloud>(shape.points.rule), files)
-               : table.add<Map>(shape.level, head, of_shape, shape.points, files);
+    return shape.level == kClouds ? table.add(shape.level, head, of_cloud, shape.cloud, files)
+                                  : table.add(shape.level, head, of_shape, shape.points, files);
   };
   return {.name = name, .version = 1, .add_map = add_map, .given = maps};
 }

@@ -31,14 +31,15 @@ SectionOf<Options> section(const std::string& path, const Options& options) {
 struct ShapeOutputs {
   Level level = kMeshes;
   Output<Points> points = {};
+  Output<PointCloud> cloud = {};  // whose points they are, if it is one
   Output<Normals> normals = {};
   Output<Surface> surface = {};  // of scans and point clouds: the partial mesh
   Output<Descriptors> fpfh = {};
   Output<GroundTruth> ground_truth = {};
-  Output<Reference> reference = {};
-  // Where a metric compares a shape with the others.
+  Output<Histogram> reference = {};
+  // Where a metric compares a shape with the others: its own, and their sum.
   Output<CentreDensity> centre_density = {};
-  Output<CentreDensities> centre_densities = {};
+  Output<CentreDensity> centre_densities = {};
   FileColumnPtr map_files = {};  // of a model that takes its maps from outside
 };
 
@@ -50,7 +51,7 @@ struct Model {
   std::string options = {};  // canonical text
   std::string annotated_options = {};  // with a comment above each option
   std::vector<OptionRow> option_rows = {};
-  std::function<Output<Map>(RuleTable&, const ShapeOutputs&)> add_map = {};
+  std::function<Output<ScalarField>(RuleTable&, const ShapeOutputs&)> add_map = {};
   std::optional<HsOptions> human = {};
   std::shared_ptr<const GivenMaps> given = {};  // where the map is read and not computed
 };
@@ -99,8 +100,8 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
             written.read(options);
             const auto add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
               const auto bound = section("models." + std::string(name), options_for(options, shape.level));
-              return table.add<Map>(shape.level, stage_of(std::string(name), Role::map, version), saliency,
-                                    binding::argument_for<std::decay_t<Parameters>>(shape, bound)...);
+              return table.add(shape.level, stage_of(std::string(name), Role::map, version), saliency,
+                               binding::argument_for<std::decay_t<Parameters>>(shape, bound)...);
             };
             return Model{.name = std::string(name),
                          .version = version,

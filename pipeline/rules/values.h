@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The subject's side of binding.h: how results are held, what they provide, and the roles that they have.
+// The subject's side of binding.h: roles of results, and views of them.
 #pragma once
 
 #include <array>
 #include <string>
 #include <string_view>
-#include <type_traits>
-#include <variant>
 
 #include "io/hdf5/value.h"
 #include "pipeline/config/option_text.h"
@@ -55,76 +53,40 @@ inline RuleHead stage_of(const std::string& model, Role role, std::int32_t versi
   return {static_cast<int>(role), model, std::string(name_of(role)) + "." + model, version};
 }
 
-// Outputs that have a type in common.
-struct Map {
-  using Type = ScalarField;
-};
-struct Matched {
-  using Type = ScalarField;
-};
-struct Reference {
-  using Type = Histogram;
+// --- views -------------------------------------------------------------------------------------------------
+
+template <>
+struct View<FieldView, ScalarField> {
+  static FieldView of(const ScalarField& field) { return field; }
 };
 
-struct CentreDensities {
-  using Type = CentreDensity;
+template <>
+struct View<Points, Mesh> {
+  static Points of(const Mesh& mesh) { return mesh.vertices; }
+};
+template <>
+struct View<Points, Scan> {
+  static Points of(const Scan& scan) { return scan.points; }
+};
+template <>
+struct View<Points, PointCloud> {
+  static Points of(const PointCloud& cloud) { return cloud.points; }
 };
 
-// --- types -------------------------------------------------------------------------------------------------
-
-template <class T, class Variant>
-inline constexpr bool kIsAlternative = false;
-template <class T, class... Types>
-inline constexpr bool kIsAlternative<T, std::variant<Types...>> = (std::is_same_v<T, Types> || ...);
-
-struct ValueCodec {
-  using Type = Value;
-  static std::string_view kind(const Value& value) { return kind_of(value); }
-  static Arrays arrays(const Value& value) { return arrays_from(value); }
-  static Value read(std::string_view kind, const Arrays& arrays) { return value_from(kind, arrays); }
-};
-template <class T>
-requires kIsAlternative<T, Value>
-struct Holder<T> {
-  using Codec = ValueCodec;
-};
-
-inline const Value& value_of(const Stored& stored) {
-  return dynamic_cast<const Held<ValueCodec>&>(stored).value;
+// Of whatever shape it is; throws std::bad_any_cast.
+inline Points points_in(const std::any& shape) {
+  if (const auto* mesh = value_if<Mesh>(shape)) return mesh->vertices;
+  if (const auto* scan = value_if<Scan>(shape)) return scan->points;
+  return value_as<PointCloud>(shape).points;
 }
 
 template <>
-inline constexpr bool kProvides<FieldView, ScalarField> = true;
-template <>
-struct Part<FieldView> {
-  static FieldView of(const Stored& stored) { return value_as<ScalarField>(stored); }
+struct View<Surface, Mesh> {
+  static Surface of(const Mesh& mesh) { return mesh.faces; }
 };
-
 template <>
-inline constexpr bool kProvides<Points, Mesh> = true;
-template <>
-inline constexpr bool kProvides<Points, Scan> = true;
-template <>
-inline constexpr bool kProvides<Points, PointCloud> = true;
-template <>
-struct Part<Points> {
-  static Points of(const Stored& stored) {
-    if (const Mesh* mesh = value_if<Mesh>(stored)) return mesh->vertices;
-    const Scan* scan = value_if<Scan>(stored);
-    return scan != nullptr ? Points(scan->points) : Points(value_as<PointCloud>(stored).points);
-  }
-};
-
-template <>
-inline constexpr bool kProvides<Surface, Mesh> = true;
-template <>
-inline constexpr bool kProvides<Surface, Faces> = true;
-template <>
-struct Part<Surface> {
-  static Surface of(const Stored& stored) {
-    const Mesh* mesh = value_if<Mesh>(stored);
-    return mesh != nullptr ? Surface(mesh->faces) : Surface(value_as<Faces>(stored));
-  }
+struct View<Surface, Faces> {
+  static Surface of(const Faces& faces) { return faces; }
 };
 
 }  // namespace salbench

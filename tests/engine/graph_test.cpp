@@ -31,15 +31,15 @@ struct GraphTest : testing::Test {
   GraphTest() {
     RuleTable table;
     const auto loaded = table.add(kTexts, {.stage = "text"}, nothing);
-    text = loaded.rule;
-    note = table.add(kTexts, {.stage = "letter"}, of_one, loaded).rule;
+    text = loaded.rule().value();
+    note = table.add(kTexts, {.stage = "letter"}, of_one, loaded).rule().value();
     const auto of_text = table.add(kWords, {.stage = "word"}, of_one, loaded);
-    word = of_text.rule;
+    word = of_text.rule().value();
     const auto first = table.add(kWords, {.stage = "letter"}, of_one, of_text);
-    letter = first.rule;
+    letter = first.rule().value();
     const auto two = table.add(kWords, {.stage = "second"}, of_two, first, of_text);
-    second = two.rule;
-    sum = table.add(kWords, {.stage = "sum"}, of_all, two).rule;
+    second = two.rule().value();
+    sum = table.add(kWords, {.stage = "sum"}, of_all, two).rule().value();
     project.rules = std::move(table).take();
   }
 

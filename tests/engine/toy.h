@@ -18,25 +18,22 @@
 
 namespace salbench {
 
-struct ToyCodec {
-  using Type = std::variant<double, std::string>;
-  static std::string_view kind(const Type& value) { return value.index() == 0 ? "number" : "string"; }
-  static Arrays arrays(const Type& value) {
-    if (const auto* number = std::get_if<double>(&value))
-      return {{"value", {}, std::vector{*number}, "1", "the number"}};
-    const auto& text = std::get<std::string>(value);
+template <>
+struct ArrayForm<double> {
+  static constexpr std::string_view kind = "number";
+  static Arrays arrays(double number) { return {{"value", {}, std::vector{number}, "1", "the number"}}; }
+  static double read(const Arrays& arrays) { return std::get<std::vector<double>>(arrays[0].values)[0]; }
+};
+template <>
+struct ArrayForm<std::string> {
+  static constexpr std::string_view kind = "string";
+  static Arrays arrays(const std::string& text) {
     return {{"value", {text.size()}, std::vector<std::uint8_t>(text.begin(), text.end()), "1", "UTF-8"}};
   }
-  static Type read(std::string_view kind, const Arrays& arrays) {
-    if (kind == "number") return std::get<std::vector<double>>(arrays[0].values)[0];
+  static std::string read(const Arrays& arrays) {
     const auto& bytes = std::get<std::vector<std::uint8_t>>(arrays[0].values);
-    return std::string(bytes.begin(), bytes.end());
+    return {bytes.begin(), bytes.end()};
   }
-};
-template <class T>
-requires std::is_same_v<T, double> || std::is_same_v<T, std::string>
-struct Holder<T> {
-  using Codec = ToyCodec;
 };
 
 inline constexpr Level kTexts = 1, kWords = 2;

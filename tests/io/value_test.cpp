@@ -17,8 +17,8 @@ namespace {
 // Through arrays and through a file image: the value must come back to the bit.
 template <class T>
 T round_trip(const T& value) {
-  const Arrays arrays = hdf5_content(hdf5_image({arrays_from(value), {}}), "image").arrays;
-  return std::get<T>(value_from(kind_of(value), arrays));
+  const Arrays arrays = hdf5_content(hdf5_image({ArrayForm<T>::arrays(value), {}}), "image").arrays;
+  return ArrayForm<T>::read(arrays);
 }
 
 TEST(Value, MeshComesBackToTheBit) {
@@ -63,14 +63,14 @@ TEST(Value, GroundTruthKeepsViewersAndWhatTheyDidNotSee) {
 
 TEST(Value, GroundTruthWithoutViewersHasTheSameDataSetsAsEver) {
   std::vector<std::string> names;
-  for (const Array& array : arrays_from(GroundTruth{{0.5}, {{0}}})) names.push_back(array.name);
+  for (const Array& array : ArrayForm<GroundTruth>::arrays({{0.5}, {{0}}})) names.push_back(array.name);
   EXPECT_THAT(names, testing::ElementsAre("saliency", "picks", "pick_offsets", "simulated"));
 }
 
 TEST(Value, GroundTruthRefusesViewersOfAnotherShape) {
-  Arrays arrays = arrays_from(GroundTruth{{0.5, 1}, {}, false, {{1, 2}}});
+  Arrays arrays = ArrayForm<GroundTruth>::arrays({{0.5, 1}, {}, false, {{1, 2}}});
   std::get<std::vector<double>>(arrays.back().values).push_back(3);
-  EXPECT_THROW(value_from("ground_truth", arrays), InputError);
+  EXPECT_THROW(ArrayForm<GroundTruth>::read(arrays), InputError);
 }
 
 TEST(Value, ScoresKeepUndefinedMetrics) {
@@ -96,16 +96,16 @@ TEST(Value, HumanCurvesKeepTheirPointsInOrder) {
 }
 
 TEST(Value, AHumanCurveCutOffIsNoCurve) {
-  Arrays arrays = arrays_from(Value(HumanCurve(3, Scores{{0.5, 0.6}, 100, 7})));
+  Arrays arrays = ArrayForm<HumanCurve>::arrays(HumanCurve(3, Scores{{0.5, 0.6}, 100, 7}));
   EXPECT_EQ(arrays[0].shape, (std::vector<std::size_t>{3, 2}));
   std::get<std::vector<double>>(arrays[0].values).pop_back();
-  EXPECT_THROW(value_from("human_curve", arrays), InputError);
+  EXPECT_THROW(ArrayForm<HumanCurve>::read(arrays), InputError);
 }
 
 TEST(Value, ATableOfScoresHasOneRowPerShape) {
   const ScoreTable table{{{{0.5, std::nan("")}, 100, 7}, {{0.25, 1}, 101, 0}, {{0, 0}, 3, 1}}};
-  EXPECT_EQ(arrays_from(table)[0].shape, (std::vector<std::size_t>{3, 2}));
-  EXPECT_EQ(arrays_from(table)[1].shape, (std::vector<std::size_t>{3, 2}));
+  EXPECT_EQ(ArrayForm<ScoreTable>::arrays(table)[0].shape, (std::vector<std::size_t>{3, 2}));
+  EXPECT_EQ(ArrayForm<ScoreTable>::arrays(table)[1].shape, (std::vector<std::size_t>{3, 2}));
   const std::vector<Scores> back = round_trip(table).rows;
   ASSERT_EQ(back.size(), 3U);
   EXPECT_TRUE(std::isnan(back[0].values[1]));
@@ -124,9 +124,9 @@ TEST(Value, CentreDensityRoundTripsAndNeedsAllItsBins) {
   EXPECT_EQ(read.marked, density.marked);
   EXPECT_EQ(read.points, density.points);
   EXPECT_EQ(read.shapes, 7);
-  Arrays arrays = arrays_from(density);
+  Arrays arrays = ArrayForm<CentreDensity>::arrays(density);
   arrays[1].values = std::vector<double>(99);
-  EXPECT_THROW(value_from("centre_density", arrays), InputError);
+  EXPECT_THROW(ArrayForm<CentreDensity>::read(arrays), InputError);
 }
 
 TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
@@ -163,25 +163,24 @@ TEST(Value, PicturesComeBackPacked) {
   EXPECT_EQ(back.shade, picture.shade);
   EXPECT_EQ(back.coverage, picture.coverage);
   EXPECT_EQ(back.view_projection, picture.view_projection);
-  EXPECT_LT(hdf5_image({arrays_from(picture), {}}).size(), 4 * picture.pixels());  // of 22
+  EXPECT_LT(hdf5_image({ArrayForm<Picture>::arrays(picture), {}}).size(), 4 * picture.pixels());  // of 22
 }
 
 TEST(Value, APictureWhoseDataSetsDoNotBelongTogetherIsNamed) {
   Picture other = toy_picture();
   other.shade.pop_back();
-  Arrays arrays = arrays_from(Value(other));
-  EXPECT_THAT([&] { value_from("picture", arrays); },
+  Arrays arrays = ArrayForm<Picture>::arrays(other);
+  EXPECT_THAT([&] { ArrayForm<Picture>::read(arrays); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("shade")));
   arrays[0].shape = {400, 100};
-  EXPECT_THAT([&] { value_from("picture", arrays); },
+  EXPECT_THAT([&] { ArrayForm<Picture>::read(arrays); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("primitive")));
 }
 
 TEST(Value, MissingOrStrangeArraysAreNamed) {
-  Arrays arrays = arrays_from(Value(shapes::tetrahedron()));
-  EXPECT_THROW(value_from("no such kind", arrays), InputError);
+  Arrays arrays = ArrayForm<Mesh>::arrays(shapes::tetrahedron());
   arrays.pop_back();
-  EXPECT_THAT([&] { value_from("mesh", arrays); },
+  EXPECT_THAT([&] { ArrayForm<Mesh>::read(arrays); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("faces")));
 }
 

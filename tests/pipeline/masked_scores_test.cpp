@@ -56,23 +56,23 @@ class MaskedScores : public DataSets {
                                                                                     ? "cloud_ground_truth"
                                                                                     : "ground_truth";
     const ValuePtr shape = value(of_shape), surface = is_cloud ? value("surface") : shape;
-    const Points points = Part<Points>::of(*shape);
+    const Points points = points_in(*shape);
+    const Surface faces = is_cloud ? Surface(value_as<Faces>(*surface)) : value_as<Mesh>(*shape).faces;
     const GroundTruth truth = value_as<GroundTruth>(*value(of_truth));
     const ScalarField map = value_as<ScalarField>(*value("map." + row.model)),
                       matched = value_as<ScalarField>(*value("matched." + row.model));
     const std::vector<std::int32_t> seen = *seen_points(truth.saliency);
     ASSERT_EQ(map.size(), n_) << "the map is of the whole shape";
     ASSERT_LT(seen.size(), n_);
-    const ScalarField areas = values_at(barycentric_areas(points, Part<Surface>::of(*surface)), seen),
+    const ScalarField areas = values_at(barycentric_areas(points, faces), seen),
                       centre = values_at(distances_from_centroid(points), seen);
     CentreDensity set;
     for (const Unit unit : toy_->project.units.of(level))
-      add(set, centre_density(Part<Points>::of(*value_of_unit(of_shape, unit)),
+      add(set, centre_density(points_in(*value_of_unit(of_shape, unit)),
                               value_as<GroundTruth>(*value_of_unit(of_truth, unit))));
     const auto& options = toy_->config.metrics;
     Measures measures(seen.size(), areas, centre);
-    measures.surface =
-        measures_of(chosen_metrics(options), n_, points, Part<Surface>::of(*surface)).at(seen).surface;
+    measures.surface = measures_of(chosen_metrics(options), n_, points, faces).at(seen).surface;
     if (const ScalarField others = density_of_others(points, centre_density(points, truth), set);
         !others.empty())
       measures.negatives = values_at(others, seen);

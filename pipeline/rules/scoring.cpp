@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/rules/scoring.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "stages/core/centre.h"
+#include "stages/core/field.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/seen.h"
+#include "stages/matching/matching.h"
+#include "stages/metrics/laplacian.h"
+
+namespace salbench {
+namespace {
+
+// Saliency where it is known.
+ScalarField seen_values(const GroundTruth& truth) {
+  const auto seen = seen_points(truth.saliency);
+  return seen ? values_at(truth.saliency, *seen) : truth.saliency;
+}
+const ScalarField& seen_values(const ScalarField& map) { return map; }
+
+// Serial and in the order of the items: sums of doubles depend on their order.
+template <class T>
+Histogram mean_over(const Members<T>& members) {
+  std::vector<Histogram> histograms;
+  for (std::size_t i = 0; i < members.size; ++i) {
+    const auto member = members[i];
+    const auto& values = seen_values(*member);
+    // A scan may show nothing known. An infinite value fails stages of its own item, and nothing here.
+    if (!values.empty() && std::ranges::none_of(values, [](double value) { return std::isinf(value); }))
+      histograms.push_back(normalised_histogram(values));
+  }
+  return mean_histogram(histograms);
+}
+
+CentreDensity sum_of_densities(const Members<CentreDensity>& members) {
+  CentreDensity sum;
+  for (std::size_t i = 0; i < members.size; ++i) add(sum, *members[i]);
+  return sum;
+}
+
+ScoreTable score_table(const Members<Scores>& members) {
+  ScoreTable table;
+  for (std::size_t i = 0; i < members.size; ++i) table.rows.push_back(*members[i]);
+  return table;
+}
+
+ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
+  ScoreTable table;
+  for (std::size_t i = 0; i < members.size; ++i) {
+    const auto member = members[i];
+    table.rows.insert(table.rows.end(), member->rows.begin(), member->rows.end());
+  }
+  return table;
+}
+
+// Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
+// scores are found whatever these are.
+Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config,
+                          const Model& model, const Output<FieldView>& map,
+                          const Output<FieldView>& matched_map) {
+  const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
+  RuleHead head = stage_of(model.name, Role::scores, scores_version(metrics->all()));
+  return table.add(
+      shape.level, head,
+      [name = head.stage, metrics](FieldView matched_values, FieldView values, const GroundTruth& truth,
+                                   Points points, Surface surface, const CentreDensity* own,
+                                   const CentreDensity* set, const MetricsOptions& options,
+                                   const RandomSource& random) {
+        Draws draws(random.rng(name));
+        const Measures measures = measures_of(metrics->all(), std::max(matched_values.size(), values.size()),
+                                              points, surface, density_if_known(points, own, set));
+        return metrics->score([&](std::span<const Metric> of_part, Matching read) {
+          return read == Matching::histogram
+                     ? score(of_part, matched_values, truth, options, draws, measures)
+                     : score(of_part, min_max_normalised(values), truth, options, draws, measures);
+        });
+      },
+      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any(Matching::none), map),
+      shape.ground_truth, only_if(any_of_points(metrics->all()), shape.points),
+      only_if(any_of_faces(metrics->all()), shape.surface), shape.centre_density, shape.centre_densities,
+      section("metrics", config.metrics), kRandom);
+}
+
+// The scores of a map after each number of smoothing steps, with the draws of the plain scores. They stand
+// beside all else, and nothing reads them.
+void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const MetricsOptions& chosen,
+                         const Model& model, const Output<FieldView>& map) {
+  const auto metrics = std::make_shared<const MetricsByMatching>(chosen);
+  const bool match = metrics->any(Matching::histogram) && !(model.given && model.given->matched);
+  const auto scored = table.add(
+      shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(metrics->all())),
+      [name = stage_of(model.name, Role::scores, 1).stage, metrics](
+          FieldView plain, const GroundTruth& truth, Points points, Surface surface,
+          const Histogram* reference, const CentreDensity* own, const CentreDensity* set,
+          const MetricsOptions& options, const RandomSource& random) {
+        const Measures measures =
+            measures_of(metrics->all(), points.size(), points, surface, density_if_known(points, own, set));
+        const Adjacency adjacency = edge_adjacency(points.size(), surface);
+        ScalarField values(plain.begin(), plain.end());
+        for (double& value : values)
+          if (std::isnan(value)) value = 0;  // as matching and normalisation have it
+        ScoreTable by_steps;
+        std::int32_t done = 0;
+        for (const std::int32_t steps : smoothing_steps(options)) {
+          values = smoothed_by_steps(std::move(values), adjacency, steps - std::exchange(done, steps));
+          Draws draws(random.rng(name));
+          by_steps.rows.push_back(metrics->score([&](std::span<const Metric> of_part, Matching read) {
+            const bool to_match = read == Matching::histogram && reference != nullptr;
+            return score(of_part, to_match ? matched(values, *reference) : min_max_normalised(values), truth,
+                         options, draws, measures);
+          }));
+        }
+        return by_steps;
+      },
+      map, shape.ground_truth, shape.points, shape.surface, only_if(match, shape.reference),
+      shape.centre_density, shape.centre_densities, section("metrics", chosen), kRandom);
+  table.add(shape.level, stage_of(model.name, Role::smoothed_table, 1), one_after_the_other, scored);
+}
+
+}  // namespace
+
+Output<Histogram> add_reference(RuleTable& table, Level level, const Output<GroundTruth>& truth,
+                                const std::optional<Histogram>& given) {
+  const auto reference = table.add(level, stage(Role::reference, 1), mean_over<GroundTruth>, truth);
+  if (given) table.give(reference, *given);
+  return reference;
+}
+
+void add_centre_densities(RuleTable& table, ShapeOutputs& shape, const Config& config) {
+  if (!any_of_others(chosen_metrics(config.metrics))) return;
+  shape.centre_density = table.add(shape.level, stage(Role::centre_density, 1), centre_density, shape.points,
+                                   shape.ground_truth);
+  shape.centre_densities =
+      table.add(shape.level, stage(Role::centre_densities, 1), sum_of_densities, shape.centre_density);
+}
+
+Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Config& config,
+                         const MetricsOptions& smoothing, const Model& model) {
+  const auto match = [](const ScalarField& values, const Histogram& reference) {
+    return matched(values, reference);
+  };
+  const Output<ScalarField> map = model.add_map(table, shape);
+  if (!smoothing.smoothing.empty()) add_smoothed_scores(table, shape, smoothing, model, map);
+  if (model.given && model.given->matched) return add_scores(table, shape, config, model, map, map);
+  const Output<Scores> scores =
+      add_scores(table, shape, config, model, map,
+                 table.add(shape.level, stage_of(model.name, Role::matched, 1), match, map, shape.reference));
+  table.add(shape.level, stage_of(model.name, Role::mean_histogram, 1), mean_over<ScalarField>, map);
+  return scores;
+}
+
+Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config) {
+  MetricsOptions varying = config.metrics;
+  varying.names.clear();
+  varying.matching.clear();  // a constant map stays as it is
+  for (const Metric& metric : chosen_metrics(config.metrics))
+    if (metric.constant_varies) varying.names.push_back(metric.name);
+  if (varying.names.empty()) return {};
+  const std::vector<Metric> metrics = chosen_metrics(varying);
+  return table.add(
+      shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(metrics)),
+      [metrics](const GroundTruth& truth, Points points, Surface surface, const MetricsOptions& options) {
+        Draws draws(Rng(0, "", ""));
+        return score(metrics, ScalarField(points.size(), 0.5), truth, options, draws,
+                     measures_of(metrics, points.size(), points, surface));
+      },
+      shape.ground_truth, shape.points, only_if(any_of_faces(metrics), shape.surface),
+      section("metrics", varying));
+}
+
+void add_score_tables(RuleTable& table, const std::vector<Scored>& scored) {
+  for (const Scored& of : scored)
+    table.add(of.level, stage_of(of.model, Role::score_table, 1), score_table, of.scores);
+}
+
+}  // namespace salbench

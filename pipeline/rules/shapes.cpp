@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/rules/shapes.h"
+
+#include <vector>
+
+#include "pipeline/inputs/given_truth.h"
+#include "pipeline/inputs/loading.h"
+#include "pipeline/rules/models.h"
+#include "stages/core/point_cloud.h"
+#include "stages/ground_truth/simulation.h"
+
+namespace salbench {
+namespace {
+
+GroundTruth simulate_ground_truth(const Mesh& mesh, const SimulationOptions& options,
+                                  const RandomSource& random) {
+  return simulated_ground_truth(mesh, options, random.seed, random.item);
+}
+
+GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
+                                       const SimulationOptions& options, const RandomSource& random) {
+  return simulate_ground_truth(mesh_of(cloud, surface), options, random);
+}
+
+// Files in the one form that another program wrote are read as this one writes them.
+template <class Read>
+auto in_own_form(const std::shared_ptr<Importer>& importer, const Files& files, const Read& read) try {
+  return read(files);
+} catch (const ForeignForm&) {
+  const std::vector<FileData> own = importer->rewritten(files);
+  return read(Files{files.source, files.name, own});
+}
+
+}  // namespace
+
+// Where the list of a data set names an importer, all that follows reads what it made.
+Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source) {
+  return table.add(
+      level, stage(Role::import, source.inputs.importer.version),
+      [importer = source.importer](const Files& files) { return importer->item(files); },
+      FilesOf{source.inputs.shape_files});
+}
+
+Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
+  const RuleHead head = stage(Role::shape, 2, "mesh");
+  if (source.imports())
+    return table.add(
+        kMeshes, head,
+        [](const ShapeInForm& shape, const UnitName& name, const Remark& remark) {
+          return usable_mesh(shape.mesh, shape.polygons, name.text, remark);
+        },
+        form, kName, kRemark);
+  return table.add(
+      kMeshes, head,
+      [importer = source.importer](const Files& files, const Remark& remark) {
+        return in_own_form(importer, files, [&](const Files& own) { return load_mesh(own, remark); });
+      },
+      FilesOf{source.inputs.shape_files}, kRemark);
+}
+
+Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
+  const RuleHead head = stage(Role::shape, 1, "cloud");
+  if (source.imports())
+    return table.add(
+        kClouds, head,
+        [](const ShapeInForm& shape, const UnitName& name, const Remark& remark) {
+          return usable_cloud(shape.cloud, name.text, remark);
+        },
+        form, kName, kRemark);
+  return table.add(
+      kClouds, head,
+      [importer = source.importer](const Files& files, const Remark& remark) {
+        return in_own_form(importer, files, [&](const Files& own) { return load_cloud(own, remark); });
+      },
+      FilesOf{source.inputs.shape_files}, kRemark);
+}
+
+Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
+                                          const Output<Mesh>& mesh, const Output<ShapeInForm>& form) {
+  const RuleHead head = stage(Role::ground_truth, 1);
+  const FilesOf files{source.inputs.truth_files};
+  if (config.simulated())
+    return table.add(kMeshes, head, simulate_ground_truth, mesh, section("simulation", config.simulation),
+                     kRandom);
+  if (source.imports()) return table.add(kMeshes, head, imported_truth, mesh, form, files);
+  return table.add(
+      kMeshes, head,
+      [importer = source.importer](const Mesh& shape, const Files& given) {
+        return in_own_form(importer, given, [&](const Files& own) { return given_truth(shape, own); });
+      },
+      mesh, files);
+}
+
+Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& config, const Source& source,
+                                           const Output<PointCloud>& cloud, const Output<Surface>& surface,
+                                           const Output<ShapeInForm>& form) {
+  const RuleHead head = stage(Role::ground_truth, 1, "cloud_ground_truth");
+  const FilesOf files{source.inputs.truth_files};
+  if (config.simulated())
+    return table.add(kClouds, head, made_up_cloud_ground_truth, cloud, surface,
+                     section("simulation", config.simulation), kRandom);
+  if (source.imports())
+    return table.add(
+        kClouds, head,
+        [](const PointCloud& points, Surface faces, const ShapeInForm& shape, const Files& given) {
+          return imported_truth(mesh_of(points, faces), shape, given);
+        },
+        cloud, surface, form, files);
+  return table.add(
+      kClouds, head,
+      [importer = source.importer](const PointCloud& points, Surface faces, const Files& given) {
+        return in_own_form(importer, given,
+                           [&](const Files& own) { return given_cloud_truth(points, faces, own); });
+      },
+      cloud, surface, files);
+}
+
+}  // namespace salbench

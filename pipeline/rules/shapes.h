@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rules of what comes in: shapes and their ground truth, read from files of the one form, made from foreign
+// ones, or simulated.
+#pragma once
+
+#include <memory>
+
+#include "pipeline/inputs/inputs.h"
+#include "pipeline/package/importer.h"
+#include "pipeline/rules/config.h"
+#include "pipeline/rules/values.h"
+
+namespace salbench {
+
+// Files of a data set, and what reads them.
+struct Source {
+  const Inputs& inputs;
+  std::shared_ptr<Importer> importer;
+
+  bool imports() const { return inputs.importer.version > 0; }
+};
+
+// Where the list of a data set names an importer, all that follows reads what it made.
+Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source);
+
+Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form);
+Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
+                                          const Output<Mesh>& mesh, const Output<ShapeInForm>& form);
+
+Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form);
+Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& config, const Source& source,
+                                           const Output<PointCloud>& cloud, const Output<Surface>& surface,
+                                           const Output<ShapeInForm>& form);
+
+}  // namespace salbench
