@@ -130,7 +130,7 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
     require_finite(map, "prediction");
     all.push_back(metrics.score([&](std::span<const Metric> part, Matching matching) {
       const bool match = matching == Matching::histogram && reference;
-      const ScalarField read = match ? matched(map, *reference) : min_max_normalised(map);
+      const ScalarField read = match ? matched(map, *reference) : unmatched(map, matching);
       return score(part, at_seen(read), truth.values, options, draws, measures);
     }));
   }

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "io/hdf5/hdf5_format.h"
 #include "io/hdf5/hdf5_image.h"
 #include "io/hdf5/hdf5_library.h"
 #include "io/shapes/text_scanner.h"
@@ -18,9 +19,6 @@ namespace salbench {
 namespace {
 
 using namespace hdf5;
-
-constexpr std::uint64_t kMaxInflation = 1032;  // the most that deflate can do
-constexpr int kMaxRank = 8;
 
 [[noreturn]] void refuse(std::string_view what) { throw std::runtime_error(std::string(what)); }
 
@@ -106,7 +104,8 @@ std::vector<std::size_t> shape_of(hid_t set) {
   const H5S_class_t kind = H5Sget_simple_extent_type(space);
   const int rank = H5Sget_simple_extent_ndims(space);
   if ((kind != H5S_SCALAR && kind != H5S_SIMPLE) || rank < 0) refuse("it has no values");
-  if (rank > kMaxRank) refuse(fmt::format("it has {} dimensions, expected at most {}", rank, kMaxRank));
+  if (rank > static_cast<int>(kMaxRank))
+    refuse(fmt::format("it has {} dimensions, expected at most {}", rank, kMaxRank));
   hsize_t extents[kMaxRank] = {};
   must(H5Sget_simple_extent_dims(space, extents, nullptr), "H5Sget_simple_extent_dims");
   return {extents, extents + rank};

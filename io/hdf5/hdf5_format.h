@@ -20,6 +20,12 @@ inline constexpr std::size_t kSuperblockBytes = 96;
 inline constexpr std::size_t kMaxMessageBytes = 65'528;  // the largest multiple of 8 in two bytes
 inline constexpr std::size_t kTreeChunks = 64;           // entries of a node of chunks
 
+// Limits that hold whether we or the library read and write.
+inline constexpr std::size_t kMaxRank = 8;
+inline constexpr std::size_t kMaxDepth = 64;          // groups within groups, which are visited by recursion
+inline constexpr std::uint64_t kMaxInflation = 1032;  // the most that deflate can do
+inline constexpr std::size_t kLongText = 60'000;      // bytes; an object header holds 64 KB of attributes
+
 // Messages of object headers.
 enum class Message : std::uint16_t {
   nothing = 0x00,

@@ -15,10 +15,7 @@
 namespace salbench::hdf5 {
 namespace {
 
-constexpr std::size_t kMaxRank = 8;
-constexpr std::size_t kMaxDepth = 64;     // groups within groups
 constexpr std::size_t kObjectBytes = 16;  // the least that an object takes: more of them come from a cycle
-constexpr std::uint64_t kMaxInflation = 1032;  // the most that deflate can do
 
 struct Foreign {};  // thrown where a file is not of the kind that is read here
 

@@ -18,7 +18,6 @@
 namespace salbench::hdf5 {
 namespace {
 
-constexpr std::size_t kLongText = 60'000;  // bytes; what remains of a message is for the name
 constexpr std::uint64_t kGroupTreeK = 16;  // half the links of a node of a group's tree
 constexpr std::size_t kGroupTreeBytes = 24 + (2 * kGroupTreeK + 1) * 8 + 2 * kGroupTreeK * 8;
 constexpr std::uint64_t kNoFreeBlock = 1;  // of a local heap

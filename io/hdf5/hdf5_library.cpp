@@ -8,12 +8,11 @@
 #include <fmt/format.h>
 
 #include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/hdf5_format.h"
 
 namespace salbench::hdf5 {
 namespace {
 
-constexpr std::size_t kLongText = 60'000;  // bytes; an object header has no room for attributes beyond 64 KB
-constexpr std::ptrdiff_t kMaxDepth = 64;   // groups within groups; the library visits them by recursion
 constexpr std::uint64_t kMinObjectBytes = 16;  // of an object and its link, in any version of the format
 
 Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose, "H5Screate"}; }
@@ -36,7 +35,7 @@ Handle creation_properties(const std::optional<PackedChunks>& packed) {
   return properties;
 }
 
-void write_chunks(hid_t set, const PackedChunks& packed) {
+void write_packed(hid_t set, const PackedChunks& packed) {
   std::vector<hsize_t> at(packed.shape.size(), 0);
   for (const Bytes& chunk : packed.chunks) {
     must(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), chunk.size(), chunk.data()), "H5Dwrite_chunk");
@@ -57,7 +56,8 @@ struct Visit {
 herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* data) {
   auto& visit = *static_cast<Visit*>(data);
   const std::string_view path(name);
-  if (visit.objects_left-- == 0 || std::count(path.begin(), path.end(), '/') > kMaxDepth) return -1;
+  if (visit.objects_left-- == 0 || static_cast<std::size_t>(std::ranges::count(path, '/')) > kMaxDepth)
+    return -1;
   if (info->type == H5O_TYPE_DATASET) visit.data_sets.emplace_back(path);
   return 0;
 }
@@ -129,7 +129,7 @@ void write_array(hid_t file, hid_t links, const Array& array, const std::optiona
             H5Dcreate2(file, array.name.c_str(), type_of<T>(), space, links, properties, H5P_DEFAULT),
             H5Dclose, "H5Dcreate");
         if (packed)
-          write_chunks(set, *packed);
+          write_packed(set, *packed);
         else if (!values.empty())
           must(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite");
         write_attribute(set, "unit", array.unit);

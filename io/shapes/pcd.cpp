@@ -28,11 +28,11 @@ using pcd::Header;
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in the file");
 
 // The numbers of a point that are read: x, y, z and, where the file has all three, a normal.
-struct Wanted {
+struct ChosenColumns {
   std::array<const Field*, 6> fields{};
   std::size_t count = 3;
 
-  explicit Wanted(const Header& header) {
+  explicit ChosenColumns(const Header& header) {
     constexpr std::array names = {"x", "y", "z", "normal_x", "normal_y", "normal_z"};
     bool normals = true;
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -52,7 +52,7 @@ void add_point(PointCloud& cloud, const std::array<double, 6>& values, std::size
   if (count > 3) cloud.normals.emplace_back(values[3], values[4], values[5]);
 }
 
-void read_ascii(TextScanner in, const Header& header, const Wanted& wanted, PointCloud& cloud) {
+void read_ascii(TextScanner in, const Header& header, const ChosenColumns& wanted, PointCloud& cloud) {
   in.begin_records(header.points, "points");
   std::array<double, 6> values{};
   for (std::int64_t i = 0; i < header.points; ++i) {
@@ -98,7 +98,7 @@ struct Column {
 };
 
 // `body` holds all points.
-void read_columns(const char* body, const Header& header, const Wanted& wanted, bool field_by_field,
+void read_columns(const char* body, const Header& header, const ChosenColumns& wanted, bool field_by_field,
                   PointCloud& cloud) {
   std::array<Column, 6> columns;
   std::int64_t offset = 0;
@@ -167,7 +167,7 @@ PointCloud parse_pcd(std::string_view bytes, std::string_view name) {
   TextScanner in(bytes, name, '#');
   const Header header = pcd::read_header(in);
   if (header.points == 0) in.fail("the header announces no points");
-  const Wanted wanted(header);
+  const ChosenColumns wanted(header);
   PointCloud cloud;
   const bool known = header.viewpoint && !header.viewpoint->isZero(0);
   if (known || header.height > 1) cloud.viewpoint = header.viewpoint.value_or(Vec3::Zero());

@@ -96,7 +96,7 @@ constexpr FormerName kFormerNames[] = {
     {"status", "plan CONFIG --data DIR"},
 };
 
-std::string joined(std::span<const char* const> words) {
+std::string command_line_of(std::span<const char* const> words) {
   std::string line;
   for (const char* word : words) line += (line.empty() ? "" : " ") + shell_quoted(word);
   return line;
@@ -180,7 +180,7 @@ int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> 
     if (words.size() > 1 && name == words[1])
       throw ConfigError(fmt::format("there is no {} any more: salbench {}", name, line));
   Arguments arguments;
-  arguments.command_line = joined(words);
+  arguments.command_line = command_line_of(words);
   std::string examples;
   std::vector<Subcommand> subcommands;
   for (const SubcommandRow row : rows) subcommands.push_back(row(arguments));

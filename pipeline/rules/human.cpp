@@ -37,10 +37,10 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarFie
   const auto draws = std::make_shared<Draws>(rng);
   return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
             return metrics->score([&](std::span<const Metric> of_part, Matching matching) {
-              const bool as_marked = matching == Matching::none;
+              const bool as_marked = matching != Matching::histogram;
               const auto match = [&](const ScalarField& values) { return matched(values, reference); };
-              const ScalarField of_group =
-                  as_marked ? where_seen(map, min_max_normalised) : where_seen(map, match);
+              const auto leave = [&](const ScalarField& values) { return unmatched(values, matching); };
+              const ScalarField of_group = as_marked ? where_seen(map, leave) : where_seen(map, match);
               GroundTruth truth{as_marked ? others.saliency : where_seen(others.saliency, match),
                                 others.picks, others.simulated};
               for (std::size_t i = 0; i < of_group.size(); ++i)

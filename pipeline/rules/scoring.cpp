@@ -78,10 +78,10 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
         return metrics->score([&](std::span<const Metric> of_part, Matching read) {
           return read == Matching::histogram
                      ? score(of_part, matched_values, truth, options, draws, measures)
-                     : score(of_part, min_max_normalised(values), truth, options, draws, measures);
+                     : score(of_part, unmatched(values, read), truth, options, draws, measures);
         });
       },
-      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any(Matching::none), map),
+      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map),
       shape.ground_truth, only_if(any_of_points(metrics->all()), shape.points),
       only_if(any_of_faces(metrics->all()), shape.surface), shape.centre_density, shape.centre_densities,
       section("metrics", config.metrics), kRandom);
@@ -112,7 +112,7 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
           Draws draws(random.rng(name));
           by_steps.rows.push_back(metrics->score([&](std::span<const Metric> of_part, Matching read) {
             const bool to_match = read == Matching::histogram && reference != nullptr;
-            return score(of_part, to_match ? matched(values, *reference) : min_max_normalised(values), truth,
+            return score(of_part, to_match ? matched(values, *reference) : unmatched(values, read), truth,
                          options, draws, measures);
           }));
         }

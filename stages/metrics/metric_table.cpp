@@ -23,6 +23,8 @@ double sampled(const MetricInput& in) {
   return in.map.size() < 2 ? kUndefined : in.comparison.sampled_auc(in.picked, splits_of(in));
 }
 
+double against_all(const MetricInput& in) { return auc_of_all(in.picked, in.weighting, in.comparison); }
+
 double exact(const MetricInput& in) { return auc_exact(in.picked, in.weighting, in.comparison); }
 
 double judd(const MetricInput& in) { return auc_judd(in.picked, in.weighting, in.comparison); }
@@ -146,6 +148,12 @@ std::vector<BaseMetric> later_metrics() {
         shuffled, kShare},
        true});
   against_others.metric.reads_others = true;
+  BaseMetric of_all{
+      {"auc_all", "AUC (all points)", "1",
+       "as auc_exact, negatives all points; a point as often as it was picked", against_all, kShare},
+      false,
+      false};
+  of_all.metric.picks = PickCount::multiplicity;
   return {
       varying(
           unmatched({{"cosine", "Cosine", "1", "cosine of the angle between map and ground truth as they are",
@@ -175,6 +183,7 @@ std::vector<BaseMetric> later_metrics() {
       of_points({"recall", "Recall", "1", "share of the marked points with a local maximum of the map nearby",
                  of_interest_points<&Points::recall>},
                 true),
+      of_all,
   };
 }
 

@@ -122,10 +122,26 @@ std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
   return chosen;
 }
 
+ScalarField unmatched(std::span<const double> map, Matching reading) {
+  if (reading == Matching::none || reading == Matching::histogram) return min_max_normalised(map);
+  require_finite(map, "the map", true);
+  const double scale = scale_against_overflow(map);
+  ScalarField values;
+  for (const double value : map) values.push_back(std::isnan(value) ? 0 : value * scale);
+  const double least = values.empty() ? 0 : *std::ranges::min_element(values);
+  if (least >= 0) return values;
+  if (reading == Matching::raw)
+    throw InputError(
+        "the map has a value below 0, " + std::to_string(least / scale) +
+        ", and its metrics read it raw: write matching: shifted, which subtracts the least value");
+  for (double& value : values) value -= least;
+  return values;
+}
+
 std::int32_t scores_version(std::span<const Metric> metrics) {
   std::int32_t version = 1;
   for (const Metric& metric : metrics)
-    version = std::max({version, metric.since, metric.matching == Matching::none ? kUnmatchedSince : 1});
+    version = std::max({version, metric.since, metric.matching == Matching::histogram ? 1 : kUnmatchedSince});
   return version;
 }
 
@@ -224,7 +240,7 @@ MetricsByMatching::MetricsByMatching(const MetricsOptions& options) : all_(chose
 
 Scores MetricsByMatching::score(const ScorePart& score_part) const {
   Scores scores{std::vector<double>(all_.size(), kUndefined)};
-  for (const Matching matching : {Matching::histogram, Matching::none}) {
+  for (const Matching matching : {Matching::histogram, Matching::none, Matching::raw, Matching::shifted}) {
     if (!any(matching)) continue;
     const Scores of_part = score_part(part(matching).metrics, matching);
     for (std::size_t m = 0; m < of_part.values.size(); ++m)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Agreement of a saliency map with what people marked. `map` has one finite value per point, and its
-// histogram is matched or it is min-max-normalised, as the metric reads it; `picked` are point indices,
-// ascending. [tasse2016]
+// Agreement of a saliency map with what people marked. `map` has one finite value per point, as the metric
+// reads it (Matching); `picked` are point indices, ascending. [tasse2016]
 #pragma once
 
 #include <array>
@@ -20,11 +19,16 @@
 
 namespace salbench {
 
-// Form in which a metric reads a map: as the model made it, min-max-normalised, or histogram-matched.
-enum class Matching : std::uint8_t { none, histogram };
+// Form in which a metric reads a map.
+enum class Matching : std::uint8_t {
+  none,       // min-max-normalised
+  histogram,  // its histogram is matched
+  raw,        // as the model made it, which must not be below 0
+  shifted     // the same; where it has values below 0, its least value is subtracted
+};
 template <>
 struct EnumNames<Matching> {
-  static constexpr std::array<std::string_view, 2> names{"none", "histogram"};
+  static constexpr std::array<std::string_view, 4> names{"none", "histogram", "raw", "shifted"};
 };
 
 struct MetricsOptions {
@@ -136,6 +140,10 @@ std::span<const Metric> metric_table();
 // OptionError for a name that is not in it.
 std::vector<Metric> chosen_metrics(const MetricsOptions& options);
 
+// The map as metrics read it where no histogram is matched: min-max-normalised, unless the reading is raw or
+// shifted. NaN counts as 0. Throws InputError for a value below 0 that is read raw, and for an infinite one.
+ScalarField unmatched(std::span<const double> map, Matching reading);
+
 // Version of the stage `scores` for these metrics: the largest `since`, and at least 3 where one of them
 // reads maps without matching.
 std::int32_t scores_version(std::span<const Metric> metrics);
@@ -178,6 +186,7 @@ class MetricsByMatching {
 
   const std::vector<Metric>& all() const { return all_; }
   bool any(Matching matching) const { return !part(matching).metrics.empty(); }
+  bool any_unmatched() const { return part(Matching::histogram).metrics.size() < all_.size(); }
 
   // Calls `score_part` for each matching that any metric has.
   using ScorePart = std::function<Scores(std::span<const Metric> metrics, Matching matching)>;
@@ -191,7 +200,7 @@ class MetricsByMatching {
   const Part& part(Matching matching) const { return parts_[static_cast<std::size_t>(matching)]; }
 
   std::vector<Metric> all_;
-  std::array<Part, 2> parts_;
+  std::array<Part, EnumNames<Matching>::names.size()> parts_;
 };
 
 // Value of one metric of those that the options name. Throws std::out_of_range for another one.

@@ -12,12 +12,25 @@ double distinct_in(const std::vector<PickGroup>& groups) {
   return distinct;
 }
 
-}  // namespace
-
-double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
+// Points of a smaller value, and half of those of the same, summed over the picks.
+double wins_over_all(std::span<const std::int32_t> picked, Weighting weighting,
+                     const Comparison& comparison) {
   const Distribution& all = comparison.map_distribution(weighting);
   double wins = 0;
   for (const std::int32_t i : picked) wins += all.mid[static_cast<std::size_t>(i)];
+  return wins;
+}
+
+}  // namespace
+
+double auc_of_all(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
+  const double total = comparison.measure(weighting).total;
+  if (picked.empty() || !(total > 0)) return kUndefined;
+  return wins_over_all(picked, weighting, comparison) / (static_cast<double>(picked.size()) * total);
+}
+
+double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
+  double wins = wins_over_all(picked, weighting, comparison);
   double negatives = comparison.measure(weighting).total;
   if (weighting == Weighting::vertex) {
     // Without the wins over points that were picked themselves.

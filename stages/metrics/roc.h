@@ -16,6 +16,9 @@ namespace salbench {
 // Probability that a pick has a larger value than a negative, ties one half. O(n log n). [mann1947]
 double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison);
 
+// The same against all points, those that were picked among them.
+double auc_of_all(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison);
+
 // The curve through the rates at the values of the picks and at the ends, (0, 0) and (1, 1); linear in
 // between, so with few picks it lies above auc_exact. [judd2009]
 double auc_judd(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison);

@@ -301,6 +301,8 @@ def reference(case, by_area):
         values["ig_centre" + suffix] = information_gain(as_density, case["centre_bias"], picks, weights, unit)
         values["sauc" + suffix] = shuffled(case, picks, weights)
     if not by_area:
+        heights = [(map_ < map_[pick]).mean() + (map_ == map_[pick]).mean() / 2 for pick in case["picks"]]
+        values["auc_all"] = np.mean(heights) if heights else math.nan
         values.update(interest_reference.interest_points({**case, "map": normalised_map}))
     return values
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 namespace {
@@ -33,6 +34,17 @@ ScalarField values_at(const ScalarField& map, const std::vector<std::int32_t>& p
   ScalarField values;
   for (const std::int32_t i : picked) values.push_back(map[static_cast<std::size_t>(i)]);
   return values;
+}
+
+TEST(Unmatched, AMapBelow0IsNoDensityUnlessItIsShifted) {
+  const ScalarField below{0.25, -0.5, std::nan(""), 1}, above{0.25, 0.5, 1, 4};
+  EXPECT_EQ(unmatched(above, Matching::raw), above);
+  EXPECT_EQ(unmatched(above, Matching::shifted), above) << "its least value is no zero";
+  EXPECT_EQ(unmatched(below, Matching::shifted), (ScalarField{0.75, 0, 0.5, 1.5}));
+  EXPECT_EQ(unmatched(below, Matching::none), min_max_normalised(below));
+  EXPECT_THROW(unmatched(below, Matching::raw), InputError);
+  EXPECT_THROW(unmatched(ScalarField{HUGE_VAL}, Matching::raw), InputError);
+  EXPECT_EQ(unmatched(ScalarField{}, Matching::shifted), ScalarField{});
 }
 
 // The protocol as it reads: every rate by counting.
