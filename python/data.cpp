@@ -27,37 +27,6 @@ namespace {
 
 namespace py = pybind11;
 
-std::shared_ptr<const Loaded> load(const std::any& source) {
-  const DatasetItem& item = item_of(source);
-  const std::vector<FileData> of_shape = read_all(FilesOfUnit{mesh_file_of(item)});
-  const Files shape_file{source, item.name, of_shape};
-  const std::vector<FileData> of_truth = read_all(truth_files_of(item));
-  const Files truth_files{source, item.name, of_truth};
-
-  auto loaded = std::make_shared<Loaded>();
-  std::string remark;
-  if (holds_cloud(item, of_shape[0].text())) {
-    const auto& cloud = loaded->shape.emplace<PointCloud>(load_cloud(shape_file, Remark{remark}));
-    const Faces surface = !of_truth.empty() && measured_cloud_truth(cloud, truth_files).saliency.empty()
-                              ? surface_of(cloud)
-                              : Faces();
-    if (!of_truth.empty()) loaded->truth = given_cloud_truth(cloud, surface, truth_files);
-  } else {
-    const auto& mesh = loaded->shape.emplace<Mesh>(load_mesh(shape_file, Remark{remark}));
-    if (!of_truth.empty()) loaded->truth = given_truth(mesh, truth_files);
-  }
-  return loaded;
-}
-
-// Throws FileError in place of ShapeError.
-std::shared_ptr<const Loaded> load_named(const std::any& source) {
-  try {
-    return load(source);
-  } catch (const ShapeError& error) {
-    throw FileError(item_of(source).mesh, error.what());
-  }
-}
-
 Twins twins_from(const std::string& word) {
   Twins kept = Twins::refuse;
   if (!parse_option(word, kept))
@@ -163,39 +132,50 @@ py::dict native_items(const std::string& layout, const std::string& root, const 
   return listing;
 }
 
-// What the program reads by itself: a mesh or a cloud, values per point, picks per participant.
-std::any native_item(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
-                     std::vector<std::string> picks) {
-  return DatasetItem{
+// What the program reads by itself: a mesh or a cloud, values per point, picks per participant. `as_written`:
+// a mesh as its file has it.
+ShapeInForm native_shape(const DatasetItem& item, bool as_written) {
+  const std::vector<FileData> of_shape = read_all({mesh_file_of(item)});
+  const std::vector<FileData> of_truth = read_all(truth_files_of(item));
+  const std::any source = item;
+  const Files shape_file{source, item.name, of_shape}, truth_files{source, item.name, of_truth};
+  ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};
+  std::string remark;
+  if (shape.is_cloud)
+    shape.cloud = load_cloud(shape_file, Remark{remark});
+  else
+    shape.mesh =
+        as_written ? parsed_mesh(shape_file, &shape.polygons) : load_mesh(shape_file, Remark{remark});
+  if (!of_truth.empty())
+    shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, truth_files)
+                                                    : measured_truth(shape.mesh, truth_files)});
+  return shape;
+}
+
+DatasetItem native_item(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
+                        std::vector<std::string> picks) {
+  return {
       .name = name, .mesh = mesh, .saliency = saliency.empty() ? "" : saliency[0], .picks = std::move(picks)};
 }
 
+// Throws FileError in place of ShapeError.
 py::tuple load_native(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
                       std::vector<std::string> picks) {
-  const std::any item = native_item(name, mesh, std::move(saliency), std::move(picks));
-  return arrays_of(computed(1, [&] { return load_named(item); }));
+  const DatasetItem item = native_item(name, mesh, std::move(saliency), std::move(picks));
+  return arrays_of(computed(1, [&] {
+    try {
+      return std::make_shared<const ShapeInForm>(with_saliency(native_shape(item, false)));
+    } catch (const ShapeError& error) {
+      throw FileError(mesh, error.what());
+    }
+  }));
 }
 
-// The same as fields of a Form, its mesh as the file has it, and no saliency made from picks.
+// Fields of a Form, its mesh as the file has it, and no saliency made from picks.
 py::dict native_form(const std::string& name, const std::string& mesh, std::vector<std::string> saliency,
                      std::vector<std::string> picks) {
-  const std::any source = native_item(name, mesh, std::move(saliency), std::move(picks));
-  return fields_of(computed(1, [&] {
-    const DatasetItem& item = item_of(source);
-    const std::vector<FileData> of_shape = read_all(FilesOfUnit{mesh_file_of(item)});
-    const std::vector<FileData> of_truth = read_all(truth_files_of(item));
-    const Files shape_file{source, name, of_shape}, truth_files{source, name, of_truth};
-    ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};
-    std::string remark;
-    if (shape.is_cloud)
-      shape.cloud = load_cloud(shape_file, Remark{remark});
-    else
-      shape.mesh = parsed_mesh(shape_file, &shape.polygons);
-    if (!of_truth.empty())
-      shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, truth_files)
-                                                      : measured_truth(shape.mesh, truth_files)});
-    return shape;
-  }));
+  const DatasetItem item = native_item(name, mesh, std::move(saliency), std::move(picks));
+  return fields_of(computed(1, [&] { return native_shape(item, true); }));
 }
 
 }  // namespace

@@ -24,7 +24,6 @@
 #include "python/loaded.h"
 #include "python/module.h"
 #include "stages/core/errors.h"
-#include "stages/core/smoothing.h"
 #include "stages/ground_truth/visible.h"
 
 namespace salbench::python {
@@ -260,74 +259,51 @@ py::bytes index_bytes(const py::list& rows) {
 // --- as a run has it --------------------------------------------------------------------------------------
 
 // `view`: of the ground truth; nothing: none is asked for.
-std::shared_ptr<const Loaded> loaded_from(ShapeInForm shape, const std::optional<std::string>& view,
-                                          const std::string& item, const std::string& file) {
-  auto loaded = std::make_shared<Loaded>();
-  std::string remark;
+ShapeInForm usable(ShapeInForm shape, const std::optional<std::string>& view, const std::string& item,
+                   const std::string& file, std::string& remark) {
+  std::vector<TruthInForm> all = std::exchange(shape.truths, {});
   if (view) {
-    const auto found = std::ranges::find(shape.truths, *view, &TruthInForm::view);
-    if (found == shape.truths.end())
+    const auto found = std::ranges::find(all, *view, &TruthInForm::view);
+    if (found == all.end())
       throw FileError(file, view->empty() ? "has no ground truth" : "has no ground truth of view " + *view);
-    loaded->truth = std::move(found->truth);
+    shape.truths.push_back(std::move(*found));
   }
-  const bool smoothed = loaded->truth && loaded->truth->saliency.empty();
-  naming(file, [&] {
-    if (shape.is_cloud) {
-      const auto& cloud =
-          loaded->shape.emplace<PointCloud>(usable_cloud(std::move(shape.cloud), item, Remark{remark}));
-      if (smoothed)
-        loaded->truth->saliency = smoothed_picks(mesh_of(cloud, surface_of(cloud)), loaded->truth->picks);
-    } else {
-      const auto& mesh = loaded->shape.emplace<Mesh>(
-          usable_mesh(std::move(shape.mesh), shape.polygons, item, Remark{remark}));
-      if (smoothed) loaded->truth->saliency = smoothed_picks(mesh, loaded->truth->picks);
-    }
-    return 0;
+  return naming(file, [&] {
+    if (shape.is_cloud)
+      shape.cloud = usable_cloud(std::move(shape.cloud), item, Remark{remark});
+    else
+      shape.mesh = usable_mesh(std::move(shape.mesh), shape.polygons, item, Remark{remark});
+    return with_saliency(std::move(shape));
   });
-  return loaded;
 }
 
 // A Form, or the bytes of one; None for bytes that no program of ours wrote.
 py::object finished(py::handle form, const std::optional<std::string>& view, const std::string& item,
                     const std::string& file) {
-  std::shared_ptr<const Loaded> loaded;
-  if (py::isinstance<py::bytes>(form)) {
-    const auto data = py::reinterpret_borrow<py::bytes>(form);
-    const std::string_view bytes = data;
-    loaded = computed(1, [&]() -> std::shared_ptr<const Loaded> {
-      auto shape = shape_in_form(bytes, file);
-      return shape ? loaded_from(std::move(*shape), view, item, file) : nullptr;
-    });
-    if (!loaded) return py::none();
-  } else {
-    ShapeInForm shape = shape_from(form);
-    loaded = computed(1, [&] { return loaded_from(std::move(shape), view, item, file); });
-  }
-  return arrays_of(loaded);
+  std::optional<ShapeInForm> given;
+  std::string_view bytes;
+  if (py::isinstance<py::bytes>(form))
+    bytes = py::reinterpret_borrow<py::bytes>(form);
+  else
+    given = shape_from(form);
+  const auto shape = computed(1, [&]() -> std::shared_ptr<const ShapeInForm> {
+    if (!given) given = shape_in_form(bytes, file);
+    std::string remark;
+    return given ? std::make_shared<ShapeInForm>(usable(std::move(*given), view, item, file, remark))
+                 : nullptr;
+  });
+  return shape ? py::object(arrays_of(shape)) : py::none();
 }
 
 // Points, faces, diagonal of the bounding box, and a remark, of a shape that a run can use.
 py::tuple shape_facts(py::handle form, const std::string& item, const std::string& file) {
   ShapeInForm shape = shape_from(form);
   std::string remark;
-  std::size_t faces = 0;
-  std::vector<Vec3> points;
-  computed(1, [&] {
-    naming(file, [&] {
-      if (shape.is_cloud) {
-        points = usable_cloud(std::move(shape.cloud), item, Remark{remark}).points;
-      } else {
-        Mesh mesh = usable_mesh(std::move(shape.mesh), shape.polygons, item, Remark{remark});
-        faces = mesh.faces.size();
-        points = std::move(mesh.vertices);
-      }
-      return 0;
-    });
-    return 0;
-  });
+  shape = computed(1, [&] { return usable(std::move(shape), {}, item, file, remark); });
+  const std::vector<Vec3>& points = shape.is_cloud ? shape.cloud.points : shape.mesh.vertices;
   Eigen::AlignedBox3d box;
   for (const Vec3& point : points) box.extend(point);
-  return py::make_tuple(points.size(), faces, box.diagonal().norm(), remark);
+  return py::make_tuple(points.size(), shape.mesh.faces.size(), box.diagonal().norm(), remark);
 }
 
 }  // namespace

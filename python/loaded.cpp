@@ -4,46 +4,51 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/rules/config.h"
+#include "pipeline/inputs/loading.h"
 #include "python/arrays.h"
-#include "stages/normals/normals.h"
-#include "stages/surface/surface.h"
+#include "python/shape_rules.h"
+#include "stages/core/smoothing.h"
 
 namespace salbench::python {
 namespace {
 
 template <class T>
-py::object shown_of(const std::shared_ptr<const Loaded>& owner, const std::vector<T>& values) {
+py::object shown_of(const std::shared_ptr<const ShapeInForm>& owner, const std::vector<T>& values) {
   return read_only(shown(owner, std::span<const T>(values)));
 }
 
 template <class T>
-py::tuple all_shown(const std::shared_ptr<const Loaded>& owner, const std::vector<std::vector<T>>& all) {
+py::tuple all_shown(const std::shared_ptr<const ShapeInForm>& owner, const std::vector<std::vector<T>>& all) {
   py::tuple arrays(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) arrays[i] = shown_of(owner, all[i]);
   return arrays;
 }
 
-}  // namespace
-
-py::tuple arrays_of(const std::shared_ptr<const Loaded>& loaded) {
-  py::object points, faces = py::none(), normals = py::none();
-  if (const auto* mesh = std::get_if<Mesh>(&loaded->shape)) {
-    points = shown_of(loaded, mesh->vertices);
-    faces = shown_of(loaded, mesh->faces);
-  } else {
-    const auto& cloud = std::get<PointCloud>(loaded->shape);
-    points = shown_of(loaded, cloud.points);
-    if (!cloud.normals.empty()) normals = shown_of(loaded, cloud.normals);
-  }
-  if (!loaded->truth) return py::make_tuple(points, faces, normals, py::none(), py::tuple(), py::tuple());
-  return py::make_tuple(points, faces, normals, shown_of(loaded, loaded->truth->saliency),
-                        all_shown(loaded, loaded->truth->picks), all_shown(loaded, loaded->truth->viewers));
+// What picks are smoothed over.
+Mesh surface_mesh(const ShapeInForm& shape) {
+  if (!shape.is_cloud) return shape.mesh;
+  ShapeRules rules({}, kClouds, held(shape.cloud));
+  return mesh_of(shape.cloud, value_as<Faces>(*rules.value(Role::surface)));
 }
 
-Faces surface_of(const PointCloud& cloud) {
-  const Config defaults = read_config(Section::from_text("{}", "defaults"), "python");
-  return partial_mesh(cloud.points, cloud_normals(cloud, defaults.scan_normals), defaults.surface);
+}  // namespace
+
+ShapeInForm with_saliency(ShapeInForm usable) {
+  for (TruthInForm& found : usable.truths)
+    if (found.truth.saliency.empty())
+      found.truth.saliency = smoothed_picks(surface_mesh(usable), found.truth.picks);
+  return usable;
+}
+
+py::tuple arrays_of(const std::shared_ptr<const ShapeInForm>& shape) {
+  const auto& [mesh, polygons, is_cloud, cloud, truths, about] = *shape;
+  const py::object points = shown_of(shape, is_cloud ? cloud.points : mesh.vertices);
+  const py::object faces = is_cloud ? py::none() : shown_of(shape, mesh.faces);
+  const py::object normals = cloud.normals.empty() ? py::none() : shown_of(shape, cloud.normals);
+  if (truths.empty()) return py::make_tuple(points, faces, normals, py::none(), py::tuple(), py::tuple());
+  const GroundTruth& truth = truths[0].truth;
+  return py::make_tuple(points, faces, normals, shown_of(shape, truth.saliency),
+                        all_shown(shape, truth.picks), all_shown(shape, truth.viewers));
 }
 
 py::str file_text(const std::string& bytes) {

@@ -145,10 +145,11 @@ View<double> weights(const Argument& argument, std::size_t n) {
   return values;
 }
 
-py::dict score_arrays(py::handle prediction, py::handle ground_truth, py::handle picked, py::handle areas,
-                      py::handle points_of, py::handle faces_of, py::handle negatives, py::handle masked,
-                      py::handle metrics, py::handle reference, py::handle seed, const py::dict& keywords) {
-  MetricsOptions options = options_from<ScoreOptions>(keywords, "score");
+py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::handle ground_truth,
+                      py::handle picked, py::handle areas, py::handle points_of, py::handle faces_of,
+                      py::handle negatives, py::handle masked, py::handle metrics, py::handle reference,
+                      py::handle seed) {
+  MetricsOptions options = numbers;
   options.names = names_from(metrics);
   const View<double> predictions = rows({prediction, "prediction"}, {{ground_truth, "ground_truth"},
                                                                      {masked, "mask"},
@@ -190,9 +191,8 @@ py::list metric_rows() {
 }  // namespace
 
 void bind_metrics(py::module_& module) {
-  module.def("score", &score_arrays);
+  define(module, "score", &score_arrays);
   module.def("metric_rows", &metric_rows);
-  module.def("metric_options", [] { return described<ScoreOptions>(); });
   module.def("match_histogram", [](py::handle values, py::handle reference) {
     const auto map = field({values, "values"});
     const auto densities = histogram(required(reference, "reference"));

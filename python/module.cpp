@@ -66,6 +66,7 @@ void fail_unknown(std::string_view what, std::string_view name, const std::vecto
 PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
+  module.attr("options") = py::dict();  // of each function that `define` makes
   options_are_arguments = true;
   use_own_package();
   keep_log();

@@ -37,12 +37,15 @@ std::string yaml_of(py::handle value, const std::string& where) {
 }  // namespace
 
 Section section_of(const py::dict& keywords, const std::string& function,
-                   const std::vector<std::string_view>& known) {
+                   const std::vector<OptionRow>& options) {
   std::string yaml = "{";
   for (const auto& [keyword, value] : keywords) {
     const auto key = std::string(py::str(keyword));
-    if (std::ranges::find(known, key) == known.end())
+    if (std::ranges::find(options, key, &OptionRow::name) == options.end()) {
+      std::vector<std::string_view> known;
+      for (const OptionRow& option : options) known.push_back(option.name);
       throw py::type_error(fmt::format("{}() has no argument '{}'{}", function, key, hint(key, known)));
+    }
     yaml += fmt::format("{}{}: {}", yaml.size() > 1 ? ", " : "", key, yaml_of(value, key));
   }
   return Section::from_text(yaml + "}", function);

@@ -31,9 +31,19 @@ int threads_from(py::handle threads) {
 
 std::vector<Vec3> copy_of(const View<Vec3>& view) { return {view.values.begin(), view.values.end()}; }
 
-Mesh mesh_from(py::handle points_of, py::handle faces_of) {
+struct SurfaceView {
+  View<Vec3> vertices;
+  Faces faces;
+};
+
+SurfaceView surface_from(py::handle points_of, py::handle faces_of) {
   const auto vertices = points(required(points_of, "points"));
-  return {copy_of(vertices), faces(required(faces_of, "faces"), vertices.size())};
+  return {vertices, faces(required(faces_of, "faces"), vertices.size())};
+}
+
+Mesh mesh_from(py::handle points_of, py::handle faces_of) {
+  const auto [vertices, faces] = surface_from(points_of, faces_of);
+  return {copy_of(vertices), faces};
 }
 
 PointCloud cloud_from(py::handle points_of, py::handle viewpoint) {
@@ -44,27 +54,22 @@ PointCloud cloud_from(py::handle points_of, py::handle viewpoint) {
 
 // --- normals and descriptors -------------------------------------------------------------------------------
 
-py::array estimated_normals(py::handle points_of, py::handle faces_of, py::handle viewpoint,
-                            py::handle threads, const py::dict& keywords) {
-  const std::string function = "estimate_normals";
-  const int most = threads_from(threads);
-  if (faces_of.is_none()) {
-    const auto options = options_from<ScanNormalsOptions>(keywords, function);
-    const PointCloud cloud = cloud_from(points_of, viewpoint);
-    if (cloud.points.empty()) throw py::value_error("points must have at least one");
-    return moved(computed(most, [&] { return cloud_normals(cloud, options); }));
-  }
-  if (!viewpoint.is_none())
-    throw py::value_error("viewpoint must be None for a mesh: its faces say what is outside");
-  const auto options = options_from<MeshNormalsOptions>(keywords, function);
+py::array normals_of_mesh(const MeshNormalsOptions& options, py::handle points_of, py::handle faces_of,
+                          py::handle threads) {
   const Mesh mesh = mesh_from(points_of, faces_of);
-  return moved(computed(most, [&] { return mesh_normals(mesh, options); }));
+  return moved(computed(threads_from(threads), [&] { return mesh_normals(mesh, options); }));
 }
 
-py::array descriptors_of(py::handle points_of, py::handle normals_of, bool of_scan, py::handle threads,
-                         const py::dict& keywords) {
-  const FpfhOptions options =
-      options_from<FpfhOptions>(keywords, "fpfh", of_scan ? ScanFpfhOptions() : FpfhOptions());
+py::array normals_of_points(const ScanNormalsOptions& options, py::handle points_of, py::handle viewpoint,
+                            py::handle threads) {
+  const PointCloud cloud = cloud_from(points_of, viewpoint);
+  if (cloud.points.empty()) throw py::value_error("points must have at least one");
+  return moved(computed(threads_from(threads), [&] { return cloud_normals(cloud, options); }));
+}
+
+template <class Options>
+py::array descriptors_of(const Options& options, py::handle points_of, py::handle normals_of,
+                         py::handle threads) {
   const auto place_of = points(required(points_of, "points"));
   const auto normal_of = normals(required(normals_of, "normals"), place_of.size());
   return moved(computed(threads_from(threads),
@@ -79,15 +84,14 @@ py::tuple scan_tuple(Scan scan) {
                         moved(std::vector<double>(scan.camera.begin(), scan.camera.end())));
 }
 
-py::tuple one_scan(py::handle points_of, py::handle faces_of, py::handle view, const py::dict& keywords) {
-  const auto options = options_from<ScanOptions>(keywords, "simulate_scan");
+py::tuple one_scan(const ScanOptions& options, py::handle points_of, py::handle faces_of, py::handle view) {
   const auto number = static_cast<int>(whole_number({view, "view"}, 0, kViews - 1));
   const Mesh mesh = mesh_from(points_of, faces_of);
   return scan_tuple(computed(1, [&] { return simulate_scan(mesh, number, options); }));
 }
 
-py::list all_scans(py::handle points_of, py::handle faces_of, py::handle threads, const py::dict& keywords) {
-  const auto options = options_from<ScanOptions>(keywords, "simulate_scans");
+py::list all_scans(const ScanOptions& options, py::handle points_of, py::handle faces_of,
+                   py::handle threads) {
   const Mesh mesh = mesh_from(points_of, faces_of);
   std::array<Scan, kViews> scans;
   computed(threads_from(threads), [&] {
@@ -103,8 +107,7 @@ py::list all_scans(py::handle points_of, py::handle faces_of, py::handle threads
 
 // --- surfaces ---------------------------------------------------------------------------------------------
 
-py::array partial_mesh_of(py::handle points_of, py::handle normals_of, const py::dict& keywords) {
-  const auto options = options_from<SurfaceOptions>(keywords, "partial_mesh");
+py::array partial_mesh_of(const SurfaceOptions& options, py::handle points_of, py::handle normals_of) {
   const auto place_of = points(required(points_of, "points"));
   const Normals normal_of = copy_of(normals(required(normals_of, "normals"), place_of.size()));
   return moved(computed(1, [&] { return partial_mesh(place_of.values, normal_of, options); }));
@@ -119,14 +122,12 @@ py::tuple simplify(py::handle points_of, py::handle faces_of, py::handle target_
 }
 
 py::array vertex_areas(py::handle points_of, py::handle faces_of) {
-  const auto vertices = points(required(points_of, "points"));
-  const Faces surface = faces(required(faces_of, "faces"), vertices.size());
+  const auto [vertices, surface] = surface_from(points_of, faces_of);
   return moved(computed([&] { return barycentric_areas(vertices.values, surface); }));
 }
 
 py::tuple spectrum(py::handle points_of, py::handle faces_of, py::handle count) {
-  const auto vertices = points(required(points_of, "points"));
-  const Faces surface = faces(required(faces_of, "faces"), vertices.size());
+  const auto [vertices, surface] = surface_from(points_of, faces_of);
   const std::uint64_t k = whole_number({count, "k"}, 2, std::numeric_limits<std::int32_t>::max());
   const Eigenpairs pairs = computed(1, [&] { return spectrum_of(vertices.values, surface, k); });
   std::vector<double> vectors(static_cast<std::size_t>(pairs.vectors.size()));
@@ -138,8 +139,8 @@ py::tuple spectrum(py::handle points_of, py::handle faces_of, py::handle count) 
 
 // --- ground truth -----------------------------------------------------------------------------------------
 
-py::array smooth(py::handle points_of, py::handle faces_of, py::handle picked, const py::dict& keywords) {
-  const auto options = options_from<SmoothingOptions>(keywords, "smooth_picks");
+py::array smooth(const SmoothingOptions& options, py::handle points_of, py::handle faces_of,
+                 py::handle picked) {
   const Mesh mesh = mesh_from(points_of, faces_of);
   const auto participants = picks(required(picked, "picks"), mesh.vertices.size());
   return moved(computed([&] { return smoothed_picks(mesh, participants, options); }));
@@ -165,8 +166,7 @@ py::tuple carry(py::handle points_of, py::handle ground_truth, py::handle picked
 }
 
 py::array of_faces(py::handle points_of, py::handle faces_of, py::handle values_of) {
-  const auto vertices = points(required(points_of, "points"));
-  const Faces surface = faces(required(faces_of, "faces"), vertices.size());
+  const auto [vertices, surface] = surface_from(points_of, faces_of);
   const auto values = field({values_of, "values"}, surface.size());
   return moved(computed([&] { return vertex_values_of_faces(vertices.values, surface, values.values); }));
 }
@@ -200,9 +200,9 @@ Picture rendered(py::handle points_of, py::handle faces_of, py::handle normals_o
 }
 
 // (primitive, weights, depth, shade, coverage, view_projection)
-py::tuple picture(py::handle points_of, py::handle faces_of, py::handle normals_of, py::handle viewpoint,
-                  py::handle seed, const std::string& item, py::handle threads, const py::dict& keywords) {
-  const auto options = options_from<PictureOptions>(keywords, "picture");
+py::tuple picture(const PictureOptions& options, py::handle points_of, py::handle faces_of,
+                  py::handle normals_of, py::handle viewpoint, py::handle seed, const std::string& item,
+                  py::handle threads) {
   const RandomSource random{whole_number({seed, "seed"}, 0, UINT64_MAX), item};
   Picture picture =
       rendered(points_of, faces_of, normals_of, viewpoint, random, threads_from(threads), options);
@@ -219,26 +219,21 @@ py::tuple picture(py::handle points_of, py::handle faces_of, py::handle normals_
 }  // namespace
 
 void bind_shapes(py::module_& module) {
-  module.def("estimate_normals", &estimated_normals);
-  module.def("mesh_normals_options", [] { return described<MeshNormalsOptions>(); });
-  module.def("scan_normals_options", [] { return described<ScanNormalsOptions>(); });
-  module.def("fpfh", &descriptors_of);
-  module.def("fpfh_options", [] { return described<FpfhOptions>(); });
-  module.def("simulate_scan", &one_scan);
-  module.def("simulate_scans", &all_scans);
-  module.def("scan_options", [] { return described<ScanOptions>(); });
-  module.def("partial_mesh", &partial_mesh_of);
-  module.def("surface_options", [] { return described<SurfaceOptions>(); });
+  define(module, "mesh_normals", &normals_of_mesh, "estimate_normals");
+  define(module, "cloud_normals", &normals_of_points, "estimate_normals");
+  define(module, "fpfh", &descriptors_of<FpfhOptions>);
+  define(module, "scan_fpfh", &descriptors_of<ScanFpfhOptions>, "fpfh");
+  define(module, "simulate_scan", &one_scan);
+  define(module, "simulate_scans", &all_scans);
+  define(module, "partial_mesh", &partial_mesh_of);
   module.def("simplify", &simplify);
   module.def("vertex_areas", &vertex_areas);
   module.def("spectrum", &spectrum);
-  module.def("smooth_picks", &smooth);
-  module.def("smoothing_options", [] { return described<SmoothingOptions>(); });
+  define(module, "smooth_picks", &smooth);
   module.def("carry_ground_truth", &carry);
   module.def("vertex_values_of_faces", &of_faces);
   module.def("vertex_values_of_samples", &of_samples);
-  module.def("picture", &picture);
-  module.def("picture_options", [] { return described<PictureOptions>(); });
+  define(module, "picture", &picture);
 }
 
 }  // namespace salbench::python

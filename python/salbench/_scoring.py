@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench._options import Value, with_options
+from salbench._options import Value, documented
 from salbench._types import ArrayLike, NDArray
 
 Seed = int | tuple[int, str, str]
 
 
-@with_options(_core.metric_options())
+@documented
 def score(
     prediction: ArrayLike,
     ground_truth: ArrayLike | None = None,
@@ -59,7 +59,6 @@ def score(
         Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several.
     seed : int or (int, str, str)
         Of the metrics that draw points; (seed, model, item) are the draws of a run's table.
-    **options
 
     Returns
     -------

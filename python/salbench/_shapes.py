@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from salbench import _core
-from salbench._options import Value, with_options, with_options_of
+from salbench._options import Value, documented
 from salbench._types import ArrayLike, NDArray
 
 
@@ -75,8 +75,7 @@ class Picture:
     view_projection: NDArray[np.float64]
 
 
-@with_options_of("**normals", _core.mesh_normals_options())
-@with_options_of("**scan_normals", _core.scan_normals_options())
+@documented
 def estimate_normals(
     points: ArrayLike,
     faces: ArrayLike | None = None,
@@ -92,22 +91,18 @@ def estimate_normals(
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
     faces : (m, 3) array of int, optional
         Corners, counter-clockwise seen from outside.
     viewpoint : (3,) array, optional
         Of points without faces: where they were seen from, such as `Scan.camera`.
-    threads : int
-        That may work on it; the result does not depend on it.
     **options
         Of a mesh, as in the section `normals` of a configuration:
 
-        **normals
+        **mesh_normals
 
         Of points, as in the section `scan_normals`:
 
-        **scan_normals
+        **cloud_normals
 
     Returns
     -------
@@ -129,10 +124,14 @@ def estimate_normals(
     >>> salbench.estimate_normals(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])[0].round(3).tolist()
     [-0.577, -0.577, -0.577]
     """
-    return _core.estimate_normals(points, faces, viewpoint, threads, options)
+    if faces is None:
+        return _core.cloud_normals(points, viewpoint, threads, options)
+    if viewpoint is not None:
+        raise ValueError("viewpoint must be None for a mesh: its faces say what is outside")
+    return _core.mesh_normals(points, faces, threads, options)
 
 
-@with_options(_core.fpfh_options())
+@documented
 def fpfh(
     points: ArrayLike, normals: ArrayLike, *, scan: bool = False, threads: int = 1, **options: Value
 ) -> NDArray[np.float32]:
@@ -140,25 +139,13 @@ def fpfh(
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
-    normals : (n, 3) array
-        Of unit length.
     scan : bool
         Defaults of the section `scan_fpfh` of a configuration: neighbourhood radius, grown_neighbours 12.
-    threads : int
-        That may work on it; the result does not depend on it.
-    **options
 
     Returns
     -------
     (n, 33) array of float32
         Three features of 11 bins: theta, alpha, phi.
-
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
 
     References
     ----------
@@ -173,22 +160,19 @@ def fpfh(
     >>> descriptors.shape, np.flatnonzero(descriptors[12]).tolist()
     ((25, 33), [5, 16, 27])
     """
-    return _core.fpfh(points, normals, bool(scan), threads, options)
+    return (_core.scan_fpfh if scan else _core.fpfh)(points, normals, threads, options)
 
 
-@with_options(_core.scan_options())
+@documented
 def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Value) -> Scan:
     """What a depth camera sees of a mesh from one of the 12 corners of an icosahedron.
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
     faces : (m, 3) array of int
         Corners; both sides are seen.
     view : int
         0 to 11.
-    **options
 
     Returns
     -------
@@ -214,19 +198,14 @@ def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Val
     return Scan(*_core.simulate_scan(points, faces, view, options))
 
 
-@with_options(_core.scan_options())
+@documented
 def simulate_scans(points: ArrayLike, faces: ArrayLike, *, threads: int = 1, **options: Value) -> tuple[Scan, ...]:
     """All 12 scans of a mesh, faster than one by one.
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
     faces : (m, 3) array of int
         Corners; both sides are seen.
-    threads : int
-        That may work on them; the result does not depend on it.
-    **options
 
     Returns
     -------
@@ -253,27 +232,14 @@ def simulate_scans(points: ArrayLike, faces: ArrayLike, *, threads: int = 1, **o
     return tuple(Scan(*scan) for scan in _core.simulate_scans(points, faces, threads, options))
 
 
-@with_options(_core.surface_options())
+@documented
 def partial_mesh(points: ArrayLike, normals: ArrayLike, **options: Value) -> NDArray[np.int32]:
     """A surface over the points of a scan or a point cloud, by greedy projection triangulation.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-        Positions, in any unit.
-    normals : (n, 3) array
-        Of unit length.
-    **options
 
     Returns
     -------
     (m, 3) array of int32
         Faces, counter-clockwise seen from the side that the normals point to. There may be holes.
-
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
 
     References
     ----------
@@ -290,6 +256,7 @@ def partial_mesh(points: ArrayLike, normals: ArrayLike, **options: Value) -> NDA
     return _core.partial_mesh(points, normals, options)
 
 
+@documented
 def simplify(
     points: ArrayLike, faces: ArrayLike, target_faces: int
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
@@ -297,8 +264,6 @@ def simplify(
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
     faces : (m, 3) array of int
         Corners, of any soup of triangles.
     target_faces : int
@@ -309,11 +274,6 @@ def simplify(
     points : (k, 3) array
     faces : (l, 3) array of int32
         Without duplicate and degenerate faces, and points that no face uses.
-
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
 
     References
     ----------
@@ -330,25 +290,14 @@ def simplify(
     return _core.simplify(points, faces, target_faces)
 
 
+@documented
 def vertex_areas(points: ArrayLike, faces: ArrayLike) -> NDArray[np.float64]:
     """Area of each point of a surface: a third of that of the faces around it. They sum to the area of the surface.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-        Positions, in any unit.
-    faces : (m, 3) array of int
-        Corners.
 
     Returns
     -------
     (n,) array
         In squares of the unit; 0 where there are no faces.
-
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
 
     Examples
     --------
@@ -359,6 +308,7 @@ def vertex_areas(points: ArrayLike, faces: ArrayLike) -> NDArray[np.float64]:
     return _core.vertex_areas(points, faces)
 
 
+@documented
 def spectrum(points: ArrayLike, faces: ArrayLike, k: int) -> Spectrum:
     """The lowest eigenpairs of the graph Laplacian whose edges weigh 1 / distance^2, as in the model MS.
 
@@ -366,8 +316,6 @@ def spectrum(points: ArrayLike, faces: ArrayLike, k: int) -> Spectrum:
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
     faces : (m, 3) array of int
         Corners; they connect all points.
     k : int
@@ -399,28 +347,13 @@ def spectrum(points: ArrayLike, faces: ArrayLike, k: int) -> Spectrum:
     return Spectrum(*_core.spectrum(points, faces, k))
 
 
-@with_options(_core.smoothing_options())
+@documented
 def smooth_picks(points: ArrayLike, faces: ArrayLike, picks: Any, **options: Value) -> NDArray[np.float64]:
     """Saliency over a mesh from the points that participants picked: a Gaussian along edges around each.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-        Positions, in any unit.
-    faces : (m, 3) array of int
-        Corners.
-    picks : (p,) array of int, or a sequence of them
-        Points that were marked, 0 to n - 1; one array, or one for each participant.
-    **options
 
     Returns
     -------
     (n,) array
-
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
 
     References
     ----------
@@ -435,6 +368,7 @@ def smooth_picks(points: ArrayLike, faces: ArrayLike, picks: Any, **options: Val
     return _core.smooth_picks(points, faces, picks, options)
 
 
+@documented
 def carry_ground_truth(
     points: ArrayLike, scan_points: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None
 ) -> CarriedTruth:
@@ -460,11 +394,6 @@ def carry_ground_truth(
         ground_truth : (k,) array, or None where none was given.
         picks : tuple of (p,) arrays of int32, one for each participant.
 
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
-
     References
     ----------
     [tasse2016]
@@ -479,15 +408,12 @@ def carry_ground_truth(
     return CarriedTruth(*_core.carry_ground_truth(points, ground_truth, picks, scan_points))
 
 
+@documented
 def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLike) -> NDArray[np.float64]:
     """Values per face, carried over to the points: the mean over the faces around each, weighted by their areas.
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
-    faces : (m, 3) array of int
-        Corners.
     values : (m,) array
         NaN where nobody looked.
 
@@ -495,11 +421,6 @@ def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLik
     -------
     (n,) array
         NaN where no face with an area was seen.
-
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
 
     Examples
     --------
@@ -510,6 +431,7 @@ def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLik
     return _core.vertex_values_of_faces(points, faces, values)
 
 
+@documented
 def vertex_values_of_samples(
     points: ArrayLike, samples: ArrayLike, values: ArrayLike, max_distance: float = float("inf")
 ) -> NDArray[np.float64]:
@@ -530,11 +452,6 @@ def vertex_values_of_samples(
     -------
     (n,) array
 
-    Raises
-    ------
-    ValueError
-        An argument that does not fit.
-
     Examples
     --------
     >>> import salbench
@@ -544,7 +461,7 @@ def vertex_values_of_samples(
     return _core.vertex_values_of_samples(points, samples, values, max_distance)
 
 
-@with_options(_core.picture_options())
+@documented
 def picture(
     points: ArrayLike,
     faces: ArrayLike | None = None,
@@ -560,19 +477,12 @@ def picture(
 
     Parameters
     ----------
-    points : (n, 3) array
-        Positions, in any unit.
     faces : (m, 3) array of int, optional
         Of a mesh. With normals they only tell which way is up, and discs around the points are seen.
     normals : (n, 3) array, optional
         Of a scan or a point cloud, of unit length.
     viewpoint : (3,) array, optional
         Where points were seen from: the camera stands near it.
-    seed, item : int, str
-        Of the random numbers, as a run draws them for a shape of this name.
-    threads : int
-        That may work on it; the result does not depend on it.
-    **options
 
     Returns
     -------

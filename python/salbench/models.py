@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from salbench import _core
-from salbench._options import Row, Value, with_options
+from salbench._options import Row, Value, documented
 from salbench._shape import Shape
 from salbench._shapes import Scan
 from salbench._types import ArrayLike, NDArray
@@ -103,11 +103,6 @@ fpfh : (n, 33) array, optional
     Descriptors, as the function `fpfh` of the package gives them.
 scan : bool
     Options and descriptors of scans, where they differ from those of meshes and point clouds.
-seed, item : int, str
-    Of random numbers, as a run draws them for a shape of this name.
-threads : int
-    That may work on it; the map does not depend on it.
-**options
 
 Returns
 -------
@@ -169,7 +164,7 @@ def _function(row: ModelRow) -> ModelFunction:
     references = f"\nReferences\n----------\n[{source}]\n" if source else ""
     reads = ", ".join(f"`{part}`" for part in row.reads) + (", and random numbers" if row.random else "")
     model.__doc__ = _DOCUMENTATION.format(summary=summary, function=name, reads=reads, references=references)
-    return with_options(rows)(model)
+    return documented(model, rows)
 
 
 _functions = {function.__name__: function for function in map(_function, table())}  # type: ignore[attr-defined]
