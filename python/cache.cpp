@@ -172,10 +172,6 @@ class Folder {
 
 void bind_cache(py::module_& module) {
   module.def("item_label", &item_label);
-  module.def("fail_unknown",
-             [](const std::string& what, const std::string& name, const std::vector<std::string>& known) {
-               fail_unknown(what, name, {known.begin(), known.end()});
-             });
   py::class_<Folder>(module, "CacheFolder")
       .def(py::init<const std::string&>())
       .def("stages", &Folder::stages)

@@ -6,9 +6,11 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 
 #include "pipeline/config/section.h"
 #include "pipeline/package/package.h"
+#include "python/arrays.h"
 #include "python/computing.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
@@ -67,6 +69,18 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
   module.attr("options") = py::dict();  // of each function that `define` makes
+  module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& known,
+                                const std::string& otherwise) {
+    return did_you_mean(word, {known.begin(), known.end()}, otherwise);
+  });
+  module.def("fail_unknown",
+             [](const std::string& what, const std::string& name, const std::vector<std::string>& known) {
+               fail_unknown(what, name, {known.begin(), known.end()});
+             });
+  module.def("whole_number",
+             [](py::handle value, const std::string& name, std::uint64_t low, std::uint64_t high) {
+               return whole_number({value, name.c_str()}, low, high);
+             });
   options_are_arguments = true;
   use_own_package();
   keep_log();

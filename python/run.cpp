@@ -16,7 +16,6 @@
 
 #include "cache/digest.h"
 #include "pipeline/commands/commit.h"
-#include "pipeline/inputs/given_reference.h"
 #include "pipeline/results/map_counts.h"
 #include "pipeline/rules/given_maps.h"
 #include "python/arrays.h"
@@ -146,13 +145,6 @@ std::string text_or_empty(const py::dict& settings, const char* key) {
   return value.is_none() ? std::string() : std::string(py::str(value));
 }
 
-// None, a text such as "1-20,52", or a list of names.
-ItemChoice items_from(const py::object& given) {
-  if (given.is_none()) return {};
-  if (py::isinstance<py::bytes>(given)) return given.cast<std::string>();
-  return ItemChoice(given.cast<std::vector<std::string>>());
-}
-
 // The configuration without models, folders and pictures: what makes scores of the same maps the same.
 std::string protocol_text(Config config) {
   config.models.clear();
@@ -168,42 +160,45 @@ void keep_models(Config& config, const std::string& list) {
   std::erase_if(config.models, [](const Model& model) { return !is_reference_model(model.name); });
 }
 
-// What _run.py says of a configuration: `path` or `yaml`; `models`, as YAML, in place of those that it names,
-// or `kept`, those of its own that stay; `data`, `cache` and `out`.
-Config config_from(const py::dict& settings) {
-  const std::string path = text_or_empty(settings, "path"), models = text_or_empty(settings, "models");
+// What a command line would have said: `path` of a configuration; `data`, `cache`, `out`, `split`; and where
+// they are texts `items` and `reference`.
+Arguments arguments_from(const py::dict& settings) {
+  Arguments arguments;
+  for (const auto& [key, folder] : {std::pair{"path", &arguments.config},
+                                    {"data", &arguments.data},
+                                    {"cache", &arguments.cache},
+                                    {"out", &arguments.output}})
+    *folder = text_or_empty(settings, key);
+  if (!settings["split"].is_none()) arguments.split = text_or_empty(settings, "split");
+  if (py::isinstance<py::bytes>(settings["items"])) arguments.items = settings["items"].cast<std::string>();
+  if (py::isinstance<py::str>(settings["reference"]))
+    arguments.reference = text_or_empty(settings, "reference");
+  return arguments;
+}
+
+// The file of the arguments, or `yaml`; with `models`, as YAML, in place of those that it names, or with
+// those of its own that are `kept`.
+Config config_from(const py::dict& settings, const Arguments& arguments) {
+  const std::string& path = arguments.config;
   Config config = path.empty()
                       ? read_config(Section::from_text(text_or_empty(settings, "yaml"), "config"), "python")
                       : read_config(Section::from_file(path), std::filesystem::path(path).stem().string());
-  if (!models.empty())
-    config.models =
-        read_config(
-            Section::from_text(fmt::format("{{protocol: {}, models: {}}}", name_of(config.protocol), models),
-                               "models"),
-            "python")
-            .models;
+  if (const std::string models = text_or_empty(settings, "models"); !models.empty()) {
+    const std::string yaml = fmt::format("{{protocol: {}, models: {}}}", name_of(config.protocol), models);
+    config.models = read_config(Section::from_text(yaml, "models"), "python").models;
+  }
   if (settings["only_functions"].cast<bool>()) config.models.clear();
   if (const py::object kept = settings["kept"]; !kept.is_none())
     keep_models(config, kept.cast<std::string>());
-  for (const auto& [key, folder] :
-       {std::pair{"data", &config.data}, {"cache", &config.cache}, {"out", &config.output}})
-    if (const std::string given = text_or_empty(settings, key); !given.empty()) *folder = given;
-  if (!settings["split"].is_none()) config.dataset.split = text_or_empty(settings, "split");
-  if (config.data.empty()) throw ConfigError("data is not given: the folder of the data set");
-  if (config.cache.empty()) config.cache = "salbench-cache";
-  if (config.output.empty()) config.output = (std::filesystem::path("salbench-out") / config.name).string();
+  place(config, arguments);
   return config;
 }
 
-Selection selection_from(const py::dict& settings) {
-  Selection selection{.items = items_from(settings["items"])};
-  const py::object reference = settings["reference"];
-  if (!py::isinstance<py::str>(reference))
-    selection.reference = histogram({reference, "reference"});
-  else if (std::string(py::str(reference)) == kReferenceOfItems)
-    selection.reference_of_items = true;
-  else
-    selection.reference = read_reference(std::string(py::str(reference)));
+Selection selection_from(const py::dict& settings, const Arguments& arguments) {
+  Selection selection = selection_of(arguments);
+  const py::object items = settings["items"], reference = settings["reference"];
+  if (py::isinstance<py::list>(items)) selection.items = ItemChoice(items.cast<std::vector<std::string>>());
+  if (!py::isinstance<py::str>(reference)) selection.reference = histogram({reference, "reference"});
   return selection;
 }
 
@@ -215,11 +210,12 @@ class Run {
       models_.push_back({part[0].cast<std::string>(), part[1], part[2].cast<Words>(),
                          part[3].cast<std::int32_t>(), part[4].cast<std::string>()});
     }
-    Config config = config_from(settings);
+    const Arguments arguments = arguments_from(settings);
+    Config config = config_from(settings, arguments);
     for (const FunctionModel& model : models_) add(config, model);
     for (const auto& [name, folder] : settings["maps"].cast<std::map<std::string, std::string>>())
       config.models.push_back(given_model(name, find_given_maps(folder, false)));
-    const Selection selection = selection_from(settings);
+    const Selection selection = selection_from(settings, arguments);
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
     const LogDelivery delivery;

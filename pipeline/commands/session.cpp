@@ -81,16 +81,21 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
     config.models.push_back(*given);
   }
   config.pictures = std::max(config.pictures, pictures);
+  place(config, arguments);
+  return config;
+}
+
+void place(Config& config, const Arguments& arguments) {
   if (!arguments.data.empty()) config.data = arguments.data;
   if (arguments.split) config.dataset.split = *arguments.split;
   if (!arguments.cache.empty()) config.cache = arguments.cache;
   if (!arguments.output.empty()) config.output = arguments.output;
   if (config.data.empty())
-    throw ConfigError(
-        fmt::format("{}: names no data set: give --data DIR, or a key 'data'", arguments.config));
+    throw ConfigError(fmt::format("{}: names no data set: give {}, or a key 'data'",
+                                  arguments.config.empty() ? "config" : arguments.config,
+                                  as_option("data", "DIR")));
   if (config.cache.empty()) config.cache = "salbench-cache";
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
-  return config;
 }
 
 int thread_count(const Arguments& arguments) {

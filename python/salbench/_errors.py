@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exceptions, by who has to act."""
+"""Exceptions, by who has to act, and how their messages show words of files."""
 
 
 class InputError(ValueError):
@@ -8,3 +8,13 @@ class InputError(ValueError):
 
 class StorageError(OSError):
     """A folder or file that cannot be written."""
+
+
+def in_quotes(word: bytes) -> str:
+    """A word of an unknown file for a message: short, printable."""
+    shown = "".join(chr(c) if 0x20 <= c <= 0x7e else "?" for c in word[:32])
+    return f'"{shown}..."' if len(word) > 32 else f'"{shown}"'
+
+
+def quoted(text: str) -> str:
+    return in_quotes(text.encode("utf-8", "surrogateescape"))

@@ -2,7 +2,6 @@
 """What scores per shape show: how good each model is, which differ, which is best, and how sure that is."""
 
 import math
-import operator
 from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -149,10 +148,10 @@ def conclude(
         if name not in columns and not (name == "lcc" and "cc" in columns):
             _core.fail_unknown("column", name, list(columns))
     scores = _scores(_table_of(columns), chosen, higher, lower)
-    workers = _whole_number("threads", threads, 1, _MOST_THREADS)
+    workers = _core.whole_number(threads, "threads", 1, _MOST_THREADS)
     if str(unit) not in UNITS:
         raise ValueError(f"unit must be one of {', '.join(UNITS)}, not '{unit}'")
-    study = Study(scores, str(unit), _whole_number("seed", seed, 0, 2**64 - 1), threads=workers)
+    study = Study(scores, str(unit), _core.whole_number(seed, "seed", 0, 2**64 - 1), threads=workers)
     check_unit(study)
     return Conclusions(study)
 
@@ -183,16 +182,6 @@ def _scores(table: "Table", chosen: list[str] | None, higher: list[str], lower: 
     scores = scores if chosen is None else only(scores, chosen)
     check(table, scores)
     return scores
-
-
-def _whole_number(name: str, value: Any, low: int, high: int) -> int:
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise ValueError(f"{name} must be a whole number, not of type {type(value).__name__}") from None
-    if not low <= number <= high:
-        raise ValueError(f"{name} must be a whole number from {low} to {high}, not {number}")
-    return number
 
 
 def _names(argument: str, names: Iterable[str]) -> list[str]:

@@ -51,14 +51,14 @@ class Csv(FileTest):
     def test_what_is_wrong_is_named_with_its_line(self):
         for text, message in (
                 ("", "the file is empty, where a line of column names is expected"),
-                ("a,b\n1,2\n1\n", ":3: the line has 1 fields, the header 2"), ("a,a\n", ":1: two columns are named 'a'"),
+                ("a,b\n1,2\n1\n", ":3: the line has 1 fields, the header 2"), ("a,a\n", ':1: two columns are named "a"'),
                 ('a\n1\n"2\n', ":3: a quote opens a field that nothing closes"), ("a,b\n1,x\n", ":2: 'x' is not a number"),
                 ('a,b\n"1"x,2\n', ":2: there is text after the quote that closes a field")):
             separator = "" if message.startswith(":") else ": "
             self.refused(f"scores.csv{separator}{message}", read_csv, self.write(text), {"b"})
         for cell in ("1_000", " 1", "1 ", "\t1", "１"):  # Python takes them for numbers
             self.refused(f"scores.csv:2: '{cell}' is not a number", read_csv, self.write(f"a,b\n.5,{cell}\n"), {"a", "b"})
-        self.refused("scores.csv: there is no column 'c'; there are 'a', 'b'", read_csv(self.write("a,b\n")).column, "c")
+        self.refused('scores.csv: there is no column "c"; there are "a", "b"', read_csv(self.write("a,b\n")).column, "c")
 
 
 class ScoreFiles(FileTest):
@@ -95,7 +95,7 @@ class ScoreFiles(FileTest):
     def test_bad_tables_are_refused_by_line(self):
         for text, message in (
                 ("item,model\n1,LS\n", ": no column is a metric; name the columns of scores with --higher or --lower; there are item, model"),
-                ("model,auc\nLS,.5\n", ": there is no column 'item'; there are 'model', 'auc'"),
+                ("model,auc\nLS,.5\n", ': there is no column "item"; there are "model", "auc"'),
                 ("item,model,auc\n1,LS,good\n", ":2: 'good' is not a number"),
                 ("item,model,auc\n1,LS,inf\n", ":2: auc is infinite: no score can be"),
                 ("item,model,auc\n1,LS,.5\n1,LS,.6\n", ":3: a second row of item '1', model 'LS'"),

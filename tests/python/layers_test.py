@@ -7,7 +7,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "python/salbench"
 ONLY = {  # beside itself
-    "conclusions": {"_core", "_errors", "_version"},
+    "conclusions": {"_command_line", "_core", "_csv", "_errors", "_files", "_version"},
     "pages": {"_types"},
     "report": {"_core", "_errors", "_tables", "conclusions", "pages"},
 }

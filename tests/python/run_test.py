@@ -341,7 +341,7 @@ class Runs(Folders):
             salbench.run("shrec7", data=self.meshes)
         with self.assertRaisesRegex(FileNotFoundError, "nowhere"):
             salbench.run(CONFIG, data="nowhere")
-        with self.assertRaisesRegex(ValueError, "data is not given"):
+        with self.assertRaisesRegex(ValueError, "names no data set: give data='DIR'"):
             salbench.run(CONFIG)
         with self.assertRaisesRegex(ValueError, "threads must be at least 1"):
             self.run_with({"LS": {}}, threads=0)

@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """CSV files (RFC 4180) of anybody's, read strictly: a message names the file, the line and what was expected there."""
 
-import csv
 import os
 from array import array
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
+from salbench._csv import missing, read_rows
 from salbench._errors import InputError as InputError
 from salbench.conclusions.units import Floats
-
-# What the module csv says, in our words.
-_WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
-          "',' expected after '\"'": "there is text after the quote that closes a field"}
 
 _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
 
@@ -50,59 +45,21 @@ class Table:
 
     def _require(self, name: str) -> None:
         if name not in self.columns:
-            known = ", ".join(f"'{column}'" for column in self.columns)
-            raise InputError(f"{self.name}: there is no column '{name}'; there are {known}")
+            raise missing(self.name, name, self.columns)
 
 
 def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> Table:
     """The first line names the columns, below any lines that begin with '#': these are text, whatever commas and quotes are in it. numeric: columns of numbers.
 
-    Throws InputError for a line with another number of fields, a quote that does not close, a column named twice, a cell of a
-    column of numbers that is none; OSError for a file that cannot be read.
+    Throws InputError as read_rows does, and for a cell of a column of numbers that is none; OSError for a file that cannot be read.
     """
     name = os.fspath(path)
     with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
-        remarks, before, first = _remarks(file)
-        rows = _rows(csv.reader(chain([first], file), strict=True), name, before)
-        columns = _header(rows, name)
+        remarks, columns, rows = read_rows(file, name)
         read = _Columns(name, columns, numeric)
         for line, fields in rows:
             read.add(line, fields)
     return read.table(remarks)
-
-
-def _remarks(file: Iterable[str]) -> tuple[list[str], int, str]:
-    """The lines that begin with '#', without it; how many lines these and blank ones take, and the line below them."""
-    remarks = []
-    for before, line in enumerate(file):
-        if line.startswith("#"):
-            remarks.append(line.rstrip("\r\n").lstrip("# \t"))
-        elif line.rstrip("\r\n"):
-            return remarks, before, line
-    return remarks, 0, ""
-
-
-def _rows(reader: Any, name: str, before: int) -> Iterator[tuple[int, list[str]]]:
-    """The line on which each row begins, and its fields; lines without any are left out. before: lines above the first."""
-    while True:
-        line = before + reader.line_num + 1
-        try:
-            fields = next(reader, None)
-        except csv.Error as error:
-            raise InputError(f"{name}:{line}: {_WRONG.get(str(error), str(error))}") from None
-        if fields is None:
-            return
-        if fields:
-            yield line, fields
-
-
-def _header(rows: Iterator[tuple[int, list[str]]], name: str) -> list[str]:
-    for line, fields in rows:
-        for column in fields:
-            if fields.count(column) > 1:
-                raise InputError(f"{name}:{line}: two columns are named '{column}'")
-        return fields
-    raise InputError(f"{name}: the file is empty, where a line of column names is expected")
 
 
 class _Columns:
@@ -117,8 +74,6 @@ class _Columns:
         self._known: dict[str, str] = {}
 
     def add(self, line: int, fields: list[str]) -> None:
-        if len(fields) != len(self._columns):
-            raise InputError(f"{self._name}:{line}: the line has {len(fields)} fields, the header {len(self._columns)}")
         self.lines.append(line)
         for place, cells in self._texts.items():
             cells.append(self._known.setdefault(fields[place], fields[place]))

@@ -3,8 +3,6 @@
 
 import hashlib
 import json
-import os
-import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +11,7 @@ from typing import Any
 import pandas
 
 from salbench._errors import StorageError as StorageError
+from salbench._files import replace_file
 from salbench.conclusions import tables
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.metrics import Metric, of_program
@@ -109,24 +108,9 @@ def remove(path: Path) -> None:
 def write(path: Path, text: str) -> None:
     """A file is there whole or not at all."""
     try:
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".unfinished", encoding="utf-8", errors="surrogateescape", newline="",
-                                         delete=False) as file:
-            try:
-                file.write(text)
-                file.flush()
-                os.fchmod(file.fileno(), 0o666 & ~_umask())
-                os.replace(file.name, path)
-            except BaseException:
-                os.unlink(file.name)
-                raise
+        replace_file(path, text.encode("utf-8", "surrogateescape"))
     except OSError as error:
         raise StorageError(f"{path}: cannot be written: {error.strerror}; choose another folder with --out") from None
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _yaml(path: Path) -> Any:

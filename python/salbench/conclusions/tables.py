@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pandas
 
+from salbench import _command_line
+
 DIGITS = 10  # significant ones, in every file
 _ROWS = 20_000  # that are texts at once
 
@@ -96,25 +98,7 @@ def records(frame: pandas.DataFrame) -> list[dict[str, str]]:
     return rows
 
 
-def aligned(frame: pandas.DataFrame, decimals: int = 4) -> str:
-    """For the console: columns two spaces apart, numbers to the right, "-" for what is not known."""
-    columns = []
-    for name in frame:
-        cells = [str(name), *(_console_cell(value, decimals) for value in frame[name].to_list())]
-        width = max(map(len, cells))
-        to_the_right = frame[name].dtype != object and "" not in cells
-        columns.append([cell.rjust(width) if to_the_right else cell.ljust(width) for cell in cells])
-    return "".join("  ".join(line).rstrip(" ") + "\n" for line in zip(*columns))
-
-
-def _console_cell(value: Any, decimals: int) -> str:
-    if value is pandas.NA:
-        return ""
-    if not isinstance(value, float):
-        return str(value)
-    if value != value:
-        return "-"
-    vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals  # a value that rounds to 0 keeps its magnitude
-    return f"{value:.1e}" if vanishes else f"{value:.{decimals}f}"
-
-
+def aligned(frame: pandas.DataFrame) -> str:
+    """For the console; empty cells stay empty."""
+    rows = [["" if value is pandas.NA else value for value in row] for row in frame.itertuples(index=False)]
+    return _command_line.aligned(list(frame), rows)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Data sets of others: a file per public archive, and what a description (.yaml) of one's own tells of.
 
-Each archive has `items(root)`, which lists its folder and reads no shape, and `read(item)`, which makes the one form of an item. A new
-archive is one file and one row of `ARCHIVES`.
+Each archive has a LAYOUT, in the words of a description. Where these do not say how its files are read, it has `items(root)`, which lists
+its folder and reads no shape, `read(item)`, which makes the one form of an item, and their VERSION. A new archive is one file and one row
+of `ARCHIVES`.
 """
 
 from __future__ import annotations
@@ -46,30 +47,21 @@ def __getattr__(name: str) -> Any:
     return write
 
 
-class _Described:
-    """A user's description, as if it were an archive of its own."""
-
-    def __init__(self, path: str) -> None:
-        from salbench.datasets import described
-
-        self.LAYOUT, self.VERSION, self.read = described.of_file(path), described.VERSION, described.read
-
-    def items(self, root: str, twins: str = "refuse") -> Listing:
-        from salbench.datasets import described
-
-        return described.items(self.LAYOUT, root, twins)
-
-
 def is_description(layout: str) -> bool:
     return layout.endswith(DESCRIPTION) and layout != DESCRIPTION
 
 
 def find(layout: str) -> Any:
     """The archive of this name, or what a user's description tells of: LAYOUT, VERSION, items(root, twins) and read(item)."""
+    from salbench.datasets.described import Archive
+
     if layout in ARCHIVES:
-        return import_module(f"salbench.datasets.{ARCHIVES[layout]}")
+        archive = import_module(f"salbench.datasets.{ARCHIVES[layout]}")
+        return archive if hasattr(archive, "read") else Archive(archive.LAYOUT, getattr(archive, "beside", None))
     if is_description(layout):
-        return _Described(layout)
+        from salbench.datasets._description import read_description
+
+        return Archive(read_description(layout))
     from salbench.datasets._section import did_you_mean
 
     known = sorted({*ARCHIVES, *NATIVE})
@@ -80,10 +72,13 @@ def read(layout: str, root: str, item: Item) -> Form:
     """The one form of an item of a listing, with what is known about it."""
     archive = find(layout)
     form: Form = archive.read(item)
-    if "form" in item.how:
-        return form
-    folder = os.path.normpath(root)
-    lines = [f"{digest}  {os.path.relpath(path, folder)}\n" for path, digest in sorted(form.digests.items())]
-    form.about = {"item": item.shape or item.name, "class": item.category, "split": item.split, "source": archive.LAYOUT.name,
-                  "source_files": "".join(lines), "viewers": "\n".join(item.how.get("views", [])), "licence": archive.LAYOUT.licence}
+    if "form" not in item.how:
+        form.about = about(item, form, root, archive.LAYOUT.name, archive.LAYOUT.licence)
     return form
+
+
+def about(item: Item, form: Form, root: str, source: str, licence: str) -> dict[str, str]:
+    """What the file of a form says of it."""
+    files = "".join(f"{digest}  {os.path.relpath(path, root)}\n" for path, digest in sorted(form.digests.items()))
+    return {"item": item.shape or item.name, "class": item.category, "split": item.split, "source": source, "source_files": files,
+            "viewers": "\n".join(item.how.get("views", [])), "licence": licence}

@@ -4,6 +4,7 @@ explodes through its aliases, or makes an object of a tag."""
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -197,28 +198,8 @@ class Section:
                 self.fail(key, "is not a known key; " + did_you_mean(key, names, f"known are: {', '.join(names)}"))
 
 
-def _edit_distance(a: str, b: str) -> int:
-    """Letters inserted, removed, replaced, or exchanged with the next one."""
-    before: list[int] = []
-    last: list[int] = []
-    row = list(range(len(b) + 1))
-    for i, letter in enumerate(a):
-        before, last, row = last, row, [i + 1]
-        for j, other in enumerate(b):
-            row.append(min(last[j] + (letter != other), row[j] + 1, last[j + 1] + 1))
-            if i > 0 and j > 0 and letter == b[j - 1] and a[i - 1] == other:
-                row[-1] = min(row[-1], before[j - 1] + 1)
-    return row[-1]
-
-
 def did_you_mean(word: str, known: Iterable[str], otherwise: str = "") -> str:
-    """Names the nearest known word, whatever the case; beyond half of the letters it is another word."""
-    nearest, best = "", len(word) + 2
-    for candidate in known if len(word) <= MAX_WORD else ():
-        letters = _edit_distance(word.lower(), candidate.lower())
-        if letters >= max(len(word), len(candidate)):
-            continue
-        distance = 2 * letters + (_edit_distance(word, candidate) > letters)
-        if distance < best:
-            nearest, best = candidate, distance
-    return f"did you mean '{nearest}'?" if nearest else otherwise
+    """As the program says it: compiled, and so imported only where something is wrong."""
+    from salbench import _core
+
+    return _core.did_you_mean(os.fsencode(word), list(known), otherwise) if len(word) <= MAX_WORD else otherwise

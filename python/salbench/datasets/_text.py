@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import re
 
+from salbench._errors import in_quotes as in_quotes
+from salbench._errors import quoted as quoted
+
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 BLANKS = b" \t\n\r\v\f"
 
@@ -47,16 +50,6 @@ def is_same_number(value: float, word: bytes) -> bool:
 def decimal_comma_in(word: bytes) -> str:
     """What to do about a number such as "0,5"; "" for another word."""
     return ": write its decimal comma as a point" if _DECIMAL_COMMA.fullmatch(word) else ""
-
-
-def in_quotes(word: bytes) -> str:
-    """A word of an unknown file for a message: short, printable."""
-    shown = "".join(chr(c) if 0x20 <= c <= 0x7e else "?" for c in word[:32])
-    return f'"{shown}..."' if len(word) > 32 else f'"{shown}"'
-
-
-def quoted(text: str) -> str:
-    return in_quotes(text.encode("utf-8", "surrogateescape"))
 
 
 def lines_of(data: bytes) -> list[bytes]:

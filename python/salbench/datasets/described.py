@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from salbench.datasets._files import extension
@@ -65,6 +65,21 @@ def read(item: Item) -> Form:
         raise InputError(str(error) if path in str(error) else f"{path}: {error}") from None
     except MemoryError:
         raise InputError(f"{path}: no memory for what its item's files hold; leave it out, or work on fewer items at a time") from None
+
+
+@dataclass(frozen=True)
+class Archive:
+    """What a layout tells of, as an archive."""
+
+    LAYOUT: Layout
+    beside: Callable[[str], list[Source]] | None = None
+    VERSION: int = VERSION
+
+    def items(self, root: str, twins: str = "refuse") -> Listing:
+        return items(self.LAYOUT, root, twins, self.beside)
+
+    def read(self, item: Item) -> Form:
+        return read(item)
 
 
 def _imported(item: Item, native: Native) -> Item:
@@ -173,13 +188,3 @@ def _truth_sources(layout: Layout, entry: Candidate, how: dict[str, Any]) -> lis
         camera = _camera_text(how, k) if not entry.saliency and k == 0 else ""
         files.append(Source(f"picks {k}{described(layout.indices)}{' of what was seen' if hides else ''}{camera}", path, _titled("picks", path)))
     return files
-
-
-def of_file(path: str) -> Layout:
-    """The layout that a user's description tells of."""
-    from salbench.datasets._description import read_description
-
-    return read_description(path)
-
-
-__all__ = ["CLOUDS", "VERSION", "InputError", "items", "kind_of", "of_file", "read"]

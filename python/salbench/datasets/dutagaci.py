@@ -9,17 +9,10 @@ your own.
 Cannot answer: who marked what (HS does not apply).
 """
 
-from functools import partial
-
-from salbench.datasets import described
 from salbench.datasets._layout import Indices, Layout, Pattern, Place, TruthPlace
-from salbench.datasets.described import VERSION, read
 
 LAYOUT = Layout(
     "dutagaci",
     (Place(Pattern("MODEL_DATASET/*.off"),
            tuple(TruthPlace(picks=Pattern(f"GROUND_TRUTH_{part}/{{item}}.mat")) for part in "BA")),),
     indices=Indices(base=1, variable="GT_POINTS", cell=("3", "8")), licence="not known, the archive was not seen; ask the authors")
-items = partial(described.items, LAYOUT)
-
-__all__ = ["LAYOUT", "VERSION", "items", "read"]

@@ -5,11 +5,7 @@ Published: page of "Schelling Points on 3D Surface Meshes", Princeton computer g
 Seen: the files; this is another arrangement of them. C++ reads them by itself.
 """
 
-from functools import partial
-
-from salbench.datasets import described
 from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace
-from salbench.datasets.described import VERSION, read
 
 
 def truth(folder: str, saliency: str = "Distributions") -> TruthPlace:
@@ -26,6 +22,3 @@ LAYOUT = Layout(
     tuple(_place(needs, meshes) for folder in ("off", "Meshes")
           for needs, meshes in (("GS", folder), ("Saliency", folder), ("Saliency", f"../{folder}"))),
     classes="shrec07", needs_truth=False, licence="not known; cite the study, and ask its authors before you pass the data on")
-items = partial(described.items, LAYOUT)
-
-__all__ = ["LAYOUT", "VERSION", "items", "read", "truth"]

@@ -9,12 +9,8 @@ Cannot answer: who looked where (pooled over people).
 """
 
 import os
-from functools import partial
-
-from salbench.datasets import described
 from salbench.datasets._files import extension, list_folder
 from salbench.datasets._layout import Layout, Pattern, Place, Splits, TruthPlace, Values
-from salbench.datasets.described import VERSION, read
 from salbench.datasets.records import Source
 
 TEXTURES = (".mtl", ".jpg", ".jpeg", ".png")
@@ -37,6 +33,3 @@ def textures(mesh: str) -> list[Source]:
 
 
 LAYOUT = layout("meshmamba", "non_texture")
-items = partial(described.items, LAYOUT)
-
-__all__ = ["LAYOUT", "VERSION", "items", "read"]

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
+from salbench._files import replace_file
 from salbench.datasets._files import read_file
 from salbench.datasets.records import Form, InputError, Truth
 
@@ -67,17 +68,7 @@ def put(path: str, data: bytes) -> bool:
     with contextlib.suppress(OSError), open(path, "rb") as file:
         if file.read() == data:
             return False
-    temporary = os.path.join(os.path.dirname(path), f".{os.urandom(8).hex()}.tmp")
-    try:
-        with open(temporary, "xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
-        raise
+    replace_file(path, data, to_disk=True)
     return True
 
 

@@ -5,11 +5,7 @@ Published: https://segeval.cs.princeton.edu/
 Seen: the files. C++ reads them by itself.
 """
 
-from functools import partial
-
-from salbench.datasets import described
 from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace
-from salbench.datasets.described import VERSION, read
 from salbench.datasets.gs import truth
 
 
@@ -22,6 +18,3 @@ LAYOUT = Layout(
     (*(Place(Pattern(f"{folder}off/*"), _truths("")) for folder in ("", "data/", "MeshsegBenchmark-1.0/data/")),
      Place(Pattern("*"), _truths("../"), root_is="off")),
     classes="shrec07", needs_truth=False, licence="not known; cite the study, and ask its authors before you pass the data on")
-items = partial(described.items, LAYOUT)
-
-__all__ = ["LAYOUT", "VERSION", "items", "read"]

@@ -11,11 +11,7 @@ the nearest point.
 Cannot answer: who looked where (pooled over people).
 """
 
-from functools import partial
-
-from salbench.datasets import described
 from salbench.datasets._layout import Columns, Layout, Pattern, Place, Splits, TruthPlace, Values
-from salbench.datasets.described import VERSION, read
 
 _ON_MESHES = Values("point", "7", ("1", "2", "3"))
 _LICENCE = "not known; ask the authors"
@@ -31,6 +27,3 @@ LAYOUT = Layout(
      _meshes("Models_3D/*.obj", "dataset_*/{item}.txt"), _meshes("meshes/*.obj", "gaze/{item}.txt")),
     values=_ON_MESHES, columns=Columns(("1", "2", "3"), ("4", "5", "6"), True, "any", "kept", "7", "8"),
     splits=Splits(table="splits.csv"), licence=_LICENCE)
-items = partial(described.items, LAYOUT)
-
-__all__ = ["LAYOUT", "VERSION", "items", "read"]

@@ -9,7 +9,7 @@ from dataclasses import fields
 from typing import Any
 
 from salbench import _core
-from salbench.datasets import ARCHIVES, NATIVE, find, is_description, one_form
+from salbench.datasets import ARCHIVES, NATIVE, about, find, is_description, one_form
 from salbench.datasets import read as read_archive
 from salbench.datasets._files import read_file
 from salbench.datasets._section import did_you_mean
@@ -79,12 +79,10 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
         return read_archive(layout, root, item)
     form = one_form.form_of_fields(_core.native_form(os.fsencode(item.name), *native_files(item)))
     form.digests = {path: _core.xxh128(read_file(path)) for path in (item.native.mesh, *item.native.saliency, *item.native.picks)}
-    lines = "".join(f"{digest}  {os.path.relpath(path, root)}\n" for path, digest in sorted(form.digests.items()))
     if layout not in NATIVE:
         described = _found(layout).LAYOUT
         layout, licence = described.name, described.licence
-    form.about = {"item": item.shape or item.name, "class": item.category, "split": item.split, "source": layout, "source_files": lines,
-                  "viewers": "", "licence": licence}
+    form.about = about(item, form, root, layout, licence)
     return form
 
 

@@ -9,11 +9,7 @@ apart. The second arrangement has no masks, and -1 for hidden; its views are ave
 Cannot answer: who looked where (pooled over people).
 """
 
-from functools import partial
-
-from salbench.datasets import described
 from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace, Values
-from salbench.datasets.described import VERSION, read
 
 _PUBLISHED = (TruthPlace(Pattern("FixationMaps/{item}_{view}norm.txt"),
                          mask=Pattern("CentricityAndVisibilityMaps/{item}_{view}_visibility.txt")),)
@@ -23,6 +19,3 @@ LAYOUT = Layout(
      Place(Pattern("3DModels-Simplif-up/*"), _PUBLISHED, views="scored"),  # the same meshes, turned upright
      Place(Pattern("Meshes/*"), (TruthPlace(Pattern("FixationMaps/{item}_{view}.txt")),))),
     values=Values(unseen="-1"), licence="not known, the files were not seen; ask the authors")
-items = partial(described.items, LAYOUT)
-
-__all__ = ["LAYOUT", "VERSION", "items", "read"]

@@ -7,16 +7,9 @@ Seen: the files, in the arrangement of folders of the Schelling study [chen2012]
 Cannot answer: who looked where (pooled over people).
 """
 
-from functools import partial
-
-from salbench.datasets import described
 from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace
-from salbench.datasets.described import VERSION, read
 
 LAYOUT = Layout(
     "zaragoza",
     (Place(Pattern("Meshes/*"), (TruthPlace(Pattern("Distributions/{item}.val"), Pattern("RawData/{item}_{participant}.pid")),)),),
     licence="not known; ask the authors")
-items = partial(described.items, LAYOUT)
-
-__all__ = ["LAYOUT", "VERSION", "items", "read"]
