@@ -102,13 +102,6 @@ std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::
   return numbers;
 }
 
-template <class Scalar>
-py::array shown_as(Owner owner, std::vector<py::ssize_t> shape, const void* data) {
-  return shown(std::move(owner), py::dtype::of<Scalar>(), std::move(shape), data);
-}
-
-py::ssize_t signed_size(std::size_t n) { return static_cast<py::ssize_t>(n); }
-
 }  // namespace
 
 void Argument::fail(const std::string& what) const {
@@ -261,24 +254,6 @@ std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uin
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data) {
   const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
   return py::array(std::move(type), std::move(shape), data, keeper);
-}
-py::array shown(Owner owner, std::span<const double> values) {
-  return shown_as<double>(std::move(owner), {signed_size(values.size())}, values.data());
-}
-py::array shown(Owner owner, std::span<const Vec3> values) {
-  return shown_as<double>(std::move(owner), {signed_size(values.size()), 3}, values.data());
-}
-py::array shown(Owner owner, std::span<const Triangle> values) {
-  return shown_as<std::int32_t>(std::move(owner), {signed_size(values.size()), 3}, values.data());
-}
-py::array shown(Owner owner, std::span<const std::int32_t> values) {
-  return shown_as<std::int32_t>(std::move(owner), {signed_size(values.size())}, values.data());
-}
-py::array shown(Owner owner, std::span<const std::uint8_t> values) {
-  return shown_as<std::uint8_t>(std::move(owner), {signed_size(values.size())}, values.data());
-}
-py::array shown(Owner owner, std::span<const float> values, int columns) {
-  return shown_as<float>(std::move(owner), {signed_size(values.size()) / columns, columns}, values.data());
 }
 
 py::array read_only(py::array array) {

@@ -16,6 +16,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <pybind11/numpy.h>
@@ -78,20 +79,26 @@ std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uin
 
 // Memory that arrays show and keep alive.
 using Owner = std::shared_ptr<const void>;
-py::array shown(Owner owner, std::span<const double> values);              // (n,)
-py::array shown(Owner owner, std::span<const Vec3> values);                // (n, 3)
-py::array shown(Owner owner, std::span<const Triangle> values);            // (n, 3)
-py::array shown(Owner owner, std::span<const std::int32_t> values);        // (n,)
-py::array shown(Owner owner, std::span<const std::uint8_t> values);        // (n,)
-py::array shown(Owner owner, std::span<const float> values, int columns);  // (n, columns)
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data);
 py::array read_only(py::array array);
 
-// A result as an array that may be written to.
-template <class T, class... More>
-py::array moved(std::vector<T> values, More... more) {
+// (n,); of points and triangles (n, 3).
+template <class T>
+py::array shown(Owner owner, std::span<const T> values) {
+  const auto n = static_cast<py::ssize_t>(values.size());
+  if constexpr (std::is_arithmetic_v<T>)
+    return shown(std::move(owner), py::dtype::of<T>(), {n}, values.data());
+  else
+    return shown(std::move(owner), py::dtype::of<std::decay_t<decltype(values[0][0])>>(), {n, 3},
+                 values.data());
+}
+
+// A result as an array that may be written to, in another shape if one is given.
+template <class T>
+py::array moved(std::vector<T> values, const std::vector<py::ssize_t>& shape = {}) {
   const auto owner = std::make_shared<const std::vector<T>>(std::move(values));
-  return shown(owner, std::span<const T>(*owner), more...);
+  py::array array = shown(owner, std::span<const T>(*owner));
+  return shape.empty() ? array : array.reshape(shape);
 }
 
 }  // namespace salbench::python

@@ -40,11 +40,10 @@ auto computed(const Function& function) {
 // that was forked may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
-  const AtWork counted;
-  const LogDelivery afterwards;
-  const pybind11::gil_scoped_release others_go_on;
-  tbb::task_arena arena(threads);
-  return arena.execute(function);
+  return computed([&] {
+    tbb::task_arena arena(threads);
+    return arena.execute(function);
+  });
 }
 
 }  // namespace salbench::python

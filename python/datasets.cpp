@@ -179,7 +179,7 @@ py::dict dict_of(TruthInForm truth, std::size_t n) {
   fields["viewers"] = or_none(!truth.truth.viewers.empty(), [&] {
     std::vector<double> all;
     for (const ScalarField& map : truth.truth.viewers) all.insert(all.end(), map.begin(), map.end());
-    return moved(std::move(all)).reshape(std::vector<py::ssize_t>{-1, static_cast<py::ssize_t>(n)});
+    return moved(std::move(all), {-1, static_cast<py::ssize_t>(n)});
   });
   fields["picks"] = py::tuple(picked);
   fields["face_values"] =

@@ -68,7 +68,7 @@ py::array map_in_memory(const std::string& name, const std::string& function, py
   const RandomSource random{whole_number({seed, "seed"}, 0, UINT64_MAX), item};
   const auto most = static_cast<int>(whole_number({threads, "threads"}, 1, kMostThreads));
   const ValuePtr map = computed(most, [&] { return rules.value(Role::map, random); });
-  return shown(map, value_as<ScalarField>(*map));
+  return shown(map, FieldView(value_as<ScalarField>(*map)));
 }
 
 const char* argument_of(Role role) {

@@ -54,7 +54,7 @@ py::object shape_of(const std::string& id, Points points, const Normals* normals
   py::object of_normals = py::none(), of_faces = py::none(), descriptors = py::none();
   if (reads_faces) of_faces = copied<Triangle>(faces);
   if (normals != nullptr) of_normals = copied<Vec3>(*normals);
-  if (fpfh != nullptr) descriptors = read_only(moved(std::vector<float>(fpfh->values), kFpfhBins));
+  if (fpfh != nullptr) descriptors = read_only(moved(std::vector<float>(fpfh->values), {-1, kFpfhBins}));
   return py::module_::import("salbench._shape")
       .attr("Shape")(id, copied<Vec3>(points), of_faces, of_normals, descriptors);
 }

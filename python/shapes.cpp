@@ -74,7 +74,7 @@ py::array descriptors_of(const Options& options, py::handle points_of, py::handl
   const auto normal_of = normals(required(normals_of, "normals"), place_of.size());
   return moved(computed(threads_from(threads),
                         [&] { return fpfh(place_of.values, normal_of.values, options).values; }),
-               kFpfhBins);
+               {-1, kFpfhBins});
 }
 
 // --- scans ------------------------------------------------------------------------------------------------
@@ -134,7 +134,7 @@ py::tuple spectrum(py::handle points_of, py::handle faces_of, py::handle count) 
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
       vectors.data(), pairs.vectors.rows(), pairs.vectors.cols()) = pairs.vectors;
   return py::make_tuple(moved(std::vector<double>(pairs.values.begin(), pairs.values.end())),
-                        moved(std::move(vectors)).reshape({pairs.vectors.rows(), pairs.vectors.cols()}));
+                        moved(std::move(vectors), {pairs.vectors.rows(), pairs.vectors.cols()}));
 }
 
 // --- ground truth -----------------------------------------------------------------------------------------
@@ -208,12 +208,10 @@ py::tuple picture(const PictureOptions& options, py::handle points_of, py::handl
       rendered(points_of, faces_of, normals_of, viewpoint, random, threads_from(threads), options);
   const py::ssize_t n = picture.size;
   const auto& matrix = picture.view_projection;
-  return py::make_tuple(moved(std::move(picture.primitive)).reshape({n, n}),
-                        moved(std::move(picture.weights), 3).reshape({n, n, py::ssize_t{3}}),
-                        moved(std::move(picture.depth), 1).reshape({n, n}),
-                        moved(std::move(picture.shade)).reshape({n, n}),
-                        moved(std::move(picture.coverage)).reshape({n, n}),
-                        moved(std::vector<double>(matrix.begin(), matrix.end())).reshape({4, 4}));
+  return py::make_tuple(moved(std::move(picture.primitive), {n, n}),
+                        moved(std::move(picture.weights), {n, n, 3}), moved(std::move(picture.depth), {n, n}),
+                        moved(std::move(picture.shade), {n, n}), moved(std::move(picture.coverage), {n, n}),
+                        moved(std::vector<double>(matrix.begin(), matrix.end()), {4, 4}));
 }
 
 }  // namespace
