@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
+from salbench._by_name import ByName
 from salbench._data import Path, _require_folder
 from salbench._types import NDArray
 
@@ -61,27 +62,6 @@ class Artefact(Mapping[str, Array]):
         return f"Artefact({self.item!r}, {self.stage!r}: {shapes})"
 
 
-class Maps(Mapping[str, Array]):
-    """Saliency maps of an item by model: (n,) arrays."""
-
-    def __init__(self, item: "Item", kind: str) -> None:
-        self._item, self._kind = item, kind
-
-    def __getitem__(self, model: str) -> Array:
-        if model not in self:
-            _core.fail_unknown(f"map of {self._item.name} by a model called", model, list(self))
-        return self._item[f"{self._kind}.{model}"]["saliency"]
-
-    def __contains__(self, model: object) -> bool:
-        return f"{self._kind}.{model}" in self._item.stages
-
-    def __iter__(self) -> Iterator[str]:
-        return (model for kind, _, model in (stage.partition(".") for stage in self._item.stages) if kind == self._kind)
-
-    def __len__(self) -> int:
-        return sum(1 for _ in self)
-
-
 class Item:
     """What a cache holds of one mesh, scan or point cloud, or of a whole data set ("meshes", "scans")."""
 
@@ -132,14 +112,18 @@ class Item:
         return self._one(["ground_truth", "scan_ground_truth", "cloud_ground_truth"], "ground_truth")["saliency"]
 
     @property
-    def maps(self) -> Maps:
-        """Maps by model, as the models computed them."""
-        return Maps(self, "map")
+    def maps(self) -> Mapping[str, Array]:
+        """Maps by model, as the models computed them: (n,) arrays."""
+        return self._of_models("map")
 
     @property
-    def matched(self) -> Maps:
+    def matched(self) -> Mapping[str, Array]:
         """Maps by model, matched to the histogram of the ground truth."""
-        return Maps(self, "matched")
+        return self._of_models("matched")
+
+    def _of_models(self, kind: str) -> Mapping[str, Array]:
+        names = [stage.removeprefix(f"{kind}.") for stage in self.stages if stage.startswith(f"{kind}.")]
+        return ByName(f"map of {self.name} by a model called", names, lambda model: self[f"{kind}.{model}"]["saliency"])
 
     def _find(self, stages: list[str]) -> list[tuple[str, str, str]]:
         found: list[tuple[str, str, str]] = self._folder.find(os.fsencode(self.name), stages)

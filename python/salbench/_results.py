@@ -7,13 +7,13 @@ import os
 import pathlib
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from salbench import _core
+from salbench._by_name import ByName
 from salbench._tables import Tables, read
 from salbench._types import ArrayLike, NDArray
 
@@ -33,51 +33,12 @@ class Failure(NamedTuple):
     cause: str
 
 
-class Maps(Mapping[str, NDArray[np.float64]]):
-    """The maps of a model by name of the shape: maps["52_3"]. Each is read when it is asked for."""
-
-    def __init__(self, run: Any, model: str) -> None:
-        run.require_model(model)
-        self._run, self._model = run, model
-        self._items = dict.fromkeys(map(os.fsdecode, run.mapped(model)))
-
-    def __getitem__(self, item: str) -> NDArray[np.float64]:
-        if item not in self._items:
-            names = [os.fsencode(name) for name in self._items]
-            _core.fail_unknown(f"map by {self._model} of an item called", os.fsencode(str(item)), names)
-        values: NDArray[np.float64] = self._run.map(self._model, os.fsencode(item))
-        return values
-
-    def __contains__(self, item: object) -> bool:
-        return item in self._items
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._items)
-
-    def __len__(self) -> int:
-        return len(self._items)
-
-    def __repr__(self) -> str:
-        return f"Maps of {self._model}: {len(self)} shapes"
-
-
-class Reference(Mapping[str, NDArray[np.float64]]):
+class Reference(ByName[NDArray[np.float64]]):
     """Histograms that maps were matched to, by data set: "meshes", "scans", "clouds". Where there is but one, it stands
     for an array: `salbench.score(..., reference=results.reference)`."""
 
     def __init__(self, histograms: Mapping[str, NDArray[np.float64]]) -> None:
-        self._histograms = histograms
-
-    def __getitem__(self, dataset: str) -> NDArray[np.float64]:
-        if dataset not in self._histograms:
-            _core.fail_unknown("reference of a data set called", str(dataset), list(self._histograms))
-        return self._histograms[dataset]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._histograms)
-
-    def __len__(self) -> int:
-        return len(self._histograms)
+        super().__init__("reference of a data set called", histograms, histograms.__getitem__)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float64]:
         if not self:
@@ -86,9 +47,6 @@ class Reference(Mapping[str, NDArray[np.float64]]):
             raise ValueError(f"the run has a reference for each of {', '.join(self)}: choose one, such as "
                              f"results.reference['{next(iter(self))}']")
         return np.array(next(iter(self.values())), dtype)
-
-    def __repr__(self) -> str:
-        return f"Reference of {', '.join(self)}"
 
 
 class Results(Tables):
@@ -147,14 +105,20 @@ class Results(Tables):
         tables = {name: self._table(f"mean_histograms_{name}") for name in names}
         return Reference({name: table.GS.to_numpy(np.float64) for name, table in tables.items() if "GS" in table})
 
-    def maps(self, model: str) -> Maps:
+    def maps(self, model: str) -> Mapping[str, NDArray[np.float64]]:
         """The maps of a model by name of the shape, as it made them: maps("LS")["52_3"].
 
         Of a run that was made by a command, `Cache` has them.
         """
         if self._run is None:
             raise ValueError("maps() is of results that run() returned; salbench.Cache(folder) has those of others")
-        return Maps(self._run, model)
+
+        def read(item: str) -> NDArray[np.float64]:
+            values: NDArray[np.float64] = self._run.map(model, os.fsencode(item))
+            return values
+
+        self._run.require_model(model)
+        return ByName(f"map by {model} of an item called", map(os.fsdecode, self._run.mapped(model)), read)
 
     def score(self, prediction: ArrayLike, item: str, *, model: str | None = None) -> dict[str, float]:
         """Scores of a map of a shape of the run, as its tables have them: by its metrics, ground truth and reference.
