@@ -19,6 +19,8 @@ Inputs inputs_with(Level level) {
 ShapeRules::ShapeRules(std::vector<Model> models, Level level, ValuePtr shape) : level_(level) {
   Config config;
   config.models = std::move(models);
+  config.dataset.meshes = level == kMeshes;
+  config.dataset.scans = level == kScans;
   rules_ = make_rules(config, inputs_with(level));
   give(Role::shape, std::move(shape));
 }
