@@ -43,8 +43,8 @@ struct Setup {
 // The configuration as the command line changes it: folders, models, a model more. Throws ConfigError.
 Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {},
                           Pictures pictures = Pictures::none);
-// Folders and split that are given, in place of the configuration's; and the usual folders. Throws ConfigError
-// where there is no data set.
+// Folders and split that are given, in place of the configuration's; and the usual folders. Throws
+// ConfigError where there is no data set.
 void place(Config& config, const Arguments& arguments);
 Selection selection_of(const Arguments& arguments);
 // Keeps the models of a list such as "LS,PS". Throws ConfigError for a name that the configuration lacks.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Docstrings and signatures of what is compiled. What several functions take is described here alone, and options by the program's table."""
+"""Docstrings and signatures of what is compiled: what several functions take is described here alone, and options by the
+program's table of them."""
 
 import inspect
 import re
@@ -61,7 +62,8 @@ def documented(function: Function, rows: Iterable[Row] | None = None) -> Functio
     taken = [own.get(name, ARGUMENTS.get(name, "")) for name in signature.parameters]
     sections["Parameters"] = "".join(dict.fromkeys(taken)) + option_lines(rows)
     text = head + "\n\n".join(f"{name}\n{'-' * len(name)}\n{sections[name].strip()}" for name in SECTIONS if name in sections)
-    function.__doc__ = re.sub(r"^( +)\*\*(\w+)\n", lambda found: option_lines(_core.options[found[2]], found[1]), text + "\n", flags=re.MULTILINE)
+    function.__doc__ = re.sub(r"^( +)\*\*(\w+)\n", lambda found: option_lines(_core.options[found[2]], found[1]), text + "\n",
+                              flags=re.MULTILINE)
     if "options" not in own:
         parameters = [p for p in signature.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
         parameters += [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default_from(default)) for name, default, _ in rows]

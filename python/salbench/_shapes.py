@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stages that make something of a shape: normals, descriptors, scans, surfaces, ground truth, pictures."""
+"""Stages that make something of a shape: normals, descriptors, scans, surfaces, ground truth, pictures.
+
+Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and options.
+"""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
