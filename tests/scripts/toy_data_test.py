@@ -57,15 +57,6 @@ class ToyDataTest(unittest.TestCase):
         self.assertNotIn("Traceback", done.stderr)
         return done.stdout
 
-    def test_bench(self):
-        config = self.folder / "coarse.yaml"
-        config.write_text("scan: {step_degrees: 1}\n")
-        table = self.printed("bench", "--full", "2", "--rounds", "1", "--config", config, "--work", self.folder / "bench",
-                             "--program", PROGRAM)
-        self.assertRegex(table, r"^meshes 1,2, 1 threads, 1 rounds\n *what +seconds +all meshes\n *wall +[\d.]+ +[\d.]+\n")
-        self.assertRegex(table, r"\n *map\.[A-Z]+ of scans +[\d.]+ +[\d.]+\n")
-        self.assertRegex(table, r"\npeak memory: \d+ MB\n$")
-
     def test_fidelity(self):
         out = self.folder / "scans"
         (self.folder / "scans.yaml").write_text("dataset: {meshes: false}\nscan: {step_degrees: 2}\n")
