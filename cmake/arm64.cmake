@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Toolchain of scripts/arm64: Debian's cross compiler, and SALBENCH_SYSROOT with Debian's packages for arm64.
+# Toolchain of scripts/check arm64: Debian's cross compiler, and SALBENCH_SYSROOT with Debian's packages for arm64.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SALBENCH_SYSROOT)

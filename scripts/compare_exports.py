@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Run by scripts/releases, and by hand on exports that two machines have made.
+# Run by scripts/check and scripts/release, and by hand on exports that two machines have made.
 """Compares two exports, or two results folders, of one configuration over the same data, made on two machines.
 
 compare_exports.py FIRST.h5 SECOND.h5 [TOLERANCE]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Intervals hold and tests err as often as they say, in a few hundred simulated data sets of equal models. scripts/calibrate does the
+"""Intervals hold and tests err as often as they say, in a few hundred simulated data sets of equal models. calibration.py does the
 same over thousands, with the variances of a run."""
 
 import unittest

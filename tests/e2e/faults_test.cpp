@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damage of every kind, and accidents around a run. A short version by default; with SALBENCH_FAULTS=all
-// (scripts/faults) every length, every byte and 200 kills.
+// (scripts/check faults) every length, every byte and 200 kills.
 #include <algorithm>
 #include <chrono>
 #include <csignal>

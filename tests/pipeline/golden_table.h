@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Golden outputs: a few numbers for each array that a stage writes over the toy data, and the rules by which
-// they may change. The table is tests/golden/stages.csv; scripts/golden brings it up to date.
+// they may change. The table is tests/golden/stages.csv; golden_test.cpp says how it is brought up to date.
 #pragma once
 
 #include <cstdint>

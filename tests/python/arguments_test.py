@@ -2,7 +2,7 @@
 """Hostile arguments: each of 10 000 calls ends in a result or in an exception of Python, and never ends the interpreter.
 
 The calls are the same each time. `arguments_test.py CALL` carries out one of them, and prints what it gets;
-`scripts/sanitize python` has all of them under AddressSanitizer.
+`scripts/test asan` has all of them under AddressSanitizer.
 """
 
 import contextlib

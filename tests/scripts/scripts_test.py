@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every file of scripts/ can be read by its interpreter, is run by scripts/test or by scripts/check, and is mentioned where people look."""
+"""Every file of scripts/ can be read by its interpreter, is run by a test or a check, and is mentioned where people look."""
 
 import ast
 import os
@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
 FILES = sorted(path for path in SCRIPTS.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
-OTHER = ("mutant.h", "packages")  # neither bash nor Python
+OTHER = ("mutant.h",)  # neither bash nor Python
 
 
 def name_of(path):
@@ -27,30 +27,31 @@ def language_of(path):
     return "bash" if "bash" in head or path.suffix == ".sh" else ""
 
 
-def listed():
-    """Rows of scripts/check --list: name, files, needs; or "-", file, and the file that has it run by scripts/test."""
+def checks():
+    """What each check of scripts/check needs, by its name."""
     text = subprocess.run([SCRIPTS / "check", "--list"], check=True, capture_output=True, text=True).stdout
-    return [line.split("|") for line in text.splitlines()]
+    return {name: needs for name, *needs in map(str.split, text.splitlines())}
+
+
+def without_comments(path):
+    return re.sub(r"(?m)^\s*(#|//).*$", "", path.read_text(encoding="utf-8", errors="replace"))
 
 
 class ScriptsTest(unittest.TestCase):
-    def test_each_is_run_by_scripts_test_or_by_scripts_check(self):
-        checked = {file for name, files, _ in listed() if name != "-" for file in files.split()}
-        tested = {file: where for name, file, where in listed() if name == "-"}
-        self.assertEqual(sorted(checked | set(tested)), [name_of(path) for path in FILES])
-        for file, where in tested.items():
-            module = Path(where).stem
-            if module.endswith("_test"):
-                self.assertRegex((ROOT / where).with_name("CMakeLists.txt").read_text(encoding="utf-8"), rf"\b{module}\b")
-            self.assertRegex((ROOT / where).read_text(encoding="utf-8"), rf"\b{re.escape(Path(file).name)}\b", f"{where} does not run {file}")
+    def test_each_is_run_by_a_test_or_a_check_or_by_a_script_that_is(self):
+        tests = [path for path in ROOT.glob("tests/**/*") if path.name == "CMakeLists.txt" or path.suffix == ".py"]
+        runs = "\n".join(map(without_comments, [ROOT / ".ci/run", SCRIPTS / "check", *tests]))
+        waiting = {path: re.compile(rf"\b{re.escape(path.name)}\b") for path in FILES if path != SCRIPTS / "check"}
+        while found := [path for path, name in waiting.items() if name.search(runs)]:
+            runs += "\n".join(map(without_comments, found))
+            for path in found:
+                del waiting[path]
+        self.assertEqual([name_of(path) for path in waiting], [])
 
     def test_each_check_is_a_function_and_needs_what_is_known(self):
-        text = (SCRIPTS / "check").read_text()
-        names = [name for name, _, _ in listed() if name != "-"]
-        self.assertEqual(sorted(names), sorted(re.findall(r"^check_(\w+)\(\)", text, flags=re.M)))
-        purposes = re.findall(r"^\[(\w+)\]", (SCRIPTS / "packages").read_text(), flags=re.M)
-        needs = {need for name, _, needs in listed() if name != "-" for need in needs.split()}
-        self.assertLessEqual(needs, {"root", "data", "network", *purposes})
+        self.assertEqual(sorted(checks()), sorted(re.findall(r"^check_(\w+)\(\)", (SCRIPTS / "check").read_text(), flags=re.M)))
+        for need in {need for needs in checks().values() for need in needs} - {"root", "data", "network", "git"}:
+            self.assertNotEqual(subprocess.run([SCRIPTS / "setup", "--list", need], capture_output=True).stdout, b"", need)
 
     def test_each_is_syntax_of_its_language(self):
         for path in FILES:
@@ -113,23 +114,23 @@ class CheckTest(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         scripts = Path(holder.name) / "scripts"
         scripts.mkdir()
-        for name in ("check", "real_data.sh"):
+        for name in ("check", "common.sh"):
             shutil.copy(SCRIPTS / name, scripts)
-        for name, text in {"setup": "[[ $1 != fuzz ]]", "faults": "echo well", "mutate": "echo first; echo 'the end'; exit 3"}.items():
+        for name, text in {"setup": "[[ $1 != fuzz ]]", "build": "echo well", "perf_shapes": "echo first; echo 'the end'; exit 3"}.items():
             (scripts / name).write_text(f"#!/usr/bin/env bash\n{text}\n")
             (scripts / name).chmod(0o755)
         environment = {name: value for name, value in os.environ.items() if name != "SALBENCH_DATA"}
 
         def checked(*names):
             return subprocess.run([scripts / "check", *names], capture_output=True, text=True, env=environment)
-        done = checked("faults", "mutate", "fidelity", "fuzz")
+        done = checked("odr", "perf_shapes", "fidelity", "fuzz")
         self.assertEqual((done.returncode, done.stderr), (1, ""))
         self.assertEqual([re.sub(" +", " ", re.sub(r" \d+ s\b", " N s", line)) for line in done.stdout.splitlines()], [
-            "passed faults N s", "failed mutate N s exit status 3, build/check/mutate.log: the end",
+            "passed odr N s well", "failed perf_shapes N s exit status 3, build/check/perf_shapes.log: the end",
             "skipped fidelity - needs real data: SALBENCH_DATA",
             "skipped fuzz - needs packages that cannot be installed: scripts/setup fuzz", "1 passed, 1 failed, 2 skipped in N s"])
-        self.assertEqual((Path(holder.name) / "build/check/mutate.log").read_text(), "first\nthe end\n")
-        self.assertEqual(checked("faults", "fuzz").returncode, 0)
+        self.assertEqual((Path(holder.name) / "build/check/perf_shapes.log").read_text(), "well\nfirst\nthe end\n")
+        self.assertEqual(checked("odr", "fuzz").returncode, 0)
 
     def test_without_a_name_it_says_how_it_is_used(self):
         done = self.check()

@@ -13,6 +13,7 @@ import pandas
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 PROGRAM = Path(os.environ["SALBENCH_PROGRAM"])
 PYTHON = ["/usr/bin/python3", "-B"]
+DATA = os.environ.get("SALBENCH_DATA", "")
 
 
 def make_data(data):
@@ -81,6 +82,16 @@ class ToyDataTest(unittest.TestCase):
         self.assertGreater(len(rows), 50)
         for of in ("by_shapes", "by_meshes", "by_classes"):
             self.assertRegex(said, rf"(?m)^{of}: \d+ holds, \d+ undecided, \d+ does not hold; of {len(rows)} pairs$")
+
+
+@unittest.skipUnless((Path(DATA) / "reference").is_dir() and DATA, "the real data is not here: set SALBENCH_DATA")
+class RealDataTest(unittest.TestCase):
+    def test_paper_statements_are_what_the_published_scores_say(self):
+        with tempfile.TemporaryDirectory() as folder:
+            made = Path(folder) / "statements.csv"
+            subprocess.run([*PYTHON, SCRIPTS / "paper_statements", DATA, made], check=True, stdout=subprocess.DEVNULL)
+            self.assertEqual((SCRIPTS.parent / "configs/paper/statements.csv").read_text(), made.read_text(),
+                             f"run scripts/paper_statements {DATA}")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # shellcheck shell=bash
-# Sourced by scripts/package, scripts/container and scripts/releases: fresh roots of Debian 12 and 13 below build/debian, made
-# with debootstrap. Their functions need root. The first call fetches the base of a release from Debian's mirror, later ones
-# copy it; packages that were installed in a root before are kept in build/debian/archives.
+# Sourced by other scripts, in the root of the checkout.
+
+# usage: prints what a script says of itself above its line "set".
+usage() { sed -n '3,/^set /s/^# \{0,1\}//p' "$0"; }
+
+# find_data: where no SALBENCH_DATA names a folder with SchellingData/ and reference/, it becomes the one beside the checkout, if
+# there is one.
+find_data() {
+  [[ -z ${SALBENCH_DATA:-} && -f ../shared/data/unpack ]] || return 0
+  SALBENCH_DATA=$(bash ../shared/data/unpack)
+  export SALBENCH_DATA
+}
+
+# Fresh roots of Debian 12 and 13 below build/debian, made with debootstrap, which needs root. The first call fetches the base of a
+# release from Debian's mirror, later ones copy it; packages that were installed in a root before are kept in build/debian/archives.
 
 debian_mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
 declare -A debian_codenames=([12]=bookworm [13]=trixie)
@@ -52,17 +64,18 @@ need_root() { # NAME of the script
   [[ $(id -u) -eq 0 ]] || { echo "$1: needs root, for debootstrap and chroot" >&2; exit 1; }
 }
 
-# put_toy_data ROOT: two small meshes, and a configuration that scores them against simulated participants, in ROOT/work,
-# which belongs to user 1000.
+# put_toy_data FOLDER: two small meshes, and a configuration that scores them and their scans against simulated participants.
 put_toy_data() {
-  mkdir -p "$1/work"
-  python3 scripts/slurm/toy_meshes.py "$1/work/meshes" 2 24 12
-  printf 'dataset: {layout: folder, participants: simulated}\n' > "$1/work/toy.yaml"
-  chown -R 1000:1000 "$1/work"
+  rm -rf "$1"
+  mkdir -p "$1"
+  python3 scripts/slurm/toy_meshes.py "$1/meshes" 2 24 12
+  printf 'dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\n' > "$1/toy.yaml"
 }
 
-# run_toy ROOT: what a user does in the folder /work of a root: run twice, the second time with nothing to do.
+# run_toy ROOT: what a user does in a folder /work of a root, which is theirs: run twice, the second time with nothing to do.
 run_toy() {
+  put_toy_data "$1/work"
+  chown -R 1000:1000 "$1/work"
   inside "$1" 1000 sh -euc 'cd /work && salbench run toy.yaml --data meshes --quiet'
   inside "$1" 1000 sh -euc 'cd /work && salbench run toy.yaml --data meshes'
   grep -x 'artefacts_computed: 0' "$1/work/salbench-out/toy/run.yaml" ||
