@@ -81,12 +81,16 @@ class SlurmSubmitTest(unittest.TestCase):
         self.assertIn("--dependency=afterany:1", merge)
         for job in (array, merge):
             self.assertIn("--time=1:00", job)
-            task = job.index(str(self.folder / "tree/scripts/slurm/task"))
-            self.assertEqual(job[task + 2:], ["3", "7", "4", str(self.work / "toy set (a).yaml"), *self.options("o u t"), "--threads", "2", "--quiet"])
+            script = job.index(str(self.folder / "tree/scripts/slurm/submit"))
+            self.assertEqual(job[script + 1:], ["--job", os.path.realpath(os.environ["SALBENCH_PROGRAM"]), "3", "7",
+                                                str(self.work / "toy set (a).yaml"), "--threads", "2", "--quiet", *self.options("o u t")])
 
     def test_what_cannot_run_is_refused_and_nothing_is_submitted(self):
         for words, arguments in (("is not a file", ["nothing.yaml", "--tasks", "4"]),
                                  ("must be the number of shares", ["toy set (a).yaml", "--tasks=0"]),
+                                 ("must be the number of shares", ["toy set (a).yaml"]),
+                                 ("needs a value", ["toy set (a).yaml", "--tasks", "4", "--", *self.options("out"), "--threads"]),
+                                 ("there is no option '--shrad'", ["toy set (a).yaml", "--tasks", "4", "--", *self.options("out"), "--shrad", "1/2"]),
                                  ("is that of --tasks", ["toy set (a).yaml", "--tasks", "4", "--array=1-9"]),
                                  ("names no data set", ["toy set (a).yaml", "--tasks", "4"])):
             with self.subTest(words):
