@@ -4,7 +4,6 @@ measurement."""
 
 import importlib.machinery
 import importlib.util
-import os
 import sys
 import tempfile
 import unittest
@@ -19,7 +18,6 @@ sys.dont_write_bytecode = True
 
 def script():
     path = str(ROOT / "scripts/data_set_figures")
-    os.environ.setdefault("SALBENCH_PACKAGE", str(Path(os.environ["SALBENCH_PROGRAM"]).parent / "python"))
     spec = importlib.util.spec_from_loader("data_set_figures", importlib.machinery.SourceFileLoader("data_set_figures", path))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

@@ -62,7 +62,7 @@ class ToyResultsTest(unittest.TestCase):
 class OwnDataTest(unittest.TestCase):
     def test_perf_shapes(self):
         said = ran(*PYTHON, SCRIPTS / "perf_shapes", PROGRAM.parent, "2", "4")
-        self.assertRegex(said, r"\nfrom 2 to 4 shapes, and 100000 on paper\n(  .*exponents: wall .*\n){7}$")
+        self.assertRegex(said, r"\nfrom 2 to 4 shapes, and 100000 on paper\n(  .*exponents: wall .*\n){4}$")
 
 
 if __name__ == "__main__":
