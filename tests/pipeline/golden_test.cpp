@@ -252,8 +252,9 @@ Outputs toy_outputs() {
   return outputs;
 }
 
-// After a stage was added, its version was raised or its options changed; an output that changed without any of
-// these is refused. To accept every output as it is, as after a change of the toy data, remove the table first.
+// After a stage was added, its version was raised or its options changed; an output that changed without any
+// of these is refused. To accept every output as it is, as after a change of the toy data, remove the table
+// first.
 constexpr auto kToUpdate =
     "SALBENCH_UPDATE_GOLDEN=1 build/release/test_pipeline --gtest_filter='Golden.*' records it";
 

@@ -15,14 +15,13 @@
 
 #include <fmt/format.h>
 
-#include "io/file.h"
-#include "io/shapes/ground_truth_file.h"
 #include "io/shapes/mesh_file.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/metrics/metrics.h"
 #include "stages/models/cs.h"
 #include "stages/models/ls.h"
 #include "stages/normals/normals.h"
+#include "tests/stages/metrics/published.h"
 #include "tests/support/correlation.h"
 #include "tests/support/subdivided.h"
 
@@ -41,22 +40,14 @@ struct Picked {
 
 std::vector<Picked> largest_with_picks(const fs::path& data) {
   std::vector<Picked> all;
-  for (const auto& entry : fs::directory_iterator(data / "Meshes")) {
-    Picked picked{entry.path().stem().string(), {}, {}};
-    fs::path file = data / "RawData" / (picked.name + "_0.pid");
-    if (!fs::exists(file)) continue;
-    picked.mesh = read_mesh(entry.path());
-    for (int k = 0; fs::exists(file); file = data / "RawData" / fmt::format("{}_{}.pid", picked.name, ++k)) {
-      const auto own = parse_picks(read_file(file), file.string(), {picked.mesh.vertices.size()});
-      picked.picks.insert(picked.picks.end(), own.begin(), own.end());
-    }
-    std::sort(picked.picks.begin(), picked.picks.end());
-    picked.picks.erase(std::unique(picked.picks.begin(), picked.picks.end()), picked.picks.end());
-    all.push_back(std::move(picked));
+  for (const int mesh : published::kMeshes) {
+    const std::string name = std::to_string(mesh);
+    all.push_back({name, read_mesh(data / "SchellingData/Meshes" / (name + ".off")),
+                   picked_points(published::ground_truth(data, mesh))});
   }
   std::sort(all.begin(), all.end(),
             [](const Picked& a, const Picked& b) { return a.mesh.vertices.size() > b.mesh.vertices.size(); });
-  all.resize(std::min(all.size(), kMeshes));
+  all.resize(kMeshes);
   return all;
 }
 
@@ -72,8 +63,7 @@ void compare(const std::string& model, const Picked& of, std::size_t n, Saliency
   const auto seconds = [](std::clock_t ticks) { return static_cast<double>(ticks) / CLOCKS_PER_SEC; };
   fmt::print(
       "{} of mesh {}, {} points: rank correlation {:.4f}, AUC {:.4f} to {:.4f} ({:+.4f}), {:.1f} to {:.1f} s "
-      "of "
-      "processor time\n",
+      "of processor time\n",
       model, of.name, n, spearman(exact, estimate), auc_exact(exact, of.picks), auc_exact(estimate, of.picks),
       auc_exact(estimate, of.picks) - auc_exact(exact, of.picks), seconds(middle - start),
       seconds(end - middle));
@@ -106,7 +96,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    salbench::compare_all(std::filesystem::path(argv[1]) / "SchellingData", subdivisions);
+    salbench::compare_all(argv[1], subdivisions);
   } catch (const std::exception& e) {
     fmt::print(stderr, "quality_large_shapes: {}\n", e.what());
     return 1;
