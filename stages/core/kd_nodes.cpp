@@ -82,10 +82,10 @@ Cut cut_of(std::span<const Place> places, const Box& box) {
 
 // How many of the places are on the near side.
 std::size_t divide(std::span<Place> places, const Cut& cut) {
-  const auto [axis, plane] = cut;
-  const std::size_t before = move_to_front(places, [&](const Place& p) { return p.point[axis] < plane; });
+  const std::size_t before =
+      move_to_front(places, [&](const Place& p) { return p.point[cut.axis] < cut.plane; });
   const std::size_t on_plane =
-      move_to_front(places.subspan(before), [&](const Place& p) { return p.point[axis] <= plane; });
+      move_to_front(places.subspan(before), [&](const Place& p) { return p.point[cut.axis] <= cut.plane; });
   return std::clamp(places.size() / 2, before, before + on_plane);
 }
 

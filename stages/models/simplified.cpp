@@ -141,7 +141,7 @@ EdgeCollapse::EdgeCollapse(const Mesh& mesh)
 // Keeps the first of several faces with the same corners.
 void EdgeCollapse::add_faces(const Mesh& mesh) {
   for (const Triangle& corners : mesh.faces) {
-    const auto [a, b, c] = corners;
+    const Index a = corners[0], b = corners[1], c = corners[2];  // Clang 14 captures no structured bindings
     if (a == b || b == c || c == a) continue;
     const auto& listed = faces_of(a);
     if (std::any_of(listed.begin(), listed.end(), [&](Index f) { return has(f, b) && has(f, c); })) continue;
