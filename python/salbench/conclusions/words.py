@@ -52,6 +52,57 @@ def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> 
     return " ".join(filter(None, (said, _at_chance(leaders), _of_new_classes(leaders))))
 
 
+@dataclass(frozen=True)
+class Brief:
+    """What a short sentence needs of a metric: `models` are the leaders, `ranked` all competitors; the others as of Leader."""
+
+    label: str
+    verdict: str
+    models: Sequence[str]
+    ranked: Sequence[str]
+    n_missing: int = 0
+    new_classes: str = ""  # verdict; empty: not known
+    new_classes_models: Sequence[str] = ()
+
+
+def brief(found: Sequence[Brief]) -> str:
+    """Who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not (AUC, NSS)." Metrics stand in brackets."""
+    alike: dict[tuple[str, frozenset[str]], list[Brief]] = {}
+    for of in found:
+        alike.setdefault((of.verdict, frozenset(of.models)), []).append(of)
+    if not alike:
+        return "No model has scores."
+    said = [f"{_in_brief(of[0], len(alike) == 1)} ({', '.join(one.label for one in of)})" for of in alike.values()]
+    missing = max(of.n_missing for of in found)
+    left_out = [f"({_several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else []
+    return " ".join([f"{'; '.join(said)}.", *_new_classes_in_brief(found), *left_out])
+
+
+def _in_brief(of: Brief, alone: bool) -> str:
+    """alone: the only clause, which has room for who is not the best."""
+    if of.verdict == "leads":
+        return f"{of.models[0]} leads{' on these classes' if of.new_classes else ''}"
+    if of.verdict == "not behind":
+        return f"no model is ahead of {of.models[0]}"
+    if of.verdict == "not told apart":
+        others = [name for name in of.ranked if name not in of.models]
+        if not others:
+            return "any model may be best"
+        not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone else ""
+        return f"{_named(list(of.models), 'or')} may be best{not_best}"
+    return {"only model": "there is one model alone", "no common shape": "no shape has scores of all models"}.get(
+        of.verdict, "too few observations to rank")
+
+
+def _new_classes_in_brief(found: Sequence[Brief]) -> list[str]:
+    """By which metrics classes that nobody has seen would show the same; the ranking has what they show otherwise."""
+    known = [of for of in found if of.new_classes]
+    same = [of for of in known if (of.new_classes, set(of.new_classes_models)) == (of.verdict, set(of.models))]
+    if not known:
+        return []
+    return [f"New classes: {'the same' if len(same) == len(known) else f'{_listed([of.label for of in same])} only' if same else 'not the same'}."]
+
+
 def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
     """Each in a sentence; what metrics say alike in one."""
     alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}

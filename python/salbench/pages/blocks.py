@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What elements of pages are made of. Templates know these types and nothing of the data behind them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -35,14 +35,17 @@ class Cell:
     key: float | str | None = None  # None: the text itself
     href: str = ""
     below: str = ""      # second line, smaller
+    further: str = ""    # third line
     bold: bool = False
     style: str = ""      # name of a CSS class
+    badge: tuple[str, str] = ("", "")  # (verdict, CSS class) that follows the text
     after: str = ""      # follows the text, lighter
 
 
 @dataclass
 class Table:
-    """A table that sorts and filters. numeric: per column, True aligns right and sorts as numbers."""
+    """A table that sorts and filters; its first column stays in place where it scrolls. numeric: per column, True aligns right and sorts as
+    numbers."""
     id: str
     caption: str
     columns: list[str]
@@ -51,7 +54,8 @@ class Table:
     filters: list[int] = field(default_factory=list)  # indices of columns that get a menu
     files: list[tuple[str, str]] = field(default_factory=list)  # (label, path) of the same table in other forms
     folded: str = ""     # what a reader opens it with; empty: it stands open
-    better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for an arrow in its head
+    better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for its head
+    opens: dict[int, str] = field(default_factory=dict)  # of filters: the text that is shown first; there is no "all", which would mix
     kind: str = "table"
 
 
@@ -92,6 +96,11 @@ def cell(value: float | None, digits: int = 3, **more: Any) -> Cell:
     if value is None or value != value:
         return Cell("–", "", **more)
     return Cell(f"{value:.{digits}f}".replace("-", "−"), float(value), **more)
+
+
+def first_of(rows: "Sequence[Sequence[Cell]]", *columns: int) -> dict[int, str]:
+    """What a table opens on: the texts of these columns in its first row."""
+    return {column: rows[0][column].text for column in columns} if rows else {}
 
 
 def count(value: float, **more: Any) -> Cell:

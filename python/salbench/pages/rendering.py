@@ -1,22 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Templates, and the files that pages load."""
 
-from functools import cache
+import re
+from collections.abc import Mapping
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
 
 HERE = Path(__file__).parent
 MARK = "salbench report"  # <meta name="generator"> of every page: what has it may be written again, or removed
 SIMULATED = "Simulated participants: the program made the ground truth. These scores say nothing about people."
 
 
-@cache
-def environment(package: Path) -> Environment:
-    """Templates of a package's own folder, which extend those that all share; everything is escaped."""
+def environment(package: Path, titles: Mapping[str, str]) -> Environment:
+    """Templates of a package's own folder, which extend those that all share; everything is escaped. titles: what stands in tables -> what it
+    means, which the filter `abbr` writes beside it."""
     made = Environment(loader=FileSystemLoader([package / "templates", HERE / "templates"]), autoescape=True, undefined=StrictUndefined,
                        trim_blocks=True, lstrip_blocks=True)
     made.globals.update(MARK=MARK)
+    longest_first = sorted(titles, key=len, reverse=True)
+    known = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, longest_first))})(?![\w-])") if titles else None
+
+    def abbr(text: str) -> Markup:
+        parts = known.split(text) if known else [text]  # every second one is known
+        return Markup("").join(Markup('<abbr title="{}">{}</abbr>').format(titles[part], part) if at % 2 else escape(part)
+                               for at, part in enumerate(parts))
+    made.filters["abbr"] = abbr
     return made
 
 

@@ -13,7 +13,7 @@ CAPTION = ("What the paper's text says of its figures, and what this run finds. 
            "not differ holds where the 90 % interval lies within the margin (two one-sided tests at 0.05), and does not where the "
            "95 % interval leaves out 0 all the same. Everything else is undecided. A claim about several pairs holds if each of "
            "them does; shown is the one that decides. Margins are our choice; below each stands its reason, in the paper's means.")
-HEADS = ["Section", "The paper", "Data set", "Metric", "Found", "n", "Effect", "95 % interval", "Margin", "Test", "Verdict"]
+HEADS = ["Verdict", "The paper", "Data set", "Metric", "Found", "Effect", "95 % interval", "Margin", "n", "Test", "Section"]
 STYLES = {checks.HOLDS: "holds", checks.FAILS: "fails", checks.UNDECIDED: "open"}
 
 
@@ -31,22 +31,22 @@ def table(shop: Workshop) -> Block | list[Block]:
     rows = []
     counts = dict.fromkeys(STYLES, 0)
     for claim in paper.read("claims.csv").to_dict("records"):
-        head = [Cell(claim["section"]), Cell(claim["claim"]), Cell(DATASETS[claim["dataset"]]),
-                Cell(shop.results.metric(claim["metric"]).label if claim["metric"] else "")]
+        head = [Cell(claim["claim"]), Cell(DATASETS[claim["dataset"]]), Cell(shop.results.metric(claim["metric"]).label if claim["metric"] else "")]
+        section = Cell(claim["section"])
         try:
             finding = find(shop.results, claim)
         except Missing as reason:
-            rows.append(head + [Cell(f"Missing: {str(reason).rstrip('.')}."), Cell("–"), cell(None), cell(None), margin_cell(claim),
-                                Cell("–"), Cell("no verdict", style="open")])
+            rows.append([Cell("no verdict", style="open"), *head, Cell(f"Missing: {str(reason).rstrip('.')}."), cell(None), cell(None),
+                         margin_cell(claim), Cell("–"), Cell("–"), section])
             continue
         counts[finding.verdict] += 1
-        rows.append(head + [Cell(finding.figure, below=finding.others), Cell(finding.count or "–"), cell(finding.value),
-                            interval_cell(claim, finding), margin_cell(claim), Cell(finding.test),
-                            Cell(finding.verdict, style=STYLES[finding.verdict])])
+        rows.append([Cell(finding.verdict, style=STYLES[finding.verdict]), *head, Cell(finding.figure, below=finding.others),
+                     cell(finding.value), interval_cell(claim, finding), margin_cell(claim), Cell(finding.count or "–"), Cell(finding.test),
+                     section])
     lacking = len(rows) - sum(counts.values())
     said = f"Of {len(rows)} claims: {checks.tally(counts)}" + (f"; {lacking} without the scores that they take." if lacking else ".")
     return [Note(said),
-            Table("claims", CAPTION, HEADS, rows, [False] * 6 + [True] * 3 + [False] * 2, filters=[2, 3, 10])]
+            Table("claims", CAPTION, HEADS, rows, [False] * 5 + [True] * 3 + [False] * 3, filters=[0, 2, 3])]
 
 
 def interval_cell(claim: Row, finding: Finding) -> Cell:

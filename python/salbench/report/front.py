@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The first screen: who leads and how sure, the models with their intervals, three shapes, and what the data is and is not."""
+"""The first screen: who leads and how sure, how far the others are behind, what the letters mean, three shapes, and what the data is and is
+not."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from salbench.conclusions import glossary, words
 from salbench.pages.blocks import Missing, Note
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
 from salbench.report import examples, paper, statistics
 from salbench.report.gallery import describe
-from salbench.report.metrics import family_of
-from salbench.report.results import Frame, Results, text_of
+from salbench.report.lag import Behind, lags
+from salbench.report.results import Results, text_of
 from salbench.report.workshop import Workshop
 
 PANELS = 2   # data sets with panels; the page of the ranking has all
@@ -20,13 +22,13 @@ LINES = {"RS": "chance", "HS": "people"}
 
 @dataclass
 class Panel:
-    """A dot plot of the best models of a data set by one metric. Places are percentages of the width of the plot."""
+    """The best models of a data set by one metric: how far each is behind the best mean. Places are percentages of the width of the plot."""
     title: str
-    arrow: str       # "higher" or "lower" is better
+    better: str      # "higher" or "lower"
     rows: "list[Dot]"
-    lines: list[tuple[str, str, float]]  # (name, value, place) of references
-    low: str         # ends of the axis
-    high: str
+    best: float      # place of the best mean
+    lines: list[tuple[str, float]]  # (name, place) of references, the last one of the plot first
+    low: str         # end of the axis
     more: int = 0    # models that are left out
 
 
@@ -34,7 +36,7 @@ class Panel:
 class Dot:
     model: str
     mean: str
-    between: str     # the interval in words; empty: there is none
+    between: str     # the distance and its interval in words
     group: str
     first: bool      # may be the best
     at: float
@@ -45,7 +47,9 @@ class Dot:
 
 @dataclass
 class Front:
-    sentences: list[str]
+    sentences: list[tuple[str, str]]  # (data set, who leads)
+    models: list[tuple[str, glossary.Model]] = field(default_factory=list)  # letters and what they mean
+    metrics: list[tuple[str, str]] = field(default_factory=list)
     panels: list[tuple[str, list[Panel]]] = field(default_factory=list)  # (data set, [Panel])
     shapes: list[tuple[Any, ...]] = field(default_factory=list)  # (label, item, page, score, [(picture, alt)])
     shapes_said: str = ""
@@ -56,7 +60,7 @@ class Front:
 def front(shop: Workshop) -> Front:
     """Everything that index.html shows."""
     made = Front(sentences=[])
-    for build in (add_sentences, add_panels, add_shapes, add_facts):
+    for build in (add_sentences, add_letters, add_panels, add_shapes, add_facts):
         try:
             build(shop, made)
         except Missing as reason:
@@ -67,7 +71,34 @@ def front(shop: Workshop) -> Front:
 
 def add_sentences(shop: Workshop, made: Front) -> None:
     for dataset in statistics.shown(shop.results):
-        made.sentences += [text for text in statistics.leaders(shop.results, dataset)["sentence"][:1] if text]
+        found = [brief(shop.results, dataset, metric) for metric in shop.results.leading]
+        known = [of for of in found if of]
+        if known:
+            made.sentences.append((DATASETS[dataset], words.brief(known)))
+
+
+def brief(results: Results, dataset: str, metric: str) -> words.Brief | None:
+    """What leaders.csv says by a metric, of all splits together."""
+    rows = statistics.leaders(results, dataset, metric)
+    if rows.empty:
+        return None
+    row = rows.iloc[0]
+    missing = row["n_missing"] if "n_missing" in row and row["n_missing"] == row["n_missing"] else 0
+    return words.Brief(results.metric(metric).label, row["verdict"], listed(row["leaders"]),
+                       list(statistics.ranking(results, dataset, metric)["model"]), int(missing), row.get("new_classes", ""),
+                       listed(row.get("new_classes_leaders", "")))
+
+
+def listed(text: str) -> list[str]:
+    return [name for name in str(text).split(", ") if name]
+
+
+def add_letters(shop: Workshop, made: Front) -> None:
+    """A line per model and leading metric; of one's own models nobody told more than the name."""
+    own = [name for name in shop.models if name in glossary.MODELS and name not in shop.results.evaluated]
+    made.models = [(name, glossary.MODELS[name]) for name in own]
+    made.metrics = [(of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
+                    for name, of in shop.results.leading.items() if glossary.compares(name)]
 
 
 def add_panels(shop: Workshop, made: Front) -> None:
@@ -87,26 +118,29 @@ def add_panels(shop: Workshop, made: Front) -> None:
 
 def panel(results: Results, dataset: str, metric: str, most: int) -> Panel:
     of = results.metric(metric)
-    table = statistics.compact(results, dataset, metric)
-    table = table[table["mean"].notna()]
-    models, references = table[table["kind"] == "model"], table[table["kind"] == "reference"]
-    if models.empty:
-        raise Missing(f"compact.csv has no model with a mean {of.label} on {spoken(dataset)}.")
+    found = lags(results, dataset, metric)
+    groups = dict(zip((ranked := statistics.ranking(results, dataset, metric))["model"], ranked["group"]))
+    models = [one for one in found if one.model in groups]
+    references = [one for one in found if one.model in LINES and one.model not in groups]
     first = set(first_of(results, dataset, metric))
-    shown = models.head(most)
-    low, high = limits(metric, shown, references)
+    shown = models[:most]
+    ends = [value for one in [*shown, *references] for value in (one.distance, one.low, one.high) if value == value]
+    margin = 0.04 * (max(ends) - min(ends)) or 0.05
+    low, high = min(ends) - margin, max(ends) + margin
 
-    def place(value: float) -> float:
-        return round(100 * min(max((value - low) / (high - low), 0), 1), 2)
-    rows = []
-    for at, row in enumerate(shown.to_dict("records")):
-        known = row["low"] == row["low"]
-        between = f"{row['low']:.3f} to {row['high']:.3f}".replace("-", "−") if known else ""
-        rows.append(Dot(row["model"], number(row["mean"]), between, row["group"], row["model"] in first, place(row["mean"]),
-                        place(row["low"] if known else row["mean"]), place(row["high"] if known else row["mean"]), SHAPES[at % len(SHAPES)]))
-    lines = [(LINES[row["model"]], number(row["mean"]), place(row["mean"])) for row in references.to_dict("records")
-             if row["model"] in LINES]
-    return Panel(of.label, "lower" if of.lower else "higher", rows, lines, number(low, 2), number(high, 2), len(models) - len(shown))
+    def place(value: float, otherwise: float = 0.0) -> float:
+        return round(100 * ((value if value == value else otherwise) - low) / (high - low), 2)
+    rows = [Dot(one.model, number(one.mean), in_words(one), groups[one.model], one.model in first, place(one.distance),
+                place(one.low, one.distance), place(one.high, one.distance), SHAPES[at % len(SHAPES)]) for at, one in enumerate(shown)]
+    lines = sorted(((LINES[one.model], place(one.distance)) for one in references), key=lambda line: -line[1])
+    return Panel(of.label, "lower" if of.lower else "higher", rows, place(0), lines, number(low, 2), len(models) - len(shown))
+
+
+def in_words(one: Behind) -> str:
+    if one.distance == 0:
+        return "best mean"
+    between = f", {number(-one.high)} to {number(-one.low)}" if one.low == one.low else ""
+    return f"{number(-one.distance)} behind{between}"
 
 
 # Outlines around 0, 0: neighbours differ in form too.
@@ -121,21 +155,12 @@ def first_of(results: Results, dataset: str, metric: str) -> list[str]:
         rows = statistics.leaders(results, dataset, metric)
     except Missing:
         return []
-    return [name for name in str(rows["leaders"].iloc[0]).split(", ") if name] if len(rows) else []
+    return listed(rows["leaders"].iloc[0]) if len(rows) else []
 
 
 def number(value: float, digits: int = 3) -> str:
     text = f"{value:.{digits}f}"
     return (text.lstrip("-") if float(text) == 0 else text).replace("-", "−")
-
-
-def limits(metric: str, shown: Frame, references: Frame) -> tuple[float, float]:
-    """Ends of the axis, a little beyond all intervals and references; that of an AUC begins at .5 unless an interval lies below."""
-    values = [*shown["low"].fillna(shown["mean"]), *shown["high"].fillna(shown["mean"]), *references["mean"]]
-    low, high = min(values), max(values)
-    margin = 0.04 * (high - low) or 0.05
-    below = 0.5 if family_of(metric) == "auc" and min(shown["low"].fillna(shown["mean"])) >= 0.5 else low - margin
-    return below, high + margin
 
 
 def add_shapes(shop: Workshop, made: Front) -> None:

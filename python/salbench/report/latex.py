@@ -15,7 +15,7 @@ _SPECIAL = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": 
             '"': "''"}
 
 _TEMPLATE = """\
-% {{ label }} per class on {{ dataset }}: mean and half of the 95 % interval; needs \\usepackage{booktabs}
+% {{ label }} per class on {{ dataset }}: mean and half of the 95 % interval, or its ends; needs \\usepackage{booktabs}
 {% if simulated %}% SIMULATED participants: these scores say nothing about people.
 {% endif %}
 \\begin{tabular}{l{{ "c" * (models|length + 1) }}}
@@ -57,8 +57,7 @@ def escape(text: object) -> str:
 def number(row: Row | None, bold: bool) -> str:
     if row is None or row["mean"] != row["mean"]:
         return "--"
-    spread = rf" \pm {row['ci95']:.2f}" if row["ci95"] == row["ci95"] else ""
-    value = f"{row['mean']:.2f}{spread}"
+    value = f"{row['mean']:.2f}{spread(row, 2)}"
     return rf"$\mathbf{{{value}}}$" if bold else f"${value}$"
 
 
@@ -83,14 +82,16 @@ def write_compact(path: Path, models: Sequence[str], metrics: Sequence[Metric], 
 def compact_number(row: Row | None) -> str:
     if row is None or row["mean"] != row["mean"]:
         return "--"
-    spread = ""
-    if row["half"] == row["half"]:
-        spread = rf" \pm {row['half']:.3f}"
-    elif row["low"] == row["low"]:
-        spread = rf"\,({row['low']:.3f},\,{row['high']:.3f})"
-    value = f"{row['mean']:.3f}{spread}"
+    value = f"{row['mean']:.3f}{spread(row, 3)}"
     group = rf"^{{\mathrm{{{row['group']}}}}}" if row["group"] else ""
     return rf"$\mathbf{{{value}}}{group}$" if row["best"] == 1 else f"${value}{group}$"
+
+
+def spread(row: Row, digits: int) -> str:
+    """Half of the interval, or its ends where these are not equally far from the mean."""
+    if row["half"] == row["half"]:
+        return rf" \pm {row['half']:.{digits}f}"
+    return rf"\,({row['low']:.{digits}f},\,{row['high']:.{digits}f})" if row["low"] == row["low"] else ""
 
 
 def write(path: Path, template: str, **values: Any) -> None:

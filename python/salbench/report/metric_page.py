@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of all metrics of a run: what they are, and the tables of those that the other pages leave out, one at a time."""
 
-from salbench.pages.blocks import Block, Cell, Missing, Table, attempt, cell
+from salbench.pages.blocks import Block, Cell, Missing, Table, attempt, cell, first_of
 from salbench.pages.names import spoken
 from salbench.report import people, ranking, statistics, tables, units
 from salbench.report.results import Frame
@@ -50,8 +50,8 @@ def classes(shop: Workshop, dataset: str) -> Table:
     if not rows:
         raise Missing(f"There are no scores of {spoken(dataset)} by class.")
     models = shop.models
-    return Table(f"classes-{dataset}-others", f"Mean per class on {spoken(dataset)} and half of the 95 % interval, best in bold.",
-                 ["Metric", "Class", units.HEAD, *models, "Avg"], rows, [False] * 2 + [True] * (len(models) + 2), filters=[0])
+    return Table(f"classes-{dataset}-others", tables.CLASSES.format("Mean", spoken(dataset), ""),
+                 ["Class", "Metric", units.HEAD, "Avg", *models], rows, [False] * 2 + [True] * (len(models) + 2), filters=[1], opens=first_of(rows, 1))
 
 
 def class_rows(shop: Workshop, dataset: str, name: str, table: Frame) -> list[list[Cell]]:
@@ -61,8 +61,8 @@ def class_rows(shop: Workshop, dataset: str, name: str, table: Frame) -> list[li
     rows = []
     for category in dict.fromkeys(table["class"]):
         found = [by_cell.get((category, model)) for model in shop.models]
-        line = [Cell(of.label), Cell(category or "(no class)"), tables.class_count(shop, dataset, found)]
-        for row in found + [by_cell.get((category, "Avg"))]:
+        line = [Cell(category or "(no class)"), Cell(of.label), tables.class_count(shop, dataset, found)]
+        for row in [by_cell.get((category, "Avg")), *found]:
             line.append(tables.class_cell(row, None, row["model"] in best[category]) if row else cell(None))
         rows.append(line)
     return rows

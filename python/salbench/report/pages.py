@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from salbench.conclusions import folders
+from salbench.conclusions import folders, glossary
 from salbench.pages import rendering
 from salbench.pages.viewer_parts import three_js
 from salbench.report.folder import Folder
@@ -34,7 +34,8 @@ class Pages:
 
     def __init__(self, shop: Workshop, navigation: list[tuple[str, str]]) -> None:
         self.shop = shop
-        self.templates = rendering.environment(HERE)
+        self.titles = titles(shop.results, shop.models)
+        self.templates = rendering.environment(HERE, self.titles)
         self.common = {"results": shop.results, "navigation": navigation, "program": text_of(shop.results.record.get("program"))}
 
     def write(self, path: str, template: str, **values: Any) -> None:
@@ -43,6 +44,12 @@ class Pages:
         text = self.templates.get_template(template).render(
             path=path, root=root, banners=banners(self.shop.results), **self.common, **values)
         self.shop.file(path).write_text(text, encoding="utf-8")
+
+
+def titles(results: Results, models: list[str]) -> dict[str, str]:
+    """What letters in tables mean. Maps of anybody's may have the name of a model of the program's; so may a table without a run."""
+    own = [model for model in models if model not in results.evaluated] if results.record else []
+    return glossary.titles(own, results.metrics)
 
 
 def banners(results: Results) -> list[str]:

@@ -2,7 +2,7 @@
 """People beside models: what more participants add, how many of them a model is worth, which share of human performance it
 reaches, and how reliable the ground truth is."""
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, interval, p_value
+from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, first_of, interval, p_value
 from salbench.report import statistics
 from salbench.report.results import Row
 from salbench.report.tables import HUMAN, signed
@@ -67,13 +67,13 @@ def worth(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
             if row["remark"].startswith(NO_NUMBER):
                 row |= {"k": float("nan"), "ci95_low": float("nan"), "ci95_high": float("nan"), "k_bound": "", "low_bound": "", "high_bound": ""}
             ends = [place(row[f"ci95_{end}"], row[f"{end}_bound"]) for end in ("low", "high")]
-            rows.append([Cell(shop.results.metric(metric).label), Cell(row["model"]), worth_cell(row),
+            rows.append([Cell(row["model"]), Cell(shop.results.metric(metric).label), worth_cell(row),
                          Cell(" to ".join(dict.fromkeys(ends))) if all(ends) else Cell("–"),
                          count_cell(shop.results, row["dataset"], row["n"], row["n_shapes"]), cell(row["mean"]), Cell(row["remark"])])
     if not rows:
         raise Missing("The run has no model to compare with the participants.")
-    return Table(identifier, WORTH, ["Metric", "Model", "Participants", "95 % interval", HEAD, "Mean", "Remark"], rows,
-                 [False] * 2 + [True, False, True, True, False], filters=[0, 1])
+    return Table(identifier, WORTH, ["Model", "Metric", "Participants", "95 % interval", HEAD, "Mean", "Remark"], rows,
+                 [False] * 2 + [True, False, True, True, False], filters=[1], opens=first_of(rows, 1))
 
 
 def place(number: float, bound: str) -> str:
@@ -100,11 +100,12 @@ def more_participants(shop: Workshop, identifier: str, metrics: list[str]) -> Ta
         except Missing:
             continue
         for row in table.to_dict("records"):
-            rows.append([Cell(shop.results.metric(metric).label), cell(row["from_participants"], 0), cell(row["to_participants"], 0),
+            rows.append([cell(row["from_participants"], 0), cell(row["to_participants"], 0), Cell(shop.results.metric(metric).label),
                          count_cell(shop.results, "meshes", row["n"], row["n_shapes"]), signed(row["mean_difference"]),
                          interval(row["ci95_low"], row["ci95_high"]), p_value(row["t_p"])])
     if not rows:
         raise Missing("What one more participant adds takes meshes with four of them.")
     return Table(identifier, "What one more participant adds: differences within a mesh, with their paired 95 % interval and p "
                  "(Student). human_curve_differences.csv has every number of participants beside every larger one.",
-                 ["Metric", "From", "To", HEAD, "Mean difference", "95 % interval", "p"], rows, [False] + [True] * 6, filters=[0])
+                 ["From", "To", "Metric", HEAD, "Mean difference", "95 % interval", "p"], rows, [True, True, False] + [True] * 4, filters=[2],
+                 opens=first_of(rows, 2))

@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ranking of the models, how sure it is, and what may be said of it in a sentence."""
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, interval
+from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, first_of, interval
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import people, statistics
 from salbench.report.results import Row
 from salbench.report.units import HEAD, count_cell
 from salbench.report.workshop import Workshop
 
-CAPTION = ("Models by their mean. Ranks have joint 95 % intervals: all pairs of models under one metric are compared at once. Below the "
+CAPTION = ("Models by their mean. “May be best”: no model is shown to be better. Ranks have joint 95 % intervals: all pairs of models under one "
+           "metric are compared at once. Below the "
            "rank: how often a model has the best mean when the units are resampled, which is no probability that it is the best; and its rank "
            "if scores that are missing were at chance. Group: two models without a letter in common differ; two with one are not shown to "
            "differ, which does not say that they are equal. Means have 95 % intervals of their own "
            f"(Student). HS and RS, human performance and chance, are references: they have no rank. {people.SHARE}")
-HEADS = ["Data set", "Metric", "Model", "Rank", "95 % ranks", "Group", "Mean", "95 % interval", "Of HS", HEAD]
+HEADS = ["Model", "Data set", "Metric", "Rank", "95 % ranks", "Group", "Mean", "95 % interval", "Of HS", HEAD]
 
 
 def tables(shop: Workshop) -> list[Block]:
@@ -49,7 +50,7 @@ def table(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
     rows = [row for dataset in statistics.shown(shop.results) for metric in metrics for row in rows_of(shop, dataset, metric)]
     if not rows:
         raise Missing("ranking.csv ranks no model: none has scores.")
-    return Table(identifier, CAPTION, HEADS, rows, [False] * 3 + [True] * 2 + [False] + [True] * 4, filters=[0, 1])
+    return Table(identifier, CAPTION, HEADS, rows, [False] * 3 + [True] * 2 + [False] + [True] * 4, filters=[1, 2], opens=first_of(rows, 1, 2))
 
 
 def rows_of(shop: Workshop, dataset: str, metric: str) -> list[list[Cell]]:
@@ -65,11 +66,11 @@ def rows_of(shop: Workshop, dataset: str, metric: str) -> list[list[Cell]]:
     for row in statistics.ranking(shop.results, dataset, metric).to_dict("records"):
         known = means.pop(row["model"], {})
         ranks = [cell(row["rank"], 0, below=beside(row)), interval(row["rank_low"], row["rank_high"], 0), Cell(row["group"] or "–")]
-        rows.append(head + [Cell(row["model"]), *ranks] + mean_cells(shop, dataset, row, known, shares.get(row["model"])))
+        may_be_best = ("may be best", "holds") if row["rank_low"] == 1 else ("", "")
+        rows.append([Cell(row["model"], badge=may_be_best), *head, *ranks] + mean_cells(shop, dataset, row, known, shares.get(row["model"])))
     for model, row in means.items():
         if row["n"] > 0:
-            rows.append(head + [Cell(model), cell(None), cell(None), Cell("reference")]
-                        + mean_cells(shop, dataset, row, row))
+            rows.append([Cell(model), *head, cell(None), cell(None), Cell("reference")] + mean_cells(shop, dataset, row, row))
     return rows
 
 

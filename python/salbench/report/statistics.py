@@ -6,6 +6,8 @@ from typing import Any
 import numpy
 import pandas
 
+from salbench.conclusions.metrics import Metric as ProgramMetric
+from salbench.conclusions.metrics import of_program
 from salbench.conclusions.units import DATASETS
 from salbench.pages.blocks import Missing
 from salbench.report.metrics import Metric
@@ -143,12 +145,18 @@ def agreement(results: Results, dataset: str, first: str, second: str) -> tuple[
 
 
 def per_class(results: Results, dataset: str, metric: str) -> Frame:
-    """Rows of per_class.csv of one metric: class, model, n, n_shapes, mean, ci95, half of the interval as the paper prints it.
-    The model "Avg" is the mean over the competitors."""
+    """Rows of per_class.csv of one metric: class, model, n, n_shapes, mean; ci95, half of the interval as the paper prints it; its ends `low` and
+    `high` cut at the values that the metric can take, and `half`, which is NaN where that changed them. The model "Avg" is the mean over the
+    competitors."""
     rows = of_metric(results.table("per_class.csv", "class", "model", *OF_METRIC, "n", "n_shapes", *MEAN), dataset, metric)
     if rows.empty:
         raise Missing(f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no classes.")
-    return rows.assign(ci95=(rows["ci95_high"] - rows["ci95_low"]) / 2).reset_index(drop=True)
+    known = of_program().get(metric, ProgramMetric(metric))
+    low = rows["ci95_low"].mask(rows["ci95_low"] < known.low, rows["mean"].clip(upper=known.low))
+    high = rows["ci95_high"].mask(rows["ci95_high"] > known.high, rows["mean"].clip(lower=known.high))
+    ci95 = (rows["ci95_high"] - rows["ci95_low"]) / 2
+    half = ci95.where((low == rows["ci95_low"]) & (high == rows["ci95_high"]))
+    return rows.assign(ci95=ci95, low=low, high=high, half=half).reset_index(drop=True)
 
 
 def human_differences(results: Results, metric: str) -> Frame:
@@ -175,10 +183,11 @@ def human_shares(results: Results, dataset: str, metric: str) -> dict[str, Row]:
 
 
 def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[str, Any]:
-    """The row of significance.csv of a pair: n, n_shapes, mean_difference, its two intervals and t_p, turned so that the
+    """The row of significance.csv of a pair: n, n_shapes, mean_difference, its two intervals, t_p, t, t_bound and superiority, turned so that the
     difference is a less b."""
-    signed = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high")
-    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", *signed)
+    signed = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "t")
+    shares = ("superiority", "superiority_low", "superiority_high")
+    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", "t_bound", *signed, *shares)
     rows = of_metric(table, dataset, metric)
     for first, second, turned in ((a, b, False), (b, a, True)):
         match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
@@ -187,7 +196,8 @@ def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[st
         row: dict[str, Any] = match.iloc[0].to_dict()
         if turned:
             row |= {column: -row[column] for column in signed}
-            for level in ("ci95", "ci90"):
+            row |= {column: 1 - row[column] for column in shares}
+            for level in ("ci95", "ci90", "superiority"):
                 row[f"{level}_low"], row[f"{level}_high"] = row[f"{level}_high"], row[f"{level}_low"]
         return row
     raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")

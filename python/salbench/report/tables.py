@@ -4,7 +4,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, cell, interval, p_value
+from salbench.pages.blocks import Block, Cell, Missing, Note, Table, cell, first_of, interval, p_value, spread
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
 from salbench.report import paper, statistics, units
 from salbench.report.latex import write_per_class
@@ -50,14 +50,14 @@ def means_table(shop: Workshop, identifier: str, caption: str, table: Frame) -> 
     rows = []
     for row in table.to_dict("records"):
         dataset = row["dataset"]
-        cells = [Cell(DATASETS.get(dataset, dataset)), Cell(row["model"]), Cell(shop.results.metric(row["metric"]).label),
+        cells = [Cell(row["model"]), Cell(DATASETS.get(dataset, dataset)), Cell(shop.results.metric(row["metric"]).label),
                  count_cell(shop.results, dataset, row["n"], row["n_shapes"]),
                  cell(row["mean"], bold=row["model"] in best[dataset, row["metric"]], below=own_shapes(row)),
                  cell(row["ci95_low"]), cell(row["ci95_high"]), cell(row["sd"]), interval(row["bca95_low"], row["bca95_high"])]
         rows.append(cells + (paper_cells(row) if compare else []))
-    heads = ["Data set", "Model", "Metric", units.HEAD, "Mean", "95 % low", "95 % high", "SD", "95 % by bootstrap"]
+    heads = ["Model", "Data set", "Metric", units.HEAD, "Mean", "95 % low", "95 % high", "SD", "95 % by bootstrap"]
     heads += ["Paper", "Difference"] if compare else []
-    return Table(identifier, caption, heads, rows, [False] * 3 + [True] * (len(heads) - 3), filters=[0, 1, 2])
+    return Table(identifier, caption, heads, rows, [False] * 3 + [True] * (len(heads) - 3), filters=[1, 2, 0], opens=first_of(rows, 1, 2))
 
 
 def paper_cells(row: Row) -> list[Cell]:
@@ -72,6 +72,11 @@ def own_shapes(row: Row) -> str:
         return ""
     kind = several(row["n_own_shapes"], KIND_NAMES.get(row["dataset"], "shape"))
     return f"{row['own_mean']:.3f} over all {kind} that it has a score for".replace("-", "−")
+
+
+FEW = 5  # units of a class below which no model is set in bold: the mean of so few tells little of the class
+CLASSES = ("{} per class on {}: mean, and half of its 95 % interval, or the ends where it was cut at the range of the metric; best in bold in "
+           f"classes of at least {FEW} meshes{{}}.")
 
 
 def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
@@ -89,7 +94,7 @@ def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
     for name in order:
         numbers = [by_cell.get((name, model)) for model in models]
         cells = [Cell(name or "(no class)"), class_count(shop, dataset, numbers)]
-        for row, model in zip(numbers + [by_cell.get((name, "Avg"))], models + ["Avg"]):
+        for row, model in zip([by_cell.get((name, "Avg")), *numbers], ["Avg", *models]):
             cells.append(class_cell(row, known.get((name, model)), model in best[name]))
         rows.append(cells)
     label = of.label
@@ -97,8 +102,8 @@ def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
     write_per_class(shop.file(f"data/{identifier}.tex"), order, models, by_cell, best, of, dataset, shop.results.simulated)
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
-    return Table(identifier, f"{label} per class on {spoken(dataset)}: mean and half of the 95 % interval, best in bold{remark}.",
-                 ["Class", units.HEAD] + models + [f"Avg-{label}"], rows, [False] + [True] * (len(models) + 2), files=files)
+    return Table(identifier, CLASSES.format(label, spoken(dataset), remark), ["Class", units.HEAD, f"Avg-{label}", *models], rows,
+                 [False] + [True] * (len(models) + 2), files=files)
 
 
 def class_count(shop: Workshop, dataset: str, rows: Sequence[Row | None]) -> Cell:
@@ -108,10 +113,10 @@ def class_count(shop: Workshop, dataset: str, rows: Sequence[Row | None]) -> Cel
 
 
 def best_per_class(metric: Metric, by_cell: Mapping[tuple[str, str], Row]) -> dict[str, set[str]]:
-    """class -> its best models. by_cell: (class, model or "Avg") -> a row with the mean."""
+    """class -> its best models; none of a class of few. by_cell: (class, model or "Avg") -> a row with n and the mean."""
     means: dict[str, dict[str, float]] = {}
     for (name, model), row in by_cell.items():
-        if model != "Avg":
+        if model != "Avg" and row["n"] >= FEW:
             means.setdefault(name, {})[model] = row["mean"]
     return {name: metric.best(means.get(name, {})) for name, _ in by_cell}
 
@@ -119,11 +124,8 @@ def best_per_class(metric: Metric, by_cell: Mapping[tuple[str, str], Row]) -> di
 def class_cell(row: Row | None, known: tuple[float, float] | None, bold: bool) -> Cell:
     if row is None or row["mean"] != row["mean"]:
         return cell(None)
-    spread = f" ± {row['ci95']:.3f}" if row["ci95"] == row["ci95"] else ""
-    below = ""
-    if known:
-        below = f"paper {known[0]:.2f} ± {known[1]:.2f}, {row['mean'] - known[0]:+.2f}".replace("-", "−")
-    return Cell(f"{row['mean']:.3f}{spread}".replace("-", "−"), float(row["mean"]), bold=bold, below=below)
+    of_paper = f"paper {known[0]:.2f} ± {known[1]:.2f}, {row['mean'] - known[0]:+.2f}".replace("-", "−") if known else ""
+    return cell(row["mean"], bold=bold, below=spread(row), further=of_paper)
 
 
 def pairwise(shop: Workshop) -> Table:
@@ -141,9 +143,9 @@ def significance(shop: Workshop) -> Frame:
     return table
 
 
-PAIRS = ("Every pair of models. The interval and p are those of the paired t-test over the units that n counts, for this pair alone. "
-         "All pairs: whether the two differ when all models are compared at once, as in ranks, groups and sentences; below it |t| and what it "
-         "must be beyond. Signed-rank p: by Holm's correction over all pairs of one data set and metric, whose number stands below it; it is "
+PAIRS = ("Every pair of models, and whether the two differ when all models are compared at once, as in ranks, groups and sentences: they do "
+         "where |t| is beyond its bound. The interval and p are those of the paired t-test over the units that n counts, for this pair alone. "
+         "Signed-rank p: by Holm's correction over all pairs of one data set and metric, whose number stands below it; it is "
          "no test of means where differences are skewed. "
          "Effect: Cohen's d_z, below it the matched-pairs rank-biserial correlation. Higher: on how large a share of the units the "
          "first model has the higher score. Rank sum: the paper's test, which takes every shape for an independent one. "
@@ -155,29 +157,31 @@ def pairs_table(shop: Workshop, identifier: str, table: Frame) -> Table:
     for row in table.to_dict("records"):
         holm = p_value(row["signed_rank_p_holm"])
         holm.below = f"{int(row['n_tests'])} pairs" if row["n_tests"] == row["n_tests"] else ""
-        rows.append([Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(shop.results.metric(row["metric"]).label),
-                     Cell(f"{row['model_a']} − {row['model_b']}"),
+        rows.append([Cell(f"{row['model_a']} − {row['model_b']}", badge=jointly(row["t"], row["t_bound"])),
+                     Cell(DATASETS.get(row["dataset"], row["dataset"])), Cell(shop.results.metric(row["metric"]).label),
                      count_cell(shop.results, row["dataset"], row["n"], row["n_shapes"]), signed(row["mean_difference"]),
                      interval(row["ci95_low"], row["ci95_high"]), p_value(row["t_p"]), decided(row["t_p"]),
-                     jointly(row["t"], row["t_bound"]), holm,
+                     nearness(row["t"], row["t_bound"]), holm,
                      signed(row["d_z"], 2, below=signed(row["rank_biserial"], 2).text),
                      cell(row["superiority"], 2, below=interval(row["superiority_low"], row["superiority_high"], 2).text),
                      p_value(row["rank_sum_p"])])
-    return Table(identifier, PAIRS, ["Data set", "Metric", "Pair", units.HEAD, "Mean difference", "95 % interval", "p (t)", "This pair alone",
-                                     "All pairs", "Signed-rank p (Holm)", "Effect", "Higher", "Rank sum p"],
-                 rows, [False] * 3 + [True] * 4 + [False, False, True, True, True, True], filters=[0, 1, 2])
+    return Table(identifier, PAIRS, ["Pair", "Data set", "Metric", units.HEAD, "Mean difference", "95 % interval", "p (t)", "This pair alone",
+                                     "All pairs: |t|", "Signed-rank p (Holm)", "Effect", "Higher", "Rank sum p"],
+                 rows, [False] * 3 + [True] * 4 + [False] + [True] * 5, filters=[1, 2, 0], opens=first_of(rows, 1, 2))
 
 
 def decided(p: float) -> Cell:
     return cell(None) if p != p else Cell("differs", bold=True) if p < LEVEL else Cell("undecided")
 
 
-def jointly(t: float, bound: float) -> Cell:
-    """How near a verdict is stands below it: draws of another seed move the bound by some hundredths."""
-    if t != t or bound != bound:
-        return cell(None)
-    differs, below = abs(t) > bound, f"|t| {abs(t):.3f}, bound {bound:.3f}"
-    return Cell("differs" if differs else "undecided", bold=differs, below=below)
+def jointly(t: float, bound: float) -> tuple[str, str]:
+    """The verdict on a pair when all are compared at once, as a badge; none on one with a reference."""
+    return ("", "") if t != t or bound != bound else ("differ", "holds") if abs(t) > bound else ("undecided", "open")
+
+
+def nearness(t: float, bound: float) -> Cell:
+    """How near the verdict is: draws of another seed move the bound by some hundredths."""
+    return cell(None) if t != t or bound != bound else cell(abs(t), below=f"bound {bound:.3f}")
 
 
 def parameters(shop: Workshop) -> list[Block]:

@@ -39,13 +39,14 @@ salbench.sortable = function (table) {
   }
 };
 
+// A menu without "all" chooses what its column holds in every row: the column then need not be seen.
 salbench.filterable = function (form) {
-  const table = document.getElementById(form.dataset.for);
+  const table = document.getElementById(form.dataset.for), menus = Array.from(form.querySelectorAll("select[data-column]"));
+  table.classList.add("chosen");
   const apply = () => {
     let shown = 0;
     for (const row of table.tBodies[0].rows) {
-      row.hidden = !Array.from(form.querySelectorAll("select[data-column]")).every(
-        (menu) => menu.value === "" || row.cells[menu.dataset.column].firstChild.textContent.trim() === menu.value);
+      row.hidden = !menus.every((menu) => menu.value === "" ? menu.options[0].value === "" : row.cells[menu.dataset.column].dataset.is === menu.value);
       shown += row.hidden ? 0 : 1;
     }
     form.querySelector("output").textContent = shown + " of " + table.tBodies[0].rows.length + " rows";
@@ -70,7 +71,16 @@ salbench.choose = function (chooser) {
   document.documentElement.classList.remove("choosing");  // until here the page has thousands of rows to lay out
 };
 
+// What does not fit says that it scrolls.
+salbench.scrolling = new ResizeObserver((entries) => {
+  for (const {target} of entries) {
+    const box = target.closest(".scroll");
+    box.toggleAttribute("data-scrolls", box.scrollWidth > box.clientWidth + 1);
+  }
+});
+
 addEventListener("DOMContentLoaded", () => {
+  document.querySelectorAll(".scroll, .scroll > *").forEach((part) => salbench.scrolling.observe(part));
   document.querySelectorAll("table.sortable").forEach(salbench.sortable);
   document.querySelectorAll("form.filters[data-for]").forEach(salbench.filterable);
   document.querySelectorAll("#chooser").forEach(salbench.choose);
