@@ -13,7 +13,7 @@ CAPTION = ("What the paper's text says of its figures, and what this run finds. 
            "not differ holds where the 90 % interval lies within the margin (two one-sided tests at 0.05), and does not where the "
            "95 % interval leaves out 0 all the same. Everything else is undecided. A claim about several pairs holds if each of "
            "them does; shown is the one that decides. Margins are our choice; below each stands its reason, in the paper's means.")
-HEADS = ["Verdict", "The paper", "Data set", "Metric", "Found", "Effect", "95 % interval", "Margin", "n", "Test", "Section"]
+HEADS = ["Verdict", "The paper", "Data set", "Metric", "Found", "Effect", "95 % interval", "Margin"]
 STYLES = {checks.HOLDS: "holds", checks.FAILS: "fails", checks.UNDECIDED: "open"}
 
 
@@ -31,22 +31,22 @@ def table(shop: Workshop) -> Block | list[Block]:
     rows = []
     counts = dict.fromkeys(STYLES, 0)
     for claim in paper.read("claims.csv").to_dict("records"):
-        head = [Cell(claim["claim"]), Cell(DATASETS[claim["dataset"]]), Cell(shop.results.metric(claim["metric"]).label if claim["metric"] else "")]
-        section = Cell(claim["section"])
+        head = [Cell(claim["claim"], below=f"Section {claim['section']}"), Cell(DATASETS[claim["dataset"]]),
+                Cell(shop.results.metric(claim["metric"]).label if claim["metric"] else "")]
         try:
             finding = find(shop.results, claim)
         except Missing as reason:
             rows.append([Cell("no verdict", style="open"), *head, Cell(f"Missing: {str(reason).rstrip('.')}."), cell(None), cell(None),
-                         margin_cell(claim), Cell("–"), Cell("–"), section])
+                         margin_cell(claim)])
             continue
         counts[finding.verdict] += 1
-        rows.append([Cell(finding.verdict, style=STYLES[finding.verdict]), *head, Cell(finding.figure, below=finding.others),
-                     cell(finding.value), interval_cell(claim, finding), margin_cell(claim), Cell(finding.count or "–"), Cell(finding.test),
-                     section])
+        how = ", ".join(filter(None, (finding.test, finding.count)))
+        rows.append([Cell(finding.verdict, style=STYLES[finding.verdict]), *head, Cell(finding.figure, below=finding.others, further=how),
+                     cell(finding.value), interval_cell(claim, finding), margin_cell(claim)])
     lacking = len(rows) - sum(counts.values())
     said = f"Of {len(rows)} claims: {checks.tally(counts)}" + (f"; {lacking} without the scores that they take." if lacking else ".")
     return [Note(said),
-            Table("claims", CAPTION, HEADS, rows, [False] * 5 + [True] * 3 + [False] * 3, filters=[0, 2, 3])]
+            Table("claims", CAPTION, HEADS, rows, [False] * 5 + [True] * 3, filters=[0, 2, 3])]
 
 
 def interval_cell(claim: Row, finding: Finding) -> Cell:

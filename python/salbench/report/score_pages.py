@@ -69,6 +69,7 @@ def write_page(shop: Workshop, pages: Pages, path: str, build: Callable[[], dict
         table, missing = None, str(reason)
     script = f"data/{path.removesuffix('.html')}.js"
     if table:
+        table["titles"] = {model: pages.titles[model] for model in table["models"] if model in pages.titles}
         write_scripts(shop, script, table)
     classes = sorted({row[2] for row in table["shapes"]}) if table else []
     sets = list(dict.fromkeys(row[0] for row in table["shapes"])) if table else []

@@ -79,7 +79,11 @@ salbench.scoreTable = function (root, data) {
       if (column.numeric) head.className = "number";
       if (index === state.column) head.setAttribute("aria-sort", state.direction > 0 ? "ascending" : "descending");
       button.type = "button";
-      button.textContent = column.head;
+      const text = document.createElement("span");
+      text.className = "head";
+      text.textContent = column.head;
+      if (data.titles[column.head]) text.title = data.titles[column.head];
+      button.append(text);
       button.addEventListener("click", () => {
         state.direction = salbench.turn(head, line, data.lower.includes(state.metric));
         state.column = index;
