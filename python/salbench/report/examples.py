@@ -146,7 +146,9 @@ def difficult(shop: Workshop, dataset: str, metric: str, count: int = 3) -> Gall
 
 
 def pixels(path: Path) -> Any:
-    return Image.open(path).convert("RGB")
+    """On white: it is for print."""
+    picture = Image.open(path).convert("RGBA")
+    return Image.alpha_composite(Image.new("RGBA", picture.size, "white"), picture).convert("RGB")
 
 
 def scale() -> Any:

@@ -41,9 +41,8 @@ class Canvas:
         self.corners = primitive[:, None] if faces is None else faces[primitive]
         self.weights = None if faces is None else picture.weights.reshape(-1, 3)[self.seen].astype(numpy.float32)
         shade = picture.shade.reshape(-1)[self.seen].astype(numpy.float32) / 255
-        covered = numpy.ones_like(shade) if picture.coverage is None else picture.coverage.reshape(-1)[self.seen] / numpy.float32(255)
-        self.shade = ((LIGHTEST + (1 - LIGHTEST) * shade) * covered)[:, None]
-        self.ground = (255 * (1 - covered) + 0.5)[:, None]  # white; the half rounds
+        self.shade = (LIGHTEST + (1 - LIGHTEST) * shade)[:, None]
+        self.alpha = 255 if picture.coverage is None else picture.coverage.reshape(-1)[self.seen]
 
     def values(self, values: Floats) -> Floats:
         """Of n values, those of the pixels that show something."""
@@ -52,15 +51,16 @@ class Canvas:
         return found
 
     def paint(self, values: Floats, name: str = "palette") -> Any:
-        """An RGB image of the map on the shape: its colours times the shade, on white. values: n in [0, 1], or in [-1, 1] under
-        "diverging"."""
+        """An RGBA image of the map on the shape: its colours times the shade, transparent where nothing is seen, for pages may be dark.
+        values: n in [0, 1], or in [-1, 1] under "diverging"."""
         shown = self.values(values)
         if name == "diverging":
             shown = (shown + 1) / 2
         level = numpy.clip(shown * 255 + 0.5, 0, 255).astype(numpy.uint8)
-        image = numpy.full((self.size[0] * self.size[1], 3), 255, numpy.uint8)
-        image[self.seen] = colours(name).astype(numpy.float32)[level] * self.shade + self.ground
-        return Image.fromarray(image.reshape(*self.size, 3))
+        image = numpy.full((self.size[0] * self.size[1], 4), (255, 255, 255, 0), numpy.uint8)
+        image[self.seen, :3] = colours(name).astype(numpy.float32)[level] * self.shade + 0.5  # the half rounds
+        image[self.seen, 3] = self.alpha
+        return Image.fromarray(image.reshape(*self.size, 4))
 
 
 def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> tuple[Floats, Floats]:
@@ -91,7 +91,7 @@ def visible(picture: Picture, picks: Faces, points: Floats) -> Floats:
 
 
 def with_dots(image: Any, dots: Floats) -> Any:
-    """The image with a dot per row of m x 2 pixel coordinates, smooth at the rim."""
+    """The RGBA image with a dot per row of m x 2 pixel coordinates, smooth at the rim."""
     if len(dots) == 0:
         return image
     pixels = numpy.asarray(image).astype(numpy.float32)
@@ -101,9 +101,9 @@ def with_dots(image: Any, dots: Floats) -> Any:
         part = pixels[top:int(y + radius + 2), left:int(x + radius + 2)]
         rows, columns = numpy.ogrid[top:top + part.shape[0], left:left + part.shape[1]]
         distance = numpy.hypot(columns + 0.5 - x, rows + 0.5 - y)
-        for r, colour in ((radius, 255), (radius * 0.72, colours("pick")[0])):
+        for r, colour in ((radius, (255, 255, 255)), (radius * 0.72, colours("pick")[0])):
             covered = numpy.clip(r + 0.5 - distance, 0, 1)[:, :, None]
-            part += (colour - part) * covered
+            part += (numpy.array((*colour, 255), numpy.float32) - part) * covered
     return Image.fromarray((pixels + 0.5).astype(numpy.uint8))
 
 

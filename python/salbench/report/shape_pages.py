@@ -78,17 +78,16 @@ def items(results: Results, shapes: Shapes) -> dict[str, str]:
 
 
 def score_cells(scores: Scores, dataset: str, item: str, view: str, model: str) -> list[Cell]:
-    """Per metric the score and its rank; best of the shape in bold."""
+    """Per metric the score, and its rank below it; best of the shape in bold."""
     cells = []
     for metric in scores.metrics:
         value, rank, of = scores.of(dataset, metric, item, view).get(model, (numpy.nan, numpy.nan, 0))
-        cells.append(cell(value, bold=model in scores.best(dataset, metric, item, view)))
-        cells.append(Cell(f"{int(rank)} of {of}", int(rank)) if rank == rank else Cell("–", ""))
+        cells.append(cell(value, bold=model in scores.best(dataset, metric, item, view), below=f"{int(rank)} of {of}" if rank == rank else ""))
     return cells
 
 
 def heads_of(scores: Scores) -> list[str]:
-    return [head for of in scores.metrics.values() for head in (of.label, f"Rank by {of.label}")]
+    return [of.label for of in scores.metrics.values()]
 
 
 def score_table(shop: Workshop, scores: Scores, dataset: str, item: str) -> Table:
@@ -99,7 +98,7 @@ def score_table(shop: Workshop, scores: Scores, dataset: str, item: str) -> Tabl
         raise Missing(f"The {kind} has no scores: it has no ground truth{left_out}.")
     heads = heads_of(scores)
     rows = [[Cell(model)] + score_cells(scores, dataset, item, "", model) for model in models]
-    return Table("mesh-scores", f"Scores of the {kind}, best in bold, and its rank among all {spoken(dataset)} under the same model "
+    return Table("mesh-scores", f"Scores of the {kind}, best in bold; below, its place among all {spoken(dataset)} under the same model "
                  "(1: best score).", ["Model"] + heads, rows, [False] + [True] * len(heads))
 
 
@@ -113,7 +112,7 @@ def scan_table(shop: Workshop, scores: Scores, item: str) -> Table:
     if not rows:
         raise Missing("The scans of the mesh have no scores.")
     heads = heads_of(scores)
-    return Table("scan-scores", "Scores of the scans, best of each scan in bold, and their rank among all scans.",
+    return Table("scan-scores", "Scores of the scans, best of each scan in bold; below, their place among all scans.",
                  ["Scan", "Model"] + heads, rows, [True, False] + [True] * len(heads), filters=[0, 1])
 
 
@@ -181,9 +180,7 @@ def write_page(shop: Workshop, pages: Pages, scores: Scores, item: str, category
     painters = {shape.name: Painter(shop, shape) for shape in shapes}
     titles = {shape.name: f"Scan {shape.view}" if shape.view else kind.capitalize() for shape in shapes}
     shown = entries(shapes, titles, shop.drawn)
-    own_blocks = attempt(score_table, shop, scores, dataset, item)
-    if itself:
-        own_blocks += attempt(pictures, shop, itself, painters[itself.name], scores)
+    own_blocks = attempt(pictures, shop, itself, painters[itself.name], scores) if itself else []
     scans = [(f"Scan {shape.view}", attempt(pictures, shop, shape, painters[shape.name], scores)) for shape in views
              if painters[shape.name].has_picture]
     scan_blocks = attempt(scan_table, shop, scores, item) if dataset == "meshes" else []
@@ -192,4 +189,14 @@ def write_page(shop: Workshop, pages: Pages, scores: Scores, item: str, category
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
     pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
                 viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
-                own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans, notes=notes(shop, item, bool(shapes)))
+                score_blocks=attempt(score_table, shop, scores, dataset, item), own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans,
+                notes=notes(shop, item, bool(shapes)), steps=steps(shop, item))
+
+
+def steps(shop: Workshop, item: str) -> list[tuple[str, str, str]]:
+    """(relation, item, page) of the shapes before and after this one."""
+    order = list(shop.items)
+    at = order.index(item)
+    beside = [("prev", order[at - 1])] if at else []
+    beside += [("next", order[at + 1])] if at + 1 < len(order) else []
+    return [(relation, name, shop.page_of(name)) for relation, name in beside]

@@ -139,10 +139,9 @@ salbench.View = class {
     this.mapMenu = root.querySelector("[data-part=map]");
     this.status = root.querySelector("[data-part=status]");
     const canvas = root.querySelector("canvas");
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer = new THREE.WebGLRenderer({canvas, alpha: true, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.scene = new THREE.Scene();
-    this.scene.background = new THREE.Color(0xffffff);
     this.upright = new THREE.Group(); // turns the shape's upward axis to y, about which the controls turn
     this.scene.add(this.upright);
     this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);

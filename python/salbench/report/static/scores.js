@@ -60,10 +60,13 @@ salbench.scoreTable = function (root, data) {
 
   const arrange = () => {
     const wanted = part("class").value, set = part("set").value, shown = columns();
+    const words = part("search").value.toLowerCase().split(/\s+/);
     const column = shown[Math.min(state.column, shown.length - 1)];
     const keyed = [];
     data.shapes.forEach((shape, row) => {
-      if ((wanted === "" || wanted === "=" + shape[2]) && (set === "" || set === shape[0])) keyed.push([column.key(row), row]);
+      const text = `${shape[1]} ${shape[2]}`.toLowerCase();
+      if ((wanted === "" || wanted === "=" + shape[2]) && (set === "" || set === shape[0]) && words.every((word) => text.includes(word)))
+        keyed.push([column.key(row), row]);
     });
     keyed.sort((a, b) => salbench.compare(a[0], b[0], state.direction) || a[1] - b[1]);
     state.rows = keyed.map((pair) => pair[1]);
@@ -80,7 +83,7 @@ salbench.scoreTable = function (root, data) {
       if (index === state.column) head.setAttribute("aria-sort", state.direction > 0 ? "ascending" : "descending");
       button.type = "button";
       const text = document.createElement("span");
-      text.className = "head";
+      text.className = "column";
       text.textContent = column.head;
       if (data.titles[column.head]) text.title = data.titles[column.head];
       button.append(text);
@@ -112,6 +115,7 @@ salbench.scoreTable = function (root, data) {
     if (event.target.name === "model") { state.column = 0; state.direction = 1; }
     show(part("metric").value);
   });
+  part("search").addEventListener("input", arrange);
   form.addEventListener("submit", (event) => event.preventDefault());
   for (const button of root.querySelectorAll(".pager button")) {
     button.addEventListener("click", () => { state.page += Number(button.dataset.step); render(); });
