@@ -53,7 +53,6 @@ class Table:
     numeric: list[bool]
     filters: list[int] = field(default_factory=list)  # indices of columns that get a menu
     files: list[tuple[str, str]] = field(default_factory=list)  # (label, path) of the same table in other forms
-    folded: str = ""     # what a reader opens it with; empty: it stands open
     better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for its head
     opens: dict[int, str] = field(default_factory=dict)  # of filters: the text that is shown first; there is no "all", which would mix
     kind: str = "table"
@@ -79,7 +78,15 @@ class Gallery:
     kind: str = "gallery"
 
 
-Block = Note | Plot | Table | Gallery
+@dataclass
+class Fold:
+    """Blocks that a reader opens."""
+    summary: str
+    blocks: "list[Block]"
+    kind: str = "fold"
+
+
+Block = Note | Plot | Table | Gallery | Fold
 
 
 def attempt(build: Callable[..., Any], *arguments: Any) -> list[Block]:

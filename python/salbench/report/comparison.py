@@ -7,7 +7,7 @@ from typing import Any
 import pandas
 
 from salbench.conclusions.samples import summarise
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, interval
+from salbench.pages.blocks import Block, Cell, Fold, Missing, Note, Table, attempt, cell, first_of, interval
 from salbench.pages.names import DATASETS
 from salbench.report import statistics
 from salbench.report.results import Frame, Results, flatten, text_of
@@ -114,7 +114,7 @@ def means(shop: Workshop, other: Results) -> list[Block]:
                 continue
             units = statistics.by_unit(shop.results, both)
             _, mean, _, low, high = summarise((units["first"] - units["second"]).to_numpy()[:, None])
-            row = [Cell(DATASETS[dataset]), Cell(model), Cell(shop.results.metric(metric).label),
+            row = [Cell(model), Cell(DATASETS[dataset]), Cell(shop.results.metric(metric).label),
                    count_cell(shop.results, dataset, len(units), len(both)), cell(units["first"].mean()),
                    cell(units["second"].mean()), signed(mean[0]), interval(low[0], high[0])]
             (rows if metric in shop.results.leading else others).append(row)
@@ -124,10 +124,10 @@ def means(shop: Workshop, other: Results) -> list[Block]:
     notes: list[Block] = [Note(f"Models that only one run has are left out: {', '.join(missing)}.")] if missing else []
     caption = ("Means over the shapes that both runs scored, and the mean difference with its paired 95 % interval over the units "
                "that n counts.")
-    heads = ["Data set", "Model", "Metric", HEAD, *names(shop.results, other), "Difference", "95 % interval"]
-    made = [("compared-means", rows, ""), ("compared-means-others", others, "Other metrics")]
-    return notes + [Table(name, caption, heads, part, [False] * 3 + [True] * 5, filters=[0, 1, 2], folded=folded)
-                    for name, part, folded in made if part]
+    heads = ["Model", "Data set", "Metric", HEAD, *names(shop.results, other), "Difference", "95 % interval"]
+    own, further = (Table(name, caption, heads, part, [False] * 3 + [True] * 5, filters=[1, 2, 0], opens=first_of(part, 1, 2))
+                    for name, part in (("compared-means", rows), ("compared-means-others", others)))
+    return [*notes, *([own] if rows else []), *([Fold("Other metrics", [further])] if others else [])]
 
 
 def differences(shop: Workshop, other: Results) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench.pages.blocks import Block, attempt
-from salbench.report import claims, compact, examples, figures, people, ranking, sensitivity, statements, statistics, tables
+from salbench.report import claims, compact, examples, figures, lag, people, ranking, sensitivity, statements, statistics, tables
 from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
@@ -34,7 +34,7 @@ class Page:
 PAGES = (
     Page("index.html", "Results", "Which saliency models predict what people find important?", ""),
     Page("ranking.html", "Ranking", "How the models rank, and how sure that is",
-         "One table to paste into a paper; ranks with their intervals."),
+         "One table to paste into a paper; how far each model is behind; ranks with their intervals."),
     Page("scores.html", "Shapes", "", "Every shape under every model, with a viewer."),
     Page("gallery.html", "Gallery", "", "Pictures; where each model is worst."),
     Page("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores."),
@@ -110,6 +110,7 @@ def participants(shop: Workshop) -> list[Block]:
 
 ELEMENTS = (
     Element("ranking.html", "compact", "", "", "Models and metrics", compact.tables),
+    Element("ranking.html", "lag", "", "", "How far behind the best", lag.tables),
     Element("ranking.html", "ranking", "", "", "Ranking", ranking.tables),
     Element("statistics.html", "means", "", "", "Means", tables.means),
     Element("claims.html", "claims", "", "", "What the paper says, checked", claims.table),

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Galleries of painted pictures: the paper's examples, before and after matching, difficult shapes, scans."""
 
-from pathlib import Path
+from io import BytesIO
 from typing import Any
 
 from PIL import Image
 
 from salbench.pages.blocks import Gallery, Missing, Tile
 from salbench.pages.names import spoken
-from salbench.report import statistics, style
-from salbench.report.drawing import Later
+from salbench.report import statistics
+from salbench.report.drawing import Drawing
 from salbench.report.gallery import Painter, describe
 from salbench.report.names import natural
 from salbench.report.painting import palette
@@ -145,41 +145,42 @@ def difficult(shop: Workshop, dataset: str, metric: str, count: int = 3) -> Gall
     return printed(shop, f"difficult-{dataset}-{shop.metric_files[metric]}", gallery)
 
 
-def pixels(path: Path) -> Any:
+def pixels(data: bytes) -> Any:
     """On white: it is for print."""
-    picture = Image.open(path).convert("RGBA")
+    picture = Image.open(BytesIO(data)).convert("RGBA")
     return Image.alpha_composite(Image.new("RGBA", picture.size, "white"), picture).convert("RGB")
 
 
-def scale() -> Any:
-    """What the colour bar of maps is drawn from."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import ListedColormap, Normalize
-
-    return ScalarMappable(Normalize(0, 1), ListedColormap(palette() / 255))
+Printed = tuple[str, bytes, list[tuple[str, bool]]]  # of a tile: title, picture, what stands below
 
 
 def printed(shop: Workshop, name: str, gallery: Gallery) -> Gallery:
     """The gallery, with the same pictures as one figure for print."""
-    columns = max(len(tiles) for _, tiles in gallery.rows)
-    lines = len(gallery.rows)
-    width, height = 1.7 * columns + 0.9, 2.3 * lines + 0.2
-    figure = style.new_figure(width, height, layout=None)
-    grid = figure.subplots(lines, columns, squeeze=False, gridspec_kw={
-        "left": 0.1 / width, "right": 1 - 0.8 / width, "bottom": 0.35 / height, "top": 1 - 0.3 / height, "hspace": 0.28,
-        "wspace": 0.04})
-    for line, (_, tiles) in zip(grid, gallery.rows):
-        for axes in line:
-            axes.axis("off")
-        for axes, tile in zip(line, tiles):
-            axes.set_title(tile.title, fontsize=9)
-            if tile.picture:
-                axes.imshow(Later(pixels, path := shop.folder.path / tile.picture, content=path.read_bytes()))
-                axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in tile.pieces),
-                          transform=axes.transAxes, ha="center", va="top", fontsize=9)
-    bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
-    figure.colorbar(Later(scale, content=palette().tobytes()), cax=bar)
-    bar.grid(visible=False)
-    shop.draw(name, figure)
+    rows: list[list[Printed]] = [[(tile.title, (shop.folder.path / tile.picture).read_bytes() if tile.picture else b"", tile.pieces)
+                                  for tile in tiles] for _, tiles in gallery.rows]
+    size = 1.7 * max(map(len, rows)) + 0.9, 2.3 * len(rows) + 0.2
+    shop.draw(name, Drawing(draw_gallery, (rows, palette(), size), size, layout=None))
     gallery.files = [("SVG", f"figures/{name}.svg"), ("PDF", f"figures/{name}.pdf")]
     return gallery
+
+
+def draw_gallery(figure: Any, rows: list[list[Printed]], colours: Any, size: tuple[float, float]) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+
+    width, height = size
+    grid = figure.subplots(len(rows), max(map(len, rows)), squeeze=False, gridspec_kw={
+        "left": 0.1 / width, "right": 1 - 0.8 / width, "bottom": 0.35 / height, "top": 1 - 0.3 / height, "hspace": 0.28,
+        "wspace": 0.04})
+    for line, tiles in zip(grid, rows):
+        for axes in line:
+            axes.axis("off")
+        for axes, (title, picture, pieces) in zip(line, tiles):
+            axes.set_title(title, fontsize=9)
+            if picture:
+                axes.imshow(pixels(picture))
+                axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in pieces),
+                          transform=axes.transAxes, ha="center", va="top", fontsize=9)
+    bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
+    figure.colorbar(ScalarMappable(Normalize(0, 1), ListedColormap(colours / 255)), cax=bar)
+    bar.grid(visible=False)

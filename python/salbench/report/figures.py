@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The paper's diagrams. `..._data` gives the numbers of a diagram, the function beside it draws them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy
@@ -10,7 +10,9 @@ import pandas
 from salbench.pages.blocks import Missing, Plot
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import names, statistics, style
+from salbench.report.drawing import Drawing
 from salbench.report.metrics import Metric, family_of
+from salbench.report.names import Looks
 from salbench.report.results import Frame, Results
 from salbench.report.workshop import Workshop
 
@@ -28,25 +30,26 @@ def cumulative_data(results: Results, dataset: str) -> Frame:
     return pandas.DataFrame({"value": edges, **dict(zip(columns, shares.T))})
 
 
-def cumulative(shop: Workshop, dataset: str) -> Plot:
-    data = cumulative_data(shop.results, dataset)
-    figure = style.new_figure(7, 4.4)
+def draw_cumulative(figure: Any, data: Frame) -> None:
     axes = figure.subplots()
     columns = list(data.columns[1:])
-    looks = [names.colours(columns), names.dashes(columns), names.markers(columns)]
+    looks = names.looks(columns)
     for at, column in enumerate(columns):
-        colour, dash, marker = (look[column] for look in looks)
-        axes.plot(data["value"], data[column], color=colour, ls=dash, lw=2.4 if column == "GS" else 1.8, marker=marker, ms=5,
-                  markevery=(3 + 2 * at, 16))
+        axes.plot(data["value"], data[column], color=looks.colours[column], ls=looks.dashes[column], lw=2.4 if column == "GS" else 1.8,
+                  marker=looks.markers[column], ms=5, markevery=(3 + 2 * at, 16))
     axes.set(xlim=(0, 1), ylim=(0, 1.01), xlabel="Saliency", ylabel="Share of points at or below")
     # All curves end at 1, 1: each is named where it reaches its part of the way there, highest first.
     order = sorted(columns, key=lambda column: -float(data[column].sum()))
     for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
         axes.annotate("Ground truth" if column == "GS" else column, (numpy.interp(part, data[column], data["value"]), part),
-                      xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks[0][column],
+                      xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks.colours[column],
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85})
+
+
+def cumulative(shop: Workshop, dataset: str) -> Plot:
+    data = cumulative_data(shop.results, dataset)
     medians = ", ".join(f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:])
-    return shop.plot(f"distributions-{dataset}", figure, data,
+    return shop.plot(f"distributions-{dataset}", Drawing(draw_cumulative, (data,), (7, 4.4)), data,
                      f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below: {medians}.",
                      f"{DATASETS[dataset]}: mean cumulative distribution of the ground truth and of each model's maps "
                      "before histogram matching.")
@@ -68,24 +71,29 @@ def ranking_data(results: Results, dataset: str, metric: str) -> Frame:
 REFERENCES = {"RS": ("chance", (0, (2, 2))), "HS": ("people", (0, (7, 3)))}
 
 
-def draw_ranking(axes: Any, data: Frame, shop: Workshop, metric: Metric) -> None:
+def draw_references(axes: Any, places: Mapping[str, float]) -> None:
+    """A named line per reference, at its place; the names stand in lines of their own, for references may be close together."""
+    for at, (model, value) in enumerate(places.items()):
+        name, dash = REFERENCES[model]
+        axes.axvline(value, color="#555555", lw=1.1, ls=dash, zorder=1)
+        axes.annotate(name, (value, 1), (0, 1 + 10 * at), xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=8,
+                      color="#555555", ha="center", va="bottom", annotation_clip=False,
+                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4})
+
+
+def draw_ranking(axes: Any, data: Frame, looks: Looks, metric: Metric) -> None:
     """A dot per model at its mean with its 95 % interval, best on top, and references as named lines. That of an AUC begins at .5
     unless something lies below."""
     data = data.dropna(subset=["mean"]).reset_index(drop=True)
     low, high = data["ci95_low"].fillna(data["mean"]), data["ci95_high"].fillna(data["mean"])
     least, most = (low.min(), high.max()) if len(data) else (0, 1)
     margin = 0.06 * (most - least) or 0.05
-    markers = names.markers(shop.models)
     for y, row in enumerate(data.itertuples()):
         axes.plot([low[y], high[y]], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
-        axes.plot([row.mean], [y], color=shop.colours.get(row.model), marker=markers.get(row.model, "o"), ms=8, ls="none", zorder=3)
+        axes.plot([row.mean], [y], color=looks.colours.get(row.model), marker=looks.markers.get(row.model, "o"), ms=8, ls="none", zorder=3)
         axes.annotate(f"{row.mean:.3f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
                       annotation_clip=False)
-        if row.model in REFERENCES:
-            name, dash = REFERENCES[row.model]
-            axes.axvline(row.mean, color="#555555", lw=1.1, ls=dash, zorder=1)
-            axes.annotate(name, (row.mean, 1.005), xycoords=("data", "axes fraction"), fontsize=8, color="#555555", ha="center",
-                          va="bottom", annotation_clip=False)
+    draw_references(axes, {row.model: row.mean for row in data.itertuples() if row.model in REFERENCES})
     axes.set_yticks(range(len(data)), data["model"])
     axes.set_ylim(max(len(data), 1) - 0.5, -0.5)
     begin = 0.5 if family_of(metric.name) == "auc" and least >= 0.5 else least - margin
@@ -114,8 +122,16 @@ def performance(shop: Workshop, dataset: str, metric: str) -> Plot:
     ranking = ranking_data(shop.results, dataset, metric)
     if heat.empty:
         raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
+    name = f"performance-{dataset}-{shop.metric_files[metric]}"
+    return shop.plot(name, Drawing(draw_performance, (heat, ranking, of, shop.looks), (11, 4.6)), heat,
+                     f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs from "
+                     f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
+                     f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
+                     "their mean, with 95 % confidence intervals; mean per shape.")
+
+
+def draw_performance(figure: Any, heat: Frame, ranking: Frame, of: Metric, looks: Looks) -> None:
     models = list(heat.columns[3:])
-    figure = style.new_figure(11, 4.6)
     panels = figure.subplot_mosaic([["map", "bars"], ["line", "bars"]], width_ratios=[1.75, 1], height_ratios=[1.1, 1])
     values = heat[models].to_numpy().T
     finite = values[numpy.isfinite(values)]
@@ -132,14 +148,7 @@ def performance(shop: Workshop, dataset: str, metric: str) -> Plot:
     for panel in ("map", "line"):
         panels[panel].set_xlim(0.5, len(heat) + 0.5)
         panels[panel].xaxis.get_major_locator().set_params(integer=True)
-    draw_ranking(panels["bars"], ranking, shop, of)
-    name = f"performance-{dataset}-{shop.metric_files[metric]}"
-    block = shop.plot(name, figure, heat,
-                      f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs from "
-                      f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
-                      f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
-                      "their mean, with 95 % confidence intervals; mean per shape.")
-    return block
+    draw_ranking(panels["bars"], ranking, looks, of)
 
 
 def rankings(shop: Workshop, dataset: str) -> Plot:
@@ -152,15 +161,18 @@ def rankings(shop: Workshop, dataset: str) -> Plot:
             missing.append(str(reason))
     if not data:
         raise Missing(" ".join(missing))
-    figure = style.new_figure(11, 0.42 * max(len(table) for table in data.values()) + 1.1)
-    for axes, (metric, table) in zip(figure.subplots(1, len(data), squeeze=False)[0], data.items()):
-        of = shop.results.metric(metric)
-        draw_ranking(axes, table, shop, of)
-        axes.set_title(of.label, pad=16)
+    panels = [(shop.results.metric(metric), table) for metric, table in data.items()]
+    height = 0.42 * max(len(table) for table in data.values()) + 1.2
     text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
-    return shop.plot(f"ranking-{dataset}", figure, plotted, f"Models on {spoken(dataset)}, best first. {text}.",
+    return shop.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, shop.looks), (11, height)), plotted, f"Models on {spoken(dataset)}, best first. {text}.",
                      f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
+
+
+def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Looks) -> None:
+    for axes, (of, table) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
+        draw_ranking(axes, table, looks, of)
+        axes.set_title(of.label, pad=26)
 
 
 def human_data(results: Results, metric: str) -> Frame:
@@ -181,34 +193,37 @@ def model_means(shop: Workshop, metric: str) -> dict[str, float]:
     return {row.model: row.mean for row in rows.itertuples() if row.model not in REFERENCES}
 
 
-def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], shop: Workshop) -> None:
+def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Looks) -> None:
     """The curve of participants and a line per model, each named at its right end."""
     axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
     axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4)
     last = table["n"].max()
     for model, mean in means.items():
-        axes.plot([table["n"].min(), last], [mean, mean], color=shop.colours.get(model), lw=1.4, ls=shop.dashes.get(model, "-"))
+        axes.plot([table["n"].min(), last], [mean, mean], color=looks.colours.get(model), lw=1.4, ls=looks.dashes.get(model, "-"))
     values = [*table["mean"], *table["ci95_low"].dropna(), *table["ci95_high"].dropna(), *means.values()]
     margin = 0.05 * (max(values) - min(values)) or 0.05
     limits = (min(values) - margin, max(values) + margin)
     axes.set_ylim(*limits)
     axes.set_xlim(table["n"].min(), last)
     axes.set_xticks(range(1, int(last) + 1, 2))
-    style.label_ends(axes, [(mean, model, shop.colours.get(model)) for model, mean in means.items()]
+    style.label_ends(axes, [(mean, model, looks.colours.get(model)) for model, mean in means.items()]
                      + [(table["mean"].iloc[-1], "people", style.INK)], limits, 3.2)
 
 
 def human_curves(shop: Workshop) -> Plot:
     """n participants against n others, one panel per metric, with each model's mean as a line across."""
     data = {metric: human_data(shop.results, metric) for metric in shop.results.leading}
-    figure = style.new_figure(11, 4.1)
-    for axes, (metric, table) in zip(figure.subplots(1, len(data)), data.items()):
-        draw_curve(axes, table, model_means(shop, metric), shop)
-        label = shop.results.metric(metric).label
-        axes.set(title=label, xlabel="Participants n", ylabel=f"Mean {label}")
+    panels = [(shop.results.metric(metric).label, table, model_means(shop, metric)) for metric, table in data.items()]
     ends = "; ".join(f"{shop.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
                      for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
-    return shop.plot("human-curves", figure, plotted,
-                     f"n participants against n others, n = 1 to {int(table['n'].max())}: {ends}.",
+    most = int(panels[-1][1]["n"].max())
+    return shop.plot("human-curves", Drawing(draw_human_curves, (panels, shop.looks), (11, 4.1)), plotted,
+                     f"n participants against n others, n = 1 to {most}: {ends}.",
                      "How well n participants predict n others, with the 95 % interval; lines across: each model's mean, against all participants.")
+
+
+def draw_human_curves(figure: Any, panels: Sequence[tuple[str, Frame, Mapping[str, float]]], looks: Looks) -> None:
+    for axes, (label, table, means) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
+        draw_curve(axes, table, means, looks)
+        axes.set(title=label, xlabel="Participants n", ylabel=f"Mean {label}")

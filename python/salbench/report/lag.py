@@ -1,14 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far each model is behind the one with the best mean, with intervals that are joint for all pairs of models: they leave out 0 where ranks
-and groups have the two differ."""
+and groups have the two differ. Beside it what else readers of benchmarks look for [agarwal2021]."""
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from salbench.pages.blocks import Missing
-from salbench.report import statistics
-from salbench.report.results import Results
+import pandas
+
+from salbench.pages.blocks import Block, Fold, Missing, Plot, attempt
+from salbench.pages.names import DATASETS, several, spoken
+from salbench.report import statistics, style
+from salbench.report.drawing import Drawing
+from salbench.report.figures import REFERENCES, draw_references
+from salbench.report.metrics import Metric
+from salbench.report.names import Looks
+from salbench.report.results import Frame, Results
+from salbench.report.workshop import Workshop
 
 NAN = float("nan")
+MOST_NAMED = 14  # models of a legend
 
 
 @dataclass(frozen=True)
@@ -48,3 +59,139 @@ def behind(results: Results, dataset: str, metric: str, best: str, of_best: floa
     half = abs(distance / pair["t"]) * pair["t_bound"] if pair["t"] else NAN  # standard errors, as many as the bound
     shares = [1 - pair[name] if sign > 0 else pair[name] for name in ("superiority", "superiority_low", "superiority_high")]
     return Behind(model, mean, distance, distance - half, distance + half, shares[0], *sorted(shares[1:]))
+
+
+# --- figures ---------------------------------------------------------------------------------------------------------
+
+COLUMNS = ("metric", "model", "mean", "distance", "low", "high", "wins", "wins_low", "wins_high")
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A metric on a data set."""
+
+    metric: Metric
+    models: list[Behind]      # that are ranked
+    references: dict[str, float]  # model -> its distance behind the best
+    groups: list[str]         # letters of each model
+    profile: dict[str, list[float]]  # model -> its score on each unit, in ascending order
+
+
+def panels_of(shop: Workshop, dataset: str) -> list[Panel]:
+    found = []
+    for metric in shop.results.leading:
+        try:
+            known = lags(shop.results, dataset, metric)
+            groups = statistics.ranking(shop.results, dataset, metric).set_index("model")["group"].to_dict()
+            units = statistics.by_unit(shop.results, statistics.scores(shop.results, dataset, metric)[list(groups)].dropna())
+        except Missing:
+            continue
+        models = [one for one in known if one.model in groups]
+        found.append(Panel(shop.results.metric(metric), models, {one.model: one.distance for one in known if one.model in REFERENCES},
+                           [groups[one.model] for one in models], {model: sorted(map(float, units[model])) for model in groups}))
+    if not found:
+        raise Missing(f"No model is ranked on {spoken(dataset)}.")
+    return found
+
+
+def tables(shop: Workshop) -> list[Block]:
+    return [block for dataset in statistics.shown(shop.results) for block in attempt(figures, shop, dataset)]
+
+
+def figures(shop: Workshop, dataset: str) -> list[Block]:
+    panels = panels_of(shop, dataset)
+    data = pandas.DataFrame([{"metric": panel.metric.name, **vars(one)} for panel in panels for one in panel.models], columns=COLUMNS)
+    profiles = pandas.DataFrame([(panel.metric.name, model, score) for panel in panels for model, scores in panel.profile.items()
+                                 for score in scores], columns=["metric", "model", "score"])
+    groups = pandas.DataFrame([(panel.metric.name, one.model, one.mean, group) for panel in panels
+                               for one, group in zip(panel.models, panel.groups)], columns=["metric", "model", "mean", "group"])
+    name, unit = DATASETS[dataset], shop.results.unit or "unit"
+    units = several(2, unit).removeprefix("2 ")
+    height = 0.36 * max(len(panel.models) for panel in panels) + 1.2
+    said = "; ".join(f"{panel.metric.label}: " + ", ".join(f"{one.model} {one.distance:.3f}" for one in panel.models) for panel in panels)
+
+    def plot(kind: str, draw: Callable[..., None], high: float, table: Frame, alt: str, caption: str) -> Plot:
+        return shop.plot(f"{kind}-{dataset}", Drawing(draw, (panels, shop.looks), (11, high)), table, alt, f"{name}: {caption}")
+    return [
+        plot("lag", draw_lags, height, data, f"Distance of each model behind the best mean. {said}.".replace("-", "−"),
+             "how far each model is behind the best mean, with 95 % intervals that are joint for all pairs of models. One that leaves out 0 "
+             "shows that the model is behind; one that does not shows neither that it is nor that it is not."),
+        Fold(f"{name}: probability of improvement, performance profile, critical differences", [
+            plot("wins", draw_wins, height, data, "On how large a share of the units the model with the best mean scores better than each other.",
+                 f"probability that the model with the best mean scores better on a new {unit} than each other model, with the 95 % interval of "
+                 "that pair alone (Wilson). 0.5: as often as not."),
+            plot("profile", draw_profiles, 3.6, profiles, "Share of the units on which each model reaches a score.",
+                 f"on which share of the {units} each model reaches a score. It describes these, and has no interval."),
+            plot("differences", draw_differences, 2.6, groups, "Models by their mean; bars join those that are not shown to differ.",
+                 "models at their means. A bar joins models that are not shown to differ when all pairs are compared at once: the groups of "
+                 "the ranking, in place of Nemenyi's test of mean ranks.")])]
+
+
+def columns(figure: Any, panels: Sequence[Panel]) -> Iterator[tuple[Any, Panel]]:
+    """Axes and what they show, one beside the other."""
+    return zip(figure.subplots(1, len(panels), squeeze=False)[0], panels)
+
+
+def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Looks, digits: int) -> None:
+    """A row per model: a dot at the first number, a line between the others, and the first in figures at the right."""
+    for y, (model, at, low, high) in enumerate(rows):
+        axes.plot([low, high], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
+        axes.plot([at], [y], color=looks.colours.get(model), marker=looks.markers.get(model, "o"), ms=8, ls="none", zorder=3)
+        axes.annotate("–" if at != at else f"{at:.{digits}f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
+                      annotation_clip=False)
+    axes.set_yticks(range(len(rows)), [row[0] for row in rows])
+    axes.set_ylim(max(len(rows), 1) - 0.5, -0.5)
+    axes.grid(axis="y", visible=False)
+
+
+def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
+    for axes, panel in columns(figure, panels):
+        draw_rows(axes, [(one.model, one.distance, one.low, one.high) for one in panel.models], looks, 3)
+        axes.set_title(panel.metric.label, pad=26)  # above the names of references
+        axes.axvline(0, color=looks.colours.get(panel.models[0].model), lw=1.2, zorder=1)
+        draw_references(axes, panel.references)
+        axes.set_xlabel(f"Mean {panel.metric.label}, behind the best")
+
+
+def draw_wins(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
+    for axes, panel in columns(figure, panels):
+        draw_rows(axes, [(one.model, one.wins, one.wins_low, one.wins_high) for one in panel.models[1:]], looks, 2)
+        axes.set_title(panel.metric.label)
+        axes.axvline(0.5, color="#555555", lw=1.1, ls=(0, (2, 2)), zorder=1)
+        axes.set(xlim=(-0.02, 1.02), xlabel=f"{panel.models[0].model} is better than")
+
+
+def draw_profiles(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
+    for axes, panel in columns(figure, panels):
+        for model, scores in panel.profile.items():
+            n = len(scores)
+            reached = [(at + 1) / n for at in range(n)] if panel.metric.lower else [1 - at / n for at in range(n)]
+            axes.plot(scores, reached, drawstyle="steps-post" if panel.metric.lower else "steps-pre", color=looks.colours.get(model),
+                      ls=looks.dashes.get(model, "-"), lw=1.8, marker=looks.markers.get(model, "o"), ms=4, markevery=max(1, n // 6), label=model)
+        axes.set(ylim=(0, 1.02), xlabel=f"{panel.metric.label}, at {'most' if panel.metric.lower else 'least'}", ylabel="Share")
+        axes.set_title(panel.metric.label)
+    if sum(len(panel.profile) for panel in panels[:1]) <= MOST_NAMED:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
+
+
+def draw_differences(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
+    for axes, panel in columns(figure, panels):
+        means = [one.mean for one in panel.models]
+        low, high = min(means), max(means)
+        span = (high - low) or 1.0
+        order = sorted(range(len(means)), key=lambda at: means[at])
+        for at, place in zip(order, style.spread([(means[at] - low) / span for at in order], 0.11)):
+            model = panel.models[at].model
+            axes.annotate(model, (means[at], 0), (low + place * span, 0.5), ha="center", fontsize=9, color=looks.colours.get(model),
+                          annotation_clip=False, arrowprops={"arrowstyle": "-", "color": style.INK, "lw": 0.7})
+        axes.plot(means, [0] * len(means), color=style.INK, marker="o", ms=5, ls="none", clip_on=False, zorder=3)
+        letters = sorted(set("".join(panel.groups)))
+        for depth, letter in enumerate(letters, 1):
+            members = [mean for mean, group in zip(means, panel.groups) if letter in group]
+            axes.plot([min(members), max(members)], [-0.28 * depth] * 2, color=style.INK, lw=4, solid_capstyle="round")
+        axes.set(ylim=(-0.28 * (len(letters) + 1), 0.8), xlabel=f"Mean {panel.metric.label}", yticks=[])
+        axes.set_xlim(*((low - 0.06 * span, high + 0.06 * span)[::-1 if panel.metric.lower else 1]))
+        axes.axhline(0, color=style.INK, lw=1)
+        axes.grid(visible=False)
+        axes.spines["left"].set_visible(False)
+        axes.set_title(panel.metric.label)

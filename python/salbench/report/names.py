@@ -4,6 +4,7 @@
 import hashlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -33,6 +34,18 @@ def dashes(models: Sequence[str]) -> dict[str, Any]:
 
 def markers(models: Sequence[str]) -> dict[str, str]:
     return _each(models, _MARKERS, _OWN_MARKERS)
+
+
+@dataclass(frozen=True)
+class Looks:
+    """Of the models of a report, by name."""
+    colours: dict[str, str]
+    dashes: dict[str, Any]
+    markers: dict[str, str]
+
+
+def looks(models: Sequence[str]) -> Looks:
+    return Looks(colours(models), dashes(models), markers(models))
 
 
 def _each(models: Sequence[str], built_in: Mapping[str, T], own: Sequence[T]) -> dict[str, T]:

@@ -7,7 +7,7 @@ import numpy
 import pandas
 
 from salbench.pages.blocks import Block, Cell, Missing, Note, Plot, Table, attempt, cell, count
-from salbench.report import style
+from salbench.report.drawing import Drawing
 from salbench.report.results import Frame, Results, flatten, number_of, text_of
 from salbench.report.workshop import Workshop
 
@@ -101,14 +101,33 @@ def nodes(shop: Workshop) -> list[Block]:
     if worked.empty:
         return [Note("Nothing was computed: everything was found in the cache."), listing]
     data = worked.rename("seconds").reset_index()
-    figure = style.new_figure(9, 0.3 * len(data) + 1)
+    longest = ", ".join(f"{row.stage} {row.seconds:.1f} s" for row in data.iloc[::-1].head(5).itertuples())
+    return [shop.plot("stages", Drawing(draw_stages, (data,), (9, 0.3 * len(data) + 1)), data, f"Time per stage, longest first: {longest}.",
+                      "Time that the run spent per stage, over all shapes."), listing]
+
+
+def draw_stages(figure: Any, data: Frame) -> None:
     axes = figure.subplots()
     axes.barh(data["stage"], data["seconds"], color="#0072B2", height=0.65)
     axes.set(xlabel="Seconds of all cores")
     axes.grid(axis="y", visible=False)
-    longest = ", ".join(f"{row.stage} {row.seconds:.1f} s" for row in data.iloc[::-1].head(5).itertuples())
-    return [shop.plot("stages", figure, data, f"Time per stage, longest first: {longest}.",
-                      "Time that the run spent per stage, over all shapes."), listing]
+
+
+# At least 3:1 beside white, as hatches tell them apart in grey.
+AREAS = (("#0072B2", ""), ("#D55E00", "////"), ("#009E73", "...."), ("#BF5F96", "\\\\\\\\"), ("#A87400", "xxx"), ("#5E3C99", "---"),
+         ("#8B4513", "|||"), ("#767676", "++"))
+
+
+def draw_timeline(figure: Any, shown: Frame, width: float, end: float, most: float) -> None:
+    """shown: cores at work per stage in each interval of this width."""
+    axes = figure.subplots()
+    ends = numpy.arange(len(shown) + 1) * width  # the last interval is drawn to its end
+    heights = numpy.vstack([shown.to_numpy(), shown.to_numpy()[-1:]])
+    areas = axes.stackplot(ends, heights.T, labels=shown.columns, colors=[colour for colour, _ in AREAS], step="post", lw=0.4, edgecolor="#333333")
+    for area, (_, hatch) in zip(areas, AREAS):
+        area.set_hatch(hatch)
+    axes.set(xlabel="Seconds since the start", ylabel="Cores at work", xlim=(0, end), ylim=(0, most * 1.02))
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
 
 
 def timeline(shop: Workshop) -> Plot:
@@ -132,21 +151,12 @@ def timeline(shop: Workshop) -> Plot:
     starts = numpy.round(numpy.arange(0, table["end"].max() - width / 2, width) / width).astype(int)
     shown.index = numpy.round(shown.index / width).astype(int)
     shown = shown.groupby(level=0).sum().reindex(starts, fill_value=0.0)
-    figure = style.new_figure(11, 3.6)
-    axes = figure.subplots()
-    palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#767676"]
-    ends = numpy.append(shown.index, len(starts)) * width  # the last interval is drawn to its end
-    heights = numpy.vstack([shown.to_numpy(), shown.to_numpy()[-1:]])
-    areas = axes.stackplot(ends, heights.T, labels=shown.columns, colors=palette, step="post", lw=0.4, edgecolor="#333333")
-    for at, hatch in zip(range(len(shown.columns)), ("", "////", "....", "\\\\\\\\", "xxx", "---", "|||", "++")):  # in grey, too
-        areas[at].set_hatch(hatch)
-    axes.set(xlabel="Seconds since the start", ylabel="Cores at work", xlim=(0, table["end"].max()))
-    axes.set_ylim(0, max(number_of(shop.results.record.get("threads"), 1), shown.sum(axis=1).max()) * 1.02)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
+    most = max(number_of(shop.results.record.get("threads"), 1), shown.sum(axis=1).max())
+    drawing = Drawing(draw_timeline, (shown, float(width), float(table["end"].max()), float(most)), (11, 3.6))
     data = shown.rename_axis("start").reset_index()
     data["start"] *= width
     mean = shown.to_numpy().sum(axis=1).mean()
-    return shop.plot("timeline", figure, data, f"On average {mean:.2f} cores were at work; most of the time went to "
+    return shop.plot("timeline", drawing, data, f"On average {mean:.2f} cores were at work; most of the time went to "
                      f"{', '.join(largest[:3])}.", "Cores at work over the time of the run, by stage.")
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the paper says of significance, beside the authors' own scores: configs/paper/statements.csv, whatever the run."""
 
-from salbench.pages.blocks import Block, Cell, Note, Table, interval, p_value
+from salbench.pages.blocks import Block, Cell, Fold, Note, Table, interval, p_value
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import paper
 from salbench.report.claims import STYLES
@@ -26,8 +26,8 @@ def table(shop: Workshop) -> list[Block]:
              interval(number(row["ci95_low"]), number(row["ci95_high"])), p_value(number(row["signed_rank_p_holm"])),
              interval(number(row["class_ci95_low"]), number(row["class_ci95_high"])), p_value(number(row["rank_sum_p"])),
              Cell(row["section"])] for row in rows]
-    return [Note(said(rows)), Table("paper-statements", CAPTION, HEADS, made, [False] * 8 + [True] * 5 + [False],
-                                    filters=[1, 2, 4, 5], folded="Every statement, pair by pair")]
+    pairs = Table("paper-statements", CAPTION, HEADS, made, [False] * 8 + [True] * 5 + [False], filters=[1, 2, 4, 5])
+    return [Note(said(rows)), Fold("Every statement, pair by pair", [pairs])]
 
 
 def said(rows: list[Row]) -> str:

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from salbench.report.drawing import Drawing
-
 INK = "#1a1a1a"
 GRID = "#dddddd"
 MAP = "viridis"  # every saliency and score map: even in lightness, safe for colour-blind readers
@@ -45,16 +43,6 @@ def apply() -> None:
 
     matplotlib.use("Agg")
     matplotlib.rcParams.update(_SETTINGS)
-
-
-def new_figure(width: float, height: float, layout: str | None = "constrained") -> Drawing:
-    """An empty figure; inches. What is drawn on it is recorded, and drawn when it is saved (drawing.py)."""
-    def make() -> Any:
-        from matplotlib.figure import Figure
-
-        apply()
-        return Figure(figsize=(width, height), layout=layout)
-    return Drawing(make, (width, height), layout)
 
 
 def label_ends(axes: Any, ends: Sequence[tuple[float, str, Any]], limits: tuple[float, float], height: float) -> None:

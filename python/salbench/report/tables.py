@@ -4,7 +4,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, cell, first_of, interval, p_value, spread
+from salbench.pages.blocks import Block, Cell, Fold, Missing, Note, Table, cell, first_of, interval, p_value, spread
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
 from salbench.report import paper, statistics, units
 from salbench.report.latex import write_per_class
@@ -209,15 +209,15 @@ def parameter_cell(values: Mapping[str, str], row: Row) -> Cell:
     return Cell(f"{values[row['option']]} {row['unit']}".strip()) if row["option"] in values else Cell("–")
 
 
-def all_options(flat: Mapping[str, Mapping[str, str]]) -> Table:
+def all_options(flat: Mapping[str, Mapping[str, str]]) -> Fold:
     paths = dict.fromkeys(path for values in flat.values() for path in values)
     rows = []
     for path in paths:
         values = [options.get(path, "–") for options in flat.values()]
         differ = len(set(values)) > 1
         rows.append([Cell(path)] + [Cell(value, bold=differ) for value in values])
-    return Table("options", "Every option of models, descriptors and normals; bold where the columns differ.",
-                 ["Option", *flat], rows, [False] * (1 + len(flat)), folded="Every option")
+    return Fold("Every option", [Table("options", "Every option of models, descriptors and normals; bold where the columns differ.",
+                                       ["Option", *flat], rows, [False] * (1 + len(flat)))])
 
 
 def model_options(configuration: Mapping[str, Any]) -> dict[str, str]:

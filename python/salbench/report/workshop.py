@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from salbench.pages.blocks import Plot
-from salbench.report import crew, drawing, kept, names, statistics, style
+from salbench.report import crew, kept, names, statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from salbench.report.gallery import Painter
     from salbench.report.shape_pages import Scores
 
-# Of what draws figures: those that something else drew are drawn again.
-LOOKS = kept.digest(kept.digest_of_code(drawing, style), version("matplotlib"), numpy.__version__)
+LIBRARIES = version("matplotlib"), numpy.__version__  # figures that others drew are drawn again
 
 
 @dataclass
@@ -38,48 +37,41 @@ class Workshop:
     other: Results | None = None            # of the run to compare with
     processes: int = 1                      # that draw
     drawn: dict[str, Facts] = field(default_factory=dict)  # shape name -> of its files (shape_files.draw_all)
-    waiting: list[tuple[str, tuple[Any, ...]]] = field(default_factory=list)  # figures that are yet to be drawn: (name, (drawing, key))
+    waiting: list[tuple[str, tuple[str, Drawing, str]]] = field(default_factory=list)  # figures that are yet to be drawn: (name, (name, drawing, key))
 
     def __post_init__(self) -> None:
         self.models = statistics.models(self.results)
-        self.colours = names.colours(self.models)
-        self.dashes = names.dashes(self.models)
+        self.looks = names.looks(self.models)
         # Each name as a part of file names.
         self.shape_files = names.file_names([*self.items, *(shape.name for shape in self.shapes.shapes.values())])
         self.model_files = names.file_names(["ground truth", *self.models, *self.shapes.models])
         self.metric_files = names.file_names(self.results.metrics)
 
-    def plot(self, name: str, figure: Any, data: Frame, alt: str, caption: str) -> Plot:
-        """Writes a figure as SVG and PDF with the plotted numbers beside it."""
-        self.draw(name, figure)
+    def plot(self, name: str, drawing: Drawing, data: Frame, alt: str, caption: str) -> Plot:
+        """A figure as SVG and PDF with the plotted numbers beside it."""
+        self.draw(name, drawing)
         write_csv(data, self.file(f"data/{name}.csv"))
-        return Plot(name, alt, round(figure.get_figwidth() * 96), caption)
+        return Plot(name, alt, round(drawing.size[0] * 96), caption)
 
-    def draw(self, name: str, figure: Any) -> None:
+    def draw(self, name: str, drawing: Drawing) -> None:
         """Has a figure drawn as SVG and PDF, by draw_figures; nothing is to be done where it shows the same as before."""
-        if not isinstance(figure, Drawing):
-            self._save((name, figure))
-            return
-        content = figure.key()
-        key = content and kept.digest(name, content, LOOKS)
-        if key is None or self.folder.find(key) is None:
-            self.waiting.append((name, (name, figure, key)))
+        key = kept.digest(name, drawing.key(), *LIBRARIES)
+        if self.folder.find(key) is None:
+            self.waiting.append((name, (name, drawing, key)))
 
     def draw_figures(self) -> None:
         """Draws what `draw` left waiting, on all processes."""
         if self.waiting:
             style.apply()  # once for all processes
         for (_, (_, _, key)), written in zip(self.waiting, crew.each(self._save, self.waiting, self.processes)):
-            self.folder.names.update(written)
-            if key:
-                self.folder.add(key, written, None)
+            self.folder.add(key, written, None)
         self.waiting.clear()
 
-    def _save(self, task: tuple[Any, ...]) -> list[str]:
-        name, figure = task[:2]
+    def _save(self, task: tuple[str, Drawing, str]) -> list[str]:
+        name, drawing, _ = task
         written = [f"figures/{name}.svg", f"figures/{name}.pdf"]
         parts = [path.with_name(f"{path.name}.part") for path in map(self.file, written)]
-        style.save(figure.real() if isinstance(figure, Drawing) else figure, *parts)
+        style.save(drawing.real(), *parts)
         for part in parts:
             os.replace(part, part.with_suffix(""))
         return written
