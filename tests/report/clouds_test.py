@@ -58,13 +58,13 @@ class CloudsTest(support.ReportTest):
                      "AUC on point clouds, best model first"):
             self.assertIn(text, part)
         self.assertIn("figures/distributions-clouds.svg", index)
-        datasets = {row[0] for row in support.rows(index, "means")}
+        datasets = {row[1] for row in support.rows(index, "means")}
         self.assertEqual(datasets, {"Meshes", "Scans", "Point clouds"})
 
     def test_a_page_per_cloud_has_scores_ranks_and_pictures_and_no_scans(self):
         page = support.page(self.to, "shapes/kitten.html")
         self.assertIn("<h1>Point cloud kitten", page)
-        self.assertIn("Scores of the point cloud, best in bold, and its rank among all point clouds", page)
+        self.assertIn("Scores of the point cloud, best in bold; below, its place among all point clouds", page)
         self.assertEqual([row[0] for row in support.rows(page, "mesh-scores")], ["LS", "CS", "PS", "MS", "RS"])
         self.assertRegex(page, r"of 3\b")
         self.assertIn("pictures/kitten/point-cloud-LS-after", page)

@@ -51,7 +51,7 @@ class Compact(support.ReportTest):
             model = cells[0].removesuffix(" †")
             self.assertEqual(bold[1:], [self.expected[model, metric]["best"] == 1 for metric in ("auc", "nss", "lcc", "auc_exact", "cc", "mse")])
         head = self.page[self.page.index('id="table-compact-meshes"'):].partition("</thead>")[0]
-        self.assertEqual((head.count("higher is better"), head.count("lower is better")), (5, 1))
+        self.assertEqual((head.count(">higher is better"), head.count(">lower is better")), (5, 1))
         self.assertEqual(head.count('data-better="lower"'), 1)
 
     def test_a_model_that_failed_is_marked_with_its_number_of_shapes(self):

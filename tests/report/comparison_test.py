@@ -23,7 +23,7 @@ class Comparison(support.ReportTest):
         fixture.write_results(self.folder / "second", fixture.eight_meshes(), results=later)
         to = self.report("first", "--compare", self.folder / "second")
         page = support.page(to, "comparison.html")
-        means = {tuple(row[:3]): row for row in support.rows(page, "compared-means")}
+        means = {(row[1], row[0], row[2]): row for row in support.rows(page, "compared-means")}
         self.assertEqual(means["Meshes", "LS", "AUC"][3], "7 meshes")
         self.assertEqual(means["Scans", "LS", "AUC"][3], "7 meshes, 84 scans")
         self.assertEqual(means["Meshes", "LS", "AUC"][6:], ["+0.125", "–"], "equal differences are few or equal shapes, and no sure mean")

@@ -37,13 +37,13 @@ class Painting(support.ReportTest):
         at = numpy.searchsorted(canvas.seen, row * 64 + column)
         self.assertAlmostEqual(canvas.values(values)[at], expected, places=6)
 
-    def test_nothing_is_white_and_shade_darkens(self):
+    def test_nothing_is_transparent_and_shade_darkens(self):
         picture = picture_of(self.points, self.faces)
         picture.shade[:] = 128
         image = numpy.asarray(Canvas(picture, self.faces).paint(numpy.ones(len(self.points))))
-        self.assertTrue((image[picture.primitive < 0] == 255).all())
+        self.assertTrue((image[picture.primitive < 0, 3] == 0).all() and (image[picture.primitive >= 0, 3] == 255).all())
         shade = LIGHTEST + (1 - LIGHTEST) * 128 / 255
-        self.assertTrue((image[picture.primitive >= 0] == (palette()[255] * shade).round()).all())
+        self.assertTrue((image[picture.primitive >= 0, :3] == (palette()[255] * shade).round()).all())
 
     def test_a_scan_takes_the_values_of_its_points(self):
         picture = Picture(**pinhole.picture_of_points(self.points, (1, 0, 0), size=64))
@@ -66,13 +66,12 @@ class Painting(support.ReportTest):
         far = numpy.argsort(self.points @ eye)[:20]
         self.assertEqual(len(visible(picture, far, self.points)), 0)
 
-    def test_partly_covered_pixels_are_mixed_with_white(self):
+    def test_partly_covered_pixels_are_partly_transparent(self):
         picture = picture_of(self.points, self.faces)
         picture.coverage = numpy.full(picture.primitive.shape, 51, numpy.uint8)
         picture.shade[:] = 255
         image = numpy.asarray(Canvas(picture, self.faces).paint(numpy.zeros(len(self.points))))
-        expected = (255 + (palette()[0].astype(float) - 255) * 0.2).round()
-        self.assertTrue((image[picture.primitive >= 0] == expected).all())
+        self.assertTrue((image[picture.primitive >= 0] == [*palette()[0], 51]).all())
 
     def test_the_camera_is_found_in_the_matrix(self):
         eye, view_projection = pinhole.camera(self.points, (1.0, 0.6, 1.2), 64)
@@ -81,7 +80,7 @@ class Painting(support.ReportTest):
         self.assertEqual(up, "y")
 
     def test_dots_are_drawn_where_they_belong(self):
-        image = with_dots(Image.new("RGB", (100, 100), "black"), numpy.array([[30.0, 70.0]]))
+        image = with_dots(Image.new("RGBA", (100, 100), (0, 0, 0, 0)), numpy.array([[30.0, 70.0]]))
         changed = numpy.argwhere(numpy.asarray(image).any(axis=2))
         self.assertTrue((abs(changed.mean(axis=0) - [70, 30]) < 1).all())
 
@@ -106,7 +105,7 @@ class Painting(support.ReportTest):
     def test_a_difference_is_blue_where_only_people_look(self):
         picture = picture_of(self.points, self.faces)
         picture.shade[:] = 255
-        colours = [numpy.asarray(Canvas(picture, self.faces).paint(numpy.full(len(self.points), value), "diverging"))[32, 32].tolist()
+        colours = [numpy.asarray(Canvas(picture, self.faces).paint(numpy.full(len(self.points), value), "diverging"))[32, 32, :3].tolist()
                    for value in (-1, 0, 1)]
         self.assertGreater(colours[0][2], colours[0][0] + 50)
         self.assertLess(numpy.ptp(colours[1]), 4)

@@ -88,8 +88,8 @@ class Pages(support.ReportTest):
         steps = steps[steps["metric"].isin(["auc", "nss", "lcc"]) & (steps["to_participants"] == steps["from_participants"] + 1)]
         rows = support.rows(part, "more-participants")
         self.assertEqual(len(rows), len(steps))
-        for row, step in zip(sorted(rows[:10], key=lambda row: int(row[1])), steps[steps["metric"] == "auc"].itertuples()):
-            self.assertEqual(row[:4], ["AUC", f"{step.from_participants}", f"{step.to_participants}", "8 meshes"])
+        for row, step in zip(sorted(rows[:10], key=lambda row: int(row[0])), steps[steps["metric"] == "auc"].itertuples()):
+            self.assertEqual(row[:4], [f"{step.from_participants}", f"{step.to_participants}", "AUC", "8 meshes"])
             self.assertEqual(row[4].replace("−", "-"), f"{step.mean_difference:+.3f}")
             self.assertEqual(row[5].replace("−", "-"), f"{step.ci95_low:.3f} to {step.ci95_high:.3f}")
         self.assertEqual(len(support.rows(part, "worth")), 3 * 6)
@@ -99,7 +99,7 @@ class Pages(support.ReportTest):
                       f"{reliability['split_half']:.2f}", part)
         self.assertIn("HS is one participant against all others", part)
         others = support.rows(support.page(self.folder / "whole-report", "metrics.html"), "worth-others")
-        self.assertEqual({row[0] for row in others}, {"AUC (exact)", "CC"})
+        self.assertEqual({row[1] for row in others}, {"AUC (exact)", "CC"})
 
     def test_one_mesh_has_no_interval_and_says_so(self):
         index = self.made("one", fixture.eight_meshes()[:1])

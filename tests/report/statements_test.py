@@ -25,7 +25,8 @@ class StatementsTest(unittest.TestCase):
 
     def test_the_table_has_a_row_per_pair_with_known_verdicts(self):
         rows = paper.read("statements.csv").to_dict("records")
-        note, table = statements.table(None)
+        note, fold = statements.table(None)
+        table, = fold.blocks
         self.assertEqual(len(table.rows), len(rows))
         self.assertTrue(all(len(cells) == len(table.columns) == len(table.numeric) for cells in table.rows))
         self.assertTrue(all(row[column] in statements.STYLES for row in rows for column in statements.KINDS))

@@ -23,13 +23,16 @@ COLUMNS = (
 
 
 def within_range(summary: Summary, metric: Metric) -> tuple[Floats, Floats]:
-    """Student's interval, cut at the values that the metric can take; the mean itself always stays inside.
+    """Student's interval, cut at the values that the metric can take."""
+    return cut(summary.low, summary.mean, summary.high, metric)
+
+
+def cut(low: Any, mean: Any, high: Any, metric: Metric) -> tuple[Any, Any]:
+    """An interval of a mean, cut at the values that the metric can take; the mean itself always stays inside.
 
     The true mean lies within these values, so that the cut interval holds it as often as the whole one.
     """
-    low = np.where(summary.low < metric.low, np.minimum(metric.low, summary.mean), summary.low)
-    high = np.where(summary.high > metric.high, np.maximum(metric.high, summary.mean), summary.high)
-    return low, high
+    return (np.where(low < metric.low, np.minimum(metric.low, mean), low), np.where(high > metric.high, np.maximum(metric.high, mean), high))
 
 
 def compact(study: Study) -> pandas.DataFrame:

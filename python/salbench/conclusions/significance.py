@@ -24,6 +24,12 @@ COLUMNS = (
     number("signed_rank_p_holm", "after Holm's correction over the pairs of the data set and metric"), count("n_tests", "that many"))
 
 
+def joint_interval(difference: float, t: float, t_bound: float) -> tuple[float, float]:
+    """Of the mean difference of a row: joint for all pairs, so that it leaves out 0 where the two differ in ranks and groups. NaN: none."""
+    half = abs(difference / t) * t_bound if t else np.nan
+    return difference - half, difference + half
+
+
 def significance(study: Study) -> pandas.DataFrame:
     """A row per data set, metric and pair of models, references included. Differences are a - b."""
     parts = (_part(level, metric, pairs, ranked[metric].ranking.bound)

@@ -65,6 +65,11 @@ class Brief:
     new_classes_models: Sequence[str] = ()
 
 
+def brief_of(leader: Leader, label: str, ranked: Sequence[str]) -> Brief:
+    classes = leader.new_classes
+    return Brief(label, leader.verdict, leader.models, ranked, leader.n_missing, classes.verdict if classes else "", classes.models if classes else ())
+
+
 def brief(found: Sequence[Brief]) -> str:
     """Who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not (AUC, NSS)." Metrics stand in brackets."""
     alike: dict[tuple[str, frozenset[str]], list[Brief]] = {}

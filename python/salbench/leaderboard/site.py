@@ -3,15 +3,19 @@
 
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pandas
 
-from salbench.conclusions.metrics import label_of
+from salbench.conclusions import glossary, words
+from salbench.conclusions.compact import cut
+from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
+from salbench.conclusions.significance import joint_interval
 from salbench.leaderboard.board import Board, Entry
-from salbench.pages.blocks import Cell, Note, Table, cell, interval, mean_cell
+from salbench.pages.blocks import Cell, Note, Table, cell, first_of, interval, mean_cell
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import HERE as SHARED
 from salbench.pages.rendering import SIMULATED, environment
@@ -23,9 +27,12 @@ Row = dict[str, Any]
 
 
 def write_pages(board: Board, site: Path) -> None:
+    own, metrics = models_of_the_program(board), list(board.tables["metrics"]["metric"])
+    template = environment(HERE, glossary.titles(own, metrics)).get_template("leaderboard.html")
+    banners = [SIMULATED] if any(remark.startswith("SIMULATED") for remark in board.remarks) else []
+
     def write(path: str, title: str, sections: Sequence[tuple[str, list[Any]]], **values: Any) -> None:
-        template = environment(HERE).get_template("leaderboard.html")
-        text = template.render(path=path, root="../" * path.count("/"), navigation=NAVIGATION, banners=[SIMULATED] if any(remark.startswith("SIMULATED") for remark in board.remarks) else [], board=board, title=title, web=is_web,
+        text = template.render(path=path, root="../" * path.count("/"), navigation=NAVIGATION, banners=banners, board=board, title=title, web=is_web,
                                sections=sections, **{"facts": {}, "card": {}, "protocol": "", **values})
         (site / path).parent.mkdir(exist_ok=True)
         (site / path).write_bytes(text.encode("utf-8", "replace"))
@@ -42,7 +49,32 @@ def write_pages(board: Board, site: Path) -> None:
     sections = [("Ranking", ranking(board))]
     if refused := board.of_status("refused"):
         sections.append(("Refused", submissions(board, refused)))
-    write("index.html", "Leaderboard", sections, facts=board.facts, protocol=board.protocol)
+    sections.append(("What the letters mean", letters(own, metrics)))
+    write("index.html", "Leaderboard", sections, facts=board.facts, protocol=board.protocol, briefs=briefs(board))
+
+
+def models_of_the_program(board: Board) -> list[str]:
+    submitted = {entry.card.name for entry in board.of_status("ranked", "beside")}
+    return [model for model in board.tables["compact"]["model"].unique() if model not in submitted]
+
+
+def briefs(board: Board) -> list[str]:
+    """Who leads on each data set and split, without figures; why nobody does, where that is so."""
+    found = []
+    for level in board.leaders:
+        rows = board.tables["ranking"]
+        rows = rows[(rows["dataset"] == level.dataset) & ((rows["split"] == level.split) if "split" in rows else True)]
+        known = {leader.metric.name: leader for leader in level.leaders}
+        said = [words.brief_of(known[name], label_of(name), list(rows.loc[rows["metric"] == name, "model"])) for name in leading_metrics(known)]
+        found.append(f"{heading({'dataset': level.dataset, 'split': level.split})}: {words.brief(said)}" if said else level.sentence)
+    return found
+
+
+def letters(models: Sequence[str], metrics: Sequence[str]) -> list[Any]:
+    known = [(name, glossary.MODELS[name]) for name in models if name in glossary.MODELS]
+    rows = [[Cell(name), Cell(model.name), Cell(model.source)] for name, model in known]
+    rows += [[Cell(label_of(name)), Cell(glossary.compares(name)), Cell(f"{glossary.range_of(name)}, {glossary.better(name)}")] for name in metrics]
+    return [Table("letters", "Models of the program, and metrics.", ["Letters", "Meaning", "Source, or range"], rows, [False] * 3)]
 
 
 def is_web(address: str) -> bool:
@@ -87,28 +119,51 @@ def ranking(board: Board) -> list[Any]:
 
 
 def by_metric(board: Board) -> list[Any]:
-    rows = [[Cell(heading(row)), Cell(row["metric"]), named(board, row["model"]), cell(row["mean"]), Cell(str(row["rank"])),
-             Cell(f"{row['rank_low']} to {row['rank_high']}"), cell(row["first"], 2), Cell(row["group"])] for row in rows_of(board.tables["ranking"])]
-    heads = ["Data set", "Metric", "Model", "Mean", "Rank", "95 % of ranks", "Share first", "Group"]
-    return [Table("ranks", "Ranks, with the ranks that 95 % of the resamples give, and the share of them in which a model is first.",
-                  heads, rows, [False] * 3 + [True] * 4 + [False], filters=[0, 1])]
+    first = {(level.dataset, level.split, leader.metric.name): leader.models for level in board.leaders for leader in level.leaders}
+    pairs = {(*level_of(row), row["model_a"], row["model_b"]): row for row in rows_of(board.tables["significance"])}
+    best: dict[tuple[str, ...], str] = {}
+    rows = []
+    for row in rows_of(board.tables["ranking"]):
+        key, model = level_of(row), row["model"]
+        badge = ("may be best", "holds") if model in first.get(key, ()) else ("", "")
+        rows.append([replace(named(board, model), badge=badge), Cell(heading(row)), Cell(label_of(row["metric"])), cell(row["mean"]),
+                     behind(pairs, key, best.setdefault(key, model), model), Cell(str(row["rank"])),
+                     Cell(f"{row['rank_low']} to {row['rank_high']}"), cell(row["first"], 2), Cell(row["group"])])
+    heads = ["Model", "Data set", "Metric", "Mean", "From the best", "Rank", "95 % of ranks", "Share first", "Group"]
+    caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval; it and those "
+               "of ranks are joint for all pairs of models. Share first: of the resamples.")
+    return [Table("ranks", caption, heads, rows, [False] * 3 + [True] * 5 + [False], filters=[1, 2], opens=first_of(rows, 1, 2))]
+
+
+def level_of(row: Row) -> tuple[str, str, str]:
+    return row["dataset"], row.get("split", ""), row["metric"]
+
+
+def behind(pairs: Mapping[tuple[str, ...], Row], key: tuple[str, str, str], best: str, model: str) -> Cell:
+    """The difference of a model from the one with the best mean."""
+    sign, row = (1, pairs[*key, model, best]) if (*key, model, best) in pairs else (-1, pairs.get((*key, best, model)))
+    if row is None:
+        return cell(None)
+    low, high = joint_interval(sign * row["mean_difference"], sign * row["t"], row["t_bound"])
+    return cell(sign * row["mean_difference"], below=interval(low, high).text)
 
 
 def by_class(board: Board, model: str | None = None) -> list[Any]:
-    rows = [[Cell(heading(row)), Cell(row["class"]), Cell(row["metric"]), named(board, row["model"]), cell(row["mean"]),
-             interval(row["ci95_low"], row["ci95_high"]), Cell(str(row["n"]))]
-            for row in rows_of(board.tables["per_class"]) if model in (None, row["model"])]
+    rows = [[Cell(row["class"]), Cell(heading(row)), Cell(label_of(row["metric"])), named(board, row["model"]), cell(row["mean"]),
+             interval(*map(float, cut(row["ci95_low"], row["mean"], row["ci95_high"], of_program().get(row["metric"], Metric(row["metric"]))))),
+             Cell(str(row["n"]))] for row in rows_of(board.tables["per_class"]) if model in (None, row["model"])]
     if not rows:
         return [Note("There are no scores by class.")]
     return [Table("classes", "Means by class of shapes, with 95 % intervals; Avg is the mean over the competitors.",
-                  ["Data set", "Class", "Metric", "Model", "Mean", "95 %", "n"], rows, [False] * 4 + [True] * 3, filters=[0, 1, 2])]
+                  ["Class", "Data set", "Metric", "Model", "Mean", "95 %", "n"], rows, [False] * 4 + [True] * 3, filters=[1, 2, 0, 3],
+                  opens=first_of(rows, 1, 2))]
 
 
 def history(board: Board) -> list[Any]:
-    rows = [[Cell(heading(row)), Cell(row["metric"]), Cell(row["date"] or "–"), named(board, row["model"]),
+    rows = [[named(board, row["model"]), Cell(heading(row)), Cell(label_of(row["metric"])), Cell(row["date"] or "–"),
              cell(row["mean"], bold=row["best"] == "yes")] for row in rows_of(board.tables["history"])]
     return [Table("history", "Submissions by date, then by file; in bold those that were the best of all until then.",
-                  ["Data set", "Metric", "Date", "Model", "Mean"], rows, [False] * 4 + [True], filters=[0, 1])]
+                  ["Model", "Data set", "Metric", "Date", "Mean"], rows, [False] * 4 + [True], filters=[1, 2], opens=first_of(rows, 1, 2))]
 
 
 def submissions(board: Board, entries: list[Entry]) -> list[Any]:
@@ -125,8 +180,8 @@ def card_rows(entry: Entry) -> dict[str, str]:
 
 
 def scores(board: Board, model: str) -> list[Any]:
-    rows = [[Cell(heading(row)), Cell(row["metric"]), mean_cell(row), Cell("" if pandas.isna(row["rank"]) else str(row["rank"])),
+    rows = [[Cell(label_of(row["metric"])), Cell(heading(row)), mean_cell(row), Cell("" if pandas.isna(row["rank"]) else str(row["rank"])),
              Cell(str(row["n"]))]
             for row in rows_of(pandas.concat([board.tables["compact"], board.beside])) if row["model"] == model]
-    return [Table("scores", "Means with half of their 95 % intervals, and ranks.", ["Data set", "Metric", "Mean", "Rank", "n"], rows,
+    return [Table("scores", "Means with half of their 95 % intervals, and ranks.", ["Metric", "Data set", "Mean", "Rank", "n"], rows,
                   [False] * 2 + [True] * 3)]

@@ -18,7 +18,7 @@ def environment(package: Path, titles: Mapping[str, str]) -> Environment:
     means, which the filter `abbr` writes beside it."""
     made = Environment(loader=FileSystemLoader([package / "templates", HERE / "templates"]), autoescape=True, undefined=StrictUndefined,
                        trim_blocks=True, lstrip_blocks=True)
-    made.globals.update(MARK=MARK)
+    made.globals.update(MARK=MARK, titles=titles)
     longest_first = sorted(titles, key=len, reverse=True)
     known = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, longest_first))})(?![\w-])") if titles else None
 

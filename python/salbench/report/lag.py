@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas
 
+from salbench.conclusions.significance import joint_interval
 from salbench.pages.blocks import Block, Fold, Missing, Plot, attempt
 from salbench.pages.names import DATASETS, several, spoken
 from salbench.report import statistics, style
@@ -20,6 +21,7 @@ from salbench.report.workshop import Workshop
 
 NAN = float("nan")
 MOST_NAMED = 14  # models of a legend
+SHARES = ("superiority", "superiority_low", "superiority_high")
 
 
 @dataclass(frozen=True)
@@ -52,13 +54,12 @@ def lags(results: Results, dataset: str, metric: str) -> list[Behind]:
 
 def behind(results: Results, dataset: str, metric: str, best: str, of_best: float, model: str, mean: float, sign: int) -> Behind:
     try:
-        pair = statistics.pair(results, dataset, metric, model, best)
+        pair = statistics.pair(results, dataset, metric, model, best, "t", "t_bound", *SHARES)
     except Missing:
         return Behind(model, mean, sign * (mean - of_best))
     distance = sign * pair["mean_difference"]
-    half = abs(distance / pair["t"]) * pair["t_bound"] if pair["t"] else NAN  # standard errors, as many as the bound
-    shares = [1 - pair[name] if sign > 0 else pair[name] for name in ("superiority", "superiority_low", "superiority_high")]
-    return Behind(model, mean, distance, distance - half, distance + half, shares[0], *sorted(shares[1:]))
+    shares = [1 - pair[name] if sign > 0 else pair[name] for name in SHARES]
+    return Behind(model, mean, distance, *joint_interval(distance, pair["t"], pair["t_bound"]), shares[0], *sorted(shares[1:]))
 
 
 # --- figures ---------------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from typing import Any
 import numpy
 import pandas
 
+from salbench.conclusions.compact import cut
 from salbench.conclusions.metrics import Metric as ProgramMetric
 from salbench.conclusions.metrics import of_program
 from salbench.conclusions.units import DATASETS
@@ -151,9 +152,7 @@ def per_class(results: Results, dataset: str, metric: str) -> Frame:
     rows = of_metric(results.table("per_class.csv", "class", "model", *OF_METRIC, "n", "n_shapes", *MEAN), dataset, metric)
     if rows.empty:
         raise Missing(f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no classes.")
-    known = of_program().get(metric, ProgramMetric(metric))
-    low = rows["ci95_low"].mask(rows["ci95_low"] < known.low, rows["mean"].clip(upper=known.low))
-    high = rows["ci95_high"].mask(rows["ci95_high"] > known.high, rows["mean"].clip(lower=known.high))
+    low, high = cut(rows["ci95_low"], rows["mean"], rows["ci95_high"], of_program().get(metric, ProgramMetric(metric)))
     ci95 = (rows["ci95_high"] - rows["ci95_low"]) / 2
     half = ci95.where((low == rows["ci95_low"]) & (high == rows["ci95_high"]))
     return rows.assign(ci95=ci95, low=low, high=high, half=half).reset_index(drop=True)
@@ -182,12 +181,12 @@ def human_shares(results: Results, dataset: str, metric: str) -> dict[str, Row]:
     return {row["model"]: row for row in of_metric(table, dataset, metric).to_dict("records")}
 
 
-def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[str, Any]:
-    """The row of significance.csv of a pair: n, n_shapes, mean_difference, its two intervals, t_p, t, t_bound and superiority, turned so that the
-    difference is a less b."""
-    signed = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "t")
-    shares = ("superiority", "superiority_low", "superiority_high")
-    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", "t_bound", *signed, *shares)
+def pair(results: Results, dataset: str, metric: str, a: str, b: str, *further: str) -> dict[str, Any]:
+    """The row of significance.csv of a pair, turned so that the difference is a less b: n, n_shapes, mean_difference, its two intervals, t_p, and
+    of `further` what is signed, or a share in which a is ahead, too."""
+    signed = ["mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", *(column for column in further if column == "t")]
+    shares = [column for column in further if column.startswith("superiority")]
+    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", *signed, *further)
     rows = of_metric(table, dataset, metric)
     for first, second, turned in ((a, b, False), (b, a, True)):
         match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
@@ -197,7 +196,7 @@ def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[st
         if turned:
             row |= {column: -row[column] for column in signed}
             row |= {column: 1 - row[column] for column in shares}
-            for level in ("ci95", "ci90", "superiority"):
+            for level in ("ci95", "ci90", *(["superiority"] if shares else [])):
                 row[f"{level}_low"], row[f"{level}_high"] = row[f"{level}_high"], row[f"{level}_low"]
         return row
     raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")

@@ -42,11 +42,12 @@ salbench.sortable = function (table) {
 // A menu without "all" chooses what its column holds in every row: the column then need not be seen.
 salbench.filterable = function (form) {
   const table = document.getElementById(form.dataset.for), menus = Array.from(form.querySelectorAll("select[data-column]"));
+  const text = (cell) => cell.dataset.is || cell.textContent.trim(); // where more stands in the cell than it is chosen by
   table.classList.add("chosen");
   const apply = () => {
     let shown = 0;
     for (const row of table.tBodies[0].rows) {
-      row.hidden = !menus.every((menu) => menu.value === "" ? menu.options[0].value === "" : row.cells[menu.dataset.column].dataset.is === menu.value);
+      row.hidden = !menus.every((menu) => menu.value === "" ? menu.options[0].value === "" : text(row.cells[menu.dataset.column]) === menu.value);
       shown += row.hidden ? 0 : 1;
     }
     form.querySelector("output").textContent = shown + " of " + table.tBodies[0].rows.length + " rows";
