@@ -2,6 +2,7 @@
 """The report in a browser, from disk: what a reader does with it."""
 
 import base64
+import re
 import time
 import unittest
 from io import BytesIO
@@ -53,25 +54,127 @@ class Browser(support.BrowserTest):
         head = self.browser.find_element(By.XPATH, "//table[@id='table-means']//th[button='Mean']")
         head.find_element(By.TAG_NAME, "button").click()
         self.assertEqual(head.get_attribute("aria-sort"), "descending")
-        numbers = [float(text.replace("−", "-")) for text in self.texts("#table-means tbody tr td:nth-child(5)")]
+        numbers = [float(text.replace("−", "-")) for text in self.column("means", 4)]
         self.assertEqual(numbers, sorted(numbers, reverse=True))
         head.find_element(By.TAG_NAME, "button").click()
         self.assertEqual(head.get_attribute("aria-sort"), "ascending")
 
     def test_a_table_filters_by_model(self):
         self.open("statistics.html")
-        Select(self.browser.find_element(By.CSS_SELECTOR, "form[data-for=table-means] select[data-column='1']")).select_by_visible_text("LS")
-        shown = [text for text in self.texts("#table-means tbody tr td:nth-child(2)") if text]
-        self.assertEqual(set(shown), {"LS"})
+        self.pick("means", 0, "LS")
+        self.assertEqual(self.column("means", 0), ["LS"])
+        self.pick("means", 1, "Scans")
+        self.assertEqual(self.column("means", 1), ["Scans"])
+
+    def column(self, table, at):
+        """Texts of the rows that are shown, whether the column is or not."""
+        return self.browser.execute_script(
+            "return Array.from(document.querySelectorAll(`#table-${arguments[0]} tbody tr:not([hidden])`), row => row.cells[arguments[1]].textContent.trim())",
+            table, at)
+
+    def pick(self, table, column, text):
+        """Of a menu above a table."""
+        Select(self.browser.find_element(By.CSS_SELECTOR, f"form[data-for=table-{table}] select[data-column='{column}']")).select_by_visible_text(text)
+
+    def test_ranking_and_pairs_open_on_one_metric_and_one_data_set(self):
+        for page, table, of_models in (("ranking.html", "ranking", 6), ("statistics.html", "pairs", 15), ("statistics.html", "means", 6)):
+            with self.subTest(table):
+                self.open(page)
+                self.assertEqual((self.column(table, 1), self.column(table, 2)), (["Meshes"] * of_models, ["AUC"] * of_models))
+                menus = [[option.text for option in Select(menu).options] for menu in
+                         self.browser.find_elements(By.CSS_SELECTOR, f"form[data-for=table-{table}] select")][:2]
+                self.assertEqual(menus, [["Meshes", "Scans"], ["AUC", "NSS", "LCC"]], "no choice mixes metrics")
+                self.pick(table, 2, "NSS")
+                self.assertEqual(set(self.column(table, 2)), {"NSS"})
+                rows = (self.to / page).read_text(encoding="utf-8").partition(f'id="table-{table}"')[2].partition("</tbody>")[0]
+                self.assertNotIn("<tr hidden", rows, "without JavaScript every row is there")
+
+    def open_all(self, path):
+        """A page with everything unfolded, when what scrolls is known."""
+        self.open(path)
+        self.browser.execute_script("document.querySelectorAll('details').forEach(one => { one.open = true; })")
+        time.sleep(0.3)
+
+    def test_no_verdict_is_outside_the_screen(self):
+        self.size(1280, 800)
+        found = 0
+        for path in chromium.kinds_of_pages(self.to):
+            self.open_all(path)
+            places = self.browser.execute_script(
+                "return Array.from(document.querySelectorAll('.holds, .fails, .open'), e => e.getBoundingClientRect()).filter(r => r.width)"
+                ".map(r => [r.left, r.right])")
+            found += len(places)
+            self.assertEqual([place for place in places if place[0] < 0 or place[1] > 1280], [], path)
+        self.assertGreater(found, 40)
+        for page, table in (("ranking.html", "ranking"), ("claims.html", "claims"), ("classes.html", "classes-meshes-auc")):
+            self.open(page)
+            time.sleep(0.3)
+            box = self.browser.find_element(By.CSS_SELECTOR, f"#sheet-{table} .scroll")
+            self.assertIsNone(box.get_attribute("data-scrolls"), f"{table} fits")
+
+    def test_what_scrolls_says_so_and_its_first_column_stays(self):
+        self.size(400, 800)
+        for path in ("ranking.html", "claims.html", "classes.html", "statistics.html", "scores.html", "paper.html"):
+            self.open_all(path)
+            seen = self.browser.execute_script("""return Array.from(document.querySelectorAll('.scroll')).filter(box => box.clientWidth).map(box => {
+              box.scrollLeft = 150;
+              const first = box.querySelector('tbody tr:not([hidden]) th');
+              return [box.scrollWidth > box.clientWidth + 1, getComputedStyle(box, '::before').content.includes('scroll'),
+                first ? first.getBoundingClientRect().left - box.getBoundingClientRect().left : 0];
+            })""")
+            self.assertTrue(any(scrolls for scrolls, _, _ in seen), path)
+            for scrolls, says, left in seen:
+                self.assertEqual((scrolls, abs(left) < 2), (says, True), path)
+
+    def test_links_are_large_enough_for_a_finger(self):
+        self.size(400, 800)
+        for path in chromium.kinds_of_pages(self.to):
+            self.open_all(path)
+            low = self.browser.execute_script("return Array.from(document.querySelectorAll('a')).filter(a => a.getBoundingClientRect().height)"
+                                              ".filter(a => a.getBoundingClientRect().height < 24).map(a => a.textContent)")
+            self.assertEqual(low, [], path)
+
+    def test_letters_have_titles_and_a_line_each(self):
+        self.open("index.html")
+        letters = self.texts(".letters dt")
+        self.assertEqual(letters, ["LS", "CS", "PS", "MS", "HS", "RS", "AUC", "NSS", "LCC"])
+        text = self.browser.find_element(By.CSS_SELECTOR, ".letters").text
+        for said in ("Shtrom, Leifman, Tal 2013", "0 to 1, higher is better", "random number"):
+            self.assertIn(said, text)
+        for page, selector in (("ranking.html", "#table-ranking tbody th abbr"), ("statistics.html", "#table-pairs tbody th abbr")):
+            self.open(page)
+            titles = {e.get_attribute("textContent"): e.get_attribute("title") for e in self.browser.find_elements(By.CSS_SELECTOR, selector)}
+            self.assertEqual(titles["LS"], "Saliency of large point sets, Shtrom, Leifman, Tal 2013")
+
+    def test_the_page_of_a_shape_has_scores_beside_the_viewer_and_leads_on(self):
+        self.size(1280, 800)
+        self.viewer("shapes/1.html")
+        viewer, scores = (self.browser.find_element(By.CSS_SELECTOR, part).rect for part in (".viewer", "#sheet-mesh-scores"))
+        self.assertGreaterEqual(scores["x"], viewer["x"] + viewer["width"])
+        self.assertLess(scores["y"] + scores["height"], 800)
+        self.assertFalse(self.browser.find_element(By.CSS_SELECTOR, "#sheet-scan-scores").is_displayed(), "scans are folded")
+        self.browser.find_element(By.CSS_SELECTOR, ".steps a[rel=next]").click()
+        self.assertIn("Mesh 2", self.browser.find_element(By.TAG_NAME, "h1").text)
+        self.browser.find_element(By.CSS_SELECTOR, ".steps a[rel=prev]").click()
+        self.assertIn("Mesh 1", self.browser.find_element(By.TAG_NAME, "h1").text)
+        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, ".steps a[rel=prev]")), 0)
+
+    def test_the_list_of_shapes_begins_with_meshes_and_is_searched(self):
+        self.open("scores.html")
+        self.assertEqual(set(self.texts("#scores tbody td:nth-child(2)")), {"Meshes"})
+        self.browser.find_element(By.CSS_SELECTOR, "[data-part=search]").send_keys("TEDD")
+        self.assertEqual(self.texts("#scores tbody th"), ["3", "4"])
+        self.browser.find_element(By.CSS_SELECTOR, "[data-part=search]").send_keys("y 3")
+        self.assertEqual(self.texts("#scores tbody th"), ["3"])
 
     def test_scores_sort_filter_and_lead_to_the_shape(self):
         self.open("scores.html")
-        self.assertEqual(self.texts("#scores output"), ["rows 1 to 100 of 104"])
+        self.assertEqual(self.texts("#scores output"), ["rows 1 to 8 of 8"])
         Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=class]")).select_by_visible_text("teddy")
         Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=set]")).select_by_visible_text("Meshes")
         Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=metric]")).select_by_visible_text("NSS")
         self.assertEqual(self.texts("#scores tbody th"), ["3", "4"])
-        self.browser.find_element(By.XPATH, "//div[@id='scores']//th/button[text()='LS']").click()
+        self.browser.find_element(By.XPATH, "//div[@id='scores']//th/button[.='LS']").click()
         numbers = [float(text.replace("−", "-")) for text in self.texts("#scores tbody td:nth-child(5)")]
         self.assertEqual(numbers, sorted(numbers, reverse=True))
         self.browser.find_element(By.CSS_SELECTOR, "#scores input[name=model][value='0']").click()
@@ -91,15 +194,14 @@ class Browser(support.BrowserTest):
 
     def test_one_menu_chooses_the_metric_of_every_table(self):
         self.open("metrics.html")
-        shown = [text for text in self.texts("#table-means-others tbody td:nth-child(3)") if text]
-        self.assertEqual(set(shown), {"AUC (exact)"})
+        self.assertEqual(set(self.column("means-others", 2)), {"AUC (exact)"})
         Select(self.browser.find_element(By.CSS_SELECTOR, "#chooser select")).select_by_visible_text("CC")
-        for column in ("#table-means-others tbody td:nth-child(3)", "#table-pairs-others tbody td:nth-child(2)",
-                       "#table-classes-meshes-others tbody th"):
-            self.assertEqual({text for text in self.texts(column) if text}, {"CC"}, column)
+        for table, column in (("means-others", 2), ("pairs-others", 2), ("classes-meshes-others", 1)):
+            self.assertEqual(set(self.column(table, column)), {"CC"}, table)
 
     def test_later_rows_of_the_scores(self):
         self.open("scores.html")
+        Select(self.browser.find_element(By.CSS_SELECTOR, "[data-part=set]")).select_by_visible_text("all")
         self.browser.find_element(By.CSS_SELECTOR, "button[data-step='1']").click()
         self.assertEqual(self.texts("#scores output"), ["rows 101 to 104 of 104"])
 
@@ -227,19 +329,25 @@ class Browser(support.BrowserTest):
         leaders = pandas.read_csv(self.folder / "full/leaders.csv").fillna({"metric": ""})
         ranked = pandas.read_csv(self.folder / "full/ranking.csv").query("dataset == 'meshes' and metric == 'auc'")
         first = ".level:first-of-type .dots:nth-of-type(1)"
-        shown = {1280: (".said p", ".facts dd", ".three img", ".level", ".doors li"), 400: (".said p", ".facts dd", ".three img", first)}
+        shown = {1280: (".said p", ".facts dd", ".three img", ".level", ".letters dt"), 400: (".said p", ".facts dd", ".three img", first)}
         for width, selectors in shown.items():
             with self.subTest(width):
                 self.size(width, 800)
                 self.open("index.html")
                 for selector in selectors:
                     self.assertLessEqual(self.bottom(selector), 800, selector)
-                self.assertEqual(self.texts(".said p"), list(leaders.loc[leaders["metric"] == "", "sentence"]))
+                said = self.texts(".said p")
+                self.assertEqual([text.partition(".")[0] for text in said], ["Meshes", "Scans"])
+                for text in said:
+                    self.assertNotRegex(text, "[0-9]")
+                    self.assertLessEqual(len(re.sub(r"\(.*?\)", "", text.partition(".")[2]).split()), 12, text)
                 row = self.browser.find_element(By.CSS_SELECTOR, ".dots tbody tr")
                 cells = [row.find_element(By.CSS_SELECTOR, part).get_attribute("textContent") for part in ("th", ".track span", ".mean", ".group")]
                 best = leaders.query("dataset == 'meshes' and metric == 'auc'").iloc[0]
-                self.assertEqual(cells, [best["leaders"].split(", ")[0], f"{best['ci95_low']:.3f} to {best['ci95_high']:.3f}",
-                                         f"{best['mean']:.3f}", ranked["group"].iloc[0]])
+                self.assertEqual(cells, [best["leaders"].split(", ")[0], "best mean", f"{best['mean']:.3f}", ranked["group"].iloc[0]])
+                second = self.browser.find_element(By.CSS_SELECTOR, ".dots tbody tr:nth-child(2) .track span").get_attribute("textContent")
+                lead = [f"{best[column]:.3f}".replace("-", "−") for column in ("lead", "lead_low", "lead_high")]
+                self.assertEqual(second, f"{lead[0]} behind, {lead[1]} to {lead[2]}")
                 facts = " ".join(self.texts(".facts dd"))
                 self.assertIn("8 meshes, 96 scans", facts)
                 self.assertIn("22 to 25 real people per shape", facts)
