@@ -112,7 +112,7 @@ def figures(shop: Workshop, dataset: str) -> list[Block]:
     said = "; ".join(f"{panel.metric.label}: " + ", ".join(f"{one.model} {one.distance:.3f}" for one in panel.models) for panel in panels)
 
     def plot(kind: str, draw: Callable[..., None], high: float, table: Frame, alt: str, caption: str) -> Plot:
-        return shop.plot(f"{kind}-{dataset}", Drawing(draw, (panels, shop.looks), (11, high)), table, alt, f"{name}: {caption}")
+        return shop.plot(f"{kind}-{dataset}", Drawing(draw, (panels, shop.looks), (11, high), layout=None), table, alt, f"{name}: {caption}")
     return [
         plot("lag", draw_lags, height, data, f"Distance of each model behind the best mean. {said}.".replace("-", "−"),
              "how far each model is behind the best mean, with 95 % intervals that are joint for all pairs of models. One that leaves out 0 "
@@ -128,9 +128,17 @@ def figures(shop: Workshop, dataset: str) -> list[Block]:
                  "the ranking, in place of Nemenyi's test of mean ranks.")])]
 
 
-def columns(figure: Any, panels: Sequence[Panel]) -> Iterator[tuple[Any, Panel]]:
-    """Axes and what they show, one beside the other."""
-    return zip(figure.subplots(1, len(panels), squeeze=False)[0], panels)
+def columns(figure: Any, panels: Sequence[Panel], left: float, right: float) -> Iterator[tuple[Any, Panel]]:
+    """Axes and what they show, one beside the other, with inches free beside each. A layout that measures would take as long as drawing."""
+    width, height = figure.get_size_inches()
+    step, below, above = width / len(panels), 0.55, 0.6
+    for at, panel in enumerate(panels):
+        yield figure.add_axes([(at * step + left) / width, below / height, (step - left - right) / width, (height - below - above) / height]), panel
+
+
+def beside(panels: Sequence[Panel]) -> float:
+    """Inches that the names of models take."""
+    return 0.25 + 0.085 * max(len(one.model) for panel in panels for one in panel.models)
 
 
 def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Looks, digits: int) -> None:
@@ -146,7 +154,7 @@ def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks:
 
 
 def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
-    for axes, panel in columns(figure, panels):
+    for axes, panel in columns(figure, panels, beside(panels), 0.75):
         draw_rows(axes, [(one.model, one.distance, one.low, one.high) for one in panel.models], looks, 3)
         axes.set_title(panel.metric.label, pad=26)  # above the names of references
         axes.axvline(0, color=looks.colours.get(panel.models[0].model), lw=1.2, zorder=1)
@@ -155,7 +163,7 @@ def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
 
 
 def draw_wins(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
-    for axes, panel in columns(figure, panels):
+    for axes, panel in columns(figure, panels, beside(panels), 0.75):
         draw_rows(axes, [(one.model, one.wins, one.wins_low, one.wins_high) for one in panel.models[1:]], looks, 2)
         axes.set_title(panel.metric.label)
         axes.axvline(0.5, color="#555555", lw=1.1, ls=(0, (2, 2)), zorder=1)
@@ -163,7 +171,7 @@ def draw_wins(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
 
 
 def draw_profiles(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
-    for axes, panel in columns(figure, panels):
+    for axes, panel in columns(figure, panels, 0.65, 0.15):
         for model, scores in panel.profile.items():
             n = len(scores)
             reached = [(at + 1) / n for at in range(n)] if panel.metric.lower else [1 - at / n for at in range(n)]
@@ -172,11 +180,11 @@ def draw_profiles(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
         axes.set(ylim=(0, 1.02), xlabel=f"{panel.metric.label}, at {'most' if panel.metric.lower else 'least'}", ylabel="Share")
         axes.set_title(panel.metric.label)
     if sum(len(panel.profile) for panel in panels[:1]) <= MOST_NAMED:
-        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
+        axes.legend(loc="lower right" if panels[-1].metric.lower else "upper right", fontsize=9)  # where no curve is
 
 
 def draw_differences(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
-    for axes, panel in columns(figure, panels):
+    for axes, panel in columns(figure, panels, 0.2, 0.2):
         means = [one.mean for one in panel.models]
         low, high = min(means), max(means)
         span = (high - low) or 1.0

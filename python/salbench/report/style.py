@@ -71,12 +71,13 @@ def spread(places: Sequence[float], gap: float) -> list[float]:
 
 
 def save(figure: Any, svg: Path, pdf: Path) -> None:
-    """Writes both files, without dates. Laid out once; savefig would draw each file twice."""
+    """Writes both files, without dates. Laid out once, where there is a layout; savefig would draw each file twice."""
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    if figure.get_layout_engine() is not None:
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
     dpi = figure.dpi
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": "salbench"})
     figure.dpi = dpi
