@@ -142,6 +142,27 @@ class NewClassesTest(unittest.TestCase):
         self.assertRegex(self.sentence(in_classes(models), unit="class"), r"^On 24 meshes of 8 classes, A leads by AUC \([^)]*\)\.$")
 
 
+class BriefTest(unittest.TestCase):
+    """Sentences without figures."""
+
+    def said(self, *found, **more):
+        return brief([Brief(label, verdict, models.split(), "A B C D".split(), **more) for label, verdict, models in found])
+
+    def test_metrics_that_say_the_same_stand_in_one_bracket(self):
+        self.assertEqual(self.said(("AUC", "leads", "A"), ("NSS", "leads", "A")), "A leads (AUC, NSS).")
+        self.assertEqual(self.said(("AUC", "not told apart", "A B C")), "A, B or C may be best; D is not (AUC).")
+        self.assertEqual(self.said(("AUC", "not told apart", "B A"), ("LCC", "not told apart", "A B C D")),
+                         "B or A may be best (AUC); any model may be best (LCC).")
+        self.assertEqual(self.said(("AUC", "not behind", "A")), "no model is ahead of A (AUC).")
+        self.assertEqual(self.said(("AUC", "too few units", "")), "too few observations to rank (AUC).")
+
+    def test_new_classes_and_missing_scores_are_named(self):
+        both = [Brief("AUC", "leads", ["A"], ["A", "B"], 0, "leads", ["A"]),
+                Brief("NSS", "leads", ["A"], ["A", "B"], 2, "not told apart", ["A", "B"])]
+        self.assertEqual(brief(both), "A leads on these classes (AUC, NSS). New classes: AUC only. (2 shapes left out: some model has no score there.)")
+        self.assertEqual(brief(both[1:]).split(". ")[1], "New classes: not the same")
+
+
 class MissingScoresTest(unittest.TestCase):
     def without(self, worst, models, chance=True):
         """60 meshes; the first model has no score on those where it would be worst."""

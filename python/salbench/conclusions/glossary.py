@@ -58,7 +58,8 @@ def compares(name: str) -> str:
     """What a metric compares; empty of a column that is not the program's."""
     from salbench import _core
 
-    return _COMPARES.get(name) or next((text for known, _, text, *_ in _core.metric_rows() if known == name), "")
+    of_program = {row[0]: row[2] for row in _core.metric_rows()}
+    return _COMPARES.get(name, of_program.get(name, ""))
 
 
 def range_of(name: str) -> str:

@@ -67,7 +67,8 @@ class Brief:
 
 def brief_of(leader: Leader, label: str, ranked: Sequence[str]) -> Brief:
     classes = leader.new_classes
-    return Brief(label, leader.verdict, leader.models, ranked, leader.n_missing, classes.verdict if classes else "", classes.models if classes else ())
+    new_classes = (classes.verdict, classes.models) if classes else ("", ())
+    return Brief(label, leader.verdict, leader.models, ranked, leader.n_missing, *new_classes)
 
 
 def brief(found: Sequence[Brief]) -> str:

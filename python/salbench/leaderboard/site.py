@@ -120,7 +120,7 @@ def ranking(board: Board) -> list[Any]:
 
 def by_metric(board: Board) -> list[Any]:
     first = {(level.dataset, level.split, leader.metric.name): leader.models for level in board.leaders for leader in level.leaders}
-    pairs = {(*level_of(row), row["model_a"], row["model_b"]): row for row in rows_of(board.tables["significance"])}
+    pairs: Mapping[tuple[str, ...], Row] = {(*level_of(row), row["model_a"], row["model_b"]): row for row in rows_of(board.tables["significance"])}
     best: dict[tuple[str, ...], str] = {}
     rows = []
     for row in rows_of(board.tables["ranking"]):
@@ -130,8 +130,8 @@ def by_metric(board: Board) -> list[Any]:
                      behind(pairs, key, best.setdefault(key, model), model), Cell(str(row["rank"])),
                      Cell(f"{row['rank_low']} to {row['rank_high']}"), cell(row["first"], 2), Cell(row["group"])])
     heads = ["Model", "Data set", "Metric", "Mean", "From the best", "Rank", "95 % of ranks", "Share first", "Group"]
-    caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval; it and those "
-               "of ranks are joint for all pairs of models. Share first: of the resamples.")
+    caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval; it and "
+               "those of ranks are joint for all pairs of models. Share first: of the resamples.")
     return [Table("ranks", caption, heads, rows, [False] * 3 + [True] * 5 + [False], filters=[1, 2], opens=first_of(rows, 1, 2))]
 
 
@@ -150,13 +150,17 @@ def behind(pairs: Mapping[tuple[str, ...], Row], key: tuple[str, str, str], best
 
 def by_class(board: Board, model: str | None = None) -> list[Any]:
     rows = [[Cell(row["class"]), Cell(heading(row)), Cell(label_of(row["metric"])), named(board, row["model"]), cell(row["mean"]),
-             interval(*map(float, cut(row["ci95_low"], row["mean"], row["ci95_high"], of_program().get(row["metric"], Metric(row["metric"]))))),
-             Cell(str(row["n"]))] for row in rows_of(board.tables["per_class"]) if model in (None, row["model"])]
+             within_range(row), Cell(str(row["n"]))] for row in rows_of(board.tables["per_class"]) if model in (None, row["model"])]
     if not rows:
         return [Note("There are no scores by class.")]
     return [Table("classes", "Means by class of shapes, with 95 % intervals; Avg is the mean over the competitors.",
                   ["Class", "Data set", "Metric", "Model", "Mean", "95 %", "n"], rows, [False] * 4 + [True] * 3, filters=[1, 2, 0, 3],
                   opens=first_of(rows, 1, 2))]
+
+
+def within_range(row: Row) -> Cell:
+    low, high = cut(row["ci95_low"], row["mean"], row["ci95_high"], of_program().get(row["metric"], Metric(row["metric"])))
+    return interval(float(low), float(high))
 
 
 def history(board: Board) -> list[Any]:

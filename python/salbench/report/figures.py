@@ -165,7 +165,8 @@ def rankings(shop: Workshop, dataset: str) -> Plot:
     height = 0.42 * max(len(table) for table in data.values()) + 1.2
     text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
-    return shop.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, shop.looks), (11, height)), plotted, f"Models on {spoken(dataset)}, best first. {text}.",
+    return shop.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, shop.looks), (11, height)), plotted,
+                     f"Models on {spoken(dataset)}, best first. {text}.",
                      f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
 
 

@@ -51,7 +51,8 @@ def classes(shop: Workshop, dataset: str) -> Table:
         raise Missing(f"There are no scores of {spoken(dataset)} by class.")
     models = shop.models
     return Table(f"classes-{dataset}-others", tables.CLASSES.format("Mean", spoken(dataset), ""),
-                 ["Class", "Metric", units.HEAD, "Avg", *models], rows, [False] * 2 + [True] * (len(models) + 2), filters=[1], opens=first_of(rows, 1))
+                 ["Class", "Metric", units.HEAD, "Avg", *models], rows, [False] * 2 + [True] * (len(models) + 2), filters=[1],
+                 opens=first_of(rows, 1))
 
 
 def class_rows(shop: Workshop, dataset: str, name: str, table: Frame) -> list[list[Cell]]:

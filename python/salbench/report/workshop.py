@@ -37,7 +37,7 @@ class Workshop:
     other: Results | None = None            # of the run to compare with
     processes: int = 1                      # that draw
     drawn: dict[str, Facts] = field(default_factory=dict)  # shape name -> of its files (shape_files.draw_all)
-    waiting: list[tuple[str, tuple[str, Drawing, str]]] = field(default_factory=list)  # figures that are yet to be drawn: (name, (name, drawing, key))
+    waiting: list[tuple[str, tuple[str, Drawing, str]]] = field(default_factory=list)  # figures yet to be drawn: (name, (name, drawing, key))
 
     def __post_init__(self) -> None:
         self.models = statistics.models(self.results)
