@@ -12,6 +12,7 @@ from salbench.conclusions.leaders import find_leaders, leaders
 from salbench.conclusions.means import summary
 from salbench.conclusions.metrics import Metric, leading_metrics, of_program
 from salbench.conclusions.ranking import ranking
+from salbench.conclusions.words import Brief, brief
 
 
 def scored(models, meshes, noise=.01, split="", dataset=""):
