@@ -169,18 +169,17 @@ def draw_gallery(figure: Any, rows: list[list[Printed]], colours: Any, size: tup
     from matplotlib.colors import ListedColormap, Normalize
 
     width, height = size
-    grid = figure.subplots(len(rows), max(map(len, rows)), squeeze=False, gridspec_kw={
-        "left": 0.1 / width, "right": 1 - 0.8 / width, "bottom": 0.35 / height, "top": 1 - 0.3 / height, "hspace": 0.28,
-        "wspace": 0.04})
-    for line, tiles in zip(grid, rows):
-        for axes in line:
-            axes.axis("off")
-        for axes, (title, picture, pieces) in zip(line, tiles):
-            axes.set_title(title, fontsize=9)
+    axes = figure.add_axes([0, 0, 1, 1])  # one for all tiles, in inches: one each would take half of the time
+    axes.axis("off")
+    for line, tiles in enumerate(rows):
+        for at, (title, picture, pieces) in enumerate(tiles):
+            left, top = 0.1 + 1.7 * at, height - 0.35 - 2.3 * line
+            axes.text(left + 0.8, top + 0.05, title, ha="center", va="bottom", fontsize=9)
             if picture:
-                axes.imshow(pixels(picture))
-                axes.text(0.5, -0.04, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in pieces),
-                          transform=axes.transAxes, ha="center", va="top", fontsize=9)
+                axes.imshow(pixels(picture), extent=(left, left + 1.6, top - 1.6, top), aspect="auto")
+                axes.text(left + 0.8, top - 1.65, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in pieces),
+                          ha="center", va="top", fontsize=9)
+    axes.set(xlim=(0, width), ylim=(0, height))
     bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
     figure.colorbar(ScalarMappable(Normalize(0, 1), ListedColormap(colours / 255)), cax=bar)
     bar.grid(visible=False)
