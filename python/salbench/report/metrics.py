@@ -32,17 +32,17 @@ class Metric:
     label: str
     unit: str = "1"
     lower: bool = False  # better
-    matching: str = ""   # of the maps that it reads: "histogram", "none"; empty if run.yaml does not say
+    matching: str = ""   # of the maps that it reads: "histogram", "none", "raw", "shifted"; empty if run.yaml does not say
 
     @property
     def maps(self) -> str:
         """Which maps it reads, in words; empty where nobody said."""
-        return {"histogram": "matched", "none": "as they are"}.get(self.matching, "")
+        return {"histogram": "matched", "none": "as they are", "raw": "raw", "shifted": "raw, shifted to 0"}.get(self.matching, "")
 
     @property
     def below(self) -> str:
         """What stands below the label in tables: the paper's metrics read matched maps, which goes without saying."""
-        return "maps as they are" if self.matching == "none" else ""
+        return "" if self.matching in ("", "histogram") else f"maps {self.maps}"
 
     def best(self, scores: Mapping[Key, float | None]) -> set[Key]:
         """The keys of the best scores: what every page and table sets in bold. Several where scores tie; none where no score
