@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A data set of point clouds in all their formats, beside a mesh, through every subcommand.
-#include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -84,15 +82,6 @@ TEST(CloudsCommand, ATableOfAnEarlierRunThatCannotBeRemovedIsAnError) {
   EXPECT_THAT(run.err, HasSubstr("mean_histograms_clouds.csv: cannot be removed: "));
 }
 
-TEST(CloudsCommand, ShardsAndTheRunAfterThemAgreeWithOneRun) {
-  const CloudWorkspace whole, parts;
-  ASSERT_EQ(whole.salbench("run").status, 0);
-  for (const char* shard : {"1/3", "2/3", "3/3"})
-    ASSERT_EQ(parts.salbench("run", {"--shard", shard}).status, 0) << shard;
-  ASSERT_EQ(parts.salbench("run").status, 0);
-  EXPECT_EQ(parts.results(), whole.results());
-}
-
 TEST(CloudsCommand, ExportHoldsThemWithTheirPictures) {
   const CloudWorkspace toy;
   const fs::path file = toy / "all.h5";
@@ -153,15 +142,6 @@ TEST(CloudsCommand, ACommandOfTheUsersGetsThePointsThatAreLeft) {
   EXPECT_THAT(lines_with(toy.results(), "clouds,b,,,LINES"), ElementsAre(HasSubstr(",161,2")));
 }
 
-TEST(CloudsCommand, GraphShowsThemWhereTheDataSetHoldsThem) {
-  const CloudWorkspace toy;
-  EXPECT_THAT(toy.salbench("plan", {"--graph"}).out,
-              AllOf(HasSubstr("map.MS of clouds (version 1, one per cloud, 3 to do) <- "
-                              "cloud of clouds, surface of clouds"),
-                    HasSubstr("map.MS of meshes")));
-  EXPECT_THAT(toy.salbench("plan", {"--graph", "--items", "a"}).out, Not(HasSubstr("of meshes")));
-}
-
 TEST(CloudsCommand, TwinsStopARunUntilTheConfigurationChooses) {
   const CloudWorkspace toy;
   toy.write("data set/Meshes/1.xyz", xyz_text(toy.mesh.vertices));
@@ -177,32 +157,6 @@ TEST(CloudsCommand, TwinsStopARunUntilTheConfigurationChooses) {
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("files left out, as there is a .xyz file of the same name: 1"));
   EXPECT_THAT(lines_with(toy.results(), "clouds,1,"), SizeIs(1));
-}
-
-TEST(CloudsCommand, EachBadCloudIsOneErrorAndTheOthersGoOn) {
-  const CloudWorkspace toy;
-  const auto normal = [](const Vec3& n) { return std::vector<Vec3>(12, n); };
-  const auto points = shapes::random_cloud(12, 1);
-  toy.write("data set/Meshes/one.xyz", "1 2 3\n");
-  toy.write("data set/Meshes/place.xyz", xyz_text(std::vector<Vec3>(20, Vec3(1, 2, 3))));
-  auto some = normal({0, 0, 1});
-  some[5].setZero();
-  toy.write("data set/Meshes/zero.ply", ply_cloud_text(points, some));
-  toy.write("data set/Meshes/huge.pcd", pcd_header(2147483647, 1, "binary_compressed") + "12345678");
-  toy.write("data set/Meshes/cut.pcd", pcd_header(20, 1, "binary") + "123");
-  toy.write("data set/Meshes/empty.xyz", "");
-  toy.write("data set/Meshes/nan.xyz", "nan nan nan\n1 2 3\n");
-  const Outcome run = toy.salbench("run");
-  EXPECT_EQ(run.status, 1);
-  for (const char* why :
-       {"one: cloud: the point cloud has 1 points with a position: it needs at least 9",
-        "place: cloud: all points are in one place",
-        "zero: cloud: 1 points have a zero or not finite normal, the first is point 5 (0-based)",
-        "huge.pcd: ", "cut.pcd: the file ends after 0 of 20 points", "empty.xyz: the file is empty",
-        "nan: cloud: the point cloud has 1 points with a position"})
-    EXPECT_THAT(run.err, HasSubstr(why));
-  EXPECT_THAT(run.err, HasSubstr("\n7 failed, each named above: 7 cloud\n"));
-  EXPECT_THAT(lines_with(toy.results(), "clouds,"), SizeIs(9));
 }
 
 TEST(CloudsCommand, FewAndRepeatedPointsAreNoTroubleToAnyModel) {

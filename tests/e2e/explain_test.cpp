@@ -39,13 +39,5 @@ TEST(Explain, ThePlanTheExplanationAndTheRecordAgree) {
   EXPECT_THAT(lines_with(record, " map.RS: {"), ElementsAre(HasSubstr("why: {}}")));
 }
 
-TEST(Explain, WordsThatNameNothingAreUnusableArguments) {
-  const Workspace toy(kMeshesOnly);
-  EXPECT_EQ(toy.salbench("explain").status, 2);
-  const Outcome item = toy.salbench("explain", {"99"});
-  EXPECT_EQ(item.status, 2);
-  EXPECT_THAT(item.err, HasSubstr("no item '99'"));
-}
-
 }  // namespace
 }  // namespace salbench

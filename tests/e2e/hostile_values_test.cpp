@@ -90,20 +90,6 @@ TEST(HostileValues, OfMapsAreScoredLikeAnyMultipleOfThem) {
     EXPECT_EQ(tables_with(ScalarField(values.size(), constant)).results, of_zero.results) << constant;
 }
 
-TEST(HostileValues, OfCommandsAreScoredLikeAnyMultipleOfThem) {
-  const auto tables_with = [](double factor) {
-    const Workspace toy(
-        fmt::format("metrics: all\ndataset: {{scans: false}}\nmodels: {{MINE: {{command: \"n=$(grep -a -m1 "
-                    "'element vertex' {{mesh}} | "
-                    "cut -d' ' -f3); seq $n | /usr/bin/python3 -c 'import sys; [print((float(line) - 81.5) * "
-                    "{}) for line in "
-                    "sys.stdin]' > {{out}}\"}}}}\n",
-                    factor));
-    return tables_of(toy);
-  };
-  EXPECT_EQ(tables_with(0x1p1017), tables_with(1));
-}
-
 // Several files of one item, of viewers who predict each other.
 TEST(HostileValues, OfViewersAreScoredLikeAnyMultipleOfThem) {
   const Workspace toy;

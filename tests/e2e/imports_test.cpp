@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/file.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/processes.h"
 #include "tests/support/toy_data.h"
@@ -16,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -60,30 +58,6 @@ class Imports : public testing::Test {
   Workspace toy_;
   fs::path own_;
 };
-
-TEST_F(Imports, TwoProcessesImportEachItemOnce) {
-  ASSERT_EQ(toy_.salbench("run").status, 0);
-  const std::string results = toy_.results();
-  const auto contents = toy_.contents();
-  EXPECT_THAT(toy_.artefacts("import"), SizeIs(kItems));
-  toy_.forget_everything();
-  std::vector<std::unique_ptr<Process>> processes;
-  for (const char* out : {"out1", "out2"})
-    processes.push_back(
-        std::make_unique<Process>(toy_.command("run", {"--threads", "2", "--out", (toy_ / out).string()})));
-  std::size_t imported = 0;
-  for (const auto& process : processes) {
-    const Outcome run = process->wait();
-    ASSERT_EQ(run.status, 0) << run.err;
-  }
-  for (const char* out : {"out1", "out2"}) {
-    EXPECT_EQ(read_file(toy_ / out / "results.csv"), results);
-    for (const std::string& line : lines_with(read_file(toy_ / out / "run.yaml"), "stage: import,"))
-      imported += std::stoul(line.substr(line.find("computed: ") + 10));
-  }
-  EXPECT_EQ(imported, static_cast<std::size_t>(kItems));
-  EXPECT_EQ(toy_.contents(), contents);
-}
 
 TEST_F(Imports, AKillInTheMiddleIsResumedAndLeavesNoProcess) {
   ASSERT_EQ(toy_.salbench("run").status, 0);

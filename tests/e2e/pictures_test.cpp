@@ -5,11 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/file.h"
+#include "io/table.h"
+#include "pipeline/config/section.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/exported_file.h"
-#include "tests/support/job_counts.h"
-#include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
@@ -22,8 +21,6 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-const std::string kSmallPictures = std::string(kToyConfig) + "picture: {size: 40}\n";
-
 std::vector<std::string> arrays_of_export(const Workspace& toy,
                                           const std::vector<std::string>& further = {}) {
   std::vector<std::string> words = {"--to", (toy / "toy.h5").string()};
@@ -31,16 +28,6 @@ std::vector<std::string> arrays_of_export(const Workspace& toy,
   const Outcome ended = toy.salbench("export", words);
   EXPECT_EQ(ended.status, 0) << ended.err;
   return ExportedFile(toy / "toy.h5").arrays();
-}
-
-// Names without the checksum, which is also of the seconds that it took.
-std::vector<std::string> contents(const Workspace& toy) {
-  std::vector<std::string> names;
-  for (const fs::path& file : toy.artefacts("picture")) {
-    const std::string name = file.filename().string();
-    names.push_back(name.substr(0, name.find('.', name.find('.', name.find('.') + 1) + 1)));
-  }
-  return names;
 }
 
 TEST(Pictures, AreTakenOnceAndEveryExportContainsThem) {
@@ -61,41 +48,7 @@ TEST(Pictures, AreTakenOnceAndEveryExportContainsThem) {
   EXPECT_EQ(file.read("2_5/picture/view_projection").count(), 16U);
 }
 
-TEST(Pictures, AConfigurationThatHasThemComputesThemInEveryRunAndExport) {
-  const Workspace toy(kSmallPictures);
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_THAT(toy.artefacts("picture"), SizeIs(26));
-  const std::string with = toy.results();
-  EXPECT_THAT(arrays_of_export(toy, {"--stage", "picture", "--items", "1"}), SizeIs(13 * 6));
-  toy.configure(kToyConfig);
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_EQ(toy.results(), with);
-  EXPECT_EQ(toy.computed(), 0U);
-}
-
-TEST(Pictures, TheSameBytesWithAnyNumberOfThreads) {
-  std::vector<std::string> first;
-  for (const char* threads : {"1", "2", "4"}) {
-    const Workspace toy(kSmallPictures);
-    ASSERT_EQ(toy.salbench("run", {"--threads", threads}).status, 0);
-    const auto now = contents(toy);
-    ASSERT_THAT(now, SizeIs(26));
-    if (first.empty()) first = now;
-    EXPECT_EQ(now, first) << threads;
-  }
-}
-
-TEST(Pictures, AMeshThatCannotBeSeenIsNamedAndTheOthersGoOn) {
-  const Workspace toy(kSmallPictures);
-  toy.write("data set/Meshes/3.off", "OFF\n3 1 0\n0 0 0\n1 1 1\n2 2 2\n3 0 1 2\n");
-  const Outcome ended = toy.salbench("export", {"--to", (toy / "toy.h5").string(), "--pictures"});
-  EXPECT_EQ(ended.status, 1) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("3: "));
-  EXPECT_THAT(toy.artefacts("picture"), SizeIs(26));
-}
-
-// --- what a report reads of a run
-// ---------------------------------------------------------------------------
+// --- what a report reads of a run --------------------------------------------------------------------------
 
 TEST(RunRecord, TellsMemoryCacheAndTimeline) {
   const Workspace toy(kMeshesOnly);

@@ -168,15 +168,5 @@ TEST(Shards, WithAGivenReferenceLeaveNothingButTheTablesToDo) {
       << "the mean histograms of the models, and their tables of scores";
 }
 
-TEST(Shards, AreWrittenIOfN) {
-  const Workspace toy;
-  for (const char* bad : {"3/2", "0/2", "2", "a/b"}) {
-    const Outcome run = toy.salbench("run", {"--shard", bad});
-    EXPECT_EQ(run.status, 2);
-    EXPECT_THAT(run.err, HasSubstr("--shard"));
-  }
-  EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
-}
-
 }  // namespace
 }  // namespace salbench

@@ -44,21 +44,6 @@ TEST(Protocol, BothRunEveryModelAndDisagree) {
   }
 }
 
-// The configuration in run.yaml is complete: it repeats the run on a cache that need not compute anything.
-TEST(Protocol, TheRecordedConfigurationRepeatsTheRun) {
-  const Workspace toy(
-      "protocol: text\nseed: 9\nscan: {step_degrees: 2}\nmodels: {RS: , PS: {absolute: false}}\n");
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  const std::string results = toy.results(), record = read_file(toy.out() / "run.yaml");
-  std::string yaml;
-  for (const std::string& line : lines_with(record.substr(record.find("configuration:\n")), "  "))
-    yaml += line.substr(2) + "\n";
-  toy.configure(yaml);
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_EQ(toy.computed(), 0);
-  EXPECT_EQ(toy.results(), results);
-}
-
 TEST(Protocol, AGivenReferenceReplacesTheDataSetsOwn) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("run").status, 0);
@@ -114,30 +99,6 @@ TEST(MatchingByMetric, ThePapersMetricsKeepTheirScoresAndTheirKeys) {
   for (const std::filesystem::path& scores : toy.artefacts("scores.PS"))
     if (read_file(scores).find("matching: ") == std::string::npos) return;
   FAIL() << "the paper's scores name a matching in their keys";
-}
-
-// The metrics that read maps as they are do not see the reference histogram.
-TEST(MatchingByMetric, WithoutMatchingTheReferenceDoesNotCount) {
-  const Workspace toy;
-  std::string flat = "GS\n", falling = "GS\n";
-  for (int i = 0; i < 100; ++i) {
-    flat += "1\n";
-    falling += std::to_string(100 - i) + "\n";
-  }
-  const auto with = [&](const std::string& csv, const std::string& metrics) {
-    return results_with(toy, metrics, {"--reference", toy.write("reference.csv", csv).string()});
-  };
-  const std::vector<std::string> unmatched = {"ig", "kl", "kl_smoothed", "sim", "sim_minmax"};
-  const std::string all = "metrics: [nss, ig, kl, kl_smoothed, sim, sim_minmax]\n";
-  const std::string with_flat = with(flat, all), with_falling = with(falling, all);
-  EXPECT_EQ(columns_of(with_flat, unmatched), columns_of(with_falling, unmatched));
-  EXPECT_NE(columns_of(with_flat, {"nss"}), columns_of(with_falling, {"nss"}));
-  const std::string matched =
-      "metrics: {names: [ig, kl, kl_smoothed, sim, sim_minmax], matching: histogram}\n";
-  const auto matched_to_flat = columns_of(with(flat, matched), unmatched),
-             matched_to_falling = columns_of(with(falling, matched), unmatched);
-  for (std::size_t m = 0; m < unmatched.size(); ++m)
-    EXPECT_NE(matched_to_flat[m], matched_to_falling[m]) << unmatched[m];
 }
 
 TEST(MatchingByMetric, TheRecordSaysHowEachMetricReadsItsMaps) {

@@ -44,8 +44,9 @@ TEST(Record, IdentifiesTheDataByItsContent) {
 }
 
 // The recorded configuration alone, without any folder on the command line, is the same run.
-TEST(Record, TheConfigurationNamesItsFolders) {
-  const Workspace toy(kMeshesOnly);
+TEST(Record, TheConfigurationRepeatsTheRunInItsFolders) {
+  const Workspace toy(
+      "protocol: text\nseed: 9\nscan: {step_degrees: 2}\nmodels: {RS: , PS: {absolute: false}}\n");
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::string results = toy.results(), record = read_file(toy.out() / "run.yaml");
   std::string yaml;

@@ -76,6 +76,9 @@ TEST_F(Reference, AnythingElseIsRefusedWithFileAndLine) {
   EXPECT_THAT(complaint(column(0)), AllOf(HasSubstr("reference.csv:2: "), HasSubstr("sums to 0")));
   EXPECT_THAT(complaint(column(1e307)), HasSubstr("reference.csv:2: ")) << "the sum overflows";
   EXPECT_THAT(complaint(column(1, [](auto& values) { values.pop_back(); })), HasSubstr("99 rows"));
+  EXPECT_THAT(complaint(toy_.write("reference.csv", "bin,LS\n0,1\n")),
+              AllOf(HasSubstr("reference.csv"), HasSubstr("GS")));
+  EXPECT_THAT(complaint("/no/such.csv"), HasSubstr("/no/such.csv"));
 }
 
 // Tables of simulated participants begin with a line that says so, and are tables all the same.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Folders that cannot be written to, disks that are full, and files in the cache that rotted.
+#include <chrono>
 #include <fstream>
 #include <optional>
 
@@ -196,84 +197,80 @@ void flip_byte(const fs::path& file, std::uintmax_t at) {
   stream.put(static_cast<char>(byte ^ 0x10));
 }
 
-class DamagedCache : public testing::Test {
- protected:
-  void SetUp() override {
-    ASSERT_EQ(toy_.salbench("run").status, 0);
-    results_ = toy_.results();
-    contents_ = toy_.contents();
-  }
-
-  fs::path artefact(const std::string& stage, std::size_t i) const { return toy_.artefacts(stage).at(i); }
-
-  // One line names each damaged file, everything comes out as before, and then all is well again.
-  void expect_recovery(const std::vector<fs::path>& damaged) const {
-    const Outcome run = toy_.salbench("run");
-    ASSERT_EQ(run.status, 0) << run.err;
-    for (const fs::path& file : damaged)
-      EXPECT_THAT(lines_with(run.err, file.string()), AllOf(SizeIs(1), Each(HasSubstr("warning: "))))
-          << run.err;
-    EXPECT_EQ(toy_.computed(), damaged.size());
-    EXPECT_EQ(toy_.results(), results_);
-    EXPECT_EQ(toy_.contents(), contents_);
-    const Outcome after = toy_.salbench("run");
-    EXPECT_EQ(after.status, 0);
-    EXPECT_THAT(after.err, Not(HasSubstr(toy_.cache().string()))) << "warned again";
-    EXPECT_EQ(toy_.computed(), 0);
-  }
-
-  Workspace toy_;
-  std::string results_;
-  std::vector<std::string> contents_;
-};
-
-TEST_F(DamagedCache, TruncatedArtefactsAreComputedAgain) {
-  std::vector<fs::path> files;
+// Cut to nothing, to a half, by one byte; or a byte turned over, which is found where the artefact is read.
+TEST(Storage, DamagedArtefactsAreNamedAndComputedAgain) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results();
+  const auto contents = toy.contents();
+  const auto artefact = [&](const char* stage, std::size_t i) { return toy.artefacts(stage).at(i); };
+  std::vector<fs::path> damaged;
   for (const char* stage : {"mesh", "scan", "fpfh", "map.PS", "matched.RS", "scores.PS", "reference"})
-    files.push_back(artefact(stage, 0));
-  for (std::size_t i = 0; i < files.size(); ++i)  // to nothing, to a half, by one byte
-    fs::resize_file(files[i], i % 3 == 0   ? 0
-                              : i % 3 == 1 ? fs::file_size(files[i]) / 2
-                                           : fs::file_size(files[i]) - 1);
-  expect_recovery(files);
-}
-
-TEST_F(DamagedCache, FlippedBytesAreFoundWhenTheArtefactIsRead) {
-  const fs::path first = artefact("mean_histogram.RS", 0), second = artefact("score_table.RS", 1);
-  flip_byte(first, 0);  // HDF5's own signature
-  flip_byte(second, fs::file_size(second) - 20);
-  expect_recovery({first, second});
-}
-
-TEST_F(DamagedCache, TablesOfScoresAreMendedFromDamagedScores) {
-  std::vector<fs::path> damaged = toy_.artefacts("score_table.PS");  // of meshes and of scans
-  damaged.push_back(artefact("scores.PS", 3));
-  damaged.push_back(artefact("scores.PS", 17));
-  for (const fs::path& file : damaged) flip_byte(file, fs::file_size(file) / 2);
-  expect_recovery(damaged);
-}
-
-// What is cached and not read again is not looked at; with the maps gone, the descriptors are needed.
-TEST_F(DamagedCache, ADamagedInputIsFoundByWhatReadsIt) {
-  const std::vector<fs::path> damaged = toy_.artefacts("fpfh");
-  for (const fs::path& file : damaged) flip_byte(file, fs::file_size(file) / 2);
-  fs::remove_all(toy_.cache() / "map.PS");
-  const Outcome run = toy_.salbench("run");
+    damaged.push_back(artefact(stage, 0));
+  for (std::size_t i = 0; i < damaged.size(); ++i)
+    fs::resize_file(damaged[i], i % 3 == 0   ? 0
+                                : i % 3 == 1 ? fs::file_size(damaged[i]) / 2
+                                             : fs::file_size(damaged[i]) - 1);
+  const std::pair<fs::path, double> flips[] = {
+      {artefact("mean_histogram.RS", 0), 0},  // HDF5's own signature
+      {artefact("score_table.RS", 1), 0.95}, {artefact("score_table.PS", 0), 0.5},
+      {artefact("score_table.PS", 1), 0.5},  {artefact("scores.PS", 3), 0.5},
+      {artefact("scores.PS", 17), 0.5}};
+  for (const auto& [file, part] : flips) {
+    flip_byte(file, static_cast<std::uintmax_t>(part * static_cast<double>(fs::file_size(file))));
+    damaged.push_back(file);
+  }
+  const Outcome run = toy.salbench("run");
   ASSERT_EQ(run.status, 0) << run.err;
-  for (const fs::path& file : damaged) EXPECT_THAT(lines_with(run.err, file.string()), SizeIs(1));
-  EXPECT_EQ(toy_.computed(), 2 * damaged.size());
-  EXPECT_EQ(toy_.results(), results_);
-  EXPECT_EQ(toy_.contents(), contents_);
+  for (const fs::path& file : damaged)
+    EXPECT_THAT(lines_with(run.err, file.string()), AllOf(SizeIs(1), Each(HasSubstr("warning: "))))
+        << run.err;
+  EXPECT_EQ(toy.computed(), damaged.size());
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_EQ(toy.contents(), contents);
+  const Outcome after = toy.salbench("run");
+  EXPECT_EQ(after.status, 0);
+  EXPECT_THAT(after.err, Not(HasSubstr(toy.cache().string()))) << "warned again";
+  EXPECT_EQ(toy.computed(), 0);
 }
 
-TEST_F(DamagedCache, ForeignFilesAreNoArtefacts) {
-  toy_.write("cache/mesh/readme.txt", "not ours");
-  toy_.write("cache/mesh/00/1.h5", "not ours either");
-  toy_.write("cache/loose", "a file among folders");
-  const Outcome run = toy_.salbench("run");
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(toy_.computed(), 0);
-  EXPECT_EQ(toy_.results(), results_);
+TEST(Storage, ACacheRemovedDuringARunCostsTheWorkAndNothingElse) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results();
+  for (const std::size_t reached : {1U, 40U, 150U}) {
+    toy.forget_everything();
+    fs::remove_all(toy / "away");
+    Process process(toy.command("run"));
+    ASSERT_TRUE(wait_until(process, [&] { return toy.artefacts().size() >= reached; }));
+    fs::rename(toy.cache(), toy / "away");
+    const Outcome ended = process.wait();
+    if (ended.status == 0)
+      EXPECT_EQ(toy.results(), results);
+    else  // it went in the middle of storing something
+      EXPECT_TRUE(ended.status == 3 && lines_with(ended.err, "error: ").size() == 1) << ended.err;
+    ASSERT_EQ(toy.salbench("run").status, 0);
+    EXPECT_EQ(toy.results(), results);
+    EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}).status, 0);
+  }
+}
+
+TEST(Storage, TheTimesOfFilesNeverMatter) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string results = toy.results();
+  const auto now = fs::file_time_type::clock::now();
+  const std::chrono::hours fifty_years(50 * 365 * 24);
+  for (const auto& [cache_time, data_time] :
+       {std::pair(now - fifty_years, now), std::pair(now, now - fifty_years),
+        std::pair(now + fifty_years, now - fifty_years), std::pair(now - fifty_years, now + fifty_years)}) {
+    for (const fs::path& file : toy.artefacts()) fs::last_write_time(file, cache_time);
+    for (const auto& entry : fs::recursive_directory_iterator(toy.data()))
+      if (entry.is_regular_file()) fs::last_write_time(entry.path(), data_time);
+    ASSERT_EQ(toy.salbench("run").status, 0);
+    EXPECT_EQ(toy.computed(), 0);
+    EXPECT_EQ(toy.results(), results);
+  }
 }
 
 }  // namespace
