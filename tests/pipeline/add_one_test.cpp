@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CONTRIBUTING.md, followed: a stage, a model, a metric, a layout and a subcommand that are not in the
-// program are added in one place each, and take part like those that are.
+// CONTRIBUTING.md, followed: a stage, a model, a layout and a subcommand that are not in the program are
+// added in one place each, and take part like those that are. A metric is: metrics_test.cpp.
 #include <atomic>
 #include <thread>
 
@@ -10,7 +10,6 @@
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/results/raw_tables.h"
 #include "stages/core/mesh_ops.h"
-#include "stages/metrics/metrics.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
@@ -222,16 +221,6 @@ TEST(Preparation, ThoseWhoAskAtOnceGetTheSame) {
   for (std::thread& thread : threads) thread.join();
   for (const auto& mine : got) EXPECT_EQ(mine, got.front());
   EXPECT_EQ(std::static_pointer_cast<const Sized>(got.front())->n, 4U);
-}
-
-// --- a metric: its function, and a row of the table ------------------------------------------------------
-
-TEST(AddAMetric, ItIsOneRow) {
-  const Metric largest{"largest", "Largest", "1", "largest value of the map",
-                       [](const MetricInput& in) { return *std::max_element(in.map.begin(), in.map.end()); }};
-  const GroundTruth truth{{0.5, 0, 1}, {{1}}};
-  const Scores scores = score({&largest, 1}, {1, 7, 3}, truth, {}, Rng(1, "", ""));
-  EXPECT_THAT(scores.values, testing::ElementsAre(7));
 }
 
 // --- a layout of data sets: a description ------------------------------------------------------------------

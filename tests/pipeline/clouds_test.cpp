@@ -132,13 +132,15 @@ TEST(Clouds, AreFoundInTheCacheByTheNextRunAndChangeNoKeyOfAMesh) {
   EXPECT_FALSE(has_work(*again.resolver));
 }
 
+// Meshes, scans and pictures as well.
 TEST(Clouds, ComeOutTheSameOnAnyNumberOfThreads) {
   const Twins12 data;
   data.folder.write("Meshes/3.ply", ply_cloud_text(shapes::bumpy_sphere(2).vertices));
   std::vector<Digest> first;
-  for (const int threads : {1, 4}) {
+  for (const int threads : {1, 2, 4}) {
     MemoryStore store;
-    ToyRun toy(data.folder.path(), store, "scan: {step_degrees: 1}\nmodels: {CS: , MS: , RS: }\n");
+    ToyRun toy(data.folder.path(), store,
+               "scan: {step_degrees: 1}\nmodels: {CS: , MS: , PS: , RS: }\npicture: {size: 40}\n");
     toy.run(threads);
     ASSERT_THAT(toy.resolver->failures(), IsEmpty());
     std::vector<Digest> contents;
@@ -166,21 +168,6 @@ TEST(Clouds, GroundTruthCountsThePointsOfTheFile) {
   EXPECT_EQ(truth.saliency[98], data.truth.saliency[99]);
   EXPECT_EQ(truth.saliency[99], data.truth.saliency[101]);
   EXPECT_EQ(truth.saliency.back(), data.truth.saliency.back());
-}
-
-TEST(Clouds, APickOfAPointWithoutAPositionIsTheItemsFailure) {
-  const Twins12 data;
-  std::vector<Vec3> points = data.mesh.vertices;
-  points[7].x() = std::numeric_limits<double>::quiet_NaN();
-  data.folder.write("Meshes/2.xyz", xyz_text(points));
-  data.folder.write("RawData/2_0.pid", "3\n7\n");
-  MemoryStore store;
-  ToyRun toy(data.folder.path(), store, kPointModels);
-  toy.run();
-  ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
-  EXPECT_THAT(toy.resolver->failures()[0].cause,
-              HasSubstr("participant 0 picked point 7 (0-based), which has no position"));
-  EXPECT_THAT(map_of(toy, "PS", cloud_unit(1)), SizeIs(points.size() - 1));
 }
 
 TEST(Clouds, GroundTruthThatDoesNotFitIsToldInPoints) {

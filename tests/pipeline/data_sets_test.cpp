@@ -46,61 +46,6 @@ TEST_F(DataSets, Schelling) {
   }
 }
 
-TEST_F(DataSets, Gs) {
-  data_.write("off/1.off", off_text(kSphere));
-  data_.write("GS/Saliency/1.val", lines_of(heights(kSphere, 0)));
-  data_.write("GS/RawData/1_0.pid", "0\n3\n");
-  run("gs");
-  EXPECT_EQ(truth().saliency, heights(kSphere, 0));
-  EXPECT_THAT(truth().picks, ElementsAre(ElementsAre(0, 3)));
-}
-
-TEST_F(DataSets, Princeton) {
-  data_.write("MeshsegBenchmark-1.0/data/off/400.off", off_text(kSphere));
-  data_.write("SchellingData/Distributions/400.val", lines_of(heights(kSphere, 0)));
-  run("princeton");
-  EXPECT_EQ(truth().saliency, heights(kSphere, 0));
-  EXPECT_EQ(item_of(toy_->inputs.units, mesh_unit(0)).category, "four-legged");
-}
-
-TEST_F(DataSets, Folder) {
-  data_.write("horse.off", off_text(kSphere));
-  run("folder");
-  EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(toy_->inputs.truth_files->files[0], IsEmpty()) << "ground truth is optional";
-}
-
-TEST_F(DataSets, ThreeDva) {
-  data_.write("Meshes/bunny.off", off_text(kSphere));
-  ScalarField front = heights(kSphere, 0), back = heights(kSphere, 0.5);
-  for (std::size_t i = 0; i < front.size(); ++i) {
-    if (kSphere.vertices[i].z() < 0) front[i] = -1;
-    if (kSphere.vertices[i].z() > -0.5) back[i] = -1;
-  }
-  data_.write("FixationMaps/bunny_view1.txt", lines_of(front));
-  data_.write("FixationMaps/bunny_view2.txt", lines_of(back));
-  run("3dva", "scans: true");
-  EXPECT_THAT(failures(), IsEmpty());
-  std::int64_t seen = 0;
-  for (std::size_t i = 0; i < front.size(); ++i) {
-    const double z = kSphere.vertices[i].z();
-    if (z > -0.5 && z < 0) {
-      EXPECT_THAT(truth().saliency[i], IsNan()) << "no view shows it";
-    } else {
-      EXPECT_EQ(truth().saliency[i], z < 0 ? back[i] : front[i]);
-      ++seen;
-    }
-  }
-  EXPECT_THAT(truth().viewers, IsEmpty()) << "views are no viewers";
-  EXPECT_LT(seen, std::ssize(front));
-  for (const ResultRow& row : toy_->results()) {
-    if (row.view.empty()) {
-      EXPECT_EQ(row.scores.n_points, seen);
-    }
-    EXPECT_TRUE(std::isfinite(value_of(row.scores, "cc"))) << row.item << " " << row.view;
-  }
-}
-
 // --- viewers ----------------------------------------------------------------------------------------------
 
 constexpr const char* kViewers =

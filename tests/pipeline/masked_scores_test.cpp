@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Maps are predicted on the whole shape and scored where the ground truth was seen: by every metric, of
-// meshes, views, scans and point clouds, of models and of people.
+// models and of people.
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +11,7 @@
 #include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
 #include "tests/pipeline/data_sets.h"
+#include "tests/support/cloud_text.h"
 
 namespace salbench {
 namespace {
@@ -46,36 +46,23 @@ class MaskedScores : public DataSets {
     return lines;
   }
   // Scores of a shape that has only the points seen.
-  void expect_scores_of_seen(const ResultRow& row, Level level) const {
+  void expect_scores_of_seen(const ResultRow& row) const {
     const auto value_of_unit = [&](std::string_view stage, Unit unit) {
-      return toy_->resolver->value({toy_->index(stage, level), unit});
+      return toy_->resolver->value({toy_->index(stage), unit});
     };
     const auto value = [&](std::string_view stage) { return value_of_unit(stage, row.job.unit); };
-    const bool is_cloud = level == kClouds;
-    const char *const of_shape = is_cloud ? "cloud" : "mesh", *const of_truth = is_cloud
-                                                                                    ? "cloud_ground_truth"
-                                                                                    : "ground_truth";
-    const ValuePtr shape = value(of_shape), surface = is_cloud ? value("surface") : shape;
-    const Points points = points_in(*shape);
-    const Surface faces = is_cloud ? Surface(value_as<Faces>(*surface)) : value_as<Mesh>(*shape).faces;
-    const GroundTruth truth = value_as<GroundTruth>(*value(of_truth));
+    const GroundTruth truth = value_as<GroundTruth>(*value("ground_truth"));
     const ScalarField map = value_as<ScalarField>(*value("map." + row.model)),
                       matched = value_as<ScalarField>(*value("matched." + row.model));
     const std::vector<std::int32_t> seen = *seen_points(truth.saliency);
     ASSERT_EQ(map.size(), n_) << "the map is of the whole shape";
     ASSERT_LT(seen.size(), n_);
-    const ScalarField areas = values_at(barycentric_areas(points, faces), seen),
+    const Points points = mesh_.vertices;
+    const ScalarField areas = values_at(barycentric_areas(points, mesh_.faces), seen),
                       centre = values_at(distances_from_centroid(points), seen);
-    CentreDensity set;
-    for (const Unit unit : toy_->project.units.of(level))
-      add(set, centre_density(points_in(*value_of_unit(of_shape, unit)),
-                              value_as<GroundTruth>(*value_of_unit(of_truth, unit))));
     const auto& options = toy_->config.metrics;
     Measures measures(seen.size(), areas, centre);
-    measures.surface = measures_of(chosen_metrics(options), n_, points, faces).at(seen).surface;
-    if (const ScalarField others = density_of_others(points, centre_density(points, truth), set);
-        !others.empty())
-      measures.negatives = values_at(others, seen);
+    measures.surface = measures_of(chosen_metrics(options), n_, points, mesh_.faces).at(seen).surface;
     const Scores expected = MetricsByMatching(options).score([&](std::span<const Metric> metrics,
                                                                  Matching read) {
       Draws draws(Rng(toy_->config.seed, "scores." + row.model, toy_->project.units.name(row.job.unit)));
@@ -85,15 +72,6 @@ class MaskedScores : public DataSets {
     EXPECT_THAT(row.scores.values, testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.values))
         << row.model;
     EXPECT_EQ(row.scores.n_points, static_cast<std::int64_t>(seen.size()));
-  }
-  void expect_all_of_seen(Level level, std::size_t rows) {
-    std::size_t checked = 0;
-    for (const ResultRow& row : toy_->results())
-      if (row.model != "HS") {
-        expect_scores_of_seen(row, level);
-        ++checked;
-      }
-    EXPECT_EQ(checked, rows);
   }
   // What tables have, as text: NaN is NaN.
   std::string scores_text() const {
@@ -119,37 +97,13 @@ TEST_F(MaskedScores, OfMeshesAreThoseOfThePartThatWasSeen) {
   const std::string own = masked("saliency: 'maps/{item}.txt', picks: 'clicks/{item}_{participant}.pid'");
   for (const std::string& matching : kMatchings) {
     run_all_metrics(own, matching);
-    expect_all_of_seen(kMeshes, 3);
+    ASSERT_THAT(toy_->results(), SizeIs(4));
+    for (const ResultRow& row : toy_->results())
+      if (row.model != "HS") expect_scores_of_seen(row);
     const std::vector<double> scores = toy_->results()[0].scores.values;
     const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
     for (std::size_t m = 0; m < metrics.size(); ++m)  // alone in its set, a shape has none of others
       EXPECT_EQ(std::isfinite(scores[m]), !metrics[m].reads_others) << metrics[m].name;
-  }
-}
-
-TEST_F(MaskedScores, OfViewsAreThoseOfThePartThatWasSeen) {
-  data_.write("shapes/cat.off", off_text(mesh_));
-  for (const std::size_t view : {1U, 2U}) data_.write(fmt::format("maps/cat_{}.txt", view), values(5, view));
-  data_.write("masks/cat.txt", mask());
-  const std::string own = masked("saliency: 'maps/{item}_{view}.txt'") + "";
-  for (const std::string& matching : kMatchings) {
-    run_all_metrics(
-        description("places:\n  - meshes: shapes/*\n    views: scored\n    truth: {saliency: "
-                    "'maps/{item}_{view}.txt', mask: 'masks/{item}.txt'}\nvalues: {positives: top 20%}\n"),
-        matching);
-    expect_all_of_seen(kMeshes, 6);
-  }
-}
-
-TEST_F(MaskedScores, OfCloudsAreThoseOfThePartThatWasSeen) {
-  std::string points;
-  for (const Vec3& v : mesh_.vertices) points += fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
-  data_.write("shapes/cat.xyz", points);
-  data_.write("maps/cat.txt", values(5));
-  data_.write("masks/cat.txt", mask());
-  for (const std::string& matching : kMatchings) {
-    run_all_metrics(masked("saliency: 'maps/{item}.txt'"), matching);
-    expect_all_of_seen(kClouds, 3);
   }
 }
 
@@ -190,6 +144,34 @@ TEST_F(MaskedScores, OfViewersDoNotDependOnWhatIsHidden) {
     EXPECT_THAT(plain, testing::HasSubstr(",HS,"));
     EXPECT_EQ(scores(-1e6, matching), plain);
   }
+}
+
+TEST_F(MaskedScores, OfViewsDoNotDependOnWhatIsHidden) {
+  data_.write("shapes/cat.off", off_text(mesh_));
+  data_.write("masks/cat.txt", mask());
+  const auto scores = [&](double hidden) {
+    for (const std::size_t view : {1U, 2U})
+      data_.write(fmt::format("maps/cat_{}.txt", view), values(hidden, view));
+    run_all_metrics(
+        description("places:\n  - meshes: shapes/*\n    views: scored\n    truth: {saliency: "
+                    "'maps/{item}_{view}.txt', mask: 'masks/{item}.txt'}\nvalues: {positives: top 20%}\n"),
+        "");
+    EXPECT_THAT(toy_->results(), SizeIs(6));
+    return scores_text();
+  };
+  EXPECT_EQ(scores(5), scores(0));
+}
+
+TEST_F(MaskedScores, OfCloudsDoNotDependOnWhatIsHidden) {
+  data_.write("shapes/cat.xyz", xyz_text(mesh_.vertices));
+  data_.write("masks/cat.txt", mask());
+  const auto scores = [&](double hidden) {
+    data_.write("maps/cat.txt", values(hidden));
+    run_all_metrics(masked("saliency: 'maps/{item}.txt'"), "");
+    EXPECT_THAT(toy_->results(), SizeIs(3));
+    return scores_text();
+  };
+  EXPECT_EQ(scores(5), scores(0));
 }
 
 TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricsThatHaveTheRule) {

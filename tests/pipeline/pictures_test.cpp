@@ -140,22 +140,5 @@ TEST_F(PicturesTest, AreCollectedOnlyWithTheirOptions) {
   EXPECT_FALSE(needed(other));
 }
 
-TEST_F(PicturesTest, AreTheSameWithAnyNumberOfThreads) {
-  const auto contents = [&](int threads) {
-    store_.clear();
-    ToyRun toy(data_.path(), store_, kWithPictures);
-    toy.run(threads);
-    std::vector<std::string> digests;
-    for (const Level level : {kMeshes, kScans})
-      for (const Decision& job : toy.plan().decisions[toy.index("picture", level)])
-        digests.push_back(job.content.hex());
-    return digests;
-  };
-  const auto one = contents(1);
-  EXPECT_THAT(one, SizeIs(JobCounts().shapes()));
-  EXPECT_EQ(contents(2), one);
-  EXPECT_EQ(contents(4), one);
-}
-
 }  // namespace
 }  // namespace salbench

@@ -221,6 +221,19 @@ TEST_F(RunnerTest, AGivenReferenceReplacesTheMean) {
   EXPECT_THAT(computed, Not(Contains("reference@meshes")));
 }
 
+TEST_F(RunnerTest, EveryComputedArtefactPassedThroughTheNodeOfItsRow) {
+  ToyRun toy(data_.path(), store_);
+  toy.run();
+  std::map<std::string, std::size_t> computed, saved;
+  for (std::size_t rule = 0; rule < toy.project.rules.size(); ++rule) {
+    const RuleRecord& node = toy.resolver->records()[rule];
+    EXPECT_EQ(node.finished, toy.plan().decisions[rule].size()) << toy.project.rules[rule].stage;
+    computed[toy.project.rules[rule].stage] += node.seconds.size();
+  }
+  for (const std::string& artefact : store_.take_saved()) ++saved[artefact.substr(0, artefact.find('@'))];
+  EXPECT_EQ(computed, saved);
+}
+
 // A store that is full must end the run at once, not item by item.
 class FullStore final : public Store {
  public:

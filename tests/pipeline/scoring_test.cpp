@@ -25,13 +25,6 @@ using testing::Not;
 using testing::SizeIs;
 using testing::UnorderedElementsAre;
 
-TEST_F(RunnerTest, AMetricOptionConcernsTheScoresAlone) {
-  run();
-  const auto computed = run(std::string(kToyConfig) + "metrics: {splits: 7}\n");
-  EXPECT_THAT(computed, SizeIs(jobs_.of_kind("scores") + jobs_.of_kind("score_table")));
-  EXPECT_THAT(computed, Each(AnyOf(HasSubstr("scores."), HasSubstr("score_table."))));
-}
-
 TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
   run();
   const std::string paper_results = results_;

@@ -87,7 +87,7 @@ TEST_F(WithSplits, TablesOfASetWithoutSplitsHaveNoSuchColumn) {
   EXPECT_EQ(means_table(rows, metrics).columns[1], "metric");
 }
 
-TEST_F(WithSplits, AnItemInTwoSplitsFailsAlone) {
+TEST_F(WithSplits, AnItemInTwoSplitsFailsAloneAndStillHasMaps) {
   data_.write("splits.csv",
               "item,split\nant,train\nbee,test\nant,test\nbee,test\ncat,val\ndog,val\neel,val\n");
   run_splits("splits: {file: splits.csv}\n");
@@ -96,6 +96,8 @@ TEST_F(WithSplits, AnItemInTwoSplitsFailsAlone) {
                               "of them",
                               place("splits.csv"))));
   EXPECT_EQ(truth(1).saliency, (ScalarField{0, 1, 2, 3}));
+  EXPECT_EQ(toy_->decision("ground_truth", 0).verdict, Verdict::failed);
+  EXPECT_EQ(toy_->decision("map.RS", 0).verdict, Verdict::done);
 }
 
 TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {
