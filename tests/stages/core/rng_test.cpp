@@ -9,11 +9,6 @@
 namespace salbench {
 namespace {
 
-TEST(Rng, SameNamesGiveTheSameStream) {
-  Rng a(7, "RS", "52"), b(7, "RS", "52");
-  for (int i = 0; i < 100; ++i) EXPECT_EQ(a.next(), b.next());
-}
-
 // Worked out with the published reference code of SplitMix64 and xoshiro256** and FNV-1a over "stage", 0xff,
 // "item", 0xff. Every stored result that drew numbers depends on them.
 TEST(Rng, IsTheGeneratorThatWasPublished) {

@@ -133,45 +133,10 @@ TEST(PickSmoother, GivesAnyGroupWhatItsPicksAloneGive) {
   }
 }
 
-TEST(PickSmoother, AddsTheMapsOfItsParticipantsUp) {
-  const Mesh mesh = shapes::bumpy_sphere(3);
-  SmoothingOptions group;
-  group.per_participant = false;
-  const PicksOfAll picks = random_picks(9, mesh.vertices.size(), 2);
-  const PickSmoother smooth(mesh, picks, group);
-  ScalarField sum(mesh.vertices.size(), 0.0);
-  std::vector<std::size_t> everyone;
-  for (std::size_t k = 0; k < picks.size(); ++k) {
-    const ScalarField own = smooth(std::vector{k});
-    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += own[v];
-    everyone.push_back(k);
-  }
-  const ScalarField total = smooth(everyone);
-  for (std::size_t v = 0; v < sum.size(); ++v) EXPECT_NEAR(total[v], sum[v], 1e-13);
-}
-
 TEST(PickSmoother, HasNoSuchParticipant) {
   const PicksOfAll picks = {{0}, {1}};
   const PickSmoother smooth(shapes::tetrahedron(), picks);
   EXPECT_THROW(smooth(std::vector<std::size_t>{2}), std::logic_error);
-}
-
-TEST(SmoothedPicks, DoNotDependOnTheOrder) {
-  const Mesh mesh = shapes::bumpy_sphere(3);
-  PicksOfAll picks = random_picks(9, mesh.vertices.size(), 2);
-  const ScalarField before = smoothed_picks(mesh, picks);
-  std::reverse(picks.begin(), picks.end());
-  for (auto& own : picks) std::reverse(own.begin(), own.end());
-  EXPECT_EQ(smoothed_picks(mesh, picks), before);
-}
-
-TEST(SmoothedPicks, DoNotDependOnTheUnitOfLength) {
-  const Mesh mesh = shapes::bumpy_sphere(3);
-  Mesh tiny = mesh;
-  for (Vec3& v : tiny.vertices) v *= 0x1p-20;
-  const PicksOfAll picks = random_picks(9, mesh.vertices.size(), 2);
-  const ScalarField expected = smoothed_picks(mesh, picks), field = smoothed_picks(tiny, picks);
-  for (std::size_t v = 0; v < field.size(); ++v) EXPECT_NEAR(field[v], expected[v], 1e-12);
 }
 
 TEST(SmoothedPicks, WithoutASurfaceStayAtTheirVertices) {

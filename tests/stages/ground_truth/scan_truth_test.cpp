@@ -59,17 +59,6 @@ TEST(ScanGroundTruth, OfAnUnknownMeshIsUnknown) {
   EXPECT_THAT(truth.picks, IsEmpty());
 }
 
-TEST(ScanGroundTruth, OfAllVerticesIsTheGroundTruthOfTheMesh) {
-  const Mesh mesh = shapes::bumpy_sphere(3);
-  Rng rng(4, "truth", "");
-  GroundTruth truth;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) truth.saliency.push_back(rng.uniform());
-  truth.picks = {{5, 600, 2}, {640, 0}};
-  const GroundTruth seen = scan_ground_truth({mesh.vertices}, mesh, truth);
-  EXPECT_EQ(seen.saliency, truth.saliency);
-  EXPECT_EQ(seen.picks, truth.picks);
-}
-
 // The brute-force twin: every scan point against every vertex.
 TEST(ScanGroundTruth, EqualsBruteForceOnAHalfSeenMesh) {
   const Mesh mesh = shapes::bumpy_sphere(3);

@@ -120,11 +120,6 @@ TEST(SimulatedGroundTruth, MoreParticipantsLeaveTheFirstAsTheyWere) {
   EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
 }
 
-TEST(SimulatedGroundTruth, ParticipantsDiffer) {
-  const auto picks = simulated_ground_truth(shapes::bumpy_sphere(4), {}, 1, "52").picks;
-  EXPECT_EQ(std::set(picks.begin(), picks.end()).size(), picks.size());
-}
-
 TEST(SimulatedGroundTruth, SpreadsEvenlyOverAFlatSheet) {
   Mesh mesh = shapes::grid(30);  // x < 1/2 is then stretched to twice the area of the rest
   for (Vec3& v : mesh.vertices) v.x() = v.x() < 0.5 ? 2 * v.x() : v.x() + 0.5;

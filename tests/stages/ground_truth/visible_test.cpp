@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/ground_truth/visible.h"
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,23 +31,6 @@ bool is_hidden(const Mesh& mesh, std::size_t i, const Viewpoint& from) {
     if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && (from.at_infinity || t < 1)) return true;
   }
   return false;
-}
-
-TEST(VisiblePoints, OfASphereAreThoseOnTheNearSide) {
-  const Mesh sphere = shapes::sphere(3);
-  const std::vector<bool> from_afar = visible_points(sphere.vertices, sphere.faces, direction(0, 0.01, 7));
-  const Vec3 camera(0.1, 0, 3);
-  const std::vector<bool> from_near = visible_points(sphere.vertices, sphere.faces, {camera});
-  for (std::size_t i = 0; i < sphere.vertices.size(); ++i) {
-    const Vec3& v = sphere.vertices[i];
-    const double height = v.dot(Vec3(0, 0.01, 7).normalized()), above_tangent = v.dot(camera) - 1;
-    if (std::abs(height) > 0.1) {
-      EXPECT_EQ(from_afar[i], height > 0) << i;
-    }
-    if (std::abs(above_tangent) > 0.3) {
-      EXPECT_EQ(from_near[i], above_tangent > 0) << i;
-    }
-  }
 }
 
 TEST(VisiblePoints, AreThoseOfATwinThatTriesEveryFace) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What weighing by area is for: a surface meshed otherwise gets the same values.
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -96,28 +95,6 @@ TEST(ByArea, SubdividingFacesInPlaceChangesNothing) {
     else
       EXPECT_GT(change, 1e-3) << metric.name << " weighs vertices: it must see that there are more of them";
   }
-}
-
-// The field interpolated over the faces is the same at the centre of a face, and so is its integral; metrics
-// that are not linear in it see that the interpolation is sampled more finely, and no more than that.
-TEST(ByArea, TheIntegralOfALinearFieldOutlivesAnySubdivision) {
-  Marked coarse = patches();
-  for (std::size_t i = 0; i < coarse.map.size(); ++i) coarse.map[i] = 1 + coarse.mesh.vertices[i].x();
-  Marked fine = coarse;
-  Faces faces;
-  for (const auto& [a, b, c] : coarse.mesh.faces) {
-    const auto centre = static_cast<std::int32_t>(fine.mesh.vertices.size());
-    fine.mesh.vertices.push_back(
-        (coarse.mesh.vertices[at(a)] + coarse.mesh.vertices[at(b)] + coarse.mesh.vertices[at(c)]) / 3);
-    fine.map.push_back((coarse.map[at(a)] + coarse.map[at(b)] + coarse.map[at(c)]) / 3);
-    faces.insert(faces.end(), {{a, b, centre}, {b, c, centre}, {c, a, centre}});
-  }
-  fine.mesh.faces = faces;
-  const auto integral = [](const Marked& marked) {
-    const ScalarField areas = barycentric_areas(marked.mesh.vertices, marked.mesh.faces);
-    return std::inner_product(areas.begin(), areas.end(), marked.map.begin(), 0.0);
-  };
-  EXPECT_NEAR(integral(fine), integral(coarse), 1e-12 * integral(coarse));
 }
 
 TEST(ByArea, EqualAreasGiveWhatVerticesGive) {

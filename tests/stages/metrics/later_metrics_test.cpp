@@ -23,23 +23,6 @@ double value(const std::string& metric, const ScalarField& map, const GroundTrut
   return complete_score(chosen_metrics(options), map, truth, options, areas, areas).values[0];
 }
 
-TEST(ShuffledAuc, WeighsNegatives) {
-  const ScalarField map = {0, 1, 1, 2}, negatives = {3, 1, 2, 4};
-  const std::vector<std::int32_t> picked = {1, 3};
-  const double by_hand = ((3 + 1.5) + (6 + 2)) / (2 * 10.0);
-  EXPECT_DOUBLE_EQ(shuffled_auc(map, picked, negatives, vertex_measure(4)), by_hand);
-  const ScalarField twice = {3, 1, 1, 2}, areas = {1, 1, 2, 2};  // the same products
-  EXPECT_DOUBLE_EQ(shuffled_auc(map, picked, twice, area_measure(areas)), by_hand);
-}
-
-TEST(ShuffledAuc, OfEqualWeightsIsTheAucAgainstAllPoints) {
-  const ScalarField map = {0.1, 0.7, 0.7, 0.2, 0.9};
-  const std::vector<std::int32_t> picked = {1, 4};
-  const double against_all = ((2 + 1) + (4 + 0.5)) / (2 * 5.0);
-  EXPECT_DOUBLE_EQ(shuffled_auc(map, picked, ScalarField(5, 0.3), vertex_measure(5)), against_all);
-  EXPECT_EQ(shuffled_auc(ScalarField(5, 3), picked, ScalarField(5, 0.3), vertex_measure(5)), 0.5);
-}
-
 TEST(ShuffledAuc, IsUndefinedWithoutNegativesOrPicks) {
   const ScalarField map = {0, 1, 2};
   const std::vector<std::int32_t> picked = {1};

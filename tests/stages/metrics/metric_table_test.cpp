@@ -10,16 +10,6 @@
 namespace salbench {
 namespace {
 
-TEST(MetricTable, LowerIsBetterForDistancesAlone) {
-  std::vector<std::string> lower;
-  for (const Metric& metric : metric_table())
-    if (!metric.higher_is_better) lower.push_back(metric.name);
-  EXPECT_EQ(lower, (std::vector<std::string>{"kl", "kl_smoothed", "mse", "mae", "kl_keras", "kl_caffe",
-                                             "kl_pysaliency", "kl_shifted", "fne", "fpe", "wme", "kl_area",
-                                             "kl_smoothed_area", "mse_area", "mae_area", "kl_keras_area",
-                                             "kl_caffe_area", "kl_pysaliency_area", "kl_shifted_area"}));
-}
-
 TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
   MetricsOptions options;
   options.names = {"kl", "nss", "auc_judd_area"};
@@ -30,24 +20,6 @@ TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
   EXPECT_FALSE(any_by_area(chosen_metrics({})));
   options.names = {"nss", "no_such"};
   EXPECT_THROW(chosen_metrics(options), OptionError);
-}
-
-// By area, or with multiplicity: points are found or not.
-TEST(MetricTable, InterestPointsHaveNoTwins) {
-  std::vector<std::string> names;
-  for (const Metric& metric : metric_table())
-    if (metric.reads_surface) names.push_back(metric.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"fne", "fpe", "wme", "precision", "recall"}));
-}
-
-TEST(MetricTable, DensitiesAndLaterMetricsReadMapsWithoutMatching) {
-  for (const Metric& metric : metric_table()) {
-    const std::string name = metric.name.substr(0, metric.name.find('_'));
-    EXPECT_EQ(metric.matching == Matching::none, name == "kl" || name == "sim" || name == "ig" ||
-                                                     name == "cosine" || name == "sauc" ||
-                                                     metric.reads_surface)
-        << metric.name;
-  }
 }
 
 TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {

@@ -78,25 +78,6 @@ TEST(EvenThresholds, CountAsASearchDoes) {
   }
 }
 
-TEST(SampledAuc, ApproachesTheProbabilityWithManySplits) {
-  Rng rng(6, "suite", "");
-  ScalarField map(500);
-  for (double& value : map) value = rng.uniform();
-  const std::vector<std::int32_t> picked = {3, 40, 44, 100, 171, 300, 420};
-  ScalarField positives;
-  for (const std::int32_t i : picked) positives.push_back(map[static_cast<std::size_t>(i)]);
-  Draws draws(Rng(1, "scores", "x"));
-  const Measures measures(map.size(), {});
-  const Comparison comparison({.map = map, .measures = measures}, draws);
-  const Distribution& all = comparison.map_distribution(Weighting::vertex);
-  double probability = 0;
-  for (const std::int32_t i : picked) probability += all.mid[static_cast<std::size_t>(i)] / 500 / 7;
-  const std::vector<QuantileCurve> curves = {{all, Thresholds::even}, {all, Thresholds::tenths}};
-  const std::vector<double> areas = quantile_aucs(curves, positives, draws, {3000, 400});
-  EXPECT_NEAR(areas[0], probability, 0.005);
-  EXPECT_NEAR(areas[1], probability, 0.03);  // ten steps
-}
-
 TEST(SampledAuc, OfACurveDoesNotDependOnTheOthersBesideIt) {
   Rng rng(7, "suite", "");
   for (const double shift : {0.0, -2.0}) {  // below zero, thresholds do not ascend

@@ -57,26 +57,6 @@ TEST(Suite, APerfectMapHasTheBestValues) {
   }
 }
 
-TEST(Suite, ValuesOfASmallExampleByHand) {
-  const ScalarField map = {0, 1, 1, 2};
-  const GroundTruth truth{{0, 0, 1, 1}, {{3}, {3, 1}}};
-  const Values v = all_values(map, truth);
-  EXPECT_NEAR(v.at("sim"), 0.25 + 0.5, 1e-12);
-  EXPECT_NEAR(v.at("kl"), 0.5 * std::log(2) + 0, 1e-12);
-  EXPECT_NEAR(v.at("mse"), (0 + 0.25 + 0.25 + 0) / 4, 1e-12);
-  EXPECT_NEAR(v.at("mae"), (0 + 0.5 + 0.5 + 0) / 4, 1e-12);
-  EXPECT_NEAR(v.at("ig"), (std::log2(0.25 / 0.25) + std::log2(0.5 / 0.25)) / 2, 1e-12);
-  EXPECT_NEAR(v.at("ig_multiplicity"), (0 + 1 + 1) / 3.0, 1e-12);
-  EXPECT_NEAR(v.at("ig_centre"), (std::log2(0.25 / 0.2) + std::log2(0.5 / 0.4)) / 2, 1e-12);
-  EXPECT_NEAR(v.at("auc_exact"), (1 + 1 + 1 + 0.5) / 4, 1e-12);
-  EXPECT_NEAR(v.at("auc_exact_multiplicity"), (2 + 2 + 1 + 0.5) / 6, 1e-12);
-  // (0, 0), (0, 1/2), (1/2, 1), (1, 1)
-  EXPECT_NEAR(v.at("auc_judd"), 0.375 + 0.5, 1e-12);
-  EXPECT_NEAR(v.at("nss_multiplicity"), 2 / std::sqrt(0.5) / 3, 1e-12);
-  EXPECT_NEAR(v.at("nss_top20"), 0.5 / std::sqrt(0.5), 1e-12);  // both points of the largest value
-  EXPECT_NEAR(v.at("auc_top20"), (1 + 0.5 + 1 + 1) / 4, 1e-12);
-}
-
 TEST(Suite, AConstantMapIsThatOfChanceWhateverItsValue) {
   const GroundTruth truth{{0, 0.5, 1, 0, 0.2}, {{1, 2}, {2}}};
   const Values of_zero = all_values(ScalarField(5, 0.0), truth);

@@ -231,20 +231,6 @@ TEST_P(Chi2SearchVariant, KernelGivesTheBytesOfTheFormula) {
             std::count_if(distances.begin(), distances.end(), [&](float d) { return d <= distances[5]; }));
 }
 
-TEST(Chi2Kernel, IsExactToSinglePrecision) {
-  const Descriptors histograms = random_histograms(60, 1U << 20U, 4);
-  Chi2Search(histograms).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-    for (const auto& [j, distance] : nearest) {
-      double sum = 0;
-      for (std::size_t bin = 0; bin < kFpfhBins; ++bin) {
-        const double a = histograms.row(i)[bin], b = histograms.row(static_cast<std::size_t>(j))[bin];
-        if (a + b > 0) sum += (a - b) * (a - b) / (a + b);
-      }
-      ASSERT_NEAR(distance, sum, 2e-6 * sum) << i << " and " << j;
-    }
-  });
-}
-
 TEST_P(Chi2SearchVariant, PlacesAndCountTakeTheLimitAndPassOverInfinityAndNaN) {
   std::vector<float> values(48, std::numeric_limits<float>::infinity());
   values[0] = values[15] = values[16] = values[47] = 2;

@@ -209,23 +209,6 @@ TEST(CsClusters, ComeToRest) {
   EXPECT_EQ(clusters_after(30, 1e9), clusters_after(1, 1));
 }
 
-// Number of clusters with points on both sides of x = 13.37.
-int mixed_clusters(const std::vector<Vec3>& points, const Clusters& clusters) {
-  std::vector<std::set<bool>> sides(clusters.count);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    sides[static_cast<std::size_t>(clusters.of_point[i])].insert(points[i].x() < 13.37);
-  return static_cast<int>(std::ranges::count_if(sides, [](const auto& side) { return side.size() == 2; }));
-}
-
-TEST(CsClusters, RespectTheBordersOfTheDescriptors) {
-  const std::vector<Vec3> points = lattice(30, 0.3);
-  const Descriptors two_sides = two_sided(points);
-  CsOptions options = options_for(60);
-  EXPECT_EQ(mixed_clusters(points, cs_clusters(points, two_sides, 1, 20, options)), 0);
-  options.descriptor_weight = 0;
-  EXPECT_GT(mixed_clusters(points, cs_clusters(points, two_sides, 1, 20, options)), 3);
-}
-
 TEST(CsClusters, StayOnTheirSideOfAGap) {
   std::vector<Vec3> points = lattice(25, 0.4);
   const std::size_t half = points.size();
@@ -292,14 +275,6 @@ TEST(CsClusters, KeepTheVoxelsWhole) {
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_EQ(cluster_of_voxel.try_emplace(voxel_of[i], clusters.of_point[i]).first->second,
               clusters.of_point[i]);
-}
-
-TEST(CsClusters, DoNotDependOnTheUnitOfLength) {
-  std::vector<Vec3> points = shapes::bumpy_sphere(4).vertices;
-  const Descriptors descriptors = random_descriptors(points.size());
-  const Clusters clusters = cs_clusters(points, descriptors, 0.1, 1, options_for(100));
-  for (Vec3& p : points) p *= 1024;  // exact
-  EXPECT_EQ(cs_clusters(points, descriptors, 102.4, 1024, options_for(100)).of_point, clusters.of_point);
 }
 
 TEST(CsClusters, OfNoMorePointsThanClustersAreThePoints) {

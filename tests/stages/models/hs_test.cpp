@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/hs.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -138,27 +137,6 @@ TEST(OneAgainstRest, OfTwoWhoPickTheSameIsPerfect) {
   EXPECT_GT(value_of(scores, "nss"), 5);
 }
 
-TEST(OneAgainstRest, OfTwoWhoPickApartIsNoBetterThanChance) {
-  const Mesh mesh = shapes::bumpy_sphere(4);
-  const GroundTruth truth = truth_of({{0, 1, 2, 3}, {4, 5, 6, 7}});
-  const Scores scores = leave_one_out(mesh, truth, matching_scorer(mesh, truth));
-  EXPECT_LT(value_of(scores, "auc_exact"), 0.5);
-  EXPECT_LT(value_of(scores, "nss"), 0);
-  EXPECT_LT(value_of(scores, "cc"), 0);
-  EXPECT_DOUBLE_EQ(value_of(scores, "lcc"), -value_of(scores, "cc"));
-}
-
-TEST(OneAgainstRest, DoesNotDependOnTheOrderOfParticipants) {
-  const Mesh mesh = shapes::bumpy_sphere(4);
-  GroundTruth truth = simulated(mesh, 7);
-  const GroupScorer scorer = matching_scorer(mesh, truth);
-  const Scores before = leave_one_out(mesh, truth, scorer);
-  std::rotate(truth.picks.begin(), truth.picks.begin() + 3, truth.picks.end());
-  std::swap(truth.picks[0], truth.picks[1]);
-  for (auto& own : truth.picks) std::reverse(own.begin(), own.end());
-  expect_near(leave_one_out(mesh, truth, scorer), before, 1e-12);
-}
-
 TEST(OneAgainstRest, AParticipantWithoutPicksScoresAsAConstantMapAndIsNotPredicted) {
   const Mesh mesh = shapes::bumpy_sphere(3);
   const GroundTruth truth = truth_of({{0, 1}, {}});
@@ -261,25 +239,6 @@ TEST(HumanCurve, IsTheMeanOverTheDraws) {
   EXPECT_DOUBLE_EQ(curve[1].values.at(0), (8 + 16 + 32) / 3.0);
   EXPECT_EQ(curve[1].n_points, 23);
   EXPECT_EQ(curve[1].n_picks, 4);
-}
-
-TEST(HumanCurve, OfTwoIsOneAgainstTheOther) {
-  const Mesh mesh = shapes::bumpy_sphere(4);
-  const GroundTruth truth = truth_of({{0, 1, 2, 3, 100}, {0, 1, 2, 4}});
-  // Whoever predicts whom in a draw: the correlation is symmetric.
-  const GroupScorer scorer = matching_scorer(mesh, truth);
-  const HumanCurve curve = human_curve(mesh, truth, {}, scorer, draws());
-  ASSERT_THAT(curve, SizeIs(1));
-  EXPECT_NEAR(value_of(curve[0], "cc"), value_of(leave_one_out(mesh, truth, scorer), "cc"), 1e-12);
-}
-
-TEST(HumanCurve, MoreSimulatedPeopleAgreeBetter) {
-  const Mesh mesh = shapes::bumpy_sphere(5, 0.35);
-  const GroundTruth truth = simulated(mesh, 24);
-  const HumanCurve curve = human_curve(mesh, truth, {}, matching_scorer(mesh, truth), draws());
-  ASSERT_THAT(curve, SizeIs(11));
-  for (const std::size_t n : {2U, 4U, 6U, 8U, 10U})
-    EXPECT_GT(value_of(curve[n], "cc"), value_of(curve[n - 2], "cc")) << "n " << n + 1;
 }
 
 TEST(HumanCurve, LeavesOutDrawsAgainstPeopleWithoutPicks) {

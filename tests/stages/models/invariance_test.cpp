@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What of a map depends on where the shape lies, how it is turned, how large it is and how its points are
 // numbered: nothing, but for what is said here. docs/invariance.md has the same for real meshes, in scores.
+// And nothing of it depends on the number of threads.
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "stages/core/field.h"
 #include "tests/support/mesh_models.h"
 #include "tests/support/shapes.h"
+#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -79,6 +81,11 @@ TEST(Invariance, HalfTurnsAboutTheAxesAreExact) {
       for (std::size_t i = 0; i < maps[m].size(); ++i) ASSERT_NEAR(turned[m][i], maps[m][i], 1e-12);
     }
   }
+}
+
+TEST(Invariance, ToTheNumberOfThreadsIsExact) {
+  const Mesh mesh = landscape();
+  same_on_any_number_of_threads([&] { return maps_of(mesh); });
 }
 
 // Mean difference between min-max-normalised maps. [model][frame], in the order of the tables.

@@ -12,7 +12,6 @@
 #include "stages/core/field.h"
 #include "tests/stages/models/surfaces.h"
 #include "tests/support/options.h"
-#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -82,55 +81,9 @@ TEST(Lvj, EqualsTheFormulasWrittenOut) {
                   Pointwise(DoubleNear(1e-9), lvj_written_out(mesh, epsilon)));
 }
 
-TEST(Lvj, ContrastOfAConstantCurvatureIsNone) {
-  const Mesh sphere = shapes::sphere(4);
-  const ScalarField constant(sphere.vertices.size(), 1.0);
-  for (const ScalarField& contrast : centre_surround(sphere.vertices, constant, 0.02))
-    EXPECT_THAT(contrast, Each(DoubleNear(0, 1e-12)));
-}
-
-TEST(Lvj, ASphereHasNoContrastButThatOfItsFaces) {
-  // Curvature is 1: what differs are the vertices with five faces and those with six.
-  const Mesh sphere = shapes::sphere(5);
-  const ScalarField curvature = mean_curvature(sphere.vertices, sphere.faces, CurvatureMethod::taubin);
-  for (const ScalarField& contrast : centre_surround(sphere.vertices, curvature, 0.003 * 2 * std::sqrt(3)))
-    EXPECT_THAT(contrast, Each(DoubleNear(0, 0.005)));
-}
-
 TEST(Lvj, AllVerticesOfARegularSolidAreAlike) {
   EXPECT_THAT(lvj(shapes::sphere(0)), Each(0));
   EXPECT_THAT(lvj(shapes::tetrahedron()), Each(0));
-}
-
-TEST(Lvj, IsHighestAtABump) {
-  const Mesh mesh = shapes::sphere_with_bump(5, 0.05, 0.1);
-  const ScalarField saliency = lvj(mesh);
-  const auto top =
-      static_cast<std::size_t>(std::max_element(saliency.begin(), saliency.end()) - saliency.begin());
-  EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.3));
-}
-
-TEST(Lvj, DoesNotDependOnPlaceOrSize) {
-  const Mesh mesh = shapes::bumpy_sphere(4);
-  Mesh moved = mesh;
-  for (Vec3& v : moved.vertices) v = 1e-3 * v + Vec3(1, 2, 3);
-  EXPECT_THAT(lvj(moved), Pointwise(DoubleNear(1e-6), lvj(mesh)));
-}
-
-// The diagonal of the bounding box is all that a rotation changes.
-TEST(Lvj, TurnsWithTheShapeUpToTheBoundingBox) {
-  const Mesh mesh = shapes::bumpy_sphere(4);
-  const auto diagonal = [](const Mesh& m) {
-    Vec3 low = m.vertices[0], high = low;
-    for (const Vec3& v : m.vertices) {
-      low = low.cwiseMin(v);
-      high = high.cwiseMax(v);
-    }
-    return (high - low).norm();
-  };
-  const Mesh moved = shapes::moved(mesh, 2);
-  const double same = 0.003 * 2 * diagonal(mesh) / diagonal(moved);
-  EXPECT_THAT(lvj(moved, {.epsilon = same}), Pointwise(DoubleNear(1e-6), lvj(mesh)));
 }
 
 TEST(LvjSuppression, OnePeakCountsAndManyEqualOnesDoNot) {
@@ -153,11 +106,6 @@ TEST(Lvj, ALargeSurfaceIsSimplified) {
   EXPECT_NE(all, coarse);
   const auto top = static_cast<std::size_t>(std::max_element(coarse.begin(), coarse.end()) - coarse.begin());
   EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.3));
-}
-
-TEST(Lvj, IsTheSameOnAnyNumberOfThreads) {
-  for (const std::int32_t faces : {60000, 3000})
-    same_on_any_number_of_threads([&] { return lvj(shapes::bumpy_sphere(4), {.faces = faces}); });
 }
 
 TEST(LvjDegenerate, NoFaces) { EXPECT_THAT(lvj({shapes::random_cloud(30, 1), {}}), Each(0)); }

@@ -9,7 +9,6 @@
 
 #include "stages/core/errors.h"
 #include "tests/stages/models/surfaces.h"
-#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -26,27 +25,10 @@ TEST(Mc, OfASphereOfAnySizeIsOne) {  // the radius is the unit
   EXPECT_THAT(mc(shapes::moved(shapes::sphere(4), 40)), Each(DoubleNear(1, 0.03)));
 }
 
-TEST(Mc, DoesNotDependOnPlaceOrientationOrSize) {
-  const Mesh mesh = shapes::bumpy_sphere(3);
-  EXPECT_THAT(mc(shapes::moved(mesh, 1e-3)), Pointwise(DoubleNear(1e-6), mc(mesh)));
-}
-
 TEST(Mc, IsAMagnitude) {
   Mesh inside_out = shapes::bumpy_sphere(3);
   for (Triangle& face : inside_out.faces) std::swap(face[0], face[1]);
   EXPECT_THAT(mc(inside_out), Pointwise(DoubleNear(1e-9), mc(shapes::bumpy_sphere(3))));
-}
-
-TEST(Mc, IsHighestOnABump) {
-  const Mesh mesh = shapes::sphere_with_bump(4);
-  const ScalarField saliency = mc(mesh);
-  const auto top =
-      static_cast<std::size_t>(std::max_element(saliency.begin(), saliency.end()) - saliency.begin());
-  EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.1));
-}
-
-TEST(Mc, IsTheSameOnAnyNumberOfThreads) {
-  same_on_any_number_of_threads([] { return mc(shapes::bumpy_sphere(5)); });
 }
 
 TEST(Mc, TaubinsCurvatureIsAnOption) {

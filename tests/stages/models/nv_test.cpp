@@ -12,7 +12,6 @@
 #include "stages/normals/normals.h"
 #include "tests/stages/models/surfaces.h"
 #include "tests/support/options.h"
-#include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
@@ -70,17 +69,6 @@ TEST(Nv, OfAPointOutOfReachIsZero) {
   const ScalarField variation = nv_saliency(points, normals, {});
   EXPECT_EQ(variation.back(), 0);
   EXPECT_GT(variation.front(), 0.4);
-}
-
-TEST(Nv, DoesNotDependOnPlaceOrientationOrSize) {
-  const Mesh mesh = shapes::bumpy_sphere(3);
-  EXPECT_THAT(nv(shapes::moved(mesh, 1e3), {.radius = 0.3}),
-              Pointwise(DoubleNear(1e-9), nv(mesh, {.radius = 0.3})));
-}
-
-TEST(Nv, DoesNotDependOnThreads) {
-  const Mesh mesh = shapes::bumpy_sphere(4);
-  same_on_any_number_of_threads([&] { return nv(mesh); });
 }
 
 TEST(Nv, RefusesARadiusOfZero) { EXPECT_EQ(wrong_field(NvOptions{.radius = 0}), "radius"); }

@@ -172,21 +172,6 @@ TEST(PictureOfMesh, ClipSpaceHoldsTheShapeFromItsNearestToItsFarthestPoint) {
   EXPECT_LE(farthest, 1);
 }
 
-TEST(PictureOfMesh, DepthOfASphereIsTheAnalyticOne) {
-  const Picture picture = picture_of_mesh(shapes::sphere(5), kSmall, kRandom);
-  const Projection projection(picture);
-  const Vec3 camera = projection.camera();
-  for_each_seen(picture, [&](std::size_t pixel, int column, int row) {
-    if (picture.coverage[pixel] != 255) return;
-    const Vec3 ray = projection.point(column + 0.5, row + 0.5, 1) - camera;  // of depth 1
-    const double a = ray.squaredNorm(), b = ray.dot(camera), c = camera.squaredNorm() - 1;
-    if (b * b < a * c) return;  // between the sphere and its mesh
-    const double depth = (-b - std::sqrt(b * b - a * c)) / a;
-    const double slant = std::sqrt(b * b - a * c) / std::sqrt(a);  // cosine at the surface
-    ASSERT_NEAR(static_cast<double>(picture.depth[pixel]), depth, 1.5e-3 / slant);
-  });
-}
-
 TEST(PictureOfMesh, AClosedShapeHasNoHolesInItsOutline) {
   // A box from the front: its edges pass through the centres of cells.
   const PictureOptions front{.size = 121, .azimuth = 0, .elevation = 0, .margin = 0.1};
@@ -310,16 +295,6 @@ TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
   EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("finite")));
   broken.vertices[2].y() = 1e200;
   EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("too large")));
-}
-
-TEST(PictureOptions, NameTheFieldThatIsWrong) {
-  using Options = PictureOptions;
-  EXPECT_EQ(wrong_field(Options{}), "");
-  EXPECT_EQ(wrong_field(Options{.size = 5}), "size");
-  EXPECT_EQ(wrong_field(Options{.elevation = 90}), "elevation");
-  EXPECT_EQ(wrong_field(Options{.field_of_view = 180}), "field_of_view");
-  EXPECT_EQ(wrong_field(Options{.margin = 0.5}), "margin");
-  EXPECT_EQ(wrong_field(Options{.occlusion_reach = 0}), "occlusion_reach");
 }
 
 template <class Number>

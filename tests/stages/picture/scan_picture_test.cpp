@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of scans; the camera and the light are those of meshes (picture_test.cpp).
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -98,13 +96,6 @@ TEST(PictureOfScan, IsAsBrightAsTheSurface) {
     darkened += picture.shade[i] < bare.shade[i] - 10 ? 1 : 0;
   EXPECT_LT(darkened, 30) << "discs do not shadow each other";
   EXPECT_GE(*std::min_element(bare.shade.begin(), bare.shade.end()), 255 * PictureOptions().ambient - 1);
-}
-
-TEST(PictureOfScan, IsTheSameAgain) {
-  const Picture one = picture_of(scanned_sphere(), {}), other = picture_of(scanned_sphere(), {});
-  EXPECT_EQ(one.primitive, other.primitive);
-  EXPECT_EQ(one.depth, other.depth);
-  EXPECT_EQ(one.shade, other.shade);
 }
 
 TEST(PictureOfScan, RefusesWhatCannotBeSeen) {

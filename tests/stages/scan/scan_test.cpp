@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -90,17 +89,6 @@ Axes axes_of(const Scan& scan, const Mesh& mesh, const ScanOptions& options) {
   return {forward, right, right.cross(forward)};
 }
 
-// The image plane's coordinates of a point in steps: whole numbers for the points of a scan.
-struct Pixel {
-  double x, y;
-};
-Pixel pixel_of(const Vec3& point, const Scan& scan, const Mesh& mesh, const ScanOptions& options) {
-  const Axes axes = axes_of(scan, mesh, options);
-  const Vec3 ray = point - scan.camera;
-  const double unit = ray.dot(axes.forward) * std::tan(options.step_degrees * std::numbers::pi / 180);
-  return {ray.dot(axes.right) / unit, ray.dot(axes.up) / unit};
-}
-
 TEST(SimulateScan, CamerasStandAtTheCornersOfAnIcosahedronInTheOrderOfTheBenchmark) {
   const Mesh mesh = two_bodies();
   const double distance = 3 * std::sqrt(surface_area(mesh));
@@ -142,69 +130,6 @@ TEST(SimulateScan, EveryPointLiesOnTheMeshWhereverItStandsAndWhateverItsUnit) {
         ASSERT_LT(distance_to_mesh(scan.points[i], mesh), tolerance) << "view " << view << " scale " << scale;
     }
   }
-}
-
-TEST(SimulateScan, PointsComeRowByRowOnAGridThroughTheCentroid) {
-  const Mesh mesh = transformed(shapes::bumpy_sphere(3), 2, {3, 1, -4});
-  const ScanOptions options;
-  for (int view = 0; view < kViews; ++view) {
-    const Scan scan = simulate_scan(mesh, view, options);
-    bool has_central_ray = false;
-    Pixel last{0, std::numeric_limits<double>::infinity()};
-    for (const Vec3& p : scan.points) {
-      const Pixel pixel = pixel_of(p, scan, mesh, options);
-      ASSERT_NEAR(pixel.x, std::round(pixel.x), 1e-3);
-      ASSERT_NEAR(pixel.y, std::round(pixel.y), 1e-3);
-      if (std::round(pixel.y) == std::round(last.y))
-        ASSERT_GT(std::round(pixel.x), std::round(last.x));
-      else
-        ASSERT_LT(pixel.y, last.y);
-      has_central_ray = has_central_ray || std::hypot(pixel.x, pixel.y) < 1e-3;
-      last = pixel;
-    }
-    EXPECT_TRUE(has_central_ray) << "view " << view;
-  }
-}
-
-TEST(SimulateScan, TheAxisThatPointsUpOrdersThePointsAndMovesNone) {
-  const Mesh mesh = two_bodies();
-  const auto sorted = [&](int view, UpAxis up) {
-    std::vector<Vec3> points = simulate_scan(mesh, view, {.up = up}).points;
-    std::sort(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) {
-      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-    });
-    return points;
-  };
-  for (int view = 0; view < kViews; ++view) {
-    const auto y = sorted(view, UpAxis::y), z = sorted(view, UpAxis::z);
-    ASSERT_NEAR(static_cast<double>(y.size()), static_cast<double>(z.size()), 3) << view;  // along an outline
-    const KdTree tree(y);
-    std::size_t elsewhere = 0;
-    for (const Vec3& p : z)
-      if ((y[static_cast<std::size_t>(tree.nearest(p))] - p).norm() > 1e-6) ++elsewhere;
-    EXPECT_LE(elsewhere, 3U) << view;
-  }
-}
-
-TEST(SimulateScan, CountsTheRaysWithinTheOutlineOfASphere) {
-  // tan of the outline's angle over the step is the outline's radius in rays.
-  const double angle = std::asin(1 / (3 * std::sqrt(4 * std::numbers::pi)));
-  const double rays = std::tan(angle) / std::tan(0.125 * std::numbers::pi / 180);
-  const double expected = std::numbers::pi * rays * rays;
-  for (const int levels : {3, 5})  // whatever the resolution of the mesh
-    for (const int view : {1, 6, 11})
-      EXPECT_NEAR(static_cast<double>(simulate_scan(shapes::sphere(levels), view).points.size()), expected,
-                  0.015 * expected)
-          << levels << " levels, view " << view;
-}
-
-TEST(SimulateScan, AllViewsTogetherSeeAConvexMesh) {
-  const Mesh mesh = shapes::sphere(4);
-  const KdTree tree(mesh.vertices);
-  std::set<std::int32_t> seen;
-  for (int view = 0; view < kViews; ++view)
-    for (const Vec3& p : simulate_scan(mesh, view).points) seen.insert(tree.nearest(p));
-  EXPECT_GE(static_cast<double>(seen.size()), 0.9 * static_cast<double>(mesh.vertices.size()));
 }
 
 TEST(SimulateScan, FollowsTheMeshesUnitExactly) {
