@@ -62,13 +62,6 @@ TEST(ShapeFile, VtpOfAPointIsAVertexCell) {
                              "CAAAAAAAAAABAAAAAAAAAA==</DataArray>"));
 }
 
-TEST(ShapeFile, VtpOfAMeshHasNoVertexCells) {
-  const Mesh mesh = shapes::tetrahedron();
-  const std::string xml = shape_text({mesh.vertices, {}, mesh.faces}, ShapeFormat::vtp);
-  EXPECT_THAT(xml, HasSubstr("NumberOfVerts=\"0\""));
-  EXPECT_THAT(xml, HasSubstr("NumberOfPolys=\"4\""));
-}
-
 TEST(ShapeFile, FieldsMustFitThePoints) {
   EXPECT_THROW(shape_text({kPoint, {}, {}, {{"f", {1, 2}}}}, ShapeFormat::ply), std::logic_error);
 }
