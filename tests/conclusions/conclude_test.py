@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """conclude() on folders: which files it reads and writes, what it prints, how it fails; and how a table is added."""
 
-import ast
 import contextlib
 import io
 import json
@@ -22,7 +21,6 @@ from salbench.conclusions import Table, folders, tables
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
 
-PACKAGE = Path(conclusions.__file__).parent
 SIMULATED = "SIMULATED participants: made up"
 RUN = """results: finished
 metrics:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data sets as arrays: every layout in miniature, beside what the program's artefacts hold, and in other processes."""
+"""Data sets as arrays, beside what the program's artefacts hold, and in other processes. Layouts: tests/datasets."""
 
 import gc
 import logging
@@ -16,7 +16,6 @@ import unittest
 
 import h5py
 import numpy as np
-import scipy.io
 
 import salbench.datasets.sets
 import toy
@@ -102,65 +101,12 @@ class Layouts(Folder):
                 self.assertEqual(shape.viewers, ())
                 self.assertIsNone(shape.normals)
 
-    def test_gs(self):
-        self.write("off/1.off", off())
-        self.write("GS/Saliency/1.val", column(VALUES))
-        self.write("GS/RawData/1_0.pid", "0\n3\n")
-        shape = salbench.Dataset("gs", self.root)["1"]
-        self.assert_equal(shape.ground_truth, VALUES)
-        self.assertEqual(shape.picks.tolist(), [0, 3])
-        self.assertEqual(shape.category, "human")
-
-    def test_princeton(self):
-        self.write("MeshsegBenchmark-1.0/data/off/400.off", off())
-        self.write("SchellingData/Distributions/400.val", column(VALUES))
-        shape = salbench.Dataset("princeton", self.root)["400"]
-        self.assert_equal(shape.ground_truth, VALUES)
-        self.assertEqual(shape.category, "four-legged")
-
     def test_folder_without_ground_truth(self):
         self.write("horse.off", off())
         shape = salbench.Dataset("folder", self.root)["horse"]
         self.assert_wedge(shape)
         self.assertIsNone(shape.ground_truth)
         self.assertEqual((shape.picks.size, shape.participants, shape.mask.all()), (0, (), True))
-
-    def test_dutagaci(self):
-        self.write("MODEL_DATASET/ant.off", off())
-        self.write("GROUND_TRUTH_B/readme.txt", "")
-        cells = np.empty((10, 11), object)
-        for i, j in np.ndindex(cells.shape):
-            cells[i, j] = np.array([[1.0, 3.0, 8.0]]) if (i, j) == (2, 7) else np.array([[2.0]])
-        scipy.io.savemat(self.root / "GROUND_TRUTH_B/ant.mat", {"GT_POINTS": cells})
-        shape = salbench.Dataset("dutagaci", self.root)[0]
-        self.assertEqual([picks.tolist() for picks in shape.participants], [[0, 2, 7]])
-        self.assertTrue(np.isfinite(shape.ground_truth).all())  # smoothed from them
-
-    def test_3dva_as_published_has_a_shape_for_each_view(self):
-        self.write("3DModels-Simplif/bunny.obj", obj())
-        for view, hidden in (("300", [0]), ("413", [1, 2])):
-            self.write(f"FixationMaps/bunny_{view}norm.txt", column(VALUES))
-            self.write(f"CentricityAndVisibilityMaps/bunny_{view}_visibility.txt",
-                       column(~np.isin(np.arange(len(VALUES)), hidden)))
-        dataset = salbench.Dataset("3dva", self.root)
-        self.assertEqual(dataset.ids, ("bunny_300", "bunny_413"))
-        self.assertEqual(np.flatnonzero(~dataset["bunny_413"].mask).tolist(), [1, 2])
-        self.assert_equal(dataset["bunny_300"].ground_truth[1:], VALUES[1:])
-        self.assertEqual(salbench.Dataset("3dva", self.root, items=["bunny"]).ids, dataset.ids)
-
-    def test_3dva_averages_what_views_show(self):
-        self.write("Meshes/bunny.off", off())
-        front, back = VALUES + 1, VALUES + 2
-        front[:2] = -1
-        back[1:3] = -1
-        self.write("FixationMaps/bunny_a.txt", column(front))
-        self.write("FixationMaps/bunny_b.txt", column(back))
-        shape = salbench.Dataset("3dva", self.root)[0]
-        expected = VALUES + 1.5
-        expected[:3] = [back[0], np.nan, front[2]]
-        self.assert_equal(shape.ground_truth, expected)
-        self.assertEqual(np.flatnonzero(~shape.mask).tolist(), [1])
-        self.assertEqual(shape.viewers, ())
 
     def test_sal3d_as_published_is_of_clouds_in_splits(self):
         for name in ("cat", "dog", "elk"):
@@ -182,35 +128,6 @@ class Layouts(Folder):
         with self.assertRaisesRegex(KeyError, "did you mean 'test'"):
             salbench.Dataset("sal3d", self.root, split="tests")
 
-    def test_sal3d_on_the_vertices_of_its_meshes(self):
-        self.write("Meshes/cat.obj", obj())
-        rows = [" ".join(map(repr, map(float, [*point, 0, 0, 1, value, 0]))) for point, value in zip(POINTS, VALUES)]
-        self.write("Gaze/cat.txt", "\n".join(rows))
-        np.testing.assert_allclose(salbench.Dataset("sal3d_meshes", self.root)[0].ground_truth, VALUES)
-
-    def test_zaragoza(self):
-        self.write("Meshes/carter.off", off())
-        self.write("Distributions/carter.val", column(VALUES))
-        self.write("RawData/carter_0.pid", "3\n1\n")
-        shape = salbench.Dataset("zaragoza", self.root)["carter"]
-        self.assert_equal(shape.ground_truth, VALUES)
-        self.assertEqual(shape.participants[0].tolist(), [3, 1])
-
-    def test_sal3d(self):
-        self.write("Models_3D/cat.obj", obj())
-        rows = [" ".join(map(repr, map(float, [*point, 0, 0, 1, value, 0]))) for point, value in zip(POINTS, VALUES)]
-        self.write("dataset_train/cat.txt", "\n".join(rows))
-        shape = salbench.Dataset("sal3d", self.root)["cat"]
-        self.assert_wedge(shape)
-        np.testing.assert_allclose(shape.ground_truth, VALUES)
-
-    def test_meshmamba(self):
-        for kind, value in (("non_texture", 3.0), ("rgb_texture", 5.0)):
-            self.write(f"MeshFile/{kind}/Apple_Red/Apple_v01.obj", obj())
-            self.write(f"SaliencyMap/{kind}/Apple_v01.csv", column([value] * len(FACES)))
-        for layout, value in (("meshmamba", 3.0), ("meshmamba_textured", 5.0)):
-            np.testing.assert_allclose(salbench.Dataset(layout, self.root)["Apple_v01"].ground_truth, value)
-
     def test_a_description_of_ones_own_with_viewers(self):
         self.write("off/cat.off", off())
         for viewer in range(3):
@@ -221,11 +138,6 @@ class Layouts(Folder):
         self.assertEqual(len(shape.viewers), 3)
         self.assert_equal(shape.viewers[2], VALUES + 2)
         self.assert_equal(shape.ground_truth, VALUES + 1)
-
-    def test_every_description_of_the_program_has_a_test_here(self):
-        tested = {"automatic", "schelling", "gs", "princeton", "folder", "dutagaci", "3dva", "sal3d", "sal3d_meshes",
-                  "meshmamba", "meshmamba_textured", "zaragoza", "hdf5"}
-        self.assertEqual(set(salbench.datasets.sets.LAYOUTS), tested)
 
 
 class Clouds(Folder):

@@ -55,16 +55,6 @@ class Layers(unittest.TestCase):
             nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
             self.assertFalse([node.lineno for node in nodes if isinstance(node, ast.ImportFrom) and node.level], path)
 
-    def test_breaches_are_found(self):
-        for part, text, expected in (("conclusions", "from salbench.datasets import read", [(1, "datasets")]),
-                                     ("conclusions", "from salbench import _core", []),
-                                     ("conclusions", "import salbench", [(1, "salbench")]),
-                                     ("datasets", "def read():\n    from salbench import conclusions", [(2, "conclusions")]),
-                                     ("leaderboard", "import salbench.report.latex as l\nfrom salbench.conclusions import conclude", [(1, "report")]),
-                                     ("report", "from salbench.report import latex\nfrom salbench import pages, stats", [(2, "stats")]),
-                                     ("", "import salbench.report", [(1, "report")]), ("", "from salbench.conclusions import words", [])):
-            self.assertEqual(list(breaches(part, text)), expected, text)
-
 
 if __name__ == "__main__":
     unittest.main()

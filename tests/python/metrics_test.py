@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Metrics as functions: the bytes of the program's tables, and other implementations on random cases."""
+"""Metrics as functions: the bytes of the program's tables. Beside other implementations: tests/stages/metrics/metrics_reference.py."""
 
 import math
 import pathlib
-import sys
 import tempfile
 import unittest
-import warnings
 
 import h5py
 import numpy as np
 
 import salbench
 import toy
-
-sys.path.insert(0, str(toy.ROOT / "tests/stages/metrics"))
-import interest_reference  # noqa: E402
-import metrics_reference  # noqa: E402
 
 NAMES = [row.name for row in salbench.metrics.table()]
 SEED = 2016
@@ -82,86 +76,6 @@ class Tables(unittest.TestCase):
             compared = self.compare(toy.meshes(f"{folder}/meshes"), [], "dataset: {layout: folder, participants: simulated}\n"
                                     "scan: {step_degrees: 1}\n")
         self.assertEqual(compared, 3 * 13 * 2 * len(NAMES))
-
-    def test_real_meshes(self):
-        data = toy.schelling()
-        if data is None:
-            self.skipTest("SALBENCH_DATA names no real data")
-        items = "9,47,52,58,74,114,124,125,185,200,214,237,257,260,309,341,353,367,386"  # those with ground truth
-        compared = self.compare(data, ["--items", items], "dataset: {scans: false}\n")
-        self.assertEqual(compared, 19 * 2 * len(NAMES))
-
-
-class RandomCases(unittest.TestCase):
-    """SciPy, scikit-learn and NumPy, with ties, masks and degenerate maps (tests/stages/metrics/metrics_reference.py)."""
-
-    def case(self, rng, number):
-        n = int(rng.integers(5, 60))
-        levels = rng.choice([2, 4, 1000])
-        case = {
-            "item": str(number),
-            "map": rng.integers(0, levels, n) / levels,
-            "saliency": rng.integers(0, levels, n) / levels,
-            "areas": rng.random(n) * (rng.random(n) < 0.9),
-            "points": rng.normal(size=(n, 3)),
-            "picks": np.sort(rng.integers(0, n, rng.integers(1, n))),
-            "faces": rng.integers(0, n, (int(rng.integers(1, 2 * n)), 3)),
-            "negatives": rng.random(n) * (rng.random(n) < 0.7),
-            "splits": 3, "thresholds": 5, "constant_nss": float(rng.integers(0, 2)),
-            "floor": rng.choice([0, 0.01, 0.3]), "peak_radius": rng.choice([0, 0.7]), "peak_height": rng.choice([0, 0.5, 1]),
-            "tolerance": rng.choice([0.03, 0.4]),
-        }
-        if number % 10 == 0:
-            case["map"] = np.full(n, rng.random())
-        if number % 15 == 1:
-            case["saliency"] = np.full(n, rng.integers(0, 2) * 0.5)
-        if number % 7 == 2:
-            case["picks"] = case["picks"][:0]
-        mask = np.ones(n, bool) if number % 3 else rng.random(n) < 0.7
-        mask[:2] = True
-        return case, mask
-
-    def expected(self, case, mask):
-        """What the reference says of the points that count, of a map that was normalised before."""
-        numbers = np.cumsum(mask) - 1
-        low, high = case["map"].min(), case["map"].max()
-        seen = dict(case)
-        seen["map"] = ((case["map"] - low) / (high - low) if high > low else case["map"])[mask]
-        if seen["map"].min() == seen["map"].max():
-            seen["map"] = np.full(mask.sum(), 0.5)
-        distance = np.linalg.norm(case["points"] - case["points"].mean(axis=0), axis=1)
-        seen["centre_bias"] = (distance / distance.max())[mask]
-        seen["picks"] = numbers[case["picks"][mask[case["picks"]]]]
-        for name in ("saliency", "areas", "negatives", "points"):
-            seen[name] = case[name][mask]
-        edges = interest_reference.edges_of(case["faces"])
-        seen["edges"] = numbers[edges[mask[edges].all(axis=1)]]
-        seen["radius"], seen["diameter"] = interest_reference.extent(case["points"])
-        values = metrics_reference.reference(seen, False)
-        if seen["areas"].sum() > 0:
-            values.update({f"{name}_area": value for name, value in metrics_reference.reference(seen, True).items()})
-        return values
-
-    def test_a_thousand(self):
-        stream = metrics_reference.Rng
-        metrics_reference.Rng = lambda seed, stage, item: stream(seed, "scores.", item)
-        self.addCleanup(setattr, metrics_reference, "Rng", stream)
-        rng = np.random.default_rng(7)
-        largest = 0.0
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            for number in range(1000):
-                case, mask = self.case(rng, number)
-                found = salbench.score(
-                    case["map"], case["saliency"], case["picks"], areas=case["areas"], points=case["points"],
-                    faces=case["faces"], negatives=case["negatives"], mask=mask, metrics="all", seed=(1, "", case["item"]),
-                    **{name: case[name] for name in ("splits", "thresholds", "constant_nss", "floor", "peak_radius",
-                                                     "peak_height", "tolerance")})
-                for name, value in self.expected(case, mask).items():
-                    off = metrics_reference.difference(found[name], value)
-                    largest = max(largest, off)
-                    self.assertLessEqual(off, 1e-9, f"case {number}: {name} is {found[name]!r}, not {value!r}")
-        print(f"largest difference {largest:.1e}", file=sys.stderr)
 
 
 class Arguments(unittest.TestCase):

@@ -2,7 +2,6 @@
 """Models, and the stages before them, as functions: the bytes of the program's artefacts. Conclusions: its tables."""
 
 import inspect
-import io
 import os
 import pathlib
 import tempfile
@@ -150,22 +149,6 @@ class Toys(Artefacts, unittest.TestCase):
         cls.begin(toy.meshes(pathlib.Path(folder.name) / "meshes", 2), [], "folder", "simulated")
 
 
-class Real(Artefacts, unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        data = toy.schelling()
-        if data is None:
-            raise unittest.SkipTest("SALBENCH_DATA names no real data")
-        cls.begin(data, ["--items", "47"], "schelling", "measured")
-
-    def test_picks_of_the_study(self):
-        """The saliency that it published was made from them by an older program: as near as digits allow."""
-        for item in self.meshes:
-            points, faces = self.mesh(item)
-            found = salbench.smooth_picks(points, faces, self.picks(item, "ground_truth"))
-            self.assertGreater(np.corrcoef(found, self.file[item]["ground_truth/saliency"][:])[0, 1], 0.99)
-
-
 class Points(unittest.TestCase):
     """Point clouds, through files and in memory."""
 
@@ -203,24 +186,6 @@ class Functions(unittest.TestCase):
         return np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar) + 0 * around],
                         axis=-1).reshape(-1, 3)
 
-    def test_areas_sum_to_the_surface(self):
-        areas = salbench.vertex_areas(self.points, self.faces)
-        np.testing.assert_allclose(areas, np.full(6, 8 * np.sqrt(3) / 2 / 6), rtol=1e-14)
-
-    def test_the_spectrum_is_of_the_laplacian(self):
-        points = self.points * [1, 1.5, 2]
-        n = len(points)
-        radius = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
-        weights = np.zeros((n, n))
-        for a, b, c in self.faces:
-            for i, j in ((a, b), (b, c), (c, a)):
-                weights[i, j] = weights[j, i] = radius**2 / np.sum((points[i] - points[j])**2)
-        laplacian = np.diag(weights.sum(axis=1)) - weights
-        values, vectors = salbench.spectrum(points, self.faces, 4)
-        np.testing.assert_allclose(values, np.linalg.eigvalsh(laplacian)[:4], atol=1e-9)
-        np.testing.assert_allclose(laplacian @ vectors, vectors * values, atol=1e-7)
-        np.testing.assert_allclose(vectors.T @ vectors, np.eye(4), atol=1e-9)
-
     def test_normals_of_a_sphere_point_outward_and_to_a_viewpoint(self):
         points = self.sphere()
         self.assertTrue((np.sum(salbench.estimate_normals(points) * points, axis=1) > 0.9).all())
@@ -257,15 +222,6 @@ class Functions(unittest.TestCase):
         areas += 1
         self.assertTrue(areas.flags.writeable)
         self.assertTrue(areas.flags.c_contiguous)
-
-    def test_simplified_meshes_are_closed(self):
-        points = np.stack(np.meshgrid(*[np.arange(8.0)] * 2, [0.0]), axis=-1).reshape(-1, 3)
-        faces = [[r * 8 + c, r * 8 + c + 1, r * 8 + c + 8] for r in range(7) for c in range(7)]
-        faces += [[r * 8 + c + 1, r * 8 + c + 9, r * 8 + c + 8] for r in range(7) for c in range(7)]
-        fewer, simple = salbench.simplify(points, faces, 20)
-        self.assertLessEqual(len(simple), 20)
-        self.assertAlmostEqual(salbench.vertex_areas(fewer, simple).sum(), 49)
-        self.assertEqual(salbench.simplify(points, faces, 10**6)[1].shape, (98, 3))
 
     def test_what_cannot_be_used_is_named(self):
         points, faces = self.points, self.faces
