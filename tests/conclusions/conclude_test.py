@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """conclude() on folders: which files it reads and writes, what it prints, how it fails; and how a table is added."""
 
+import ast
 import contextlib
 import io
 import json
@@ -21,6 +22,7 @@ from salbench.conclusions import Table, folders, tables
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
 
+PACKAGE = Path(conclusions.__file__).parent
 SIMULATED = "SIMULATED participants: made up"
 RUN = """results: finished
 metrics:
