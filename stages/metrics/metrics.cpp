@@ -131,7 +131,7 @@ ScalarField unmatched(std::span<const double> map, Matching reading) {
   const double least = values.empty() ? 0 : *std::ranges::min_element(values);
   if (least >= 0) return values;
   if (reading == Matching::raw)
-    throw InputError(
+    throw ShapeError(
         "the map has a value below 0, " + std::to_string(least / scale) +
         ", and its metrics read it raw: write matching: shifted, which subtracts the least value");
   for (double& value : values) value -= least;

@@ -46,11 +46,6 @@ inline std::vector<std::string> processes_with(std::string_view text, std::strin
   return found;
 }
 
-// Zombies too.
-inline std::vector<std::string> own_children() {
-  return processes_with("PPid:\t" + std::to_string(::getpid()) + "\n", "status");
-}
-
 // For ends that nobody waits for, such as those of a killed program's commands. False after half a minute.
 template <class Condition>
 bool soon(const Condition& condition) {
