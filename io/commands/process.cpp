@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a command prints, when it is late, and when it has answered. Its processes: shell.h.
+// Output of commands, their timeouts and their answers. shell.h has their processes.
 #include "io/commands/process.h"
 
 #include <algorithm>

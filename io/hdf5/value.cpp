@@ -51,8 +51,7 @@ std::vector<Triple> triples_of(const Arrays& arrays, std::string_view name) {
 template <class T>
 struct Is {};
 
-// --- the two directions of each kind
-// ----------------------------------------------------------------------
+// --- the two directions of each kind ----------------------------------------------------------------------
 
 Arrays arrays_of(const Mesh& mesh) {
   return {triples("vertices", mesh.vertices, kMeshLength, "positions, n x 3"),
@@ -306,7 +305,7 @@ CentreDensity from(const Arrays& arrays, Is<CentreDensity>) {
 Arrays arrays_of(const ShapeInForm& shape) { return one_form_arrays(shape); }
 ShapeInForm from(const Arrays& arrays, Is<ShapeInForm>) { return shape_in_arrays(arrays, "the one form"); }
 
-// --- names ----------------------------------------------------------------------------------------------
+// --- the name of each kind --------------------------------------------------------------------------------
 
 constexpr std::string_view kind_of(Is<Mesh>) { return "mesh"; }
 constexpr std::string_view kind_of(Is<Scan>) { return "scan"; }

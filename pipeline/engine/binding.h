@@ -61,7 +61,7 @@ struct Members {
 
 // --- arguments: parameters that each fits, marks that it makes in the rule, and its value ----------
 
-// What a rule makes has a layout; a view of it has none.
+// A type that a rule can make: it has a form in artefacts, which a view has not.
 template <class T>
 concept Result = requires {
   ArrayForm<T>::kind;
@@ -208,7 +208,7 @@ class RuleTable {
   auto add(Level over, RuleHead head, const Function& function, const Arguments&... arguments) {
     return add_rule(over, std::move(head), std::function(function), arguments...);
   }
-  // What a rule makes is known, and it reads nothing.
+  // Sets the result of a rule before the run. The rule then reads nothing.
   template <class T>
   void give(const Output<T>& output, T value) {
     Rule& rule = rules_.at(output.rule().value());

@@ -4,7 +4,6 @@
 
 #include <any>
 #include <memory>
-#include <type_traits>
 #include <utility>
 
 namespace salbench {
@@ -25,7 +24,7 @@ const T& value_as(const std::any& value) {
   return std::any_cast<const T&>(value);
 }
 
-// What a function's parameter sees of a result of type T: the result, or a view that a subject adds.
+// Makes a function's parameter of a result of type T: the result itself, or a view, which a subject defines.
 template <class Parameter, class T>
 struct View;
 template <class T>

@@ -37,7 +37,8 @@ struct ShapeOutputs {
   Output<Descriptors> fpfh = {};
   Output<GroundTruth> ground_truth = {};
   Output<Histogram> reference = {};
-  // Where a metric compares a shape with the others: its own, and their sum.
+  // Ground truth by the distance from the centroid, of the shape and of the set: for metrics that compare
+  // both.
   Output<CentreDensity> centre_density = {};
   Output<CentreDensity> centre_densities = {};
   FileColumnPtr map_files = {};  // of a model that takes its maps from outside

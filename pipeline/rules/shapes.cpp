@@ -33,7 +33,6 @@ auto in_own_form(const std::shared_ptr<Importer>& importer, const Files& files, 
 
 }  // namespace
 
-// Where the list of a data set names an importer, all that follows reads what it made.
 Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source) {
   return table.add(
       level, stage(Role::import, source.inputs.importer.version),

@@ -20,7 +20,7 @@ struct Source {
   bool imports() const { return inputs.importer.version > 0; }
 };
 
-// Where the list of a data set names an importer, all that follows reads what it made.
+// The shape that a Python importer makes of foreign files, if the data set has one: later rules read it.
 Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source);
 
 Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form);

@@ -123,8 +123,8 @@ def figures(shop: Workshop, dataset: str) -> list[Block]:
                  "that pair alone (Wilson). 0.5: as often as not."),
             plot("profile", draw_profiles, 3.6, profiles, "Share of the units on which each model reaches a score.",
                  f"on which share of the {units} each model reaches a score. It describes these, and has no interval."),
-            plot("differences", draw_differences, 2.6, groups, "Models by their mean; bars join those that are not shown to differ.",
-                 "models at their means. A bar joins models that are not shown to differ when all pairs are compared at once: the groups of "
+            plot("differences", draw_differences, 2.6, groups, "Models by their mean; lines join, at their dots, those that are not shown to differ.",
+                 "models at their means. A line joins, at its dots, models that are not shown to differ when all pairs are compared at once: the groups of "
                  "the ranking, in place of Nemenyi's test of mean ranks.")])]
 
 
@@ -197,7 +197,7 @@ def draw_differences(figure: Any, panels: Sequence[Panel], looks: Looks) -> None
         letters = sorted(set("".join(panel.groups)))
         for depth, letter in enumerate(letters, 1):
             members = [mean for mean, group in zip(means, panel.groups) if letter in group]
-            axes.plot([min(members), max(members)], [-0.28 * depth] * 2, color=style.INK, lw=4, solid_capstyle="round")
+            axes.plot(members, [-0.28 * depth] * len(members), color=style.INK, lw=2.5, marker="o", ms=5)  # others may lie between
         axes.set(ylim=(-0.28 * (len(letters) + 1), 0.8), xlabel=f"Mean {panel.metric.label}", yticks=[])
         axes.set_xlim(*((low - 0.06 * span, high + 0.06 * span)[::-1 if panel.metric.lower else 1]))
         axes.axhline(0, color=style.INK, lw=1)
