@@ -120,6 +120,30 @@ Table smoothed_table(const RunState& run, const Metrics& metrics) {
   return table;
 }
 
+Table fitted_table(const RunState& run) {
+  Table table{
+      .columns = {"dataset", "model", "fold", "shapes", "blur", "gain", "of", "at", "log_density"}, .rows = {}};
+  for (const Job& job : run.project().jobs_of(Unit{})) {
+    const Rule& rule = run.project().rule(job);
+    if (!has_role(rule, Role::density_fits) || !run.decision(job).known()) continue;
+    const ValuePtr value = run.resolver.value(job);
+    const auto& fits = value_as<DensityFits>(*value);
+    for (std::size_t fold = 0; fold < fits.size(); ++fold) {
+      const DensityFit& fit = fits[fold];
+      const auto add_knots = [&](const char* of, const auto& knots) {
+        for (std::size_t k = 0; k < knots.size(); ++k)
+          table.rows.push_back(cells(std::string(shapes_name(rule.over)), rule.subject, fold, fit.shapes, fit.blur,
+                                     fit.gain, std::string(of),
+                                     static_cast<double>(k) / static_cast<double>(knots.size() - 1), knots[k]));
+      };
+      if (fit.shapes == 0) continue;
+      add_knots("value", fit.value);
+      add_knots("distance", fit.distance);
+    }
+  }
+  return table;
+}
+
 std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
                                         const std::vector<ResultRow>& varying,
                                         const MetricsOptions& options) {

@@ -137,10 +137,12 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
       {"means.csv", text(means_table(rows, metrics))},
       {"constant.csv", text(results_table(rows_of_constant(rows, collect_constant(run), options), metrics))},
       {"people.csv"},
-      {"smoothed.csv"}};
+      {"smoothed.csv"},
+      {.name = "fitted.csv", .is_of_scores = false}};
   if (const std::vector<MeshCurve> curves = collect_human_curves(run); !curves.empty())
     files[3].text = text(people_table(curves, metrics));
   if (!options.smoothing.empty()) files[4].text = text(smoothed_table(run, metrics));
+  if (const Table fitted = fitted_table(run); !fitted.rows.empty()) files[5].text = text(fitted);
   for (const Level level : kShapeLevels) {
     TableFile& file = files.emplace_back(fmt::format("mean_histograms_{}.csv", shapes_name(level)));
     file.is_of_scores = false;

@@ -11,6 +11,7 @@
 #include "pipeline/config/section.h"
 #include "pipeline/rules/models.h"
 #include "pipeline/rules/unit.h"
+#include "stages/fitting/fitting.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/metrics/metrics.h"
@@ -72,6 +73,7 @@ struct Config {
   FpfhOptions fpfh;
   ScanFpfhOptions scan_fpfh;
   MetricsOptions metrics;
+  FittingOptions fitting;
   StatisticsOptions statistics;
   PictureOptions picture;
   Pictures pictures = Pictures::none;  // computed where the file has the section

@@ -41,6 +41,7 @@ struct ShapeOutputs {
   // both.
   Output<CentreDensity> centre_density = {};
   Output<CentreDensity> centre_densities = {};
+  FileColumnPtr groups = {};     // names of what stays together in a fold
   FileColumnPtr map_files = {};  // of a model that takes its maps from outside
 };
 

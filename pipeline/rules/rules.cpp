@@ -58,6 +58,23 @@ void add_picture(RuleTable& table, const Config& config, Level level, const Func
   table.add(level, head, picture, arguments..., section("picture", config.picture), kRandom);
 }
 
+// What stays together where a density is fitted to other shapes: the shapes of a class, or the views of one.
+FileColumnPtr groups_of(const Units& units, Level level, FoldGroup by) {
+  auto column = std::make_shared<FileColumn>();
+  column->files.resize(units.slots(level));
+  for (const Unit unit : units.of(level)) {
+    if (!units.source_of(unit).source.has_value()) continue;  // a data set that is not known yet
+    const DatasetItem& item = item_of(units, unit);
+    const bool by_class = by == FoldGroup::item_class && !item.category.empty();
+    const auto read = [group = by_class ? "class " + item.category : "mesh " + item.shape_name()] {
+      return FileData{file_digest(group), group};
+    };
+    column->files[unit.index] = {
+        {.name = "class", .place = item.mesh, .read = std::make_shared<const ReadFile>(read)}};
+  }
+  return column;
+}
+
 void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units,
                     const std::shared_ptr<const GivenMaps>& maps) {
   std::vector<Level> levels;
@@ -116,7 +133,11 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
   if (on_meshes) evaluated.push_back(&meshes);
   if (on_scans) evaluated.push_back(&scans);
   if (any_cloud) evaluated.push_back(&clouds);
-  for (ShapeOutputs* shape : evaluated) add_centre_densities(table, *shape, config);
+  for (ShapeOutputs* shape : evaluated) {
+    add_centre_densities(table, *shape, config);
+    if (MetricsByMatching(config.metrics).any(Matching::fitted))
+      shape->groups = groups_of(inputs.units, shape->level, config.fitting.by);
+  }
   std::vector<Scored> scored;
   for (const Model& model : config.models) {
     if (model.human && on_meshes)

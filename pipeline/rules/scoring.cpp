@@ -9,10 +9,11 @@
 
 #include "stages/core/centre.h"
 #include "stages/core/field.h"
+#include "stages/core/laplacian.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
+#include "stages/fitting/fitting.h"
 #include "stages/matching/matching.h"
-#include "stages/metrics/laplacian.h"
 
 namespace salbench {
 namespace {
@@ -38,6 +39,8 @@ Histogram mean_over(const Members<T>& members) {
   return mean_histogram(histograms);
 }
 
+ScalarField constant_map(Points points) { return ScalarField(points.size(), 0.5); }
+
 CentreDensity sum_of_densities(const Members<CentreDensity>& members) {
   CentreDensity sum;
   for (std::size_t i = 0; i < members.size; ++i) add(sum, *members[i]);
@@ -59,29 +62,62 @@ ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   return table;
 }
 
+// The map as the density that is fitted to the maps of other shapes; only where a metric asks for it.
+Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const Config& config,
+                             const std::string& model, const Output<FieldView>& map) {
+  if (!MetricsByMatching(config.metrics).any(Matching::fitted)) return {};
+  const auto fitting = section("fitting", config.fitting);
+  const Output<DensityCounts> counts = table.add(
+      shape.level, stage_of(model, Role::density_counts, 1),
+      [](FieldView values, Points points, Surface surface, const GroundTruth& truth, const Files& group,
+         const FittingOptions& options, const RandomSource& random) {
+        return density_counts(values, points, surface, truth,
+                              fold_of(group.data[0].text(), options.folds, random.seed));
+      },
+      map, shape.points, shape.surface, shape.ground_truth, FilesOf{shape.groups}, fitting, kRandom);
+  const Output<DensityFits> fits = table.add(
+      shape.level, stage_of(model, Role::density_fits, 1),
+      [](const Members<DensityCounts>& members, const FittingOptions& options) {
+        std::vector<std::shared_ptr<const DensityCounts>> all;
+        for (std::size_t i = 0; i < members.size; ++i) all.push_back(members[i]);
+        return fit_densities(all, options.folds);
+      },
+      counts, fitting);
+  return table.add(
+      shape.level, stage_of(model, Role::fitted, 1),
+      [](FieldView values, Points points, Surface surface, const DensityCounts& own, const DensityFits& all) {
+        return fitted_density(values, points, surface, all.at(index(own.fold)));
+      },
+      map, shape.points, shape.surface, counts, fits);
+}
+
 // Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
 // scores are found whatever these are.
 Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config,
                           const Model& model, const Output<FieldView>& map,
                           const Output<FieldView>& matched_map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
+  const Output<FieldView> fitted = add_fitted(table, shape, config, model.name, map);
   RuleHead head = stage_of(model.name, Role::scores, scores_version(metrics->all()));
   return table.add(
       shape.level, head,
-      [name = head.stage, metrics](FieldView matched_values, FieldView values, const GroundTruth& truth,
-                                   Points points, Surface surface, const CentreDensity* own,
-                                   const CentreDensity* set, const MetricsOptions& options,
-                                   const RandomSource& random) {
+      [name = head.stage, metrics](FieldView matched_values, FieldView values, FieldView density,
+                                   const GroundTruth& truth, Points points, Surface surface,
+                                   const CentreDensity* own, const CentreDensity* set,
+                                   const MetricsOptions& options, const RandomSource& random) {
         Draws draws(random.rng(name));
-        const Measures measures = measures_of(metrics->all(), std::max(matched_values.size(), values.size()),
-                                              points, surface, density_if_known(points, own, set));
-        return metrics->score([&](std::span<const Metric> of_part, Matching read) {
-          return read == Matching::histogram
-                     ? score(of_part, matched_values, truth, options, draws, measures)
-                     : score(of_part, unmatched(values, read), truth, options, draws, measures);
+        const std::size_t n = std::max({matched_values.size(), values.size(), density.size()});
+        const Measures measures =
+            measures_of(metrics->all(), n, points, surface, density_if_known(points, own, set));
+        return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
+          if (read == Matching::histogram)
+            return score(of_part, matched_values, truth, options, draws, measures);
+          if (read == Matching::fitted && density.empty()) return {};  // nothing to fit it to
+          return score(of_part, unmatched(read == Matching::fitted ? density : values, read), truth, options,
+                       draws, measures);
         });
       },
-      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map),
+      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map), fitted,
       shape.ground_truth, only_if(any_of_points(metrics->all()), shape.points),
       only_if(any_of_faces(metrics->all()), shape.surface), shape.centre_density, shape.centre_densities,
       section("metrics", config.metrics), kRandom);
@@ -110,11 +146,13 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
         for (const std::int32_t steps : smoothing_steps(options)) {
           values = smoothed_by_steps(std::move(values), adjacency, steps - std::exchange(done, steps));
           Draws draws(random.rng(name));
-          by_steps.rows.push_back(metrics->score([&](std::span<const Metric> of_part, Matching read) {
-            const bool to_match = read == Matching::histogram && reference != nullptr;
-            return score(of_part, to_match ? matched(values, *reference) : unmatched(values, read), truth,
-                         options, draws, measures);
-          }));
+          by_steps.rows.push_back(
+              metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
+                if (read == Matching::fitted) return {};  // a fit has a blur of its own
+                const bool to_match = read == Matching::histogram && reference != nullptr;
+                return score(of_part, to_match ? matched(values, *reference) : unmatched(values, read), truth,
+                             options, draws, measures);
+              }));
         }
         return by_steps;
       },
@@ -158,19 +196,33 @@ Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Conf
 Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config) {
   MetricsOptions varying = config.metrics;
   varying.names.clear();
-  varying.matching.clear();  // a constant map stays as it is
+  // A constant map stays as it is, but for its centre bias.
+  std::erase_if(varying.matching, [](const auto& row) { return row.second != Matching::fitted; });
   for (const Metric& metric : chosen_metrics(config.metrics))
     if (metric.constant_varies) varying.names.push_back(metric.name);
   if (varying.names.empty()) return {};
-  const std::vector<Metric> metrics = chosen_metrics(varying);
+  const auto metrics = std::make_shared<const MetricsByMatching>(varying);
+  const std::string model(kConstantMap);
+  Output<FieldView> fitted;
+  if (metrics->any(Matching::fitted))
+    fitted = add_fitted(
+        table, shape, config, model,
+        table.add(shape.level, stage_of(model, Role::constant_map, 1), constant_map, shape.points));
   return table.add(
-      shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(metrics)),
-      [metrics](const GroundTruth& truth, Points points, Surface surface, const MetricsOptions& options) {
+      shape.level, stage_of(model, Role::scores, scores_version(metrics->all())),
+      [metrics](const GroundTruth& truth, FieldView density, Points points, Surface surface,
+                const MetricsOptions& options) {
         Draws draws(Rng(0, "", ""));
-        return score(metrics, ScalarField(points.size(), 0.5), truth, options, draws,
-                     measures_of(metrics, points.size(), points, surface));
+        const Measures measures = measures_of(metrics->all(), points.size(), points, surface);
+        return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
+          if (read == Matching::fitted && density.empty()) return {};
+          return score(
+              of_part,
+              read == Matching::fitted ? ScalarField(density.begin(), density.end()) : constant_map(points),
+              truth, options, draws, measures);
+        });
       },
-      shape.ground_truth, shape.points, only_if(any_of_faces(metrics), shape.surface),
+      shape.ground_truth, fitted, shape.points, only_if(any_of_faces(metrics->all()), shape.surface),
       section("metrics", varying));
 }
 

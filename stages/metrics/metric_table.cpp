@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "stages/core/field.h"
@@ -117,6 +119,18 @@ BaseMetric unmatched(BaseMetric row) {
 BaseMetric varying(BaseMetric row) {
   row.metric.constant_varies = true;
   return row;
+}
+
+// The same of a fitted density, per vertex and pick, as it is fitted.
+BaseMetric fitted(const BaseMetric& row, const char* name, const char* label) {
+  Metric metric = row.metric;
+  metric.help = metric.name + " of the density that is fitted to other shapes of the set";
+  metric.name = name;
+  metric.label = label;
+  metric.matching = Matching::fitted;
+  metric.constant_varies = true;
+  metric.picks = PickCount::multiplicity;
+  return {std::move(metric), false, false};
 }
 
 // Points are found or not: how many vertices there are, and of which area, does not count.
@@ -247,6 +261,14 @@ std::vector<BaseMetric> base_metrics() {
   over_centre_bias.metric.reads_positions = true;
   rows.push_back(over_centre_bias);
   std::ranges::move(later_metrics(), std::back_inserter(rows));
+  const auto of = [&](std::string_view name) {
+    return *std::ranges::find(rows, name,
+                              [](const BaseMetric& row) -> std::string_view { return row.metric.name; });
+  };
+  for (const auto& [name, plain, label] : {std::tuple("ig_fitted", "ig", "Information gain (fitted)"),
+                                           {"kl_fitted", "kl", "KL (fitted)"},
+                                           {"sim_fitted", "sim", "SIM (fitted)"}})
+    rows.push_back(fitted(of(plain), name, label));
   return rows;
 }
 

@@ -116,8 +116,10 @@ std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
   for (const Metric& metric : table) {
     if (std::ranges::find(options.names, metric.name) == options.names.end()) continue;
     chosen.push_back(metric);
+    Metric& added = chosen.back();
     if (const auto matching = options.matching.find(metric.name); matching != options.matching.end())
-      chosen.back().matching = matching->second;
+      added.matching = matching->second;
+    added.constant_varies |= added.matching == Matching::fitted;  // by the centre bias
   }
   return chosen;
 }
@@ -130,7 +132,7 @@ ScalarField unmatched(std::span<const double> map, Matching reading) {
   for (const double value : map) values.push_back(std::isnan(value) ? 0 : value * scale);
   const double least = values.empty() ? 0 : *std::ranges::min_element(values);
   if (least >= 0) return values;
-  if (reading == Matching::raw)
+  if (reading != Matching::shifted)
     throw ShapeError(
         "the map has a value below 0, " + std::to_string(least / scale) +
         ", and its metrics read it raw: write matching: shifted, which subtracts the least value");
@@ -240,9 +242,11 @@ MetricsByMatching::MetricsByMatching(const MetricsOptions& options) : all_(chose
 
 Scores MetricsByMatching::score(const ScorePart& score_part) const {
   Scores scores{std::vector<double>(all_.size(), kUndefined)};
-  for (const Matching matching : {Matching::histogram, Matching::none, Matching::raw, Matching::shifted}) {
+  for (const Matching matching :
+       {Matching::histogram, Matching::none, Matching::raw, Matching::shifted, Matching::fitted}) {
     if (!any(matching)) continue;
     const Scores of_part = score_part(part(matching).metrics, matching);
+    if (of_part.values.empty()) continue;
     for (std::size_t m = 0; m < of_part.values.size(); ++m)
       scores.values[part(matching).places[m]] = of_part.values[m];
     scores.n_points = of_part.n_points;

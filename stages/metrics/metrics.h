@@ -24,11 +24,12 @@ enum class Matching : std::uint8_t {
   none,       // min-max-normalised
   histogram,  // its histogram is matched
   raw,        // as the model made it, which must not be below 0
-  shifted     // the same; where it has values below 0, its least value is subtracted
+  shifted,    // the same; where it has values below 0, its least value is subtracted
+  fitted      // as a density that is fitted to other shapes of the set
 };
 template <>
 struct EnumNames<Matching> {
-  static constexpr std::array<std::string_view, 4> names{"none", "histogram", "raw", "shifted"};
+  static constexpr std::array<std::string_view, 5> names{"none", "histogram", "raw", "shifted", "fitted"};
 };
 
 struct MetricsOptions {
@@ -53,7 +54,7 @@ struct MetricsOptions {
     visit("names", self.names,
           {"metrics, or all: docs/metrics.md has a table of them", "", {}, "[auc, auc_exact, nss, cc, lcc]"});
     visit("matching", self.matching,
-          {"matching of the maps, one for all metrics or by name; else as docs/metrics.md has it",
+          {"reading of the maps, for all metrics or by name; else as in docs/metrics.md",
            "",
            {},
            "{}"});
@@ -141,7 +142,8 @@ std::span<const Metric> metric_table();
 std::vector<Metric> chosen_metrics(const MetricsOptions& options);
 
 // The map as metrics read it where no histogram is matched: min-max-normalised, unless the reading is raw or
-// shifted. NaN counts as 0. Throws InputError for a value below 0 that is read raw, and for an infinite one.
+// shifted, or the map is fitted already. NaN counts as 0. Throws InputError for a value below 0 that is read
+// raw, and for an infinite one.
 ScalarField unmatched(std::span<const double> map, Matching reading);
 
 // Version of the stage `scores` for these metrics: the largest `since`, and at least 3 where one of them
@@ -188,7 +190,7 @@ class MetricsByMatching {
   bool any(Matching matching) const { return !part(matching).metrics.empty(); }
   bool any_unmatched() const { return part(Matching::histogram).metrics.size() < all_.size(); }
 
-  // Calls `score_part` for each matching that any metric has.
+  // Calls `score_part` for each matching that any metric has. Without values, these metrics are undefined.
   using ScorePart = std::function<Scores(std::span<const Metric> metrics, Matching matching)>;
   Scores score(const ScorePart& score_part) const;
 

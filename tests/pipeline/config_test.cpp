@@ -118,9 +118,9 @@ TEST(Config, MatchingIsForAllMetricsOrByName) {
 
 TEST(Config, UnknownMatchingsAreErrors) {
   EXPECT_EQ(error_of("metrics: {matching: histogramm}"),
-            "x.yaml:1: metrics.matching is 'histogramm', not one of none, histogram, raw, shifted");
+            "x.yaml:1: metrics.matching is 'histogramm', not one of none, histogram, raw, shifted, fitted");
   EXPECT_EQ(error_of("metrics:\n  matching:\n    kl: no"),
-            "x.yaml:3: metrics.matching.kl is 'no', not one of none, histogram, raw, shifted");
+            "x.yaml:3: metrics.matching.kl is 'no', not one of none, histogram, raw, shifted, fitted");
   EXPECT_EQ(error_of("metrics:\n  matching: {klx: none}"),
             "x.yaml:2: metrics.matching has no metric 'klx'; did you mean 'kl'?");
   EXPECT_THAT(error_of("metrics: {matching: [kl]}"), HasSubstr("must be one value"));

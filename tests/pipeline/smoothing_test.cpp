@@ -6,7 +6,7 @@
 #include "pipeline/results/raw_tables.h"
 #include "stages/core/field.h"
 #include "stages/matching/matching.h"
-#include "stages/metrics/laplacian.h"
+#include "stages/core/laplacian.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {

@@ -13,6 +13,7 @@ import salbench
 import toy
 
 NAMES = [row.name for row in salbench.metrics.table()]
+FITTED = [name for name in NAMES if name.endswith("_fitted")]
 SEED = 2016
 
 
@@ -60,6 +61,10 @@ class Tables(unittest.TestCase):
                 areas=salbench.vertex_areas(points, faces), points=points, faces=faces,
                 negatives=density_of_others(points, file[shape]["centre_density"], file["means/centre_densities"][level]),
                 reference=file["means/reference"][level]["density"][:], seed=(SEED, model, shape))
+            if len(density := file[shape][f"fitted.{model}"]["saliency"][:]):
+                found |= salbench.score(density, saliency, self.picks(truth), metrics=FITTED)
+            else:
+                found |= dict.fromkeys(FITTED, math.nan)
             for name in NAMES:
                 if name.startswith("sauc"):  # its negatives were worked out here
                     self.assertAlmostEqual(found[name], row[name], delta=1e-12)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench.pages.blocks import Block, attempt
-from salbench.report import claims, compact, examples, figures, lag, people, ranking, sensitivity, statements, statistics, tables
+from salbench.report import claims, compact, examples, figures, fitted, lag, people, ranking, sensitivity, statements, statistics, tables
 from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
@@ -20,6 +20,7 @@ class Element:
     title: str
     build: Callable[[Workshop], Any]  # Workshop -> blocks
     dataset: str = ""  # stands only in reports of runs that have it
+    file: str = ""     # likewise
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,8 @@ def numbered(shop: Workshop) -> list[Element]:
 
 def elements_of(results: Results) -> list[Element]:
     """Those that a report of these results has."""
-    return [element for element in ELEMENTS if not element.dataset or element.dataset in statistics.shown(results)]
+    return [element for element in ELEMENTS if (not element.dataset or element.dataset in statistics.shown(results))
+            and (not element.file or results.has(element.file))]
 
 
 def distributions(shop: Workshop) -> list[Block]:
@@ -127,6 +129,7 @@ ELEMENTS = (
     Element("paper.html", "figure-7", "Figure 7", "fig:scans_saliency", "Saliency maps on scans", examples.scans),
     Element("statistics.html", "pairs", "", "", "Pairwise tests", tables.pairwise),
     Element("statistics.html", "sensitivity", "", "", "Where the ranking depends on the convention", sensitivity.tables),
+    Element("statistics.html", "fitted", "", "", "Fitted densities", fitted.figures, file="fitted.csv"),
     Element("paper.html", "scan-panels", "", "", "Scan by scan", scan_panels),
     Element("classes.html", "scan-classes", "", "", "Performance per class on scans", classes_of_scans),
     Element("paper.html", "clouds", "", "", "Performance on point clouds", clouds, dataset="clouds"),

@@ -32,12 +32,13 @@ class Metric:
     label: str
     unit: str = "1"
     lower: bool = False  # better
-    matching: str = ""   # of the maps that it reads: "histogram", "none", "raw", "shifted"; empty if run.yaml does not say
+    matching: str = ""   # of the maps that it reads: "histogram", "none", "raw", "shifted", "fitted"; empty if run.yaml does not say
 
     @property
     def maps(self) -> str:
         """Which maps it reads, in words; empty where nobody said."""
-        return {"histogram": "matched", "none": "as they are", "raw": "raw", "shifted": "raw, shifted to 0"}.get(self.matching, "")
+        return {"histogram": "matched", "none": "as they are", "raw": "raw", "shifted": "raw, shifted to 0",
+                "fitted": "fitted densities"}.get(self.matching, "")
 
     @property
     def below(self) -> str:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/metrics/laplacian.h"
+#include "stages/core/laplacian.h"
 
 #include "stages/core/check.h"
 
