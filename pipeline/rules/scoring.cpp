@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "stages/core/centre.h"
+#include "stages/core/faces.h"
 #include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
@@ -59,6 +60,30 @@ ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   return table;
 }
 
+// What metrics read of the points of a shape, or of the faces of a mesh.
+Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n, Points points,
+                     Surface surface, const CentreDensity* own = nullptr,
+                     const CentreDensity* set = nullptr) {
+  if (!faces) return measures_of(metrics, n, points, surface, density_if_known(points, own, set));
+  const std::vector<Vec3> centroids = face_centroids(points, surface);
+  Measures measures(n, any_by_area(metrics) ? face_areas(points, surface) : ScalarField{},
+                    any_of_positions(metrics) ? distances_from_centroid(centroids) : ScalarField{});
+  measures.negatives = density_if_known(centroids, own, set);
+  return measures;
+}
+
+// The map as it is scored.
+Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, const Model& model,
+                                 const Output<ScalarField>& map) {
+  if (!shape.on_faces) return map;
+  return table.add(
+      shape.level, stage_of(model.name, Role::face_map, 1),
+      [](FieldView values, Points points, Surface surface) {
+        return values_by_face(values, points.size(), surface);
+      },
+      map, shape.points, shape.surface);
+}
+
 // Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
 // scores are found whatever these are.
 Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config,
@@ -66,15 +91,16 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
                           const Output<FieldView>& matched_map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
   RuleHead head = stage_of(model.name, Role::scores, scores_version(metrics->all()));
+  const bool positions = any_of_points(metrics->all());
   return table.add(
       shape.level, head,
-      [name = head.stage, metrics](FieldView matched_values, FieldView values, const GroundTruth& truth,
-                                   Points points, Surface surface, const CentreDensity* own,
-                                   const CentreDensity* set, const MetricsOptions& options,
-                                   const RandomSource& random) {
+      [name = head.stage, metrics, faces = shape.on_faces](
+          FieldView matched_values, FieldView values, const GroundTruth& truth, Points points,
+          Surface surface, const CentreDensity* own, const CentreDensity* set, const MetricsOptions& options,
+          const RandomSource& random) {
         Draws draws(random.rng(name));
-        const Measures measures = measures_of(metrics->all(), std::max(matched_values.size(), values.size()),
-                                              points, surface, density_if_known(points, own, set));
+        const Measures measures = measures_on(
+            faces, metrics->all(), std::max(matched_values.size(), values.size()), points, surface, own, set);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) {
           return read == Matching::histogram
                      ? score(of_part, matched_values, truth, options, draws, measures)
@@ -82,9 +108,9 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
         });
       },
       only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map),
-      shape.ground_truth, only_if(any_of_points(metrics->all()), shape.points),
-      only_if(any_of_faces(metrics->all()), shape.surface), shape.centre_density, shape.centre_densities,
-      section("metrics", config.metrics), kRandom);
+      shape.ground_truth, only_if(positions, shape.points),
+      only_if(shape.on_faces ? positions : any_of_faces(metrics->all()), shape.surface), shape.centre_density,
+      shape.centre_densities, section("metrics", config.metrics), kRandom);
 }
 
 // The scores of a map after each number of smoothing steps, with the draws of the plain scores. They stand
@@ -95,13 +121,12 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
   const bool match = metrics->any(Matching::histogram) && !(model.given && model.given->matched);
   const auto scored = table.add(
       shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(metrics->all())),
-      [name = stage_of(model.name, Role::scores, 1).stage, metrics](
+      [name = stage_of(model.name, Role::scores, 1).stage, metrics, faces = shape.on_faces](
           FieldView plain, const GroundTruth& truth, Points points, Surface surface,
           const Histogram* reference, const CentreDensity* own, const CentreDensity* set,
           const MetricsOptions& options, const RandomSource& random) {
-        const Measures measures =
-            measures_of(metrics->all(), points.size(), points, surface, density_if_known(points, own, set));
-        const Adjacency adjacency = edge_adjacency(points.size(), surface);
+        const Measures measures = measures_on(faces, metrics->all(), plain.size(), points, surface, own, set);
+        const Adjacency adjacency = faces ? face_adjacency(surface) : edge_adjacency(points.size(), surface);
         ScalarField values(plain.begin(), plain.end());
         for (double& value : values)
           if (std::isnan(value)) value = 0;  // as matching and normalisation have it
@@ -134,8 +159,13 @@ Output<Histogram> add_reference(RuleTable& table, Level level, const Output<Grou
 
 void add_centre_densities(RuleTable& table, ShapeOutputs& shape, const Config& config) {
   if (!any_of_others(chosen_metrics(config.metrics))) return;
-  shape.centre_density = table.add(shape.level, stage(Role::centre_density, 1), centre_density, shape.points,
-                                   shape.ground_truth);
+  const RuleHead head = stage(Role::centre_density, 1);
+  const auto of_faces = [](Points points, Surface surface, const GroundTruth& truth) {
+    return centre_density(face_centroids(points, surface), truth);
+  };
+  shape.centre_density =
+      shape.on_faces ? table.add(shape.level, head, of_faces, shape.points, shape.surface, shape.ground_truth)
+                     : table.add(shape.level, head, centre_density, shape.points, shape.ground_truth);
   shape.centre_densities =
       table.add(shape.level, stage(Role::centre_densities, 1), sum_of_densities, shape.centre_density);
 }
@@ -145,7 +175,7 @@ Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Conf
   const auto match = [](const ScalarField& values, const Histogram& reference) {
     return matched(values, reference);
   };
-  const Output<ScalarField> map = model.add_map(table, shape);
+  const Output<ScalarField> map = add_face_map(table, shape, model, model.add_map(table, shape));
   if (!smoothing.smoothing.empty()) add_smoothed_scores(table, shape, smoothing, model, map);
   if (model.given && model.given->matched) return add_scores(table, shape, config, model, map, map);
   const Output<Scores> scores =
@@ -165,12 +195,14 @@ Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, 
   const std::vector<Metric> metrics = chosen_metrics(varying);
   return table.add(
       shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(metrics)),
-      [metrics](const GroundTruth& truth, Points points, Surface surface, const MetricsOptions& options) {
+      [metrics, faces = shape.on_faces](const GroundTruth& truth, Points points, Surface surface,
+                                        const MetricsOptions& options) {
         Draws draws(Rng(0, "", ""));
-        return score(metrics, ScalarField(points.size(), 0.5), truth, options, draws,
-                     measures_of(metrics, points.size(), points, surface));
+        const std::size_t n = faces ? surface.size() : points.size();
+        return score(metrics, ScalarField(n, 0.5), truth, options, draws,
+                     measures_on(faces, metrics, n, points, surface));
       },
-      shape.ground_truth, shape.points, only_if(any_of_faces(metrics), shape.surface),
+      shape.ground_truth, shape.points, only_if(shape.on_faces || any_of_faces(metrics), shape.surface),
       section("metrics", varying));
 }
 

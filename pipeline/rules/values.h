@@ -34,13 +34,15 @@ enum class Role {
   centre_densities,  // their sum over a set
   smoothed_scores,   // of the map after each number of smoothing steps
   smoothed_table,    // [shape][steps], one after the other
+  face_map,          // a map by face, where faces are scored
 };
 template <>
 struct EnumNames<Role> {
-  static constexpr std::array<std::string_view, 18> names{
-      "import", "shape",   "ground_truth",   "reference",        "normals",         "surface",
-      "fpfh",   "map",     "matched",        "mean_histogram",   "scores",          "score_table",
-      "curve",  "picture", "centre_density", "centre_densities", "smoothed_scores", "smoothed_table"};
+  static constexpr std::array<std::string_view, 19> names{
+      "import",  "shape",   "ground_truth",   "reference",        "normals",         "surface",
+      "fpfh",    "map",     "matched",        "mean_histogram",   "scores",          "score_table",
+      "curve",   "picture", "centre_density", "centre_densities", "smoothed_scores", "smoothed_table",
+      "face_map"};
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 
