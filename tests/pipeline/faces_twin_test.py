@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import protocols_twin_test
 from protocols_twin_test import EPS, PROGRAM, bumpy_sphere, density, distances, divergence, matched, min_max, similarity
+from salbench.report.exports import Shapes
 from scipy import stats
 
 REAL = Path(os.environ.get("SALBENCH_DATA", "")) / "meshmamba"
@@ -118,6 +119,19 @@ class Faces(protocols_twin_test.Archives):
             _, _, looked = shapes[row["item"]]
             q = density(looked[~np.isnan(looked)])
             self.agree(row, kl=(q * np.log(EPS + q / (EPS + 1 / len(q)))).sum())
+        self.check_report(shapes)
+
+    def check_report(self, shapes):
+        """Values of faces are drawn as means around the vertices."""
+        maps = self.folder / "maps.h5"
+        subprocess.run([PROGRAM, "export", self.folder / "config.yaml", "--data", self.data, "--cache", self.folder / "cache", "--pictures",
+                        "--to", maps, "--quiet"], check=True)
+        subprocess.run([PROGRAM, "report", self.folder / "out", "--export", maps, "--to", self.folder / "report", "--quiet"], check=True)
+        for item, (points, faces, _) in shapes.items():
+            self.assertTrue((self.folder / f"report/shapes/{item}.html").is_file())
+            drawn = Shapes([maps]).itself(item).maps()
+            self.assertEqual({(name, when): len(values) for (name, when), values in drawn.items()},
+                             {(name, when): len(points) for name in ("CB", "RS") for when in ("before", "after")})
 
     # --- real data ----------------------------------------------------------------------------------------------
 
