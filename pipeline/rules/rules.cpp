@@ -87,8 +87,9 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
     meshes.points = mesh;
     meshes.surface = mesh;
     meshes.ground_truth = add_mesh_ground_truth(table, config, source, mesh, form);
-    meshes.on_faces = config.on_faces();  // then the other is drawn
-    if (meshes.on_faces) meshes.ground_truth = add_face_truth(table, source, mesh, form);
+    meshes.on_faces = config.on_faces();
+    if (meshes.on_faces)  // pictures show the ground truth of vertices all the same
+      meshes.ground_truth = add_face_truth(table, source, mesh, form);
     meshes.reference = add_reference(table, kMeshes, meshes.ground_truth, given_reference);
   }
   Output<Scan> scan;
@@ -123,7 +124,7 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
   for (ShapeOutputs* shape : evaluated) add_centre_densities(table, *shape, config);
   std::vector<Scored> scored;
   for (const Model& model : config.models) {
-    if (model.human && on_meshes && !meshes.on_faces)  // nobody picks faces
+    if (model.human && on_meshes && !meshes.on_faces)  // people's picks are of vertices
       scored.push_back({kMeshes, model.name, add_human_performance(table, meshes, mesh, config, model)});
     if (model.given) give_map_files(evaluated, inputs.units, model.given);
     for (const ShapeOutputs* shape : evaluated)
