@@ -15,6 +15,7 @@
 #include <pybind11/stl.h>
 
 #include "cache/digest.h"
+#include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/results/map_counts.h"
 #include "pipeline/rules/given_maps.h"
@@ -67,10 +68,13 @@ std::pair<std::string, std::string> what_was_raised(const py::error_already_set&
       .cast<std::pair<std::string, std::string>>();
 }
 
-ScalarField call(const FunctionModel& model, const std::string& id, const py::object& shape, std::size_t n) {
+// Faces: how many may have values in place of the points.
+ScalarField call(const FunctionModel& model, const std::string& id, const py::object& shape, std::size_t n,
+                 std::size_t faces) {
   try {
     const py::object values = model.function(shape);
-    const auto map = field({values, "the map"}, n);
+    const auto map = field({values, "the map"}, faces == 0 ? std::optional(n) : std::nullopt);
+    require_value_per_element(fmt::format("{}(): the map", model.name), map.size(), n, faces);
     return {map.values.begin(), map.values.end()};
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_Exception)) throw;  // Ctrl-C, and sys.exit()
@@ -94,18 +98,18 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
   return table.add(
       shape.level, head,
       [&model, &caller, reads_faces = reads("faces")](Points points, const Normals* normals, Surface faces,
-                                                      const Descriptors* fpfh, const RandomSource& random,
-                                                      const NoOptions&) {
+                                                      const Descriptors* fpfh, Surface mapped_faces,
+                                                      const RandomSource& random, const NoOptions&) {
         ScalarField map;
         caller.carry_out([&] {
           map = call(model, random.item, shape_of(random.item, points, normals, reads_faces, faces, fpfh),
-                     points.size());
+                     points.size(), mapped_faces.size());
         });
         require_finite(map, "the map");
         return map;
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), kRandom,
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom,
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 
@@ -262,7 +266,9 @@ class Run {
   py::dict score(py::handle prediction, const std::string& item, const std::string& model) {
     if (!model.empty()) require_model(model);
     require_name("item in the run", item, shapes_with_maps(session_->setup.project));
-    const auto n = python::computed([&] { return point_count(*session_, item); });
+    const auto n = session_->setup.config.on_faces()  // the rule of values by face counts both
+                       ? std::nullopt
+                       : python::computed([&] { return point_count(*session_, item); });
     const auto map = field({prediction, "prediction"}, n);
     const Scores scores = python::computed([&] {
       return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);

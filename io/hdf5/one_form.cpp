@@ -345,4 +345,9 @@ GroundTruth truth_in_form(std::string_view image, std::string_view name, std::st
   return truth_in({name, arrays}, view).truth;
 }
 
+ScalarField face_values_in_form(std::string_view image, std::string_view name, std::string_view view) {
+  const Arrays arrays = arrays_in_form(image, name);
+  return truth_in({name, arrays}, view).face_values;
+}
+
 }  // namespace salbench

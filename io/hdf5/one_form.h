@@ -66,5 +66,6 @@ struct ForeignForm : InputError {
 Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts = nullptr);
 PointCloud cloud_in_form(std::string_view image, std::string_view name);
 GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view);
+ScalarField face_values_in_form(std::string_view image, std::string_view name, std::string_view view);
 
 }  // namespace salbench

@@ -47,7 +47,7 @@ struct DatasetItem {
   std::vector<std::string> picks = {};    // by participant's number; may be empty
   std::string shape = {};                 // of a view that is scored: the mesh file's name; else empty
   std::string view = {};                  // that is scored
-  std::string split = {};                 // empty if it is in none
+  std::string split = {};                 // empty if it is in none; "train+test" if it is in both
   std::optional<KnownItem> indexed = {};  // `mesh` is a file in the one form, with everything in it
   std::shared_ptr<const ImportedItem> imported = {};
   std::string problem = {};  // why its ground truth cannot be used: one line

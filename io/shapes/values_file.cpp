@@ -101,18 +101,25 @@ ScalarField parse_npy(std::string_view bytes, std::string_view name) {
   return is_double ? numbers_in<double>(body) : numbers_in<float>(body);
 }
 
-ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n,
-                              const ReadValues& read_hdf5) {
+void require_value_per_element(std::string_view name, std::size_t n_values, std::size_t n_points,
+                               std::size_t n_faces) {
+  if (n_values != n_points && (n_faces == 0 || n_values != n_faces))
+    throw InputError(fmt::format("{}: {} values, but the shape has {} points{}", name, n_values, n_points,
+                                 n_faces == 0 ? "" : fmt::format(" and {} faces", n_faces)));
+}
+
+ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n_points,
+                              const ReadValues& read_hdf5, std::size_t n_faces) {
   require_regular_file(path);
-  if (const auto size = size_of_file(path); size && *size > n * kBytesPerValue + kHeaderBytes)
-    throw InputError(fmt::format("{}: {} bytes are too many for {} values", name, *size, n));
+  const std::size_t most = std::max(n_points, n_faces);
+  if (const auto size = size_of_file(path); size && *size > most * kBytesPerValue + kHeaderBytes)
+    throw InputError(fmt::format("{}: {} bytes are too many for {} values", name, *size, most));
   const std::string bytes = read_file(path);
   ScalarField values = is_npy(bytes)              ? parse_npy(bytes, name)
                        : bytes.starts_with(kHdf5) ? read_hdf5(path)
                                                   : parse_values(bytes, name);
-  if (values.size() != n)
-    throw InputError(fmt::format("{}: {} values, but the shape has {} points", name, values.size(), n));
-  for (std::size_t i = 0; i < n; ++i)
+  require_value_per_element(name, values.size(), n_points, n_faces);
+  for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
       throw InputError(
           fmt::format("{}: value {} (0-based) is {}, expected a finite number", name, i, values[i]));

@@ -15,6 +15,7 @@
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/results/export_file.h"
+#include "pipeline/rules/shapes.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -63,8 +64,8 @@ StageNames selected_stages(const std::string& list, const Rules& rules) {
 
 // --- shapes -----------------------------------------------------------------------------------------------
 
-// Gives a shape the part of it that a stage's value holds; other values are not per point. The value must
-// outlive the shape.
+// Gives a shape the part of it that a stage's value holds; other values are not per point, such as those of
+// faces that are scored. The value must outlive the shape.
 void add_part(ShapeWithFields& shape, const std::string& stage, const std::any& value) {
   if (const auto* mesh = value_if<Mesh>(value)) {
     shape.points = mesh->vertices;
@@ -74,10 +75,12 @@ void add_part(ShapeWithFields& shape, const std::string& stage, const std::any& 
   if (const auto* cloud = value_if<PointCloud>(value)) shape.points = cloud->points;
   if (const auto* normals = value_if<Normals>(value)) shape.normals = *normals;
   if (const auto* faces = value_if<Faces>(value)) shape.faces = *faces;
-  if (const auto* field = value_if<ScalarField>(value)) shape.fields.push_back({item_label(stage), *field});
-  if (const auto* truth = value_if<GroundTruth>(value)) {
+  const std::size_t n = shape.points.size();
+  if (const auto* field = value_if<ScalarField>(value); field != nullptr && field->size() == n)
+    shape.fields.push_back({item_label(stage), *field});
+  if (const auto* truth = value_if<GroundTruth>(value); truth != nullptr && stage != kFaceTruth) {
     if (!truth->saliency.empty()) shape.fields.push_back({"ground_truth", truth->saliency});
-    ScalarField picks(shape.points.size());
+    ScalarField picks(n);
     for (const auto& participant : truth->picks)
       for (const std::int32_t point : participant) ++picks[static_cast<std::size_t>(point)];
     shape.fields.push_back({"picks", std::move(picks)});

@@ -13,6 +13,7 @@
 #include "io/shapes/ground_truth_file.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
+#include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/smoothing.h"
 #include "stages/models/hs.h"
@@ -54,6 +55,27 @@ GroundTruth read_truth(const Files& files, const Elements& points) {
 
 GroundTruth with_saliency(GroundTruth truth, const Mesh& shape) {
   if (truth.saliency.empty()) truth.saliency = smoothed_picks(shape, truth.picks);
+  return truth;
+}
+
+const TruthInForm& imported_for(const DatasetItem& item, const ShapeInForm& form) {
+  const auto found = std::ranges::find(form.truths, item.view, &TruthInForm::view);
+  if (found == form.truths.end())
+    throw InputError(fmt::format("{}: its importer found no ground truth", item.mesh));
+  return *found;
+}
+
+// Faces that are left stand in the order of the file, and of equal ones the first stays: so each is the next
+// that is equal.
+GroundTruth truth_of_faces(const DatasetItem& item, const ScalarField& values, Surface in_file,
+                           Surface left) {
+  if (values.empty())
+    throw InputError(fmt::format(
+        "{}: its ground truth has no values per face; write dataset: {{score_on: vertices}}", item.mesh));
+  GroundTruth truth;
+  for (std::size_t i = 0; i < in_file.size() && truth.saliency.size() < left.size(); ++i)
+    if (in_file[i] == left[truth.saliency.size()]) truth.saliency.push_back(values[i]);
+  CHECK_EQ(truth.saliency.size(), left.size());
   return truth;
 }
 
@@ -102,10 +124,20 @@ GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Fi
 
 GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Files& files) {
   const DatasetItem& item = item_of(files.source);
-  const auto found = std::ranges::find(form.truths, item.view, &TruthInForm::view);
-  if (found == form.truths.end())
-    throw InputError(fmt::format("{}: its importer found no ground truth", item.mesh));
-  return with_saliency(found->truth, shape);
+  return with_saliency(imported_for(item, form).truth, shape);
+}
+
+GroundTruth given_face_truth(const Mesh& mesh, const Files& files) {
+  const DatasetItem& item = item_of(files.source);
+  if (!item.indexed) return truth_of_faces(item, {}, {}, {});
+  const std::string& image = files.data[0].text();
+  return truth_of_faces(item, face_values_in_form(image, item.mesh, item.view),
+                        mesh_in_form(image, item.mesh).faces, mesh.faces);
+}
+
+GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files) {
+  const DatasetItem& item = item_of(files.source);
+  return truth_of_faces(item, imported_for(item, form).face_values, form.mesh.faces, mesh.faces);
 }
 
 std::size_t participants_of(const DatasetItem& item) {

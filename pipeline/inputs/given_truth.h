@@ -26,6 +26,11 @@ GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Fi
 // The same of an item that was imported.
 GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Files& files);
 
+// Values per face as they were published, NaN for what was not seen, of the faces that are left of the file's
+// in `mesh`; no picks. Throws InputError, one line that says what to do, where there are none.
+GroundTruth given_face_truth(const Mesh& mesh, const Files& files);
+GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
+
 // What the files hold: no saliency is made from picks.
 GroundTruth measured_truth(const Mesh& mesh, const Files& files);
 GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files);

@@ -64,23 +64,40 @@ std::set<std::string> selected_names(const ItemChoice& choice, const std::set<st
   return names;
 }
 
+// Names in "train+test", which says that an item is in both.
+std::vector<std::string_view> splits_in(std::string_view text) {
+  std::vector<std::string_view> names;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('+'), text.size());
+    names.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return names;
+}
+
+bool is_in_split(std::string_view text, std::string_view split) {
+  return text == split || std::ranges::count(splits_in(text), split) > 0;
+}
+
 // Keeps the items of a split. Those that are in two stay, to fail with what is wrong.
 void select_split(Dataset& dataset, const std::string& split) {
   std::vector<DatasetItem>& items = dataset.items;
   std::set<std::string_view> known;
   for (const DatasetItem& item : items)
-    if (!item.split.empty()) known.insert(item.split);
+    for (const std::string_view name : splits_in(item.split)) known.insert(name);
   if (known.empty())
     throw UnknownNameError(fmt::format(
         "split '{}': the data set has no splits{}", split,
         dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
-  if (!known.contains(split)) {
+  if (std::ranges::none_of(items, [&](const auto& item) { return is_in_split(item.split, split); })) {
     const std::string hint = did_you_mean(split, {known.begin(), known.end()});
     throw UnknownNameError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})",
                                        split, hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
                                        dataset.splits_where));
   }
-  std::erase_if(items, [&](const DatasetItem& item) { return item.split != split && item.problem.empty(); });
+  std::erase_if(items, [&](const DatasetItem& item) {
+    return !is_in_split(item.split, split) && item.problem.empty();
+  });
 }
 
 // The line of a data set's notes on them.
@@ -99,7 +116,7 @@ std::string text_of_unknown(const std::vector<SplitEntry>& unknown) {
 std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& split) {
   std::vector<SplitEntry> of_split, of_others;
   for (const SplitEntry& entry : dataset.unknown)
-    (entry.split == split ? of_split : of_others).push_back(entry);
+    (is_in_split(entry.split, split) ? of_split : of_others).push_back(entry);
   if (split.empty() || of_split.empty()) return {};
   std::erase(dataset.notes, text_of_unknown(dataset.unknown));
   if (!of_others.empty()) dataset.notes.push_back(text_of_unknown(of_others));

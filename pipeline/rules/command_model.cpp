@@ -115,11 +115,11 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
   return table.add(
       shape.level, head,
       [command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
-                const CommandOptions&) {
-        return command->map({points, normals, faces, fpfh});
+                Surface mapped_faces, const CommandOptions&) {
+        return command->map({points, normals, faces, fpfh}, mapped_faces.size());
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), SectionOf<CommandOptions>{lines, options});
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), SectionOf<CommandOptions>{lines, options});
 }
 
 }  // namespace

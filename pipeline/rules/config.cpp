@@ -148,6 +148,11 @@ std::string written(const Config& config, bool annotated) {
 
 void check(const DatasetOptions& options) {
   if (!options.meshes && !options.scans) throw OptionError("scans", "must be true where meshes is false");
+  if (options.score_on == ScoreOn::vertices) return;
+  if (options.scans)
+    throw OptionError("score_on", "must be vertices where scans is true: write scans: false");
+  if (options.participants == Participants::simulated)
+    throw OptionError("score_on", "must be vertices where participants are simulated: they pick vertices");
 }
 
 Config read_config(const Section& root, const std::string& name) {

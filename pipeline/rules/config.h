@@ -28,6 +28,13 @@ struct EnumNames<Participants> {
   static constexpr std::array<std::string_view, 2> names{"measured", "simulated"};
 };
 
+// Elements that maps are scored on.
+enum class ScoreOn { vertices, faces };
+template <>
+struct EnumNames<ScoreOn> {
+  static constexpr std::array<std::string_view, 2> names{"vertices", "faces"};
+};
+
 struct DatasetOptions {
   std::string layout{kAutomaticLayout};
   std::string split;
@@ -35,6 +42,7 @@ struct DatasetOptions {
   bool meshes = true;
   bool scans = true;
   Participants participants = Participants::measured;
+  ScoreOn score_on = ScoreOn::vertices;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -46,6 +54,8 @@ struct DatasetOptions {
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
     visit("participants", self.participants, {"ground truth from files, or made up for a demonstration"});
+    visit("score_on", self.score_on,
+          {"elements that maps are scored on; faces: against values that are published per face"});
   }
 };
 void check(const DatasetOptions& options);
@@ -80,6 +90,7 @@ struct Config {
   std::vector<Model> models;           // in the order of the file
 
   bool simulated() const { return dataset.participants == Participants::simulated; }
+  bool on_faces() const { return dataset.score_on == ScoreOn::faces; }
 };
 
 // Throws ConfigError: "file:line: key what is wrong".

@@ -8,6 +8,7 @@
 #include "io/file.h"
 #include "io/shapes/ground_truth_file.h"
 #include "io/shapes/text_scanner.h"
+#include "io/shapes/values_file.h"
 #include "pipeline/package/importer.h"
 #include "stages/core/errors.h"
 
@@ -49,13 +50,12 @@ std::string GivenMaps::place(const std::string& item) const {
 }
 
 ScalarField GivenMaps::checked(const FileData& data, const std::string& item, std::size_t n_points,
-                               const PointCloud* cloud) const {
+                               std::size_t n_faces, const PointCloud* cloud) const {
   const std::string where = place(item);
   const auto* values = std::get_if<ScalarField>(&data.content);
   ScalarField map = values != nullptr ? *values : parse_values(data.text(), where);
   if (cloud != nullptr && map.size() == cloud->size_in_file()) map = values_left(*cloud, map);
-  if (map.size() != n_points)
-    throw InputError(fmt::format("{}: {} values, but the shape has {} points", where, map.size(), n_points));
+  require_value_per_element(where, map.size(), n_points, n_faces);
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!std::isfinite(map[i]))
       throw InputError(

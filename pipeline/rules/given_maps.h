@@ -23,10 +23,10 @@ struct GivenMaps {
 
   // Reads the map of one of these items. Throws InputError.
   std::function<FileData(const std::string& item)> read = {};
-  // The data as a map of n_points finite numbers; of a point cloud they may count all points of its file.
-  // Throws InputError.
+  // The data as a map of n_points finite numbers, or n_faces where faces are scored; of a point cloud they
+  // may count all points of its file. Throws InputError.
   ScalarField checked(const FileData& data, const std::string& item, std::size_t n_points,
-                      const PointCloud* cloud = nullptr) const;
+                      std::size_t n_faces = 0, const PointCloud* cloud = nullptr) const;
 
   std::string place(const std::string& item) const;  // for a message: where the item's map is looked for
 };

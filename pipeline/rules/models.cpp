@@ -97,16 +97,17 @@ Model given_model(const std::string& name, GivenMaps given) {
     throw ConfigError(fmt::format("--name {}: {}", in_quotes(name), wrong));
   const auto maps = std::make_shared<const GivenMaps>(std::move(given));
   const auto of_cloud = [maps](const PointCloud& cloud, const Files& file) {
-    return maps->checked(file.data[0], file.name, cloud.points.size(), &cloud);
+    return maps->checked(file.data[0], file.name, cloud.points.size(), 0, &cloud);
   };
-  const auto of_shape = [maps](Points points, const Files& file) {
-    return maps->checked(file.data[0], file.name, points.size());
+  const auto of_shape = [maps](Points points, Surface mapped_faces, const Files& file) {
+    return maps->checked(file.data[0], file.name, points.size(), mapped_faces.size());
   };
   const auto add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
     const RuleHead head = stage_of(name, maps->matched ? Role::matched : Role::map, 1);
     const FilesOf files{shape.map_files};
-    return shape.level == kClouds ? table.add(shape.level, head, of_cloud, shape.cloud, files)
-                                  : table.add(shape.level, head, of_shape, shape.points, files);
+    return shape.level == kClouds
+               ? table.add(shape.level, head, of_cloud, shape.cloud, files)
+               : table.add(shape.level, head, of_shape, shape.points, shape.mapped_faces(), files);
   };
   return {.name = name, .version = 1, .add_map = add_map, .given = maps};
 }

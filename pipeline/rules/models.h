@@ -43,6 +43,9 @@ struct ShapeOutputs {
   Output<CentreDensity> centre_densities = {};
   FileColumnPtr groups = {};     // names of what stays together in a fold
   FileColumnPtr map_files = {};  // of a model that takes its maps from outside
+  // Maps are scored on the faces of the surface: ground truth is per face, and maps may be.
+  bool on_faces = false;
+  Output<Surface> mapped_faces() const { return on_faces ? surface : Output<Surface>(); }
 };
 
 // A model with its options bound: a map of every shape, computed or given, or, as HS alone, human

@@ -44,7 +44,9 @@ Output<PointCloud> add_cloud(RuleTable& table, const Config& config, const Sourc
   clouds.normals = normals;
   clouds.surface = table.add(kClouds, stage(Role::surface, 1), partial_mesh, cloud, normals,
                              section("surface", config.surface));
-  clouds.ground_truth = add_cloud_ground_truth(table, config, source, cloud, clouds.surface, form);
+  clouds.ground_truth = config.on_faces()
+                            ? add_face_truth(table, source, cloud)
+                            : add_cloud_ground_truth(table, config, source, cloud, clouds.surface, form);
   clouds.reference = add_reference(table, kClouds, clouds.ground_truth, given);
   clouds.fpfh = add_fpfh(table, clouds, section("fpfh", config.fpfh));
   return cloud;
@@ -102,6 +104,9 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
     meshes.points = mesh;
     meshes.surface = mesh;
     meshes.ground_truth = add_mesh_ground_truth(table, config, source, mesh, form);
+    meshes.on_faces = config.on_faces();
+    if (meshes.on_faces)  // pictures show the ground truth of vertices all the same
+      meshes.ground_truth = add_face_truth(table, source, mesh, form);
     meshes.reference = add_reference(table, kMeshes, meshes.ground_truth, given_reference);
   }
   Output<Scan> scan;
@@ -140,7 +145,7 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
   }
   std::vector<Scored> scored;
   for (const Model& model : config.models) {
-    if (model.human && on_meshes)
+    if (model.human && on_meshes && !meshes.on_faces)  // people's picks are of vertices
       scored.push_back({kMeshes, model.name, add_human_performance(table, meshes, mesh, config, model)});
     if (model.given) give_map_files(evaluated, inputs.units, model.given);
     for (const ShapeOutputs* shape : evaluated)

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "stages/core/centre.h"
+#include "stages/core/faces.h"
 #include "stages/core/field.h"
 #include "stages/core/laplacian.h"
 #include "stages/core/mesh_ops.h"
@@ -39,8 +40,6 @@ Histogram mean_over(const Members<T>& members) {
   return mean_histogram(histograms);
 }
 
-ScalarField constant_map(Points points) { return ScalarField(points.size(), 0.5); }
-
 CentreDensity sum_of_densities(const Members<CentreDensity>& members) {
   CentreDensity sum;
   for (std::size_t i = 0; i < members.size; ++i) add(sum, *members[i]);
@@ -62,6 +61,40 @@ ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   return table;
 }
 
+// What metrics read of the points of a shape, or of the faces of a mesh.
+Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n, Points points,
+                     Surface surface, const CentreDensity* own = nullptr,
+                     const CentreDensity* set = nullptr) {
+  if (!faces) return measures_of(metrics, n, points, surface, density_if_known(points, own, set));
+  const std::vector<Vec3> centroids = face_centroids(points, surface);
+  Measures measures(n, any_by_area(metrics) ? face_areas(points, surface) : ScalarField{},
+                    any_of_positions(metrics) ? distances_from_centroid(centroids) : ScalarField{});
+  measures.negatives = density_if_known(centroids, own, set);
+  return measures;
+}
+
+// The map as it is scored.
+Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, const Model& model,
+                                 const Output<ScalarField>& map) {
+  if (!shape.on_faces) return map;
+  return table.add(
+      shape.level, stage_of(model.name, Role::face_map, 1),
+      [](FieldView values, Points points, Surface surface) {
+        return values_by_face(values, points.size(), surface);
+      },
+      map, shape.points, shape.surface);
+}
+
+// The points of a shape, or the faces of a mesh, and which are next to each other.
+struct Elements {
+  std::vector<Vec3> places;
+  Adjacency adjacency;
+
+  Elements(bool faces, Points points, Surface surface)
+      : places(faces ? face_centroids(points, surface) : std::vector<Vec3>(points.begin(), points.end())),
+        adjacency(faces ? face_adjacency(surface) : edge_adjacency(points.size(), surface)) {}
+};
+
 // The map as the density that is fitted to the maps of other shapes; only where a metric asks for it.
 Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const Config& config,
                              const std::string& model, const Output<FieldView>& map) {
@@ -69,9 +102,11 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
   const auto fitting = section("fitting", config.fitting);
   const Output<DensityCounts> counts = table.add(
       shape.level, stage_of(model, Role::density_counts, 1),
-      [](FieldView values, Points points, Surface surface, const GroundTruth& truth, const Files& group,
-         const FittingOptions& options, const RandomSource& random) {
-        return density_counts(values, points, surface, truth,
+      [faces = shape.on_faces](FieldView values, Points points, Surface surface, const GroundTruth& truth,
+                               const Files& group, const FittingOptions& options,
+                               const RandomSource& random) {
+        const Elements elements(faces, points, surface);
+        return density_counts(values, elements.places, elements.adjacency, truth,
                               fold_of(group.data[0].text(), options.folds, random.seed));
       },
       map, shape.points, shape.surface, shape.ground_truth, FilesOf{shape.groups}, fitting, kRandom);
@@ -85,8 +120,10 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
       counts, fitting);
   return table.add(
       shape.level, stage_of(model, Role::fitted, 1),
-      [](FieldView values, Points points, Surface surface, const DensityCounts& own, const DensityFits& all) {
-        return fitted_density(values, points, surface, all.at(index(own.fold)));
+      [faces = shape.on_faces](FieldView values, Points points, Surface surface, const DensityCounts& own,
+                               const DensityFits& all) {
+        const Elements elements(faces, points, surface);
+        return fitted_density(values, elements.places, elements.adjacency, all.at(index(own.fold)));
       },
       map, shape.points, shape.surface, counts, fits);
 }
@@ -97,18 +134,18 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
                           const Model& model, const Output<FieldView>& map,
                           const Output<FieldView>& matched_map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
-  const Output<FieldView> fitted = add_fitted(table, shape, config, model.name, map);
   RuleHead head = stage_of(model.name, Role::scores, scores_version(metrics->all()));
+  const bool positions = any_of_points(metrics->all());
+  const Output<FieldView> fitted = add_fitted(table, shape, config, model.name, map);
   return table.add(
       shape.level, head,
-      [name = head.stage, metrics](FieldView matched_values, FieldView values, FieldView density,
-                                   const GroundTruth& truth, Points points, Surface surface,
-                                   const CentreDensity* own, const CentreDensity* set,
-                                   const MetricsOptions& options, const RandomSource& random) {
+      [name = head.stage, metrics, faces = shape.on_faces](
+          FieldView matched_values, FieldView values, FieldView density, const GroundTruth& truth,
+          Points points, Surface surface, const CentreDensity* own, const CentreDensity* set,
+          const MetricsOptions& options, const RandomSource& random) {
         Draws draws(random.rng(name));
         const std::size_t n = std::max({matched_values.size(), values.size(), density.size()});
-        const Measures measures =
-            measures_of(metrics->all(), n, points, surface, density_if_known(points, own, set));
+        const Measures measures = measures_on(faces, metrics->all(), n, points, surface, own, set);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
           if (read == Matching::histogram)
             return score(of_part, matched_values, truth, options, draws, measures);
@@ -118,9 +155,9 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
         });
       },
       only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map), fitted,
-      shape.ground_truth, only_if(any_of_points(metrics->all()), shape.points),
-      only_if(any_of_faces(metrics->all()), shape.surface), shape.centre_density, shape.centre_densities,
-      section("metrics", config.metrics), kRandom);
+      shape.ground_truth, only_if(positions, shape.points),
+      only_if(shape.on_faces ? positions : any_of_faces(metrics->all()), shape.surface), shape.centre_density,
+      shape.centre_densities, section("metrics", config.metrics), kRandom);
 }
 
 // The scores of a map after each number of smoothing steps, with the draws of the plain scores. They stand
@@ -131,13 +168,12 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
   const bool match = metrics->any(Matching::histogram) && !(model.given && model.given->matched);
   const auto scored = table.add(
       shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(metrics->all())),
-      [name = stage_of(model.name, Role::scores, 1).stage, metrics](
+      [name = stage_of(model.name, Role::scores, 1).stage, metrics, faces = shape.on_faces](
           FieldView plain, const GroundTruth& truth, Points points, Surface surface,
           const Histogram* reference, const CentreDensity* own, const CentreDensity* set,
           const MetricsOptions& options, const RandomSource& random) {
-        const Measures measures =
-            measures_of(metrics->all(), points.size(), points, surface, density_if_known(points, own, set));
-        const Adjacency adjacency = edge_adjacency(points.size(), surface);
+        const Measures measures = measures_on(faces, metrics->all(), plain.size(), points, surface, own, set);
+        const Adjacency adjacency = faces ? face_adjacency(surface) : edge_adjacency(points.size(), surface);
         ScalarField values(plain.begin(), plain.end());
         for (double& value : values)
           if (std::isnan(value)) value = 0;  // as matching and normalisation have it
@@ -172,8 +208,13 @@ Output<Histogram> add_reference(RuleTable& table, Level level, const Output<Grou
 
 void add_centre_densities(RuleTable& table, ShapeOutputs& shape, const Config& config) {
   if (!any_of_others(chosen_metrics(config.metrics))) return;
-  shape.centre_density = table.add(shape.level, stage(Role::centre_density, 1), centre_density, shape.points,
-                                   shape.ground_truth);
+  const RuleHead head = stage(Role::centre_density, 1);
+  const auto of_faces = [](Points points, Surface surface, const GroundTruth& truth) {
+    return centre_density(face_centroids(points, surface), truth);
+  };
+  shape.centre_density =
+      shape.on_faces ? table.add(shape.level, head, of_faces, shape.points, shape.surface, shape.ground_truth)
+                     : table.add(shape.level, head, centre_density, shape.points, shape.ground_truth);
   shape.centre_densities =
       table.add(shape.level, stage(Role::centre_densities, 1), sum_of_densities, shape.centre_density);
 }
@@ -183,7 +224,7 @@ Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Conf
   const auto match = [](const ScalarField& values, const Histogram& reference) {
     return matched(values, reference);
   };
-  const Output<ScalarField> map = model.add_map(table, shape);
+  const Output<ScalarField> map = add_face_map(table, shape, model, model.add_map(table, shape));
   if (!smoothing.smoothing.empty()) add_smoothed_scores(table, shape, smoothing, model, map);
   if (model.given && model.given->matched) return add_scores(table, shape, config, model, map, map);
   const Output<Scores> scores =
@@ -203,27 +244,29 @@ Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, 
   if (varying.names.empty()) return {};
   const auto metrics = std::make_shared<const MetricsByMatching>(varying);
   const std::string model(kConstantMap);
+  const auto constant_map = [faces = shape.on_faces](Points points, Surface surface) {
+    return ScalarField(faces ? surface.size() : points.size(), 0.5);
+  };
   Output<FieldView> fitted;
   if (metrics->any(Matching::fitted))
-    fitted = add_fitted(
-        table, shape, config, model,
-        table.add(shape.level, stage_of(model, Role::constant_map, 1), constant_map, shape.points));
+    fitted = add_fitted(table, shape, config, model,
+                        table.add(shape.level, stage_of(model, Role::constant_map, 1), constant_map,
+                                  shape.points, shape.surface));
   return table.add(
       shape.level, stage_of(model, Role::scores, scores_version(metrics->all())),
-      [metrics](const GroundTruth& truth, FieldView density, Points points, Surface surface,
-                const MetricsOptions& options) {
+      [metrics, constant_map, faces = shape.on_faces](const GroundTruth& truth, FieldView density,
+                                                      Points points, Surface surface,
+                                                      const MetricsOptions& options) {
         Draws draws(Rng(0, "", ""));
-        const Measures measures = measures_of(metrics->all(), points.size(), points, surface);
+        const ScalarField constant = constant_map(points, surface);
+        const Measures measures = measures_on(faces, metrics->all(), constant.size(), points, surface);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
-          if (read == Matching::fitted && density.empty()) return {};
-          return score(
-              of_part,
-              read == Matching::fitted ? ScalarField(density.begin(), density.end()) : constant_map(points),
-              truth, options, draws, measures);
+          if (read != Matching::fitted) return score(of_part, constant, truth, options, draws, measures);
+          return density.empty() ? Scores() : score(of_part, density, truth, options, draws, measures);
         });
       },
-      shape.ground_truth, fitted, shape.points, only_if(any_of_faces(metrics->all()), shape.surface),
-      section("metrics", varying));
+      shape.ground_truth, fitted, shape.points,
+      only_if(shape.on_faces || any_of_faces(metrics->all()), shape.surface), section("metrics", varying));
 }
 
 void add_score_tables(RuleTable& table, const std::vector<Scored>& scored) {

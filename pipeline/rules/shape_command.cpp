@@ -87,7 +87,7 @@ ShapeCommand::ShapeCommand(const std::string& name, std::string command,
                    [files = depends_](const fs::path& folder) { files->link_into(folder); });
 }
 
-ScalarField ShapeCommand::map(const ShapeParts& shape) {
+ScalarField ShapeCommand::map(const ShapeParts& shape, std::size_t mapped_faces) {
   const ScratchFolder scratch;
   const fs::path& folder = scratch.path();
   if (has("{mesh}") || has(kListOfMeshes)) write_mesh(folder / file_of("{mesh}"), shape);
@@ -95,8 +95,9 @@ ScalarField ShapeCommand::map(const ShapeParts& shape) {
   const std::string end = servers_ ? ask(folder) : run(folder);
   depends_->check_unchanged();
   const fs::path written = written_file(folder, end);
-  return read_point_values(written, "the command's " + written.filename().string(), shape.points.size(),
-                           [&](const fs::path& file) { return importer_.values(file); });
+  return read_point_values(
+      written, "the command's " + written.filename().string(), shape.points.size(),
+      [&](const fs::path& file) { return importer_.values(file); }, mapped_faces);
 }
 
 // Returns what the command did, for a message.

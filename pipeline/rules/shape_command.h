@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -45,9 +46,9 @@ class ShapeCommand {
   ShapeCommand(const std::string& name, std::string command, std::chrono::duration<double> timeout,
                std::shared_ptr<DependedFiles> depends);
 
-  // The values that it writes, one per point. Several threads may ask. Throws InputError if it fails,
-  // Interrupted and StorageError (io/commands/process.h).
-  ScalarField map(const ShapeParts& shape);
+  // The values that it writes, one per point, or per face where there are `mapped_faces`. Several threads may
+  // ask. Throws InputError if it fails, Interrupted and StorageError (io/commands/process.h).
+  ScalarField map(const ShapeParts& shape, std::size_t mapped_faces);
 
  private:
   bool has(std::string_view placeholder) const { return command_.find(placeholder) != std::string::npos; }

@@ -3,9 +3,12 @@
 
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/loading.h"
 #include "pipeline/rules/models.h"
+#include "stages/core/errors.h"
 #include "stages/core/point_cloud.h"
 #include "stages/ground_truth/simulation.h"
 
@@ -88,6 +91,30 @@ Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config
         return in_own_form(importer, given, [&](const Files& own) { return given_truth(shape, own); });
       },
       mesh, files);
+}
+
+Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<Mesh>& mesh,
+                                   const Output<ShapeInForm>& form) {
+  const RuleHead head = stage(Role::ground_truth, 1, kFaceTruth);
+  const FilesOf files{source.inputs.truth_files};
+  if (source.imports()) return table.add(kMeshes, head, imported_face_truth, mesh, form, files);
+  return table.add(
+      kMeshes, head,
+      [importer = source.importer](const Mesh& shape, const Files& given) {
+        return in_own_form(importer, given, [&](const Files& own) { return given_face_truth(shape, own); });
+      },
+      mesh, files);
+}
+
+Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<PointCloud>& cloud) {
+  return table.add(
+      kClouds, stage(Role::ground_truth, 1, kFaceTruth),
+      [](const PointCloud&, const Files& files) -> GroundTruth {
+        throw InputError(
+            fmt::format("{}: a point cloud has no faces to score; write dataset: {{score_on: vertices}}",
+                        item_of(files.source).mesh));
+      },
+      cloud, FilesOf{source.inputs.truth_files});
 }
 
 Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& config, const Source& source,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/package/importer.h"
@@ -26,6 +27,12 @@ Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& sour
 Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form);
 Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
                                           const Output<Mesh>& mesh, const Output<ShapeInForm>& form);
+
+inline constexpr std::string_view kFaceTruth = "face_truth";
+// Values per face, for meshes and, to say that there are none, for point clouds.
+Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<Mesh>& mesh,
+                                   const Output<ShapeInForm>& form);
+Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<PointCloud>& cloud);
 
 Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form);
 Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& config, const Source& source,

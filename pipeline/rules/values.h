@@ -34,6 +34,7 @@ enum class Role {
   centre_densities,  // their sum over a set
   smoothed_scores,   // of the map after each number of smoothing steps
   smoothed_table,    // [shape][steps], one after the other
+  face_map,          // a map by face, where faces are scored
   constant_map,      // only where a density is fitted to it
   density_counts,    // what a fit has to know of a map
   density_fits,      // for each part of a set, to the maps of the others
@@ -41,13 +42,11 @@ enum class Role {
 };
 template <>
 struct EnumNames<Role> {
-  static constexpr std::array<std::string_view, 22> names{
-      "import",          "shape",          "ground_truth",   "reference",
-      "normals",         "surface",        "fpfh",           "map",
-      "matched",         "mean_histogram", "scores",         "score_table",
-      "curve",           "picture",        "centre_density", "centre_densities",
-      "smoothed_scores", "smoothed_table", "constant_map",   "density_counts",
-      "density_fits",    "fitted"};
+  static constexpr std::array<std::string_view, 23> names{
+      "import",   "shape",        "ground_truth",   "reference",        "normals",         "surface",
+      "fpfh",     "map",          "matched",        "mean_histogram",   "scores",          "score_table",
+      "curve",    "picture",      "centre_density", "centre_densities", "smoothed_scores", "smoothed_table",
+      "face_map", "constant_map", "density_counts", "density_fits",     "fitted"};
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 

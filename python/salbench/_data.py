@@ -83,7 +83,7 @@ class Dataset:
         self._archive = self._found if self._layout == sets.AUTOMATIC else self._layout
         chosen = items if items is None or isinstance(items, str) else [str(name) for name in items]
         self._items = sets.chosen(listing, chosen, split)
-        self._notes, self._splits = tuple(listing.notes), tuple(sorted({item.split for item in listing.items if item.split}))
+        self._notes, self._splits = tuple(listing.notes), tuple(sorted({name for item in listing.items for name in item.split.split("+") if name}))
         self._numbers = {item.name: number for number, item in enumerate(self._items)}
 
     @property

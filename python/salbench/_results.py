@@ -126,7 +126,8 @@ class Results(Tables):
         Parameters
         ----------
         prediction : (n,) array
-            One finite value per point. A map of the run, such as maps("LS")["52"], has the scores of its row.
+            One finite value per point, or per face where faces are scored. A map of the run, such as maps("LS")["52"], has the scores
+            of its row.
         item : str
             The shape, such as "52", or "52_3" for scan 3 of mesh 52.
         model : str, optional

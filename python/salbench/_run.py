@@ -37,7 +37,7 @@ class Model:
     Parameters
     ----------
     predict : callable
-        Takes a `Shape`, returns one finite value per point.
+        Takes a `Shape`, returns one finite value per point, or per face where faces are scored.
     version : int, optional
         Your promise that maps are the same as long as it is: only it and `depends` count then.
     depends : sequence, optional

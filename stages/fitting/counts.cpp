@@ -23,8 +23,8 @@ using fitting::ValueBins;
 // Blurs a map by more and more: steps of smoothed_by_steps, each of which has a variance.
 class Blur {
  public:
-  Blur(FieldView map, Points points, Surface surface)
-      : values_(min_max_normalised(map)), adjacency_(edge_adjacency(points.size(), surface)) {
+  Blur(FieldView map, Points points, const Adjacency& adjacency)
+      : values_(min_max_normalised(map)), adjacency_(adjacency) {
     double squares = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::span<const std::int32_t> ring = adjacency_.of(i);
@@ -46,7 +46,7 @@ class Blur {
 
  private:
   ScalarField values_;
-  Adjacency adjacency_;
+  const Adjacency& adjacency_;
   double step_ = 0;
   std::int32_t done_ = 0;
 };
@@ -85,14 +85,14 @@ std::int32_t fold_of(const std::string& group, std::int32_t folds, std::uint64_t
   return static_cast<std::int32_t>(Rng(seed, "folds", group).below(static_cast<std::uint64_t>(folds)));
 }
 
-DensityCounts density_counts(FieldView map, Points points, Surface surface, const GroundTruth& truth,
-                             std::int32_t fold) {
+DensityCounts density_counts(FieldView map, Points points, const Adjacency& adjacency,
+                             const GroundTruth& truth, std::int32_t fold) {
   DensityCounts counts{.fold = fold};
   const ScalarField marks = shares_of_marks(truth, points.size());
   if (marks.empty()) return counts;
   const ScalarField distances = distances_from_centroid(points);
   const auto seen = std::ranges::count_if(marks, [](double mark) { return !std::isnan(mark); });
-  Blur blur(map, points, surface);
+  Blur blur(map, points, adjacency);
   for (std::size_t width = 0; width < kBlurWidths.size(); ++width) {
     const ScalarField values = blur.to(kBlurWidths[width]);
     std::map<std::size_t, std::pair<double, double>> shares;  // [cell]: of points, of marks
@@ -113,9 +113,9 @@ DensityCounts density_counts(FieldView map, Points points, Surface surface, cons
   return counts;
 }
 
-ScalarField fitted_density(FieldView map, Points points, Surface surface, const DensityFit& fit) {
+ScalarField fitted_density(FieldView map, Points points, const Adjacency& adjacency, const DensityFit& fit) {
   if (fit.shapes == 0) return {};
-  const ScalarField values = Blur(map, points, surface).to(fit.blur);
+  const ScalarField values = Blur(map, points, adjacency).to(fit.blur);
   ScalarField density = distances_from_centroid(points);
   for (std::size_t i = 0; i < density.size(); ++i)
     density[i] = fitting::linear(fit.value, ValueBins::at(values[i])) +

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "stages/core/fitted.h"
+#include "stages/core/mesh_ops.h"
 #include "stages/core/options.h"
 #include "stages/core/types.h"
 
@@ -47,8 +48,8 @@ std::int32_t fold_of(const std::string& group, std::int32_t folds, std::uint64_t
 // The marks are the picks, or the saliency where none are known. NaN in a map counts
 // as 0. Points that nobody saw do not count. Throws InputError for an infinite value, and as
 // distances_from_centroid does.
-DensityCounts density_counts(FieldView map, Points points, Surface surface, const GroundTruth& truth,
-                             std::int32_t fold);
+DensityCounts density_counts(FieldView map, Points points, const Adjacency& adjacency,
+                             const GroundTruth& truth, std::int32_t fold);
 
 // For each fold the fit to the shapes of all others, by the blur of the largest mean log-likelihood.
 // A small penalty on f and c makes it unique, and finite where nobody marked anything.
@@ -56,6 +57,6 @@ DensityFits fit_densities(const std::vector<std::shared_ptr<const DensityCounts>
                           std::int32_t folds);
 
 // n values > 0, the largest 1; none if nothing was fitted.
-ScalarField fitted_density(FieldView map, Points points, Surface surface, const DensityFit& fit);
+ScalarField fitted_density(FieldView map, Points points, const Adjacency& adjacency, const DensityFit& fit);
 
 }  // namespace salbench

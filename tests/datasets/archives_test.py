@@ -162,7 +162,7 @@ class Miniatures(WithArchive):
         self.make("meshmamba")
         form = self.read("meshmamba")
         self.equal(form.truths[0].face_values, np.arange(len(SPHERE[1])) % 5.0)
-        self.assertEqual(form.about["split"], "train")
+        self.assertEqual(form.about["split"], "test+train_80")  # the fourth line of five
         self.assertEqual(len(self.list("meshmamba").items[0].files), 2)
         self.setUp()
         self.make("meshmamba_textured")

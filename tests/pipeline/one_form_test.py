@@ -105,7 +105,7 @@ class Converted(protocols_twin_test.Protocols):
         of_faces = np.loadtxt(self.archive / "SaliencyMap/non_texture/Apple_v4.csv")
         np.testing.assert_array_equal(self.item("Apple_v4")["truth/faces"][:], of_faces)
         index = pd.read_csv(self.data / "index.csv")
-        self.assertEqual(index["split"].tolist(), ["train"] * 4 + ["test"])
+        self.assertEqual(index["split"].tolist(), ["train+train_80"] * 2 + ["train+test+train_80", "test+train_80", "test+test_20"])
 
     # --- real data ----------------------------------------------------------------------------------------------
 

@@ -48,6 +48,16 @@ TEST_F(WithSplits, ATableNamesTheSplitOfEachItem) {
   EXPECT_THAT(run_splits("splits: {file: splits.csv}\n", "train"), ElementsAre("ant:train", "cat:train"));
 }
 
+TEST_F(WithSplits, ASplitTakesWhatIsInAnotherToo) {
+  data_.write("paths.txt", "ant\nbee\ncat\ndog\neel\n");
+  const std::string splits = "splits: {list: paths.txt, shares: {train: 40%, train+test: 20%, test: 40%}}\n";
+  EXPECT_THAT(run_splits(splits, "train"), ElementsAre("ant:train", "bee:train", "cat:train+test"));
+  EXPECT_THAT(run_splits(splits, "test"), ElementsAre("cat:train+test", "dog:test", "eel:test"));
+  EXPECT_THAT(run_splits(splits, "train+test"), ElementsAre("cat:train+test"));
+  EXPECT_THAT([&] { run_splits(splits, "tests"); },
+              ThrowsMessage<UnknownNameError>(HasSubstr("it has test, train (")));
+}
+
 TEST_F(WithSplits, TablesHaveMeansPerSplit) {
   run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n");
   const std::vector<ResultRow> rows = toy_->results();

@@ -244,6 +244,30 @@ class Runs(Folders):
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 call()
 
+    def test_functions_and_maps_may_answer_per_face(self):
+        for item in ("1", "2"):
+            off = (self.meshes / f"{item}.off").read_text().split()
+            n_faces = int(off[2])
+            (self.folder / f"{item}.txt").write_text("".join(f"{k % 5}\n" for k in range(n_faces)))
+        described = self.folder / "own.yaml"
+        described.write_text(f"places: [{{meshes: 'meshes/*', truth: {{saliency: '{{item}}.txt'}}}}]\nvalues: {{per: face}}\n")
+        config = {"dataset": {"layout": str(described), "scans": False, "score_on": "faces"}, "metrics": {"names": ["cc"], "matching": "none"}}
+        per_face = function("def predict(shape):\n    return [k % 5 for k in range(len(shape.faces))]\n", self.folder)
+        results = salbench.run(config, data=self.folder, models={"MINE": per_face, "RS": {}}, cache=self.folder / "cache",
+                               out=self.folder / "out", progress=False)
+        self.assertEqual(results.failures, [])
+        for item in ("1", "2"):
+            row = results.scores[(results.scores.item.astype(str) == item)].set_index("model")
+            self.assertAlmostEqual(row.cc["MINE"], 1, delta=1e-12)
+            map_ = results.maps("RS")[item]
+            self.assertEqual(results.score(map_, item), {"cc": row.cc["RS"]})
+            self.assertAlmostEqual(results.score(results.maps("MINE")[item], item)["cc"], 1, delta=1e-12)
+            with self.assertRaisesRegex(ValueError, "5 values for [0-9]+ points and [0-9]+ faces"):
+                results.score(np.ones(5), item)
+        short = salbench.run(config, data=self.folder, models={"MINE": function("def predict(shape):\n    return [1.0, 2.0]\n", self.folder)},
+                             cache=self.folder / "cache", out=self.folder / "out", progress=False)
+        self.assertRegex(short.failures[0].cause, r"MINE\(\): the map: 2 values, but the shape has [0-9]+ points and [0-9]+ faces")
+
     def test_the_reference_is_the_histogram_that_maps_were_matched_to(self):
         results = self.run_with({"LS": {}})
         for read in (results, salbench.Results(self.folder / "out")):

@@ -3,8 +3,9 @@
 
 Published: a link in the public repository kaviezhang/MeshMamba.
 Seen: that repository, with three meshes of 32 868 triangles, without and with texture, and its list of 100 files.
-A line of a file of values is a number per face, in the order of the mesh's file; the largest is 1. The first 80 % of the lines of
-paths_dataset_rgb.txt are what the authors train with, for both kinds.
+A line of a file of values is a number per face, in the order of the mesh's file; the largest is 1. Splits are of the lines of
+paths_dataset_rgb.txt, for both kinds. The authors' code trains on the first 60 % and tests on the last 60 %: of 100 shapes, 20 are in
+both. `train_80` and `test_20` are those that TexMeshSaliency gives, 80 % and 20 %.
 Cannot answer: who looked where (pooled over people).
 """
 
@@ -14,6 +15,7 @@ from salbench.datasets._layout import Layout, Pattern, Place, Splits, TruthPlace
 from salbench.datasets.records import Source
 
 TEXTURES = (".mtl", ".jpg", ".jpeg", ".png")
+SHARES = (("train+train_80", 0.4), ("train+test+train_80", 0.2), ("test+train_80", 0.2), ("test+test_20", 0.2))  # "+": in each of them
 
 
 def layout(name: str, kind: str) -> Layout:
@@ -21,7 +23,7 @@ def layout(name: str, kind: str) -> Layout:
     return Layout(
         name,
         (Place(Pattern(f"MeshFile/{kind}/*/*.obj"), (TruthPlace(Pattern(f"SaliencyMap/{kind}/{{item}}.csv")),)),),
-        values=Values(per="face"), splits=Splits(list="paths_dataset_rgb.txt", shares=(("train", 0.8), ("test", 0.2))),
+        values=Values(per="face"), splits=Splits(list="paths_dataset_rgb.txt", shares=SHARES),
         licence="not known; ask the authors")
 
 

@@ -123,8 +123,20 @@ class Shape:
             if kind in ("map", "matched") and model:
                 values = self._array(f"{stage}/saliency")
                 if values is not None and len(values):
-                    found[model, "before" if kind == "map" else "after"] = unit_range(values)
+                    found[model, "before" if kind == "map" else "after"] = unit_range(self._on_points(values))
         return found
+
+    def _on_points(self, values: Floats) -> Floats:
+        """Values of faces that were scored, drawn as means around each vertex, weighted by area."""
+        points, faces = self.points, self.faces
+        if points is None or faces is None or len(values) == len(points) or len(values) != len(faces):
+            return values
+        from salbench import _core
+
+        try:
+            return _core.vertex_values_of_faces(points, faces, values)
+        except ValueError:  # faces of points that there are not
+            return values
 
     def seen_from(self) -> Floats | None:
         """From where the points of a scan or point cloud were seen, or None."""

@@ -19,6 +19,7 @@ namespace salbench {
 namespace {
 
 const Mesh kGrid = shapes::grid(30);
+const Adjacency kEdges = edge_adjacency(kGrid.vertices.size(), kGrid.faces);
 
 ScalarField noise(const std::string& name) {
   Rng rng(1, "noise", name);
@@ -36,7 +37,7 @@ struct Set {
 
   void add(ScalarField map, GroundTruth truth, std::int32_t fold) {
     counts.push_back(
-        std::make_shared<const DensityCounts>(density_counts(map, kGrid.vertices, kGrid.faces, truth, fold)));
+        std::make_shared<const DensityCounts>(density_counts(map, kGrid.vertices, kEdges, truth, fold)));
     maps.push_back(std::move(map));
     truths.push_back(std::move(truth));
   }
@@ -71,7 +72,7 @@ double gain(const ScalarField& density, const ScalarField& marks) {
 double held_out_gain(const Set& set, const DensityFits& fits) {
   double sum = 0;
   for (std::size_t k = 0; k < set.maps.size(); ++k)
-    sum += gain(fitted_density(set.maps[k], kGrid.vertices, kGrid.faces, fits[index(set.counts[k]->fold)]),
+    sum += gain(fitted_density(set.maps[k], kGrid.vertices, kEdges, fits[index(set.counts[k]->fold)]),
                 set.truths[k].saliency);
   return sum / static_cast<double>(set.maps.size());
 }
@@ -125,9 +126,8 @@ TEST(Fitting, FindsTheCentreBiasOfAConstantMap) {
 }
 
 TEST(Fitting, BlursAMapThatIsTooFine) {
-  const Adjacency adjacency = edge_adjacency(kGrid.vertices.size(), kGrid.faces);
   const Set set = set_of([&](const ScalarField& map) {
-    const ScalarField smooth = smoothed_by_steps(map, adjacency, 20);
+    const ScalarField smooth = smoothed_by_steps(map, kEdges, 20);
     const auto [least, largest] = std::ranges::minmax(smooth);
     ScalarField truth;
     for (const double value : smooth) truth.push_back(std::exp(3 * (value - least) / (largest - least)));
@@ -141,7 +141,7 @@ TEST(Fitting, LeavesOutTheShapesOfTheFoldItself) {
   const DensityFits before = fit_densities(set.counts, 5);
   for (std::size_t k = 0; k < 20; k += 5)
     set.counts[k] = std::make_shared<const DensityCounts>(
-        density_counts(set.maps[k], kGrid.vertices, kGrid.faces, {noise("other"), {}}, 0));
+        density_counts(set.maps[k], kGrid.vertices, kEdges, {noise("other"), {}}, 0));
   const DensityFits after = fit_densities(set.counts, 5);
   EXPECT_EQ(before[0].value, after[0].value);
   EXPECT_NE(before[1].value, after[1].value);
@@ -154,24 +154,24 @@ TEST(Fitting, IsNothingWithoutOtherShapes) {
   const DensityFits fits = fit_densities(set.counts, 2);
   EXPECT_EQ(fits[1].shapes, 0);
   EXPECT_EQ(fits[0].shapes, 1);
-  EXPECT_TRUE(fitted_density(set.maps[0], kGrid.vertices, kGrid.faces, fits[1]).empty());
+  EXPECT_TRUE(fitted_density(set.maps[0], kGrid.vertices, kEdges, fits[1]).empty());
 }
 
 TEST(Fitting, CountsPicksAndPointsThatWereSeen) {
   GroundTruth truth{noise("saliency"), {{3, 4}, {4, 4}}};
   const ScalarField map = noise("map");
-  const DensityCounts counts = density_counts(map, kGrid.vertices, kGrid.faces, truth, 2);
+  const DensityCounts counts = density_counts(map, kGrid.vertices, kEdges, truth, 2);
   EXPECT_EQ(counts.fold, 2);
   EXPECT_EQ(*std::ranges::max_element(counts.marked), 0.75F);
   EXPECT_NEAR(std::reduce(counts.points.begin(), counts.points.end()), kBlurWidths.size(), 1e-5);
   truth.saliency[4] = std::nan("");
-  const DensityCounts without = density_counts(map, kGrid.vertices, kGrid.faces, truth, 2);
+  const DensityCounts without = density_counts(map, kGrid.vertices, kEdges, truth, 2);
   EXPECT_EQ(*std::ranges::max_element(without.marked), 1);
 }
 
 TEST(Fitting, NamesWhatCannotBeRead) {
   const auto counts = [](const ScalarField& map, const GroundTruth& truth) {
-    return density_counts(map, kGrid.vertices, kGrid.faces, truth, 0);
+    return density_counts(map, kGrid.vertices, kEdges, truth, 0);
   };
   ScalarField map = noise("map");
   EXPECT_THROW(counts(map, {{}, {{-1}}}), InputError);
