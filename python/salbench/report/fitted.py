@@ -14,7 +14,8 @@ AXES = {"value": "Value of the blurred map", "distance": "Distance from the cent
 
 
 def figures(shop: Workshop) -> list[Block]:
-    return [block for dataset in statistics.shown(shop.results) for block in attempt(plot, shop, dataset)]
+    fitted = set(shop.results.table("fitted.csv", "dataset")["dataset"])
+    return [block for dataset in statistics.shown(shop.results) if dataset in fitted for block in attempt(plot, shop, dataset)]
 
 
 def data_of(results: Results, dataset: str) -> Frame:
