@@ -57,8 +57,9 @@ TABLES = (
 
 @cache
 def text_columns() -> frozenset[str]:
-    """Names of the columns of text, in tables of scores, of conclusions, and of the time that a run took."""
-    return frozenset((*TEXTS, "node")) | {column.name for table in TABLES for column in table.columns if column.type == "str"}
+    """Names of the columns of text, in tables of scores, of conclusions, of the time that a run took, and of
+    what was fitted to maps."""
+    return frozenset((*TEXTS, "node", "of")) | {column.name for table in TABLES for column in table.columns if column.type == "str"}
 
 
 @dataclass(frozen=True)
