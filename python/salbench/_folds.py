@@ -19,7 +19,7 @@ from typing import Any, cast
 from salbench import _core
 from salbench._data import Dataset
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, configuration_path, key_of, run
+from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of
 from salbench._shape import Shape
 from salbench._shapes import estimate_normals, fpfh, partial_mesh
 from salbench._types import ArrayLike
@@ -71,7 +71,8 @@ def cross_validate(
     seed : int
         Folds follow from it and from the names of classes or meshes alone, so they are the same for everybody.
     models : dict, optional
-        Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}.
+        Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By default those of the
+        configuration.
     cache, out, reference, threads, progress
         As of `run`.
 
@@ -100,8 +101,8 @@ def cross_validate(
     ...     weights, *_ = numpy.linalg.lstsq(numpy.vstack([shape.points for shape in shapes]),
     ...                                      numpy.concatenate([shape.ground_truth for shape in shapes]), rcond=None)
     ...     return lambda shape: shape.points @ weights
-    >>> results = salbench.cross_validate(fit, folder, {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}, folds=2, by="mesh",
-    ...                                   cache=folder / "cache", out=folder / "out", progress=False)
+    >>> results = salbench.cross_validate(fit, folder, {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}, models={}, folds=2,
+    ...                                   by="mesh", cache=folder / "cache", out=folder / "out", progress=False)
     >>> results.trained, results.models["MINE"]["trained"], len(results.scores)
     ({'MINE': 'cross-validated, 2 folds by mesh'}, 2, 4)
     """
@@ -117,8 +118,8 @@ def cross_validate(
         plan = with_scans(plan)
     shapes = _Shapes(dataset, {name for names in plan.training for name in names})
     learned = {name: _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), plan, shapes, progress) for name, one in fits.items()}
-    return run(config, data=data, models={**learned, **(models or {})}, cache=cache, out=out, items="scored",
-               split=split if by == "split" else "", reference=reference, threads=threads, progress=progress)
+    settings, functions = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference)
+    return carry_out(settings, [*learned.items(), *functions], threads, progress)
 
 
 def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) -> dict[str, Any]:

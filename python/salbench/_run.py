@@ -144,6 +144,13 @@ def run(
     KeyboardInterrupt
         After Ctrl-C, once the run has ended in order.
     """
+    settings, functions = settings_of(config, data, models, cache, out, items, split, reference)
+    return carry_out(settings, functions, threads, progress)
+
+
+def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
+                reference: Any) -> tuple[dict[str, Any], list[tuple[str, Predict | Model]]]:
+    """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
     if data is not None and not os.path.isdir(data):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(data))
     functions = [] if models is None else [
@@ -167,7 +174,7 @@ def run(
     }
     if items is not None and not settings["items"]:
         raise ValueError("items is empty: name some, or leave it out to run all")
-    return carry_out(settings, functions, threads, progress)
+    return settings, functions
 
 
 def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:

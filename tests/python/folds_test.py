@@ -121,7 +121,7 @@ class Runs(unittest.TestCase):
 
     def run_with(self, fit, config=CONFIG, **keywords):
         self.log.write_text("")
-        keywords = {"by": "mesh", "cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
+        keywords = {"models": {}, "by": "mesh", "cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
         return salbench.cross_validate(fit, self.data, config, **keywords)
 
     def trained(self):
