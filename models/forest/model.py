@@ -13,7 +13,8 @@ import functools
 import os
 from pathlib import Path
 
-# Before OpenMP is loaded. Threads that spin while they wait take the cores from the stages that run beside them: a fold took ten times as long.
+# Before OpenMP is loaded. Threads that spin while they wait take the cores from what runs beside them: on two busy cores training took ten
+# times as long.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import numpy as np
@@ -24,6 +25,7 @@ from sklearn.ensemble import HistGradientBoostingRegressor
 SEED = 0
 POINTS = 2000  # of each shape that are trained on: large shapes count no more than small ones
 RADII = (0.02, 0.05)  # of descriptors, in R
+WIDTH = 2 + 9 + 33 * len(RADII)
 TREES = {"loss": "poisson", "max_iter": 200, "learning_rate": 0.05, "max_leaf_nodes": 15, "min_samples_leaf": 50, "l2_regularization": 1.0,
          "early_stopping": False}
 
@@ -40,7 +42,7 @@ def maps_of(shape, threads):
 
 
 def features(shape):
-    """(n, 77): distance to the centroid and variation of the normals as they are, all maps by their ranks within the shape, and descriptors."""
+    """(n, WIDTH): variation of the normals and distance to the centroid as they are, all maps by their ranks in the shape, descriptors."""
     threads = len(os.sched_getaffinity(0))
     maps = list(maps_of(shape, threads))
     ranks = [rankdata(values) / len(values) if np.isfinite(values).all() else values for values in maps]
@@ -54,7 +56,9 @@ def examples(shape):
     seen = np.flatnonzero(shape.mask)
     chosen = np.random.default_rng([SEED, *shape.id.encode()]).permutation(seen)[:POINTS]
     mean = shape.ground_truth[seen].mean() if len(seen) else 0
-    return (features(shape)[chosen], shape.ground_truth[chosen] / mean) if mean > 0 else (np.empty((0, 11 + 33 * len(RADII)), np.float32), [])
+    if mean <= 0:  # nobody looked at it
+        return np.empty((0, WIDTH), np.float32), np.empty(0)
+    return features(shape)[chosen], shape.ground_truth[chosen] / mean
 
 
 def fit(shapes):
@@ -73,7 +77,8 @@ def main():
     parser.add_argument("--cache", default="salbench-cache")
     parser.add_argument("--out", default="salbench-out/forest")
     given = parser.parse_args()
-    results = salbench.cross_validate({"FOREST": fit}, given.data, given.config, folds=given.folds, by=given.by, cache=given.cache, out=given.out)
+    results = salbench.cross_validate({"FOREST": fit}, given.data, given.config, folds=given.folds, by=given.by, cache=given.cache,
+                                      out=given.out)
     print(f"FOREST: {results.trained['FOREST']}")
     print(results.summary.pivot(index="model", columns="metric", values="mean").round(3).to_string())
 

@@ -48,8 +48,8 @@ def cross_validate(
     """Trains and scores models that learn, each shape by a model that saw neither it nor, by class, any shape of its class.
 
     The shapes with ground truth are dealt into folds. For each fold, `fit` gets the shapes of all others, and the function that it
-    returns makes the maps of the fold. These are cached by what `fit` depends on, as `Model` says, and by the contents of the shapes
-    that it got: a fold is trained only if one of its maps is missing.
+    returns makes the maps of the fold. Training shapes are held in memory. Maps are cached by what `fit` depends on,
+    as `Model` says, and by the contents of the shapes that it got: a fold is trained only if one of its maps is missing.
 
     Parameters
     ----------
@@ -117,9 +117,10 @@ def cross_validate(
     if options["scans"]:
         plan = with_scans(plan)
     shapes = _Shapes(dataset, {name for names in plan.training for name in names})
-    learned = {name: _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), plan, shapes, progress) for name, one in fits.items()}
+    learned = [(name, _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), plan, shapes, progress))
+               for name, one in fits.items()]
     settings, functions = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference)
-    return carry_out(settings, [*learned.items(), *functions], threads, progress)
+    return carry_out(settings, [*learned, *functions], threads, progress)
 
 
 def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) -> dict[str, Any]:
@@ -237,7 +238,8 @@ def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool)
 class _Learner:
     """The function of a shape that a run calls for maps that are missing."""
 
-    def __init__(self, name: str, fit: Model, fold_of: Mapping[str, int], training: list[list[str]], shapes: _Shapes, progress: bool) -> None:
+    def __init__(self, name: str, fit: Model, fold_of: Mapping[str, int], training: list[list[str]], shapes: _Shapes,
+                 progress: bool) -> None:
         self._name, self._fit, self._fold_of, self._training = name, fit, fold_of, training
         self._shapes, self._progress = shapes, progress
         self._made: dict[int, Predict | Exception] = {}
