@@ -34,13 +34,15 @@ namespace {
 // --- a model ---------------------------------------------------------------------------------------------
 
 // A model as salbench/_run.py describes it: name, function, reads (points, normals, faces, fpfh), version,
-// and the text that its key has.
+// and the text that its key has; of one that was trained, that text by shape, and how.
 struct FunctionModel {
   std::string name;
   py::object function;
   Words reads;
   std::int32_t version = 1;
   std::string key;
+  std::map<std::string, std::string> trained_keys = {};    // empty: it was not
+  std::string trained = {};                                // "cross-validated, 5 folds by class"
   mutable std::map<std::string, std::string> traces = {};  // by shape: of what it raised
 };
 
@@ -86,6 +88,24 @@ ScalarField call(const FunctionModel& model, const std::string& id, const py::ob
   }
 }
 
+// What the map of each shape was trained on, as a file of that shape: a fold that is trained anew leaves the
+// maps of the others as they are.
+std::shared_ptr<const GivenMaps> training_files(const FunctionModel& model) {
+  GivenMaps files{.source = model.trained};
+  for (const auto& [item, key] : model.trained_keys) files.items.insert(item);
+  files.read = [&model](const std::string& item) -> FileData {
+    const std::string& key = model.trained_keys.at(item);
+    return {file_digest(key), key};
+  };
+  return std::make_shared<const GivenMaps>(std::move(files));
+}
+
+FileColumnPtr named_training(const FileColumnPtr& column) {
+  for (FilesOfUnit& files : column->files)
+    for (File& file : files) file.name = "training";
+  return column;
+}
+
 // The name of a shape is part of what the function is given, and so of the key.
 Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& model,
                                  Caller& caller) {
@@ -95,11 +115,12 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
   RuleHead head = stage_of(model.name, Role::map, model.version);
   head.limit = 1;
   const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
+  const FilesOf training{model.trained_keys.empty() ? nullptr : named_training(shape.map_files)};
   return table.add(
       shape.level, head,
-      [&model, &caller, reads_faces = reads("faces")](Points points, const Normals* normals, Surface faces,
-                                                      const Descriptors* fpfh, Surface mapped_faces,
-                                                      const RandomSource& random, const NoOptions&) {
+      [&model, &caller, reads_faces = reads("faces")](
+          Points points, const Normals* normals, Surface faces, const Descriptors* fpfh, Surface mapped_faces,
+          const RandomSource& random, const Files&, const NoOptions&) {
         ScalarField map;
         caller.carry_out([&] {
           map = call(model, random.item, shape_of(random.item, points, normals, reads_faces, faces, fpfh),
@@ -109,7 +130,7 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
         return map;
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom,
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, training,
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 
@@ -212,7 +233,8 @@ class Run {
     for (const py::handle row : functions) {
       const auto part = row.cast<py::tuple>();
       models_.push_back({part[0].cast<std::string>(), part[1], part[2].cast<Words>(),
-                         part[3].cast<std::int32_t>(), part[4].cast<std::string>()});
+                         part[3].cast<std::int32_t>(), part[4].cast<std::string>(),
+                         part[5].cast<std::map<std::string, std::string>>(), part[6].cast<std::string>()});
     }
     const Arguments arguments = arguments_from(settings);
     Config config = config_from(settings, arguments);
@@ -306,13 +328,17 @@ class Run {
   void add(Config& config, const FunctionModel& model) {
     if (const std::string wrong = wrong_with_model_name(model.name); !wrong.empty())
       throw ConfigError(fmt::format("models: '{}' {}", model.name, wrong));
+    const bool trained = !model.trained_keys.empty();
     config.models.push_back({.name = model.name,
                              .version = model.version,
-                             .options = fmt::format("function: {}\n", model.key),
+                             .options = trained ? fmt::format("trained: {}\n", yaml_quoted(model.trained))
+                                                : fmt::format("function: {}\n", model.key),
                              .annotated_options = {},
-                             .add_map = [this, &model](RuleTable& table, const ShapeOutputs& shape) {
-                               return add_function(table, shape, model, caller_);
-                             }});
+                             .add_map =
+                                 [this, &model](RuleTable& table, const ShapeOutputs& shape) {
+                                   return add_function(table, shape, model, caller_);
+                                 },
+                             .given = trained ? training_files(model) : nullptr});
   }
 
   std::deque<FunctionModel> models_;

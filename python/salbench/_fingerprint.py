@@ -28,7 +28,7 @@ from salbench._content import (
     ATOM_TAGS, ATOMS, ATTRIBUTES, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OF_PACKAGES, OPAQUE, UNNUMBERED, attributes,
     extension_file, has_own_state, is_plain, no_content, place, sorted_names)
 from salbench._data import Dataset
-from salbench._names import Origin, Unwalkable, imported, names_in, origin_of, resolved
+from salbench._names import Origin, Unwalkable, imported, names_in, of_module, origin_of, resolved
 
 MAX_OBJECTS = 10_000_000  # 13 s on a busy machine; an array is one object
 Parts = Iterable[tuple[Any, Any]]  # labels and values; a text as a label counts, others are for messages
@@ -176,9 +176,9 @@ class _Walk:
         unbound = Origin("no value", chain[0])
         value = function.__globals__.get(chain[0], getattr(function, "__builtins__").get(chain[0], unbound))
         at, origin = 1, None
-        while isinstance(value, types.ModuleType) and at < len(chain) and chain[at] in vars(value):
+        while isinstance(value, types.ModuleType) and at < len(chain) and (found := of_module(value, chain[at])):
             origin = self._origin_of(vars(value))
-            value = vars(value)[chain[at]]
+            (value,) = found
             at += 1
         content = (type, types.FunctionType, types.ModuleType, list, tuple, dict, np.ndarray, *ATOMS)
         if origin and id(value) not in OPAQUE and not isinstance(value, content) and self._origin_of(type(value)):

@@ -63,6 +63,16 @@ def _version(top: str) -> str | None:
     return version if isinstance(version, str) else None
 
 
+def of_module(module: types.ModuleType, name: str) -> tuple[Any, ...]:
+    """(value,) of a name in a module, () if it has none. What a module imports when it is first asked for it counts before as after."""
+    if name not in vars(module) and "__getattr__" in vars(module):
+        try:
+            return (getattr(module, name),)
+        except Exception:  # of its own __getattr__; the code will meet it
+            return ()
+    return (vars(module)[name],) if name in vars(module) else ()
+
+
 def resolved(module: str, name: str) -> Any:
     """What has this name in a module, such as "Class.method"; None if nothing has."""
     found: Any = sys.modules.get(module)

@@ -3,6 +3,7 @@
 
 import datetime
 import html
+import json
 import os
 import pathlib
 import subprocess
@@ -67,7 +68,8 @@ class Results(Tables):
         What could not be computed. The cause of a function that raised ends in its traceback.
     models : dict of str to dict
         By name of a model: "computed", how many maps this run has computed, "read", how many it found in the cache, and
-        "from", when the first and the last of these were stored (None if there are none). Empty for tables of a folder.
+        "from", when the first and the last of these were stored (None if there are none); of one that learns also "trained", how
+        many folds this run has trained. Empty for tables of a folder.
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
@@ -97,6 +99,13 @@ class Results(Tables):
     def scores(self) -> "pandas.DataFrame":
         """A row per shape and model (results.csv)."""
         return self._table("results")
+
+    @cached_property
+    def trained(self) -> dict[str, str]:
+        """By name of a model that learned how it did, such as "cross-validated, 5 folds by class"; `cross_validate` makes them."""
+        from salbench.conclusions import folders
+
+        return folders.trained_models(folders.read_record(self.folder))
 
     @cached_property
     def reference(self) -> Reference:
@@ -146,6 +155,30 @@ class Results(Tables):
         scores: dict[str, float] = self._run.score(prediction, os.fsencode(item), model or "")
         return scores
 
+    def write_submission(self, folder: str | os.PathLike[str], model: str, **card: str) -> pathlib.Path:
+        """Writes the maps of a model and its card into a folder that `salbench submit` takes (docs/leaderboard.md), and returns it.
+
+        Parameters
+        ----------
+        folder : path
+            Made if it is not there.
+        model : str
+            A model of the run.
+        **card : str
+            `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data` says by default how it was
+            trained, and `test_overlap` that it has seen none of the shapes that it is scored on.
+        """
+        maps = self.maps(model)
+        how = self.trained.get(model)
+        learned = {"training_data": f"this data set, {how}", "test_overlap": "none"} if how else {}
+        to = pathlib.Path(folder)
+        to.mkdir(parents=True, exist_ok=True)
+        for item, values in maps.items():
+            (to / f"{item}.val").write_text("".join(f"{value!r}\n" for value in values.tolist()))
+        lines = [f"{key}: {json.dumps(value)}\n" for key, value in {"name": model, **learned, **card}.items()]
+        (to / "card.yaml").write_text("".join(lines))
+        return to
+
     def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page."""
         self._conclude()
@@ -173,5 +206,6 @@ class Results(Tables):
         for name, maps in self.models.items():
             first, last = (f"{time:%Y-%m-%d %H:%M}" for time in maps["from"]) if maps["from"] else ("", "")
             when = f" (from {first}{'' if first == last else f' to {last}'})" if first else ""
-            lines.append(f"{name}: {maps['computed']} maps computed now, {maps['read']} read{when}")
+            trained = f"{maps['trained']} folds trained now, " if "trained" in maps else ""
+            lines.append(f"{name}: {trained}{maps['computed']} maps computed now, {maps['read']} read{when}")
         return lines

@@ -11,8 +11,8 @@ import pathlib
 import secrets
 import sys
 import traceback
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from salbench import _core
@@ -60,6 +60,14 @@ class Model:
             if isinstance(given, (str, bytes, os.PathLike)):
                 raise ValueError(f"{name} must be a sequence, such as [{given!r}]")
             object.__setattr__(self, name, tuple(given))
+
+
+@dataclass(frozen=True)
+class Learned(Model):
+    """One that `cross_validate` makes. Its function trains; `len` of it says how often it has."""
+
+    keys: Mapping[str, str] = field(default_factory=dict)  # by shape: of all that its map was trained on
+    trained: str = ""  # "cross-validated, 5 folds by class"
 
 
 def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces"),
@@ -136,6 +144,13 @@ def run(
     KeyboardInterrupt
         After Ctrl-C, once the run has ended in order.
     """
+    settings, functions = settings_of(config, data, models, cache, out, items, split, reference)
+    return carry_out(settings, functions, threads, progress)
+
+
+def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
+                reference: Any) -> tuple[dict[str, Any], list[tuple[str, Predict | Model]]]:
+    """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
     if data is not None and not os.path.isdir(data):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(data))
     functions = [] if models is None else [
@@ -143,7 +158,7 @@ def run(
     others = None if models is None else {
         name: given or {} for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
     settings: dict[str, Any] = {
-        "path": None if isinstance(config, Mapping) else _configuration(config),
+        "path": None if isinstance(config, Mapping) else configuration_path(config),
         "yaml": json.dumps(config) if isinstance(config, Mapping) else None,
         "models": json.dumps(others) if others else None,
         "only_functions": others == {},
@@ -159,10 +174,10 @@ def run(
     }
     if items is not None and not settings["items"]:
         raise ValueError("items is empty: name some, or leave it out to run all")
-    return carry_out(settings, functions, threads, progress)
+    return settings, functions
 
 
-def carry_out(settings: dict[str, Any], functions: Iterable[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
+def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
     """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
     stay beside the functions; maps: folders of maps, as `salbench run --maps` takes them, by the name of the model."""
     threads = len(os.sched_getaffinity(0)) if threads is None else threads
@@ -172,12 +187,15 @@ def carry_out(settings: dict[str, Any], functions: Iterable[tuple[str, Predict |
     with _Bar(progress) as bar:
         going.carry_out(threads, bar)
     results = Results(going.output, going)
+    for name, given in functions:
+        if isinstance(given, Learned):
+            results.models[name]["trained"] = operator.length_hint(given.predict)
     if progress:
         print(*results._model_lines(), sep="\n", file=sys.stderr)
     return results
 
 
-def _configuration(given: str | os.PathLike[str] | None) -> str:
+def configuration_path(given: str | os.PathLike[str] | None) -> str:
     """The path of a configuration, which may be the name of one that is installed."""
     name = "shrec07" if given is None else os.fspath(given)
     if os.path.exists(name):
@@ -188,17 +206,19 @@ def _configuration(given: str | os.PathLike[str] | None) -> str:
     raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folder}")
 
 
-def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str]:
+def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str, dict[bytes, str], str]:
     made = given if isinstance(given, Model) else Model(given)
     reads = list(made.reads)
     for part in reads:
         if part not in (*PARTS, "points"):
             raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
     version = 1 if made.version is None else operator.index(made.version)
-    return name, made.predict, [part for part in ("points", *PARTS) if part in reads], version, _key(name, made)
+    keys = {os.fsencode(item): key for item, key in made.keys.items()} if isinstance(made, Learned) else {}
+    parts = [part for part in ("points", *PARTS) if part in reads]
+    return name, made.predict, parts, version, key_of(name, made), keys, made.trained if isinstance(made, Learned) else ""
 
 
-def _key(name: str, made: Model) -> str:
+def key_of(name: str, made: Model) -> str:
     """Text that stands for what maps depend on; one that no other call has where that cannot be told."""
     from salbench._fingerprint import file_digest, fingerprint
     from salbench._names import Unwalkable

@@ -62,7 +62,7 @@ class Docstrings(unittest.TestCase):
     def test_types_as_users_meet_them(self):
         lines = mypy("tests/python/typed_use.py").stdout.splitlines()
         self.assertEqual(len(lines), 1, lines)
-        self.assertIn('typed_use.py:22: error: Argument "threads" to "run" has incompatible type "str"', lines[0])
+        self.assertIn('typed_use.py:23: error: Argument "threads" to "run" has incompatible type "str"', lines[0])
 
 
 if __name__ == "__main__":

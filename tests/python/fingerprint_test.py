@@ -204,6 +204,14 @@ class Changes(unittest.TestCase):
             f"{a} | {b}" for texts in [sorted(found)] for a, b in zip(texts[0].splitlines(), texts[-1].splitlines()) if a != b))
         self.assertEqual(len(found.pop().splitlines()), len(CHANGES))
 
+    def test_what_a_package_imports_when_it_is_named_counts_before_as_after(self):
+        script = ("import salbench; from salbench._fingerprint import fingerprint\n"
+                  "def f(s): return salbench.models.ls(s)\n"
+                  "import sys; assert 'salbench.models' not in sys.modules\n"
+                  "before = fingerprint(f); import salbench.models; print(before == fingerprint(f))")
+        said = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(said, "True\n")
+
     def test_what_was_called_often_is_the_same(self):
         f = made("def g(x): return x + 1\ndef f(s):\n t = 0\n for i in range(9):\n  t += g(i)\n return t")
         before = fingerprint(f)

@@ -3,11 +3,13 @@
 
 import os
 import pathlib
+import random
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(ROOT / "build/release/salbench"))
+LEARNABLE = [20 * kind + number for kind in range(5) for number in (1, 2)]  # SHREC'07 has 20 of each class
 
 
 def meshes(folder, count=3, rings=12, sides=10):
@@ -31,3 +33,20 @@ def run(config, *options):
 
 def export(config, *options):
     subprocess.run([PROGRAM, "export", config, *map(str, options), "--quiet"], check=True)
+
+
+def learnable(folder):
+    """Ten meshes in the Schelling study's form, two of each of five classes and each in a place of its own, whose ground truth is random:
+    nothing but memory predicts it."""
+    folder = pathlib.Path(folder)
+    made = sorted(meshes(folder / "made", 10, 24, 8).glob("*.off"))
+    numbers = random.Random(1)
+    for part in ("Meshes", "Distributions"):
+        (folder / part).mkdir()
+    for place, (path, name) in enumerate(zip(made, LEARNABLE)):
+        head, counts, *lines = path.read_text().splitlines()
+        n = int(counts.split()[0])
+        moved = [f"{float(x) + 4 * place} {rest}" for x, rest in (line.split(None, 1) for line in lines[:n])]
+        (folder / f"Meshes/{name}.off").write_text("\n".join([head, counts, *moved, *lines[n:]]) + "\n")
+        (folder / f"Distributions/{name}.val").write_text("".join(f"{numbers.random()}\n" for _ in range(n)))
+    return folder

@@ -16,6 +16,7 @@ value: float = salbench.metrics.auc_exact(np.zeros(3), picks=[0])
 results = salbench.run({"dataset": {"scans": False}}, data="meshes", models={"MINE": predict, "LS": {}})
 table = results.ranking
 values: NDArray[np.float64] = results.maps("MINE")["52"]
+folds = salbench.cross_validate(lambda shapes: predict, "meshes", by="mesh", models={"LS": {}, "MINE": predict}).trained["FIT"]
 
 
 if __name__ == "__main__":

@@ -59,6 +59,20 @@ class Figures(unittest.TestCase):
         self.assertEqual(self.figures.of_all(table)["n"].tolist(), [3])
         self.assertEqual(self.figures.of_all(table[1:2])["n"].tolist(), [1])
 
+    def test_leads_are_turned_so_that_above_0_is_better(self):
+        learnt = self.figures.LEARNT
+        rows = [{"item": str(item), "model": model, "cc": score + 0.01 * (item % 3), "kl": score + 0.01 * (item % 2)}
+                for model, score in ((learnt, 0.6), ("LS", 0.5), ("RS", 0.6)) for item in range(8)]
+        rows[0]["cc"] += 0.05  # or all differences would be the same
+        rows[0]["kl"] += 0.05
+        found = self.figures.leads(pd.DataFrame(rows), ["cc", "kl"])
+        self.assertAlmostEqual(found["cc"]["LS"][0], 0.1 + 0.05 / 8)
+        self.assertAlmostEqual(found["kl"]["LS"][0], -0.1 - 0.05 / 8)
+        for of in found.values():
+            self.assertTrue(all(low <= mean <= high for mean, low, high in of.values()))
+        self.assertEqual(self.figures.verdict(found["cc"]), "ahead of LS; not told from RS.")
+        self.assertEqual(self.figures.verdict(found["kl"]), "behind LS; not told from RS.")
+
     def written(self, root, noise):
         """Two meshes, and clouds with the same points in another order, whose densities differ by so much."""
         rng = np.random.default_rng(1)

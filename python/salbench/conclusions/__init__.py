@@ -106,7 +106,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     study = source.study
     names = folders.write_tables(folder, tables_of(study), source.remarks)
     overview, found = means.overview(study), leaders.find_leaders(study)
-    text = _text(overview, source.remarks, found)
+    text = _text(overview, source, found)
     concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
     folders.write_document(folder, {
         "format": 1, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
@@ -120,6 +120,6 @@ def conclude_if_missing(folder: Path) -> None:
         conclude(source_of(str(folder)))
 
 
-def _text(overview: pandas.DataFrame, remarks: Sequence[str], found: Sequence[leaders.LevelLeaders]) -> str:
-    simulated = [remark for remark in remarks if remark.startswith("SIMULATED")]
-    return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*simulated, *(level.sentence for level in found)))
+def _text(overview: pandas.DataFrame, source: folders.Source, found: Sequence[leaders.LevelLeaders]) -> str:
+    shown = [remark for remark in source.remarks if remark.startswith("SIMULATED") or remark in source.trained]
+    return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*shown, *(level.sentence for level in found)))

@@ -30,12 +30,13 @@ class Source:
     tables: Path  # folder of the tables, unless another one is named
     remarks: list[str] = field(default_factory=list)  # at the head of every table
     notes: list[str] = field(default_factory=list)  # on what was left out of the scores
+    trained: list[str] = field(default_factory=list)  # those remarks that say how a model learned
     digest: str | None = None  # of what the program wrote, if the conclusions are those that it asks for
 
 
 def read_run(folder: Path, unit: str | None = None) -> Source:
     """What `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by the metrics, seed and unit of run.yaml."""
-    record = _yaml(folder / "run.yaml")
+    record = read_record(folder)
     if not isinstance(record, dict) or "metrics" not in record:
         raise InputError(f"{folder / 'run.yaml'}: is no record of a finished run; let `salbench run` end before its scores are concluded")
     known, configuration = of_program(), record.get("configuration") or {}
@@ -50,7 +51,20 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
     study = Study(results.scores, unit or own_unit, int(configuration.get("seed", DEFAULT_SEED)), if_there("people.csv", read_people),
                   if_there("smoothed.csv", read_smoothed), constant and constant.scores.frame)
     digest = record.get("scores_digest") if study.unit == own_unit else None
-    return Source(study, folder, results.remarks, digest=digest)
+    trained = [f"{model}: {how}" for model, how in trained_models(record).items()]
+    return Source(study, folder, results.remarks + trained, digest=digest, trained=trained)
+
+
+def read_record(folder: Path) -> Any:
+    """run.yaml."""
+    return _yaml(folder / "run.yaml")
+
+
+def trained_models(record: Any) -> dict[str, str]:
+    """By name of a model that learned how it did: "cross-validated, 5 folds by class"."""
+    configuration = record.get("configuration") if isinstance(record, dict) else None
+    models = configuration.get("models") if isinstance(configuration, dict) else None
+    return {name: str(of["trained"]) for name, of in (models.items() if isinstance(models, dict) else ()) if isinstance(of, dict) and "trained" in of}
 
 
 def read_table(path: Path, unit: str | None = None, classes: str | None = None, higher: Sequence[str] = (), lower: Sequence[str] = ()) -> Source:

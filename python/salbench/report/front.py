@@ -203,6 +203,8 @@ def add_facts(shop: Workshop, made: Front) -> None:
     unit = {"mesh": "a mesh", "class": "a class of shapes", "shape": "a mesh, scan or point cloud"}.get(results.unit)
     said = [f"protocol {protocol}" if protocol else "", f"one observation is {unit}" if unit else "", "intervals are 95 %"]
     made.facts.append(("Method", "; ".join(filter(None, said))))
+    if results.trained:
+        made.facts.append(("Trained", "; ".join(results.trained)))
     reason = paper.other_data(results)
     if reason:
         made.facts.append(("Not", f"a check of the paper: {reason}"))

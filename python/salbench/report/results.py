@@ -14,7 +14,7 @@ import pandas
 import yaml
 
 from salbench import _tables
-from salbench.conclusions import conclude_if_missing, text_columns
+from salbench.conclusions import conclude_if_missing, folders, text_columns
 from salbench._errors import InputError, StorageError
 from salbench.conclusions.metrics import PAPERS, leading_metrics
 from salbench.pages.blocks import Missing
@@ -124,6 +124,11 @@ class Results:
                 return None
             value = value[part]
         return value if isinstance(value, str) else None
+
+    @cached_property
+    def trained(self) -> list[str]:
+        """A line per model that learned: "FOREST: cross-validated, 5 folds by class"."""
+        return [f"{model}: {how}" for model, how in folders.trained_models(self.record).items()]
 
     @cached_property
     def evaluated(self) -> list[str]:

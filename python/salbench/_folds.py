@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models that learn: the map of each shape comes from a model that was trained without it, its views and, by class, its class.
+
+A plan says which fold a shape is in and what that fold is trained on. A learner is a model of a run whose function trains a fold when
+the first of its maps is missing in the cache. The key of a map has what its fold was trained on, so maps of other folds stay.
+"""
+
+import dataclasses
+import hashlib
+import json
+import logging
+import os
+import pathlib
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, cast
+
+from salbench import _core
+from salbench._data import Dataset
+from salbench._results import Results
+from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of
+from salbench._shape import Shape
+from salbench._shapes import estimate_normals, fpfh, partial_mesh
+from salbench._types import ArrayLike
+from salbench.datasets.records import Item
+
+Fit = Callable[[list[Shape]], Predict]
+SCANS = 12  # of a mesh: "52_0" to "52_11"
+
+
+def cross_validate(
+    fit: Fit | Model | Mapping[str, Fit | Model],
+    data: str | os.PathLike[str],
+    config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    *,
+    folds: int = 5,
+    by: str = "class",
+    split: str = "test",
+    seed: int = 0,
+    models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Results:
+    """Trains and scores models that learn, each shape by a model that saw neither it nor, by class, any shape of its class.
+
+    The shapes with ground truth are dealt into folds. For each fold, `fit` gets the shapes of all others, and the function that it
+    returns makes the maps of the fold. Training shapes are held in memory. Maps are cached by what `fit` depends on,
+    as `Model` says, and by the contents of the shapes that it got: a fold is trained only if one of its maps is missing.
+
+    Parameters
+    ----------
+    fit : callable, or dict of them by name
+        Takes a list of `Shape` with ground truth, returns a function of a `Shape` without, as `run` takes them. It must return the same
+        for the same shapes: fix its seeds. One that is given without a name is called MINE in the tables. As a `Model` it has version,
+        depends, reads and cache as there. Scans are not among the shapes: `simulate_scans` and `carry_ground_truth` make them.
+    data : path
+        Folder of the data set.
+    config : str, path or dict, optional
+        As of `run`. The defaults of its options hold for the normals and descriptors of the training shapes.
+    folds : int
+        How many. At most one per class, or per mesh.
+    by : str
+        "class": shapes of a class stay together. "mesh": views and scans of a mesh stay together. "split": the data set's own splits, one
+        model for all: it is scored on `split` and trained on all other splits; `Shape.split` tells them apart.
+    split : str
+        The split that is scored if `by` is "split".
+    seed : int
+        Folds follow from it and from the names of classes or meshes alone, so they are the same for everybody.
+    models : dict, optional
+        Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By default those of the
+        configuration.
+    cache, out, reference, threads, progress
+        As of `run`.
+
+    Returns
+    -------
+    Results
+        `models` has, by name, how many folds this call trained ("trained").
+
+    Raises
+    ------
+    KeyError
+        A split that there is not.
+    ValueError
+        Folds that cannot be made, and what `run` raises.
+
+    Examples
+    --------
+    >>> import numpy, pathlib, salbench, tempfile
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> for number, height in enumerate((1, 2, 3, 4)):
+    ...     text = f"OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 {height}\\n3 0 2 1\\n3 0 1 3\\n3 1 2 3\\n3 2 0 3\\n"
+    ...     for part, name, content in (("Meshes", "off", text), ("Distributions", "val", f"0\\n1\\n{height}\\n5\\n")):
+    ...         (folder / part).mkdir(exist_ok=True)
+    ...         _ = (folder / part / f"{number + 1}.{name}").write_text(content)
+    >>> def fit(shapes):
+    ...     weights, *_ = numpy.linalg.lstsq(numpy.vstack([shape.points for shape in shapes]),
+    ...                                      numpy.concatenate([shape.ground_truth for shape in shapes]), rcond=None)
+    ...     return lambda shape: shape.points @ weights
+    >>> results = salbench.cross_validate(fit, folder, {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}, models={}, folds=2,
+    ...                                   by="mesh", cache=folder / "cache", out=folder / "out", progress=False)
+    >>> results.trained, results.models["MINE"]["trained"], len(results.scores)
+    ({'MINE': 'cross-validated, 2 folds by mesh'}, 2, 4)
+    """
+    fits = fit if isinstance(fit, Mapping) else {"MINE": fit}
+    if twice := [name for name in fits if name in (models or {})]:
+        raise ValueError(f"models has {twice[0]}, which is the name of a model that is trained")
+    options = _dataset_options(config)
+    if options["participants"] == "simulated":
+        raise ValueError("participants are simulated: there is no ground truth to train on")
+    dataset = Dataset(options["layout"], data, items="scored", twins=options["twins"])
+    plan = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
+    if options["scans"]:
+        plan = with_scans(plan)
+    shapes = _Shapes(dataset, {name for names in plan.training for name in names})
+    learned = [(name, _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), plan, shapes, progress))
+               for name, one in fits.items()]
+    settings, functions = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference)
+    return carry_out(settings, [*learned, *functions], threads, progress)
+
+
+def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) -> dict[str, Any]:
+    """The section `dataset` of a configuration, with its defaults."""
+    import yaml
+
+    text = json.dumps(config) if isinstance(config, Mapping) else pathlib.Path(configuration_path(config)).read_text(encoding="utf-8")
+    options: dict[str, Any] = yaml.safe_load(_core.protocol(text, "config"))["dataset"]
+    return options
+
+
+# --- which fold trains on what
+
+
+@dataclass(frozen=True)
+class Plan:
+    how: str  # in tables: "cross-validated, 5 folds by class"
+    fold_of: Mapping[str, int]  # by the name of a shape that gets a map
+    training: Sequence[Sequence[str]]  # of each fold, in the order of the data set
+
+
+def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Plan:
+    """Classes or meshes, in an order that follows from seed and names, are dealt out like cards."""
+    if by not in ("class", "mesh"):
+        raise ValueError(f"by must be class, mesh or split, not {by!r}")
+    if by == "class" and (without := [item.name for item in items if not item.category]):
+        raise ValueError(f"{len(without)} of {len(items)} shapes have no class, such as {without[0]}: take by='mesh'")
+    classes: dict[str, str] = {}  # of each mesh; its views may not part
+    for item in items:
+        classes.setdefault(_mesh(item), item.category)
+    groups = {item.name: classes[_mesh(item)] if by == "class" else _mesh(item) for item in items}
+    order = sorted(set(groups.values()), key=lambda group: hashlib.sha256(f"{seed}/{group}".encode("utf-8", "surrogateescape")).digest())
+    if not 2 <= folds <= len(order):
+        raise ValueError(f"folds must be 2 to {len(order)}, the number of {'classes' if by == 'class' else 'meshes'} with ground truth, "
+                         f"not {folds}")
+    numbers = {group: place % folds for place, group in enumerate(order)}
+    fold_of = {name: numbers[group] for name, group in groups.items()}
+    how = f"cross-validated, {folds} folds by {by}" + (f", seed {seed}" if seed else "")
+    return Plan(how, fold_of, [[name for name, own in fold_of.items() if own != fold] for fold in range(folds)])
+
+
+def in_split(items: Sequence[Item], split: str) -> Plan:
+    others = list(dict.fromkeys(item.split for item in items if item.split not in ("", split)))
+    scored = [item for item in items if item.split == split != ""]
+    if not scored or not others:
+        known = ", ".join(dict.fromkeys(item.split for item in items if item.split)) or "none"
+        raise KeyError(f"split {split!r}: nothing to {'train on' if scored else 'score'}; splits with ground truth: {known}")
+    training = [item for item in items if item.split in others]
+    if shared := {_mesh(item) for item in scored} & {_mesh(item) for item in training}:
+        raise ValueError(f"{min(shared)}: has views in split {split} and in another one")
+    how = f"trained on split{'s' * (len(others) > 1)} {' and '.join(others)}"
+    return Plan(how, {item.name: 0 for item in scored}, [[item.name for item in training]])
+
+
+def _mesh(item: Item) -> str:
+    return item.shape or item.name
+
+
+def with_scans(plan: Plan) -> Plan:
+    fold_of = dict(plan.fold_of)
+    for name, fold in plan.fold_of.items():
+        for view in range(SCANS):
+            if fold_of.setdefault(f"{name}_{view}", fold) != fold:
+                raise ValueError(f"{name}_{view} is the name of a shape and of scan {view} of {name}, which are in two folds: "
+                                 "rename it, or leave scans out")
+    return dataclasses.replace(plan, fold_of=fold_of)
+
+
+# --- what is trained
+
+
+class _Shapes:
+    """The shapes that something is trained on, held in memory, with digests of their contents."""
+
+    def __init__(self, dataset: Dataset, names: set[str]) -> None:
+        from salbench._fingerprint import fingerprint
+
+        self._read: dict[str, Shape] = {}
+        self.digests: dict[str, str] = {}
+        self._ready: dict[tuple[str, tuple[str, ...]], Shape] = {}
+        for name in dataset.ids:
+            if name not in names:
+                continue
+            try:
+                shape = self._read[name] = dataset[name]
+            except (ValueError, OSError) as error:
+                logging.getLogger("salbench").warning("%s: nothing is trained on it: %s", name, error)
+                continue
+            self.digests[name] = fingerprint(tuple(getattr(shape, field.name) for field in dataclasses.fields(shape)))
+
+    def ready(self, name: str, reads: tuple[str, ...]) -> Shape:
+        """With the parts that a run hands over, as it has them by default."""
+        if (name, reads) not in self._ready:
+            shape = self._read[name]
+            faces, normals, descriptors = shape.faces, shape.normals, None
+            if normals is None:
+                normals = estimate_normals(shape.points, faces)
+            if faces is None and "faces" in reads:
+                faces = partial_mesh(shape.points, normals)
+            if "fpfh" in reads:
+                descriptors = fpfh(shape.points, normals)
+            self._ready[name, reads] = dataclasses.replace(
+                shape, faces=faces if "faces" in reads else None, normals=normals if "normals" in reads else None, fpfh=descriptors)
+        return self._ready[name, reads]
+
+
+def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool) -> Learned:
+    training = [[item for item in names if item in shapes.digests] for names in plan.training]
+    start = f"{key_of(name, fit)}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
+    keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items)]).encode()).hexdigest() for items in training]
+    learner = _Learner(name, fit, plan.fold_of, training, shapes, progress)
+    return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in plan.fold_of.items()}, trained=plan.how)
+
+
+class _Learner:
+    """The function of a shape that a run calls for maps that are missing."""
+
+    def __init__(self, name: str, fit: Model, fold_of: Mapping[str, int], training: list[list[str]], shapes: _Shapes,
+                 progress: bool) -> None:
+        self._name, self._fit, self._fold_of, self._training = name, fit, fold_of, training
+        self._shapes, self._progress = shapes, progress
+        self._made: dict[int, Predict | Exception] = {}
+
+    def __len__(self) -> int:
+        """Folds that were trained."""
+        return len(self._made)
+
+    def __call__(self, shape: Shape) -> ArrayLike:
+        fold = self._fold_of[shape.id]
+        if fold not in self._made:
+            self._made[fold] = self._trained(fold)
+        made = self._made[fold]
+        if isinstance(made, Exception):  # fails each shape of the fold, and is not tried again
+            raise made.with_traceback(made.__traceback__ and made.__traceback__.tb_next)
+        return made(shape)
+
+    def _trained(self, fold: int) -> Predict | Exception:
+        names = self._training[fold]
+        if self._progress:
+            print(f"{self._name}: fold {fold + 1} of {len(self._training)}, training on {len(names)} shapes", file=sys.stderr)
+        try:
+            predict = cast(Fit, self._fit.predict)([self._shapes.ready(name, tuple(self._fit.reads)) for name in names])
+            if not callable(predict):
+                raise TypeError(f"fit must return a function of a shape, not {type(predict).__name__}")
+            return predict
+        except Exception as error:
+            return error

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models that learn: nothing that a map was trained on is in its fold, what is known is not trained again, and tables say how it was."""
+
+import contextlib
+import io
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import textwrap
+import unittest
+
+import numpy as np
+
+import salbench
+import toy
+from salbench import _folds
+from salbench.datasets.records import Item
+
+CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}
+MEMORY = """
+    import numpy
+
+    def fit(shapes):
+        with open({log!r}, "a") as file:
+            print(*(shape.id for shape in shapes), file=file)
+        points = numpy.concatenate([shape.points for shape in shapes])
+        truth = numpy.concatenate([shape.ground_truth for shape in shapes])
+
+        def predict(shape):
+            return truth[numpy.square(shape.points[:, None] - points).sum(axis=2).argmin(axis=1)]
+        return predict
+    """
+OTHER = MEMORY.replace("truth[", "2 * truth[")
+
+
+def items(*rows):
+    return [Item(name, shape=shape, category=category, split=split, truth=True) for name, shape, category, split in rows]
+
+
+class Plans(unittest.TestCase):
+    many = items(*((f"{mesh}_{view}", str(mesh), f"class {mesh % 7}", "") for mesh in range(40) for view in (300, 413)))
+
+    def test_each_shape_is_in_one_fold_and_trains_all_others(self):
+        for by in ("class", "mesh"):
+            plan = _folds.dealt(self.many, 5, by, 0)
+            self.assertEqual(list(plan.fold_of), [item.name for item in self.many])
+            for fold, training in enumerate(plan.training):
+                self.assertEqual(set(training), {name for name, own in plan.fold_of.items() if own != fold})
+
+    def test_views_of_a_mesh_and_shapes_of_a_class_never_part(self):
+        for seed in range(20):
+            for by, group in (("mesh", lambda item: item.shape), ("class", lambda item: item.category)):
+                plan = _folds.dealt(self.many, 5, by, seed)
+                folds = {}
+                for item in self.many:
+                    folds.setdefault(group(item), set()).add(plan.fold_of[item.name])
+                self.assertEqual({len(found) for found in folds.values()}, {1})
+                sizes = np.bincount([found.pop() for found in folds.values()], minlength=5)
+                self.assertLessEqual(sizes.max() - sizes.min(), 1, "groups are dealt evenly")
+
+    def test_a_view_with_another_class_stays_with_its_mesh(self):
+        plan = _folds.dealt(items(("a_1", "a", "x", ""), ("a_2", "a", "y", ""), ("b", "b", "y", ""), ("c", "c", "z", "")), 3, "class", 0)
+        self.assertEqual(plan.fold_of["a_1"], plan.fold_of["a_2"])
+
+    def test_folds_follow_from_seed_and_names_alone(self):
+        plan = _folds.dealt(self.many, 5, "mesh", 0)
+        self.assertEqual(_folds.dealt(self.many[::-1], 5, "mesh", 0).fold_of, dict(plan.fold_of))
+        self.assertNotEqual(_folds.dealt(self.many, 5, "mesh", 1).fold_of, dict(plan.fold_of))
+        few = _folds.dealt(items(*((str(mesh), "", "", "") for mesh in range(6))), 2, "mesh", 0)
+        order = [4, 0, 2, 1, 5, 3]  # for n in 0 1 2 3 4 5; do echo $(printf 0/$n | sha256sum) $n; done | sort
+        self.assertEqual([few.fold_of[str(mesh)] for mesh in order], [0, 1] * 3)
+
+    def test_plans_say_how_they_are(self):
+        self.assertEqual(_folds.dealt(self.many, 5, "class", 0).how, "cross-validated, 5 folds by class")
+        self.assertEqual(_folds.dealt(self.many, 3, "mesh", 7).how, "cross-validated, 3 folds by mesh, seed 7")
+
+    def test_what_cannot_be_dealt(self):
+        with self.assertRaisesRegex(ValueError, "folds must be 2 to 7, the number of classes with ground truth, not 8"):
+            _folds.dealt(self.many, 8, "class", 0)
+        with self.assertRaisesRegex(ValueError, "2 to 40, .* not 1"):
+            _folds.dealt(self.many, 1, "mesh", 0)
+        with self.assertRaisesRegex(ValueError, "by must be class, mesh or split, not 'item'"):
+            _folds.dealt(self.many, 5, "item", 0)
+        with self.assertRaisesRegex(ValueError, "1 of 2 shapes have no class, such as b: take by='mesh'"):
+            _folds.dealt(items(("a", "", "x", ""), ("b", "", "", "")), 2, "class", 0)
+
+    def test_splits_are_trained_on_all_but_one(self):
+        rows = items(("a", "a", "", "train"), ("b", "b", "", "val"), ("c", "c", "", "test"), ("d", "d", "", ""))
+        plan = _folds.in_split(rows, "test")
+        self.assertEqual((plan.fold_of, plan.training, plan.how), ({"c": 0}, [["a", "b"]], "trained on splits train and val"))
+        for split, rest in (("dev", "score; splits with ground truth: train, val, test"), ("", "score")):
+            with self.assertRaisesRegex(KeyError, f"nothing to {rest}"):
+                _folds.in_split(rows, split)
+        with self.assertRaisesRegex(KeyError, "nothing to train on; splits with ground truth: test"):
+            _folds.in_split(rows[2:], "test")
+        with self.assertRaisesRegex(ValueError, "a: has views in split test"):
+            _folds.in_split(items(("a_1", "a", "", "train"), ("a_2", "a", "", "test")), "test")
+
+    def test_scans_are_in_the_fold_of_their_mesh(self):
+        plan = _folds.with_scans(_folds.dealt(items(("a", "", "", ""), ("b", "", "", "")), 2, "mesh", 0))
+        self.assertEqual({plan.fold_of[f"a_{view}"] for view in range(12)}, {plan.fold_of["a"]})
+        two = _folds.Plan("", {"a": 0, "a_3": 1}, [["a_3"], ["a"]])
+        with self.assertRaisesRegex(ValueError, "a_3 is the name of a shape and of scan 3 of a"):
+            _folds.with_scans(two)
+
+
+class Runs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.log = self.folder / "log"
+        self.data = toy.learnable(self.folder / "data")
+
+    def fit(self, text=MEMORY):
+        names = {}
+        exec(textwrap.dedent(text).format(log=str(self.log)), names)
+        return names["fit"]
+
+    def run_with(self, fit, config=CONFIG, **keywords):
+        self.log.write_text("")
+        keywords = {"models": {}, "by": "mesh", "cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
+        return salbench.cross_validate(fit, self.data, config, **keywords)
+
+    def trained(self):
+        """Numbers of the shapes that each training of the last run saw."""
+        return sorted(line.split() for line in self.log.read_text().splitlines())
+
+    def test_what_was_learnt_by_heart_scores_at_chance(self):
+        """The nearest point that was seen: of the shape itself or its scans it has the answer, of all others a random number."""
+        config = CONFIG | {"dataset": {"scans": True}, "scan": {"step_degrees": 1}}
+        for by in ("class", "mesh"):
+            results = self.run_with(self.fit(), config, by=by)
+            means = results.scores.groupby("dataset").cc.mean()
+            self.assertEqual((len(results.scores), results.failures), (130, []))
+            self.assertLess(means.abs().max(), 0.1, by)
+        leaking = self.fit()(list(salbench.Dataset("schelling", self.data)))
+        results = salbench.run(config, data=self.data, models={"MINE": leaking}, cache=self.folder / "cache", out=self.folder / "out", progress=False)
+        means = results.scores.groupby("dataset").cc.mean()
+        self.assertGreater(means["meshes"], 0.99, "a leak would be seen")
+        self.assertGreater(means["scans"], 0.4)
+
+    def test_a_rerun_trains_nothing_in_a_new_interpreter_either(self):
+        first = self.run_with(self.fit())
+        self.assertEqual((first.models["MINE"]["trained"], len(self.trained())), (5, 5))
+        self.assertIn("MINE: 5 folds trained now, 10 maps computed now", repr(first))
+        self.assertEqual(self.run_with(self.fit()).models["MINE"] | {"from": ""}, {"computed": 0, "read": 10, "from": "", "trained": 0})
+        module = self.folder / "mine.py"
+        module.write_text(textwrap.dedent(MEMORY).format(log=str(self.log)))
+        code = ("import mine, salbench; print(salbench.cross_validate(mine.fit, {!r}, {!r}, by='mesh', cache={!r}, out={!r}, progress=False)"
+                ".models['MINE']['trained'])").format(*map(str, (self.data,)), CONFIG, *map(str, (self.folder / "cache", self.folder / "out")))
+        said = [subprocess.run([sys.executable, "-B", "-c", code], cwd=self.folder, capture_output=True, text=True, check=True,
+                               env=os.environ | {"PYTHONHASHSEED": seed}).stdout for seed in "12"]
+        self.assertEqual(said, ["0\n", "0\n"])
+        self.assertEqual(self.trained(), [])
+
+    def test_a_changed_shape_trains_the_folds_that_saw_it(self):
+        self.run_with(self.fit())
+        before = self.trained()
+        path = self.data / "Distributions/21.val"
+        lines = path.read_text().splitlines()
+        path.write_text("\n".join(["0.5", *lines[1:]]) + "\n")
+        results = self.run_with(self.fit())
+        self.assertEqual(self.trained(), [names for names in before if "21" in names])
+        self.assertEqual(len(self.trained()), 4)
+        self.assertEqual(results.models["MINE"]["read"], 2, "maps of the fold that the shape is in")
+
+    def test_another_fit_trains_all_and_another_model_beside_it_none(self):
+        self.run_with(self.fit())
+        self.run_with(self.fit(), models={"CB": {}, "HEIGHT": lambda shape: shape.points[:, 2]})
+        self.assertEqual(self.trained(), [])
+        results = self.run_with({"A": self.fit(), "B": self.fit(OTHER)})
+        self.assertEqual([results.models[name]["trained"] for name in "AB"], [5, 5], "the name of a model is part of its keys")
+        self.assertEqual(set(results.scores.model), {"A", "B"})
+        with self.assertRaisesRegex(ValueError, "models has A, which is the name of a model that is trained"):
+            self.run_with({"A": self.fit()}, models={"A": self.fit()})
+
+    def test_versions_and_depends_are_those_of_fit(self):
+        weights = self.folder / "pretrained"
+        weights.write_bytes(b"1")
+
+        def versioned(version, text=MEMORY):
+            return salbench.Model(self.fit(text), version=version, depends=[weights])
+
+        self.run_with(versioned(1))
+        self.assertEqual(self.run_with(versioned(1, OTHER)).models["MINE"]["trained"], 0)
+        self.assertEqual(self.run_with(versioned(2, OTHER)).models["MINE"]["trained"], 5)
+        weights.write_bytes(b"2")
+        self.assertEqual(self.run_with(versioned(2, OTHER)).models["MINE"]["trained"], 5)
+
+    def test_fit_and_predict_are_handed_the_same_parts(self):
+        seen = {}
+
+        def fit(shapes):
+            for shape in shapes:
+                seen[shape.id] = shape
+
+            def predict(shape):
+                known = seen[shape.id]
+                for part in ("points", "faces", "normals", "fpfh"):
+                    np.testing.assert_array_equal(getattr(shape, part), getattr(known, part), part)
+                assert shape.ground_truth is None and known.ground_truth is not None and shape.category == ""
+                return shape.points[:, 0]
+            return predict
+
+        for reads in (("normals", "faces"), ("fpfh",)):
+            seen.clear()
+            model = salbench.Model(fit, reads=reads, cache=False)
+            self.run_with(model)  # each shape is seen by other folds first, but for those of the first one
+            results = self.run_with(model)
+            self.assertEqual(results.failures, [])
+
+    def test_a_fit_that_fails_is_tried_once_a_fold(self):
+        results = self.run_with(self.fit(MEMORY.replace("points =", "1 / 0; points =")))
+        self.assertEqual(len(self.trained()), 5)
+        causes = {failure.cause for failure in results.failures if failure.stage == "map.MINE"}
+        self.assertEqual(len([failure for failure in results.failures if failure.stage == "map.MINE"]), 10)
+        self.assertTrue(all("ZeroDivisionError" in cause for cause in causes), causes)
+        nothing = self.run_with(lambda shapes: None)
+        self.assertIn("fit must return a function of a shape, not NoneType", nothing.failures[0].cause)
+
+    def test_a_shape_that_cannot_be_read_trains_nothing_and_harms_nobody(self):
+        (self.data / "Distributions/21.val").write_text("no number\n")
+        with self.assertLogs("salbench", "WARNING") as logged:
+            results = self.run_with(self.fit())
+        self.assertIn("21: nothing is trained on it", "\n".join(logged.output))
+        self.assertFalse(any("21" in names for names in self.trained()))
+        self.assertEqual(len(results.scores), 9)
+
+    def test_simulated_participants_teach_nothing(self):
+        with self.assertRaisesRegex(ValueError, "participants are simulated"):
+            self.run_with(self.fit(), {"dataset": {"participants": "simulated"}})
+
+    def test_tables_submission_and_leaderboard_say_how_it_was_trained(self):
+        config = self.folder / "toy.yaml"
+        config.write_text("dataset: {scans: false}\nmodels: {RS: }\n")
+        results = self.run_with(self.fit(), config, folds=3, by="class", models={"RS": {}})
+        how = "cross-validated, 3 folds by class"
+        self.assertEqual(results.trained, {"MINE": how})
+        self.assertEqual(salbench.Results(self.folder / "out").trained, {"MINE": how})
+        self.assertEqual(set(results.summary.model), {"MINE", "RS"})  # which concludes
+        for name in ("summary", "ranking", "significance"):
+            self.assertEqual((self.folder / f"out/{name}.csv").read_text().splitlines()[0], f"# MINE: {how}")
+        mine = results.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL")
+        (self.folder / "submissions").mkdir()
+        common = ["-c", config, "--data", self.data, "--cache", self.folder / "cache", "--quiet"]
+        subprocess.run([toy.PROGRAM, "report", self.folder / "out", "--to", self.folder / "report", "--quiet"], check=True)
+        self.assertIn(f"MINE: {how}", (self.folder / "report/index.html").read_text())
+        for line in (["submit", mine, "--to", self.folder / "submissions/mine.zip"],
+                     ["leaderboard", self.folder / "submissions", "--to", self.folder / "site"]):
+            done = subprocess.run([toy.PROGRAM, *line, *common], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"this data set, {how}", (self.folder / "site/models/MINE.html").read_text())
+        self.assertIn(f"this data set, {how}", (self.folder / "site/data/submissions.csv").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
