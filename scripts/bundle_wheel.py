@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""bundle_wheel.py TREE OUT: makes a wheel of what `cmake --install` put into TREE, with the shared libraries that it needs. Run by
-scripts/wheel, in a root of Debian that has patchelf, pyelftools and a C compiler.
+# Run by scripts/wheel, in a root of Debian that has patchelf, pyelftools and a C compiler.
+"""bundle_wheel.py TREE OUT: makes a wheel of what `cmake --install` put into TREE, with the shared libraries that it needs.
 
 Each library goes to salbench/libs under a name with its digest, and is found there by its rpath: another of its name in the same
 process is another library to the loader. Its copyright lies beside it. Prints the size and reason of each."""
