@@ -70,6 +70,15 @@ def packed(file: Path) -> int:
     return len(zlib.compress(file.read_bytes(), 9))
 
 
+def find_beside(file: Path, libs: Path, names: dict[str, str]) -> None:
+    """Makes a file take its libraries by their new names from libs. One change per call: Debian 12's patchelf mixes them up."""
+    run("patchelf", *(word for name in needed(file) for word in ("--replace-needed", name, names[name])), file)
+    run("patchelf", "--set-rpath", f"$ORIGIN/{os.path.relpath(libs, file.parent)}", file)
+    lacking = [name for name in needed(file) if not (libs / name).is_file()]
+    if lacking:
+        sys.exit(f"{file}: needs {', '.join(lacking)}, which is not in the wheel")
+
+
 def bundle(tree: Path) -> None:
     libs = tree / "salbench/libs"
     (libs / "licences").mkdir(parents=True)
@@ -92,17 +101,16 @@ def bundle(tree: Path) -> None:
     three = Path("/usr/share/javascript/three/three.min.js")
     if (tree / "salbench/three").is_dir():
         (libs / "licences/libjs-three.txt").write_text(copyright_of(three)[1])
-    renamed = [word for pair in names.items() for word in ("--replace-needed", *pair)]
     rows = [(packed(file), file.name, "", "") for file in ours]
     for name, source in sources.items():
-        run("patchelf", "--set-soname", names[name], "--set-rpath", "$ORIGIN", *renamed, libs / names[name])
+        run("patchelf", "--set-soname", names[name], libs / names[name])
+        find_beside(libs / names[name], libs, names)
         package, text = ("stands in, returns 0", "") if ABSENT.fullmatch(name) else copyright_of(source)
         if text:
             (libs / "licences" / f"{package.split()[0]}.txt").write_text(text)
         rows.append((packed(libs / names[name]), names[name], package, ", ".join(sorted(set(users[name])))))
     for file in ours:
-        up = "/.." * (len(file.relative_to(tree).parts) - 2)
-        run("patchelf", "--set-rpath", f"$ORIGIN{up}/libs", *renamed, file)
+        find_beside(file, libs, names)
     print("KB packed  file; Debian's package; needed by")
     for size, *words in sorted(rows, reverse=True):
         print(f"{size / 1000:9.0f}  {'; '.join(filter(None, words))}")
