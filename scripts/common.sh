@@ -95,6 +95,10 @@ run_installed() {
   inside "$1" 1000 sh -c 'cd / && salbench run shrec07_meshes --data /work/meshes --cache /work/by_name/cache --out /work/by_name --quiet'
   [[ -s $1/work/by_name/run.yaml ]]
   passed "runs from any folder; installed configurations are found by name"
+}
+
+# write_report ROOT: that of the toys' results.
+write_report() {
   inside "$1" 1000 sh -c 'cd /work && salbench report salbench-out/toy > /dev/null'
   [[ -s $1/work/salbench-out/toy/report/index.html ]]
   passed "writes a report"
