@@ -5,6 +5,9 @@
 # usage: prints what a script says of itself above its line "set".
 usage() { sed -n '3,/^set /s/^# \{0,1\}//p' "$0"; }
 
+# passed WORDS: says it, with the seconds since the script began.
+passed() { echo "$SECONDS s: $*"; }
+
 # find_data: where no SALBENCH_DATA names a folder with SchellingData/ and reference/, it becomes the one beside the checkout, if
 # there is one.
 find_data() {
@@ -47,7 +50,8 @@ fresh_root() {
     echo "$folder/$1"
 }
 
-# inside ROOT USER COMMAND...: runs a command in a root, with mounts and processes that end with it. USER: a number.
+# inside ROOT USER COMMAND...: runs a command in a root, with mounts and processes that end with it. USER: a number. A root with a
+# folder /checkout has the checkout there, to read; /env is a virtual environment.
 inside() {
   local root=$1 user=$2
   shift 2
@@ -56,7 +60,8 @@ inside() {
     mount --bind "$1" "$1" &&  # a root that is a mount lets a further root be entered from within
     mount --bind "$(dirname "$1")/archives" "$1/var/cache/apt/archives" && mount -t proc proc "$1/proc" &&
     mount -t tmpfs tmpfs "$1/dev/shm" &&
-    exec chroot --userspec="$2:$2" "$1" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
+    { [[ ! -d $1/checkout ]] || mount --bind -o ro . "$1/checkout"; } &&
+    exec chroot --userspec="$2:$2" "$1" /usr/bin/env -i PATH=/env/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
       DEBIAN_FRONTEND=noninteractive "${@:3}"' inside "$root" "$user" "$@"
 }
 
@@ -81,4 +86,20 @@ run_toy() {
   grep -x 'artefacts_computed: 0' "$1/work/salbench-out/toy/run.yaml" ||
     { echo "the second run computed something" >&2; return 1; }
   [[ -s $1/work/salbench-out/toy/results.csv ]]
+}
+
+# run_installed ROOT: what a user does with an installed program.
+run_installed() {
+  inside "$1" 1000 salbench --version
+  run_toy "$1"
+  inside "$1" 1000 sh -c 'cd / && salbench run shrec07_meshes --data /work/meshes --cache /work/by_name/cache --out /work/by_name --quiet'
+  [[ -s $1/work/by_name/run.yaml ]]
+  passed "runs from any folder; installed configurations are found by name"
+}
+
+# write_report ROOT: that of the toys' results.
+write_report() {
+  inside "$1" 1000 sh -c 'cd /work && salbench report salbench-out/toy > /dev/null'
+  [[ -s $1/work/salbench-out/toy/report/index.html ]]
+  passed "writes a report"
 }

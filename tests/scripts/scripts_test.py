@@ -10,6 +10,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import yaml
+
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
 FILES = sorted(path for path in SCRIPTS.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
@@ -136,6 +138,19 @@ class CheckTest(unittest.TestCase):
         done = self.check()
         self.assertEqual(done.returncode, 2)
         self.assertIn("scripts/check --all", done.stdout)
+
+
+class WorkflowTest(unittest.TestCase):
+    def test_names_scripts_and_releases_that_exist(self):
+        job = yaml.safe_load((ROOT / ".github/workflows/checks.yml").read_text())["jobs"]["debian"]
+        releases = re.findall(r"\[(\d+)\]=", re.search("debian_codenames=.*", (SCRIPTS / "common.sh").read_text())[0])
+        self.assertEqual(job["strategy"]["matrix"]["release"], [int(release) for release in releases])
+        for step in job["steps"]:
+            self.assertEqual(len({"run", "uses"} & step.keys()), 1, step)
+        scripts = re.findall(r"(?m)^(scripts/\S+)", "\n".join(step.get("run", "") for step in job["steps"]))
+        self.assertEqual(scripts, ["scripts/test", "scripts/package", "scripts/wheel"])
+        for script in scripts:
+            self.assertTrue(os.access(ROOT / script, os.X_OK), script)
 
 
 if __name__ == "__main__":

@@ -21,9 +21,9 @@ THREE = ("three.min.js", "examples/js/controls/OrbitControls.js")
 
 
 def three_js() -> list[Path]:
-    """The scripts of three.js, which draw: of Debian's package libjs-three, below a folder of data of the system."""
+    """The scripts of three.js, which draw: the wheel's own, or Debian's package libjs-three, below a folder of data of the system."""
     shares = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
-    folders = [Path(share) / "javascript/three" for share in shares.split(":")]
+    folders = [Path(__file__).parents[1] / "three", *(Path(share) / "javascript/three" for share in shares.split(":"))]
     for folder in folders:
         if all((folder / name).is_file() for name in THREE):
             return [folder / name for name in THREE]
