@@ -53,13 +53,13 @@ py::array copied(std::span<const T> values) {
 }
 
 py::object shape_of(const std::string& id, Points points, const Normals* normals, bool reads_faces,
-                    Surface faces, const Descriptors* fpfh) {
+                    Surface faces, const Descriptors* fpfh, const py::object& source) {
   py::object of_normals = py::none(), of_faces = py::none(), descriptors = py::none();
   if (reads_faces) of_faces = copied<Triangle>(faces);
   if (normals != nullptr) of_normals = copied<Vec3>(*normals);
   if (fpfh != nullptr) descriptors = read_only(moved(std::vector<float>(fpfh->values), {-1, kFpfhBins}));
   return py::module_::import("salbench._shape")
-      .attr("Shape")(id, copied<Vec3>(points), of_faces, of_normals, descriptors);
+      .attr("Shape")(id, copied<Vec3>(points), of_faces, of_normals, descriptors, py::arg("source") = source);
 }
 
 // One line, with the user's innermost line: "ValueError: bad (model.py, line 12)"; and the whole traceback.
@@ -115,22 +115,27 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
   RuleHead head = stage_of(model.name, Role::map, model.version);
   head.limit = 1;
   const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
-  const FilesOf training{model.trained_keys.empty() ? nullptr : named_training(shape.map_files)};
+  const FilesOf files{model.trained_keys.empty() ? shape.originals : named_training(shape.map_files)};
   return table.add(
       shape.level, head,
-      [&model, &caller, reads_faces = reads("faces")](
+      [&model, &caller, reads_faces = reads("faces"), reads_source = reads("source")](
           Points points, const Normals* normals, Surface faces, const Descriptors* fpfh, Surface mapped_faces,
-          const RandomSource& random, const Files&, const NoOptions&) {
+          const RandomSource& random, const Files& read, const NoOptions&) {
         ScalarField map;
         caller.carry_out([&] {
-          map = call(model, random.item, shape_of(random.item, points, normals, reads_faces, faces, fpfh),
-                     points.size(), mapped_faces.size());
+          const py::object source =
+              reads_source ? py::module_::import("os").attr("fsdecode")(
+                                 py::bytes(std::filesystem::absolute(item_of(read.source).mesh).string()))
+                           : py::object(py::none());
+          map = call(model, random.item,
+                     shape_of(random.item, points, normals, reads_faces, faces, fpfh, source), points.size(),
+                     mapped_faces.size());
         });
         require_finite(map, "the map");
         return map;
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, training,
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, files,
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 
@@ -329,16 +334,17 @@ class Run {
     if (const std::string wrong = wrong_with_model_name(model.name); !wrong.empty())
       throw ConfigError(fmt::format("models: '{}' {}", model.name, wrong));
     const bool trained = !model.trained_keys.empty();
-    config.models.push_back({.name = model.name,
-                             .version = model.version,
-                             .options = trained ? fmt::format("trained: {}\n", yaml_quoted(model.trained))
-                                                : fmt::format("function: {}\n", model.key),
-                             .annotated_options = {},
-                             .add_map =
-                                 [this, &model](RuleTable& table, const ShapeOutputs& shape) {
-                                   return add_function(table, shape, model, caller_);
-                                 },
-                             .given = trained ? training_files(model) : nullptr});
+    config.models.push_back(
+        {.name = model.name,
+         .version = model.version,
+         .options = trained ? fmt::format("trained: {}\n", yaml_quoted(model.trained))
+                            : fmt::format("function: {}\n", model.key),
+         .annotated_options = {},
+         .add_map = [this, &model](
+                        RuleTable& table,
+                        const ShapeOutputs& shape) { return add_function(table, shape, model, caller_); },
+         .given = trained ? training_files(model) : nullptr,
+         .reads_originals = std::ranges::find(model.reads, "source") != model.reads.end()});
   }
 
   std::deque<FunctionModel> models_;

@@ -58,6 +58,10 @@ std::string write_results(const Session& session, RunRecord record) {
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
   if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
+  for (const std::string& remark : training_remarks(record.run)) {
+    spdlog::warn("{}", remark);
+    remarks.push_back(remark);
+  }
   if (!record.interrupted || !rows.empty())
     record.scores = write_scores(session.setup.output, record.run, rows, remarks);
   write_record(session.setup.output, record);

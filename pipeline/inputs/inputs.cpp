@@ -75,10 +75,6 @@ std::vector<std::string_view> splits_in(std::string_view text) {
   return names;
 }
 
-bool is_in_split(std::string_view text, std::string_view split) {
-  return text == split || std::ranges::count(splits_in(text), split) > 0;
-}
-
 // Keeps the items of a split. Those that are in two stay, to fail with what is wrong.
 void select_split(Dataset& dataset, const std::string& split) {
   std::vector<DatasetItem>& items = dataset.items;
@@ -146,6 +142,10 @@ std::pair<Level, FilesOfUnit> shape_files_of(const DatasetItem& item) {
 }
 
 }  // namespace
+
+bool is_in_split(std::string_view text, std::string_view split) {
+  return text == split || std::ranges::count(splits_in(text), split) > 0;
+}
 
 const std::vector<LevelInfo>& levels() {
   static const std::vector<LevelInfo> levels = {

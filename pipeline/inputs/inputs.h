@@ -67,6 +67,8 @@ struct ItemChoice {
   std::vector<std::string> parts = {};  // names and ranges
 };
 
+bool is_in_split(std::string_view text, std::string_view split);  // of an item that may be in several
+
 // Keeps the items chosen, of one split if that is named. A view that is scored by itself is named like its
 // shape, too. Throws ConfigError for an item or a split that is not there.
 void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split = {});

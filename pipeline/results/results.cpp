@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "io/file.h"
 #include "pipeline/results/raw_tables.h"
@@ -117,6 +118,32 @@ Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) 
                                row.scores.n_points, row.scores.n_picks));
   }
   return table;
+}
+
+std::vector<std::string> training_remarks(const RunState& run) {
+  std::vector<std::string> remarks;
+  for (const Model& model : run.config.models) {
+    std::vector<std::string> seen;
+    std::size_t scored = 0;
+    for (const Family& family : run.units().families()) {
+      const DatasetItem& item = item_of(family.source);
+      if (!family.chosen || !item.has_truth()) continue;
+      ++scored;
+      if (std::ranges::any_of(model.trained_on, [&](const std::string& name) {
+            return name == item.name || name == item.shape_name() || is_in_split(item.split, name);
+          }))
+        seen.push_back(item.name);
+    }
+    if (seen.empty()) continue;
+    constexpr std::size_t kNamed = 5;
+    const std::string more = seen.size() > kNamed ? fmt::format(" and {} more", seen.size() - kNamed) : "";
+    seen.resize(std::min(seen.size(), kNamed));
+    remarks.push_back(
+        fmt::format("{} was trained on shapes that it is scored on here ({}{}; {} scored): its scores there "
+                    "do not say how it does on new shapes.",
+                    model.name, fmt::join(seen, ", "), more, scored));
+  }
+  return remarks;
 }
 
 void prepare_output(const fs::path& folder) {

@@ -62,6 +62,9 @@ using Metrics = std::vector<Metric>;
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
 
+// For people: a sentence for each model that was trained on shapes which it is scored on.
+std::vector<std::string> training_remarks(const RunState& run);
+
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
 
@@ -72,7 +75,8 @@ struct TableFile {
 };
 
 // results.csv, means.csv, constant.csv, people.csv where HS was computed, smoothed.csv where maps were
-// smoothed, fitted.csv where densities were fitted to them, and mean_histograms_{meshes,scans,clouds}.csv. Each begins with the remarks, as comments.
+// smoothed, fitted.csv where densities were fitted to them, and mean_histograms_{meshes,scans,clouds}.csv.
+// Each begins with the remarks, as comments.
 std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
                                    const std::vector<std::string>& remarks);
 

@@ -24,6 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kReadable = {"mesh", "points", "normals", "faces", "fpfh"};
+bool is_told_of_source(const CommandOptions& options) {
+  return options.command.find(kSource) != std::string::npos ||
+         options.command.find(kItem) != std::string::npos;
+}
 bool contains(const Words& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -47,11 +51,11 @@ void check_command(const CommandOptions& options, const Section& written) {
   const bool fpfh = contains(options.reads, "fpfh");
   if (list || list_of_hdf5) {
     if (std::any_of(kPlaceholders.begin(), kPlaceholders.end(),
-                    [&](const Placeholder& placeholder) { return has(placeholder.text); }))
-      written.fail(
-          "command",
-          "has {list}, whose lines name the files of each shape: it must not have {mesh}, {shape} or "
-          "{out} as well");
+                    [&](const Placeholder& placeholder) { return has(placeholder.text); }) ||
+        is_told_of_source(options))
+      written.fail("command",
+                   "has {list}, whose lines name the files of each shape: it must not have {mesh}, {shape}, "
+                   "{out}, {source} or {item} as well");
     if (list && (list_of_hdf5 || fpfh))
       written.fail("command",
                    fpfh ? "must have {list.h5}, with HDF5 files, in place of {list}, since it reads "
@@ -61,8 +65,9 @@ void check_command(const CommandOptions& options, const Section& written) {
   }
   if (!has("{out}") && !has("{out.npy}") && !has("{out.h5}"))
     written.fail("command", "must have {out} where the file is named that it writes its values to");
-  if (!has("{mesh}") && !has("{shape}"))
-    written.fail("command", "must have {mesh} or {shape}, the file it reads, or {list} for many shapes");
+  if (!has("{mesh}") && !has("{shape}") && !has(kSource))
+    written.fail("command",
+                 "must have {mesh}, {shape} or {source}, the file it reads, or {list} for many shapes");
   if (fpfh && !has("{shape}"))
     written.fail("command",
                  "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
@@ -115,11 +120,17 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
   return table.add(
       shape.level, head,
       [command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
-                Surface mapped_faces, const CommandOptions&) {
-        return command->map({points, normals, faces, fpfh}, mapped_faces.size());
+                Surface mapped_faces, const Files& originals, const CommandOptions&) {
+        ShapeParts parts{points, normals, faces, fpfh};
+        if (!originals.data.empty()) {
+          parts.source = fs::absolute(item_of(originals.source).mesh).string();
+          parts.item = originals.name;
+        }
+        return command->map(parts, mapped_faces.size());
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), SectionOf<CommandOptions>{lines, options});
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), FilesOf{shape.originals},
+      SectionOf<CommandOptions>{lines, options});
 }
 
 }  // namespace
@@ -162,9 +173,12 @@ Model command_model(const std::string& name, const Section& models) {
           .version = options.version,
           .options = command_text(options, false),
           .annotated_options = command_text(options, true),
-          .add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
-            return add_command(table, shape, name, options, depends, command);
-          }};
+          .add_map =
+              [=](RuleTable& table, const ShapeOutputs& shape) {
+                return add_command(table, shape, name, options, depends, command);
+              },
+          .trained_on = options.trained_on,
+          .reads_originals = is_told_of_source(options)};
 }
 
 }  // namespace salbench

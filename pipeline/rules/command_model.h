@@ -23,6 +23,7 @@ struct CommandOptions {
   std::int32_t at_once = 0;  // commands of this model at work at the same time; 0: no limit
   std::int32_t gpu = 0;      // the same where the command keeps a GPU busy: so many GPUs
   Words depends = {};        // files whose content counts
+  Words trained_on = {};     // items and splits
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -35,6 +36,9 @@ struct CommandOptions {
     visit("at_once", self.at_once, {"commands at work at the same time, 0: no limit", {}, at_least(0)});
     visit("gpu", self.gpu, {"GPUs: the same limit by another name", {}, at_least(0)});
     visit("depends", self.depends, {"files whose content counts, linked into the command's folder"});
+    visit(
+        "trained_on", self.trained_on,
+        {"items and splits that the model was trained on: tables name those that are scored", "", {}, "[]"});
   }
 };
 

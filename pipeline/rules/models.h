@@ -42,6 +42,7 @@ struct ShapeOutputs {
   Output<CentreDensity> centre_density = {};
   Output<CentreDensity> centre_densities = {};
   FileColumnPtr groups = {};     // names of what stays together in a fold
+  FileColumnPtr originals = {};  // files that the shape was read from, then one that holds its name
   FileColumnPtr map_files = {};  // of a model that takes its maps from outside
   // Maps are scored on the faces of the surface: ground truth is per face, and maps may be.
   bool on_faces = false;
@@ -59,6 +60,8 @@ struct Model {
   std::function<Output<ScalarField>(RuleTable&, const ShapeOutputs&)> add_map = {};
   std::optional<HsOptions> human = {};
   std::shared_ptr<const GivenMaps> given = {};  // where the map is read and not computed
+  Words trained_on = {};                        // items and splits
+  bool reads_originals = false;                 // of ShapeOutputs
 };
 
 struct ModelRow {

@@ -77,6 +77,22 @@ FileColumnPtr groups_of(const Units& units, Level level, FoldGroup by) {
   return column;
 }
 
+// The files that each shape was read from, textures among them, and its name: for a model that is told of
+// them.
+FileColumnPtr originals_of(const Inputs& inputs, Level level) {
+  auto column = std::make_shared<FileColumn>();
+  column->files.resize(inputs.units.slots(level));
+  if (!inputs.shape_files) return column;
+  for (const Unit unit : inputs.units.of(level)) {
+    FilesOfUnit& files = column->files[unit.index];
+    files = inputs.shape_files->files.at(inputs.units.family_of(unit));
+    const auto read = [name = inputs.units.name(unit)] { return FileData{file_digest(name), name}; };
+    files.push_back(
+        {.name = "name", .place = inputs.units.name(unit), .read = std::make_shared<const ReadFile>(read)});
+  }
+  return column;
+}
+
 void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units,
                     const std::shared_ptr<const GivenMaps>& maps) {
   std::vector<Level> levels;
@@ -148,6 +164,8 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
     if (model.human && on_meshes && !meshes.on_faces)  // people's picks are of vertices
       scored.push_back({kMeshes, model.name, add_human_performance(table, meshes, mesh, config, model)});
     if (model.given) give_map_files(evaluated, inputs.units, model.given);
+    for (ShapeOutputs* shape : evaluated)
+      shape->originals = model.reads_originals ? originals_of(inputs, shape->level) : nullptr;
     for (const ShapeOutputs* shape : evaluated)
       if (!model.human)
         scored.push_back(

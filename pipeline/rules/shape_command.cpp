@@ -92,7 +92,7 @@ ScalarField ShapeCommand::map(const ShapeParts& shape, std::size_t mapped_faces)
   const fs::path& folder = scratch.path();
   if (has("{mesh}") || has(kListOfMeshes)) write_mesh(folder / file_of("{mesh}"), shape);
   if (has("{shape}") || has(kListOfShapes)) write_hdf5(folder / file_of("{shape}"), shape);
-  const std::string end = servers_ ? ask(folder) : run(folder);
+  const std::string end = servers_ ? ask(folder) : run(folder, shape);
   depends_->check_unchanged();
   const fs::path written = written_file(folder, end);
   return read_point_values(
@@ -101,11 +101,13 @@ ScalarField ShapeCommand::map(const ShapeParts& shape, std::size_t mapped_faces)
 }
 
 // Returns what the command did, for a message.
-std::string ShapeCommand::run(const fs::path& folder) {
+std::string ShapeCommand::run(const fs::path& folder, const ShapeParts& shape) {
   depends_->link_into(folder);
   std::string command = command_;
   for (const Placeholder& placeholder : kPlaceholders)
     replace_all(command, placeholder.text, shell_quoted((folder / placeholder.file).string()));
+  replace_all(command, kSource, shell_quoted(shape.source));
+  replace_all(command, kItem, shell_quoted(shape.item));
   run_command(command, folder, timeout_);
   return "ended";
 }

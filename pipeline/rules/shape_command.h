@@ -27,6 +27,9 @@ inline constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", "shape.
                                                               {"{out}", "out.val"},
                                                               {"{out.npy}", "out.npy"},
                                                               {"{out.h5}", "out.h5"}}};
+// Placeholders of what a command may read of its own accord: the file that the shape was read from, with what
+// lies beside it, such as textures; and the shape's name.
+inline constexpr std::string_view kSource = "{source}", kItem = "{item}";
 // Placeholders of a list of shapes. Each line of it names two files: that of {mesh}, or of {shape}, and that
 // of {out}.
 inline constexpr std::string_view kListOfMeshes = "{list}", kListOfShapes = "{list.h5}";
@@ -37,6 +40,7 @@ struct ShapeParts {
   const Normals* normals = nullptr;
   Surface faces = {};
   const Descriptors* fpfh = nullptr;
+  std::string source = {}, item = {};  // path of the file that it was read from; its name
 };
 
 // Runs the command for one shape, or with a list, keeps it at work for one after the other.
@@ -52,7 +56,7 @@ class ShapeCommand {
 
  private:
   bool has(std::string_view placeholder) const { return command_.find(placeholder) != std::string::npos; }
-  std::string run(const std::filesystem::path& folder);
+  std::string run(const std::filesystem::path& folder, const ShapeParts& shape);
   std::string ask(const std::filesystem::path& folder);
 
   std::string command_;

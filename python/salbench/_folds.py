@@ -163,12 +163,14 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Plan:
 
 
 def in_split(items: Sequence[Item], split: str) -> Plan:
-    others = list(dict.fromkeys(item.split for item in items if item.split not in ("", split)))
-    scored = [item for item in items if item.split == split != ""]
+    """Trained on what is in other splits alone: shapes may be in several."""
+    splits = {item.name: item.split.split("+") for item in items if item.split}
+    scored = [item for item in items if split in splits.get(item.name, ())]
+    training = [item for item in items if item.name in splits and split not in splits[item.name]]
+    others = list(dict.fromkeys(name for item in training for name in splits[item.name]))
     if not scored or not others:
-        known = ", ".join(dict.fromkeys(item.split for item in items if item.split)) or "none"
+        known = ", ".join(dict.fromkeys(name for names in splits.values() for name in names)) or "none"
         raise KeyError(f"split {split!r}: nothing to {'train on' if scored else 'score'}; splits with ground truth: {known}")
-    training = [item for item in items if item.split in others]
     if shared := {_mesh(item) for item in scored} & {_mesh(item) for item in training}:
         raise ValueError(f"{min(shared)}: has views in split {split} and in another one")
     how = f"trained on split{'s' * (len(others) > 1)} {' and '.join(others)}"
@@ -209,7 +211,7 @@ class _Shapes:
             except (ValueError, OSError) as error:
                 logging.getLogger("salbench").warning("%s: nothing is trained on it: %s", name, error)
                 continue
-            self.digests[name] = fingerprint(tuple(getattr(shape, field.name) for field in dataclasses.fields(shape)))
+            self.digests[name] = fingerprint(tuple(getattr(shape, field.name) for field in dataclasses.fields(shape) if field.name != "source"))
 
     def ready(self, name: str, reads: tuple[str, ...]) -> Shape:
         """With the parts that a run hands over, as it has them by default."""
@@ -228,6 +230,8 @@ class _Shapes:
 
 
 def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool) -> Learned:
+    if "source" in fit.reads:
+        raise ValueError(f"{name} reads source, which is not known of shapes that something is trained on")
     training = [[item for item in names if item in shapes.digests] for names in plan.training]
     start = f"{key_of(name, fit)}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
     keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items)]).encode()).hexdigest() for items in training]

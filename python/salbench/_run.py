@@ -21,7 +21,7 @@ from salbench._shape import Shape
 from salbench._types import ArrayLike
 
 Predict = Callable[[Shape], ArrayLike]
-PARTS = ("normals", "faces", "fpfh")
+PARTS = ("normals", "faces", "fpfh", "source")
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,8 @@ class Model:
     depends : sequence, optional
         What else counts: files (text or path, by content), and any other value, by content.
     reads : sequence of str
-        Parts of the shape beside its points that are handed over: some of "normals", "faces", "fpfh".
+        Parts of the shape beside its points that are handed over: some of "normals", "faces", "fpfh", and "source", the path of the
+        shape's file, whose content counts then, with that of its textures.
     cache : bool
         False: maps are computed in each call.
     """

@@ -36,6 +36,9 @@ class Shape:
         What each of them marked, in the order of the file.
     viewers : list of (n,) arrays
         Saliency by viewer.
+    source : str
+        Path of the file that it was read from, with what lies beside it, such as textures; of a scan that of its mesh. Only where a
+        `Model` reads "source".
     """
 
     id: str
@@ -48,6 +51,7 @@ class Shape:
     ground_truth: NDArray[np.float64] | None = None
     participants: tuple[NDArray[np.int32], ...] = ()
     viewers: tuple[NDArray[np.float64], ...] = ()
+    source: str | None = None
 
     @property
     def picks(self) -> NDArray[np.int32]:

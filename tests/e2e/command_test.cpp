@@ -21,6 +21,7 @@ using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 std::string command_config(const std::string& options, const std::string& others = "PS: , ") {
@@ -47,6 +48,39 @@ std::vector<std::vector<std::string>> cells_of(const std::string& csv, const std
     for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
   }
   return rows;
+}
+
+TEST(Command, ShapesThatAModelWasTrainedOnAreNamedInItsTablesAndNoKeyKnowsOfIt) {
+  const auto config = [](const std::string& trained) {
+    return command_config(fmt::format("command: \"{}\"{}", kCount, trained));
+  };
+  const Workspace toy(config(", trained_on: [1, elsewhere]"));
+  const Outcome first = toy.salbench("run");
+  ASSERT_EQ(first.status, 0) << first.err;
+  const std::string remark =
+      "MINE was trained on shapes that it is scored on here (1; 2 scored): its scores there do not say how "
+      "it "
+      "does on new shapes.";
+  EXPECT_THAT(first.err, HasSubstr(remark));
+  EXPECT_THAT(toy.results(), HasSubstr("# " + remark + "\n"));
+  const Outcome same = toy.salbench("config");
+  EXPECT_THAT(same.out, HasSubstr("trained_on: [1, elsewhere]"));
+  toy.configure(config(""));
+  const Outcome again = toy.salbench("run");
+  EXPECT_THAT(again.out, HasSubstr("; 0 artefacts computed"));
+  EXPECT_THAT(toy.results(), Not(HasSubstr("trained on")));
+}
+
+// The vertices of an OFF file are its lines after the second.
+TEST(Command, MayReadTheFileThatAShapeWasReadFromAndIsToldItsName) {
+  const Workspace toy(
+      command_config("command: \"echo {item} {source} >&2; n=$(sed -n 2p {source} | cut -d' ' -f1); "
+                     "seq $n > {out}; test {item} != 2\""));
+  const Outcome run = toy.salbench("run");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(cells_of(toy.results(), "MINE"), SizeIs(1));
+  EXPECT_THAT(run.err, ContainsRegex("2 /.*/2.off"));
+  EXPECT_THAT(toy.salbench("run").err, Not(HasSubstr("1.off")));
 }
 
 TEST(Command, AModelInPythonEqualsTheBuiltInOne) {
@@ -293,7 +327,7 @@ TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
     return run.err;
   };
   EXPECT_THAT(refused("command: 'cat {mesh}'"), HasSubstr("models.MINE.command must have {out}"));
-  EXPECT_THAT(refused("command: 'date > {out}'"), HasSubstr("must have {mesh} or {shape}"));
+  EXPECT_THAT(refused("command: 'date > {out}'"), HasSubstr("must have {mesh}, {shape} or {source}"));
   EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [fpfh]"), HasSubstr("must have {shape}"));
   EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [colour]"), HasSubstr("names 'colour'"));
   EXPECT_THAT(refused("command: 'x {mesh} {out}', timeout: 0"),

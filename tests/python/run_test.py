@@ -173,6 +173,9 @@ class Runs(Folders):
         self.assertFalse(shape.points.flags.writeable)
         self.run_with({"TWO": predict})
         self.assertEqual(seen[shape.id].normals.shape, shape.points.shape)
+        self.assertIsNone(seen[shape.id].source)
+        self.run_with({"THREE": salbench.Model(predict, reads=["source"])})
+        self.assertEqual(pathlib.Path(seen[shape.id].source).suffix, ".off")
         with self.assertRaisesRegex(KeyError, "reads 'colour'"):
             self.run_with({"MINE": salbench.Model(predict, reads=["colour"])})
 
