@@ -56,14 +56,13 @@ def stand_in(name: str, user: Path, folder: Path) -> Path:
     return folder / name
 
 
-def copyright_of(library: Path) -> tuple[str, str]:
-    """Debian's package of a library with its version, and the text of its copyright."""
-    for path in (library, library.resolve(), Path("/usr") / library.resolve().relative_to("/")):
+def package_of(file: Path) -> str:
+    """Debian's package of a file, whose folder may be below /usr or a link to there."""
+    for path in (file, file.resolve(), Path("/usr") / file.resolve().relative_to("/")):
         found = subprocess.run(["dpkg", "-S", path], capture_output=True, text=True).stdout
         if found:
-            break
-    package = found.split(":")[0]
-    return run("dpkg-query", "-W", "-f", "${Package} ${Version}\n", package).splitlines()[0], Path(f"/usr/share/doc/{package}/copyright").read_text()
+            return found.split(":")[0]
+    sys.exit(f"{file}: is of no package, so its licence is unknown")
 
 
 def packed(file: Path) -> int:
@@ -79,41 +78,40 @@ def find_beside(file: Path, libs: Path, names: dict[str, str]) -> None:
         sys.exit(f"{file}: needs {', '.join(lacking)}, which is not in the wheel")
 
 
-def bundle(tree: Path) -> None:
-    libs = tree / "salbench/libs"
-    (libs / "licences").mkdir(parents=True)
+def closure(files: list[Path], scratch: Path) -> tuple[dict[str, Path], dict[str, set[str]]]:
+    """The file of each library that files need, and that libraries do; and what needs it."""
     places = dict(re.findall(r"^\s*(\S+) \(libc6,x86-64.*?\) => (\S+)$", run("/sbin/ldconfig", "-p"), re.MULTILINE))
-    ours = [*(tree / "salbench").glob("_core.*.so"), tree / "salbench/bin/salbench"]
-    users: dict[str, list[str]] = {}
     sources: dict[str, Path] = {}
-    todo = list(ours)
-    with tempfile.TemporaryDirectory() as scratch:
-        for file in todo:
-            for name in needed(file):
-                users.setdefault(name, []).append(file.name.split(".")[0])
-                if name not in sources:
-                    sources[name] = stand_in(name, file, Path(scratch)) if ABSENT.fullmatch(name) else Path(places[name])
-                    todo.append(sources[name])
-        names = {name: re.sub(r"\.so", f"-{hashlib.sha256(source.read_bytes()).hexdigest()[:8]}.so", name, count=1)
-                 for name, source in sources.items()}
-        for name, source in sources.items():
-            shutil.copyfile(source, libs / names[name])
-    three = Path("/usr/share/javascript/three/three.min.js")
-    if (tree / "salbench/three").is_dir():
-        (libs / "licences/libjs-three.txt").write_text(copyright_of(three)[1])
-    rows = [(packed(file), file.name, "", "") for file in ours]
+    users: dict[str, set[str]] = {}
+    todo = list(files)
+    for file in todo:
+        for name in needed(file):
+            users.setdefault(name, set()).add(file.name.split(".")[0])
+            if name not in sources:
+                sources[name] = stand_in(name, file, scratch) if ABSENT.fullmatch(name) else Path(places[name])
+                todo.append(sources[name])
+    return sources, users
+
+
+def bundle(tree: Path, scratch: Path) -> None:
+    ours, libs = [*(tree / "salbench").glob("_core.*.so"), tree / "salbench/bin/salbench"], tree / "salbench/libs"
+    sources, users = closure(ours, scratch)
+    names = {name: re.sub(r"\.so", f"-{hashlib.sha256(source.read_bytes()).hexdigest()[:8]}.so", name, count=1)
+             for name, source in sources.items()}
+    packages = {name: package_of(source) for name, source in sources.items() if source.parent != scratch}
+    (libs / "licences").mkdir(parents=True)
+    for package in {"libjs-three", *packages.values()}:
+        shutil.copyfile(f"/usr/share/doc/{package}/copyright", libs / "licences" / f"{package}.txt")
+    rows = dict.fromkeys(ours, "")
     for name, source in sources.items():
+        shutil.copyfile(source, libs / names[name])
         run("patchelf", "--set-soname", names[name], libs / names[name])
-        find_beside(libs / names[name], libs, names)
-        package, text = ("stands in, returns 0", "") if ABSENT.fullmatch(name) else copyright_of(source)
-        if text:
-            (libs / "licences" / f"{package.split()[0]}.txt").write_text(text)
-        rows.append((packed(libs / names[name]), names[name], package, ", ".join(sorted(set(users[name])))))
-    for file in ours:
+        rows[libs / names[name]] = f"; {packages.get(name, 'returns 0')}; for {', '.join(sorted(users[name]))}"
+    for file in rows:
         find_beside(file, libs, names)
-    print("KB packed  file; Debian's package; needed by")
-    for size, *words in sorted(rows, reverse=True):
-        print(f"{size / 1000:9.0f}  {'; '.join(filter(None, words))}")
+    print("KB packed  file; Debian's package")
+    for file in sorted(rows, key=packed, reverse=True):
+        print(f"{packed(file) / 1000:9.0f}  {file.name}{rows[file]}")
 
 
 def metadata(project: dict, version: str) -> str:  # type: ignore[type-arg]  # of a TOML file
@@ -155,7 +153,8 @@ def pack(tree: Path, out: Path) -> Path:
 
 
 if __name__ == "__main__":
-    bundle(Path(sys.argv[1]))
+    with tempfile.TemporaryDirectory() as folder:
+        bundle(Path(sys.argv[1]), Path(folder))
     made = pack(Path(sys.argv[1]), Path(sys.argv[2]))
     with zipfile.ZipFile(made) as written:
         print(f"{made.name}: {made.stat().st_size / 1e6:.1f} MB, {len(written.namelist())} files")
