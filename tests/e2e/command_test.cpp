@@ -64,7 +64,7 @@ TEST(Command, ShapesThatAModelWasTrainedOnAreNamedInItsTablesAndNoKeyKnowsOfIt) 
   EXPECT_THAT(first.err, HasSubstr(remark));
   EXPECT_THAT(toy.results(), HasSubstr("# " + remark + "\n"));
   const Outcome same = toy.salbench("config");
-  EXPECT_THAT(same.out, HasSubstr("trained_on: [1, elsewhere]"));
+  EXPECT_THAT(same.out, HasSubstr("trained_on: [\"1\", \"elsewhere\"]"));
   toy.configure(config(""));
   const Outcome again = toy.salbench("run");
   EXPECT_THAT(again.out, HasSubstr("; 0 artefacts computed"));
@@ -332,7 +332,8 @@ TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
   EXPECT_THAT(refused("command: 'x {mesh} {out}', reads: [colour]"), HasSubstr("names 'colour'"));
   EXPECT_THAT(refused("command: 'x {mesh} {out}', timeout: 0"),
               HasSubstr("timeout must be a number above 0"));
-  EXPECT_THAT(refused("command: 'x {list} {out}'"), HasSubstr("must not have {mesh}, {shape} or {out}"));
+  EXPECT_THAT(refused("command: 'x {list} {out}'"),
+              HasSubstr("must not have {mesh}, {shape}, {out}, {source} or {item}"));
   EXPECT_THAT(refused("command: 'x {list}', reads: [fpfh]"), HasSubstr("must have {list.h5}"));
   EXPECT_THAT(refused("command: 'x {list} {list.h5}'"), HasSubstr("both {list} and {list.h5}"));
   EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known key"));

@@ -222,7 +222,8 @@ TEST(Evaluate, MatchingByNameIsThatOfTheMapsThemselves) {
 
 // A constant map that is given is level with the one that remarks speak of, by every metric.
 TEST(Evaluate, AConstantMapIsLevelWithTheConstantMapOfTheRemarks) {
-  const Workspace toy("dataset: {scans: false}\nmodels: {PS: }\nmetrics: all\n");
+  const Workspace toy(
+      "dataset: {scans: false}\nmodels: {PS: }\nmetrics: all\nfitting: {folds: 1000, by: mesh}\n");
   std::string flat;
   for (std::size_t i = 0; i < kVertices; ++i) flat += "7\n";
   for (const char* name : {"flat/1.val", "flat/2.val"}) {

@@ -302,6 +302,7 @@ def reference(case, by_area):
         values["sauc" + suffix] = shuffled(case, picks, weights)
     if not by_area:
         heights = [(map_ < map_[pick]).mean() + (map_ == map_[pick]).mean() / 2 for pick in case["picks"]]
+        values.update(ig_fitted=values["ig_multiplicity"], kl_fitted=values["kl"], sim_fitted=values["sim"])  # of the map as a density
         values["auc_all"] = np.mean(heights) if heights else math.nan
         values.update(interest_reference.interest_points({**case, "map": normalised_map}))
     return values
