@@ -14,7 +14,7 @@ class Patterns(WithArchive):
     def found(self, pattern, *items):
         """ "michael_1/front.txt: michael_1, front" of each file that fits, then "- readme.txt" of those left out."""
         files = _patterns.files_like(str(self.root), pattern, set(items))
-        relative = [f"{file.path.removeprefix(str(self.root))[1:]}: {file.item}, {file.part}" for file in files.fit]
+        relative = [f"{file.path.removeprefix(str(self.root))[1:]}: {file.item}, {file.part or file.viewer}" for file in files.fit]
         return relative + [f"- {path.removeprefix(str(self.root))[1:]}" for path in files.left_out]
 
     def test_files_that_fit(self):
@@ -58,7 +58,7 @@ class Wrong(unittest.TestCase):
     def test_patterns_of_ground_truth(self):
         for pattern, wrong in [("a/{item}_{view}.txt", ""), ("a/*.txt", "must have {item}"), ("a/{itm}.txt", "braces around something other"),
                                ("a/{item}}.txt", "braces around something other"), ("{item}_{participant}.pid", "cannot have {participant} here"),
-                               ("{item}_{view}_{viewer}", "has both")]:
+                               ("{item}_{view}_{viewer}", "")]:
             found = _patterns.wrong_with_truth_pattern(pattern, VIEWS)
             self.assertIn(wrong, found)
             self.assertEqual(bool(found), bool(wrong), pattern)

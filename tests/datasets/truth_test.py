@@ -82,6 +82,20 @@ class Saliency(WithArchive):
         self.write({f"maps/cat_{k}.csv": lines(one) for k, one in enumerate(huge)})
         self.assertTrue(np.isfinite(self.truth(viewers + "values: {unseen: nan}\n").saliency[:2]).all())
 
+    def test_viewers_are_told_apart_in_each_view(self):
+        maps = {("front", "ann"): [1, 2, 3, NAN], ("front", "bob"): [3, 2, NAN, NAN], ("back", "ann"): [0, 1, 1, 5]}
+        self.write({f"maps/cat_{view}_{viewer}.csv": lines(np.array(one)) for (view, viewer), one in maps.items()})
+        self.write({"masks/cat_front.txt": "1\n0\n1\n1\n", "masks/cat_back.txt": "1\n1\n1\n1\n"})
+        layout = ("places: [{meshes: 'off/*', views: scored, truth: {saliency: 'maps/{item}_{view}_{viewer}.csv', "
+                  "mask: 'masks/{item}_{view}.txt'}}]\nvalues: {unseen: nan}\n")
+        form, back = self.read(layout, "cat_front"), self.truth(layout, "cat_back")
+        front, = form.truths
+        self.assertEqual((front.view, back.view, form.about["viewers"]), ("front", "back", "ann\nbob"))
+        self.equal(front.viewers, [[1, NAN, 3, NAN], [3, NAN, NAN, NAN]])
+        self.equal(front.saliency, [2, NAN, 3, NAN])
+        self.assertIsNone(back.viewers)
+        self.equal(back.saliency, [0, 1, 1, 5])
+
     def test_one_viewer_is_no_group(self):
         self.write({"maps/cat_a.csv": "1\n2\n3\n4\n"})
         truth = self.truth(MAPS.replace("{item}", "{item}_{viewer}"))

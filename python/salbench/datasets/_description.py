@@ -134,6 +134,8 @@ def _place(section: Section) -> Place:
     views = section.choice("views", ("averaged", "scored"), "averaged")
     if views == "scored" and not all(has_views(truth.saliency) for truth in truths):
         section.fail("views", "is 'scored', but saliency has no {view} in its pattern")
+    if views == "averaged" and any(has_views(truth.saliency) and has_viewers(truth.saliency) for truth in truths):
+        section.fail("views", "must be 'scored' where saliency has both {view} and {viewer}: people are told apart in each view")
     return Place(meshes, tuple(truths), needs, root_is, views)
 
 
@@ -146,8 +148,8 @@ def _truth(section: Section) -> TruthPlace:
         wrong = wrong_with_truth_pattern(text, ("{view}", "{viewer}"))
         if wrong or one_file_per_item(text):
             return wrong
-        same = not one_file_per_item(saliency) and has_viewers(text) == has_viewers(saliency)
-        return "" if same else "must have the {view} or {viewer} that `saliency` has, or none"
+        more = (has_viewers(text) and not has_viewers(saliency)) or (has_views(text) and not has_views(saliency))
+        return "must have the {view} or {viewer} that `saliency` has, or none" if more else ""
 
     mask = _pattern(section, "mask", wrong_with_mask)
     if mask and not saliency:

@@ -12,7 +12,7 @@ from salbench.datasets._cameras import FoundCameras, find_cameras
 from salbench.datasets._files import below, extension, stem
 from salbench.datasets._layout import Cameras, Columns, Layout, Pattern, Place, TruthPlace
 from salbench.datasets._patterns import (
-    expected_name, files_like, filled_in, has_folder_for, has_viewers, natural_order, one_file_per_item, place_of)
+    expected_name, files_like, filled_in, has_folder_for, has_viewers, has_views, natural_order, one_file_per_item, place_of)
 from salbench.datasets._splits import Entry, read_splits, text_of_unknown
 from salbench.datasets._twins import without_twins
 from salbench.datasets.records import InputError
@@ -35,7 +35,8 @@ class Candidate:
     mesh: str
     shape: str
     saliency: list[str] = field(default_factory=list)  # one, or one per view or viewer
-    views: list[str] = field(default_factory=list)  # of each file of saliency: its view or viewer
+    views: list[str] = field(default_factory=list)  # of each file of saliency, where there may be several: its view
+    viewers: list[str] = field(default_factory=list)  # and its viewer
     picks: list[str] = field(default_factory=list)
     masks: list[tuple[str, str]] = field(default_factory=list)  # one per file of saliency: path, and what to do if it is missing
     cameras: list[tuple[tuple[float, float, float], str]] = field(default_factory=list)  # likewise; one if there is no saliency
@@ -189,6 +190,7 @@ def _add_files(found: Found, root: str, pattern: Pattern, kind: str, items: dict
         of_item.append(file.path)
         if kind == "saliency" and not one:
             entry.views.append(file.part)
+            entry.viewers.append(file.viewer)
         added += 1
     found.notes += [f"{path}: is not named {expected_name(pattern)} and was left out" for path in files.left_out]
     return added
@@ -199,27 +201,28 @@ def _add_masks(found: Found, root: str, truth: TruthPlace, items: dict[str, Cand
     pattern = truth.mask
     if not pattern:
         return
-    where, one = found.layout.where(pattern.where), one_file_per_item(pattern)
-    masks: dict[tuple[str, str], str] = {}
+    where = found.layout.where(pattern.where)
+    masks: dict[tuple[str, str, str], str] = {}
     for file in files_like(root, pattern, items).fit:
-        masks.setdefault((file.item, file.part), file.path)
+        masks.setdefault((file.item, file.part, file.viewer), file.path)
     used = set()
     for name, entry in items.items():
         for k, saliency in enumerate(entry.saliency):
-            key = name, "" if one else entry.views[k]
+            key = (name, entry.views[k] if has_views(pattern) else "", entry.viewers[k] if has_viewers(pattern) else "")
             used.add(key)
             path = masks.get(key) or below(root, filled_in(pattern, *key))
             missing = f"{path}: is missing, the mask of {saliency}: add it, or take its ground truth away ({where})"
             entry.masks.append((path, "" if key in masks else missing))
-    for (name, view), file_path in sorted(masks.items(), key=lambda mask: (os.fsencode(mask[0][0]), os.fsencode(mask[0][1]))):
-        if (name, view) in used:
+    for (name, view, viewer), file_path in sorted(masks.items(), key=lambda mask: tuple(map(os.fsencode, mask[0]))):
+        if (name, view, viewer) in used:
             continue
         if found.place.views != "scored" or name not in items or not items[name].saliency:
             found.notes.append(f"{file_path}: mask without ground truth")
             continue
-        expected = below(root, filled_in(truth.saliency, name, view))  # a view without ground truth, which fails
+        expected = below(root, filled_in(truth.saliency, name, view, viewer))  # a view without ground truth, which fails
         items[name].saliency.append("")
         items[name].views.append(view)
+        items[name].viewers.append(viewer)
         items[name].masks.append((file_path, f"{expected}: is missing, the ground truth of the view that {file_path} is the mask of: add it, or "
                                              f"take the mask away ({found.layout.where(truth.saliency.where)})"))
 
@@ -248,20 +251,23 @@ def _add_splits(found: Found, root: str, items: dict[str, Candidate]) -> None:
 def _views(entry: Candidate) -> list[Candidate]:
     """An item for each view, in the order of their files."""
     views = []
-    for k, view in enumerate(entry.views):
+    for view in dict.fromkeys(entry.views):
         part = copy.copy(entry)
         part.name, part.view = f"{entry.name}_{view}", view
-        part.saliency, part.views, part.masks = [entry.saliency[k]], [view], entry.masks[k:k + 1]
+        files = [k for k, own in enumerate(entry.views) if own == view]
+        part.saliency, part.views, part.viewers, part.masks = (
+            [column[k] for k in files if k < len(column)] for column in (entry.saliency, entry.views, entry.viewers, entry.masks))
         part.cameras = []
-        if not entry.saliency[k]:
-            part.problem, part.saliency = part.masks[0][1], []
+        if without := [k for k, path in enumerate(part.saliency) if not path]:
+            part.problem, part.saliency = part.masks[without[0]][1], []
         views.append(part)
     return views
 
 
 def _add_cameras(found: FoundCameras, where: str, entry: Candidate) -> None:
-    """Gives each file of saliency the camera of its view. One that is missing is its item's failure."""
-    for view in entry.views or [""]:
+    """Gives each file of saliency the camera of its view, or of its viewer where no view is named. One that is missing is its item's
+    failure."""
+    for view in [view or viewer for view, viewer in zip(entry.views, entry.viewers)] or [""]:
         camera = found.find(entry.shape, view)
         if camera is None:
             of_view = f" for the view '{view}'" if view else ""

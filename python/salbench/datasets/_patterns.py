@@ -36,7 +36,8 @@ class _Anything:
 class FoundFile:
     path: str
     item: str  # what {item} stands for; "" if the pattern has none
-    part: str  # what {participant}, {view} or {viewer} stands for
+    part: str  # what {participant} or {view} stands for
+    viewer: str = ""
 
 
 @dataclass
@@ -60,36 +61,41 @@ def pieces_of(name: str) -> list[str]:
     return [piece for piece in _PIECES.split(name) if piece]
 
 
-def _match(pieces: Sequence[str], name: str, items: Container[str], item: str, part: str) -> tuple[str, str] | None:
-    """Item and part of a name that fits, each placeholder taking as much as it can."""
+Captured = tuple[str, str, str]  # item, part, viewer
+
+
+def _match(pieces: Sequence[str], name: str, items: Container[str], item: str, part: str, viewer: str) -> Captured | None:
+    """What a name that fits captures, each placeholder taking as much as it can."""
     if not pieces:
-        return None if name else (item, part)
+        return None if name else (item, part, viewer)
     piece, rest = pieces[0], pieces[1:]
     known = item if piece == "{item}" else "" if piece in STANDS_FOR else piece
     if known:
-        return _match(rest, name[len(known):], items, item, part) if name.startswith(known) else None
+        return _match(rest, name[len(known):], items, item, part, viewer) if name.startswith(known) else None
     for length in range(len(name), -1 if piece == "*" else 0, -1):
         taken = name[:length]
         if piece == "{item}":
-            found = _match(rest, name[length:], items, taken, part) if taken in items else None
+            found = _match(rest, name[length:], items, taken, part, viewer) if taken in items else None
         elif piece == "*":
-            found = _match(rest, name[length:], items, item, part)
+            found = _match(rest, name[length:], items, item, part, viewer)
+        elif piece == "{viewer}":
+            found = _match(rest, name[length:], items, item, part, taken)
         else:
             is_part = piece != "{participant}" or (taken.isascii() and taken.isdigit())
-            found = _match(rest, name[length:], items, item, taken) if is_part else None
+            found = _match(rest, name[length:], items, item, taken, viewer) if is_part else None
         if found:
             return found
     return None
 
 
-def _fits(pieces: Sequence[str], name: str, items: Container[str], captured: tuple[str, str]) -> tuple[str, str] | None:
+def _fits(pieces: Sequence[str], name: str, items: Container[str], captured: Captured) -> Captured | None:
     """As an item where that is possible, else as anything."""
     return _match(pieces, name, items, *captured) or _match(pieces, name, _Anything(), *captured)
 
 
-def _folders(root: str, pattern: str, items: Container[str]) -> list[tuple[str, tuple[str, str]]]:
+def _folders(root: str, pattern: str, items: Container[str]) -> list[tuple[str, Captured]]:
     """The folders that files of a pattern may be in, with what their names captured."""
-    folders = [(root, ("", ""))]
+    folders: list[tuple[str, Captured]] = [(root, ("", "", ""))]
     for name in pattern.split("/")[:-1]:
         pieces = pieces_of(name)
         found = []
@@ -142,9 +148,9 @@ def has_views(pattern: str) -> bool:
     return "{view}" in pattern
 
 
-def filled_in(pattern: str, item: str, part: str) -> str:
-    """The pattern with these in place of {item} and of {view} or {viewer}."""
-    return "".join({"{item}": item, "{view}": part, "{viewer}": part}.get(piece, piece) for piece in pieces_of(pattern))
+def filled_in(pattern: str, item: str, view: str, viewer: str) -> str:
+    """The pattern with these in place of {item}, {view} and {viewer}."""
+    return "".join({"{item}": item, "{view}": view, "{viewer}": viewer}.get(piece, piece) for piece in pieces_of(pattern))
 
 
 def expected_name(pattern: str) -> str:
@@ -178,13 +184,9 @@ def wrong_with_mesh_pattern(text: str) -> str:
 
 
 def wrong_with_truth_pattern(text: str, parts: Sequence[str]) -> str:
-    """"" for a pattern of ground truth, which has {item} and may have one of `parts`."""
+    """"" for a pattern of ground truth, which has {item} and may have some of `parts`."""
     if wrong := _wrong_with(text):
         return wrong
     if "{item}" not in text:
         return "must have {item} in place of the name of the item"
-    found = [part for part in PARTS if part in text]
-    for part in found:
-        if part not in parts:
-            return f"cannot have {part} here"
-    return "has both {view} and {viewer}" if len(found) > 1 else ""
+    return next((f"cannot have {part} here" for part in PARTS if part in text and part not in parts), "")

@@ -125,7 +125,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
         item.native = Native(entry.mesh, tuple(entry.saliency), tuple(entry.picks))
         return item
     if problem:
-        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[])
+        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[])
     files = [_shape_source(layout, entry, item.kind, in_columns)]
     how: dict[str, Any] = {"columns": _given(layout.columns)} if in_columns else {}
     if has_columns and not problem:
@@ -133,7 +133,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
     elif entry.saliency or entry.picks:
         at_infinity = bool(found.truth and found.truth.cameras.at_infinity)
         how |= _nonzero(saliency=len(entry.saliency), picks=len(entry.picks), masks=bool(entry.masks), by_viewer=by_viewer,
-                        views=entry.views if by_viewer else [], values=_given(layout.values), indices=_given(layout.indices),
+                        views=entry.viewers if by_viewer else [], values=_given(layout.values), indices=_given(layout.indices),
                         cameras=[{"place": list(place), "at_infinity": at_infinity, "where": where} for place, where in entry.cameras])
         files += _truth_sources(layout, entry, how)
     if problem and has_columns:
