@@ -255,8 +255,8 @@ def _views(entry: Candidate) -> list[Candidate]:
         part = copy.copy(entry)
         part.name, part.view = f"{entry.name}_{view}", view
         files = [k for k, own in enumerate(entry.views) if own == view]
-        part.saliency, part.views, part.viewers, part.masks = (
-            [column[k] for k in files if k < len(column)] for column in (entry.saliency, entry.views, entry.viewers, entry.masks))
+        part.saliency, part.views, part.viewers = ([column[k] for k in files] for column in (entry.saliency, entry.views, entry.viewers))
+        part.masks = [entry.masks[k] for k in files if entry.masks]
         part.cameras = []
         if without := [k for k, path in enumerate(part.saliency) if not path]:
             part.problem, part.saliency = part.masks[without[0]][1], []
