@@ -36,11 +36,14 @@ class Blur {
     step_ = squares / (2 * static_cast<double>(points.size()) * radius * radius);
   }
 
-  // Widths ascend from call to call. [0, 1]
+  // Widths ascend from call to call. [0, 1]; a map that is constant, or is so but for rounding, is 0.5.
   ScalarField to(double width) {
     const double steps = step_ > 0 ? std::round(width * width / step_) : 0;
     const auto wanted = static_cast<std::int32_t>(std::min(steps, 1e9));
     values_ = smoothed_by_steps(std::move(values_), adjacency_, wanted - std::exchange(done_, wanted));
+    const auto [least, largest] = std::ranges::minmax(values_);
+    constexpr double kRounding = 1e-9;
+    if (largest - least < kRounding) return ScalarField(values_.size(), 0.5);
     return min_max_normalised(values_);
   }
 

@@ -77,7 +77,7 @@ struct Loss {
 };
 
 void add_shape(Loss& loss, const Part& shape, const AtKnots& knots) {
-  double sum = 0;
+  double sum = 0, marked = 0;  // 1, but for single precision
   AtKnots mean = AtKnots::Zero();
   Eigen::Matrix<double, kKnots, kKnots> squares = Eigen::Matrix<double, kKnots, kKnots>::Zero();
   for (std::size_t k = 0; k < shape.cells.size(); ++k) {
@@ -86,6 +86,7 @@ void add_shape(Loss& loss, const Part& shape, const AtKnots& knots) {
     for (int a = 0; a < 4; ++a) height += cell.weight[a] * knots[cell.knot[a]];
     const double mass = shape.points[k] * std::exp(height);
     sum += mass;
+    marked += shape.marked[k];
     loss.value -= shape.marked[k] * height;
     for (int a = 0; a < 4; ++a) {
       mean[cell.knot[a]] += mass * cell.weight[a];
@@ -95,9 +96,9 @@ void add_shape(Loss& loss, const Part& shape, const AtKnots& knots) {
     }
   }
   mean /= sum;
-  loss.value += std::log(sum);
-  loss.gradient += mean;
-  loss.hessian += squares / sum - mean * mean.transpose();
+  loss.value += marked * std::log(sum);
+  loss.gradient += marked * mean;
+  loss.hessian += marked * (squares / sum - mean * mean.transpose());
 }
 
 struct Objective {

@@ -133,6 +133,11 @@ class Fitted(unittest.TestCase):
                 self.assertAlmostEqual(rows["gain"].iloc[0], -value / np.log(2), delta=1e-6)
                 np.testing.assert_allclose(knots, best[0][0], atol=1e-3)
 
+    def test_of_a_constant_map_the_centre_bias_is_left(self):
+        knots = self.fits[self.fits["model"] == "constant"].groupby("of")["log_density"]
+        self.assertLess(knots.get_group("value").abs().max(), 1e-9)
+        self.assertGreater(np.ptp(knots.get_group("distance")), 0.5)
+
     def test_scores_are_those_of_the_density(self):
         for _, row in self.scores.iterrows():
             shape, fold = self.shapes[row["item"]], self.folds[row["item"]]

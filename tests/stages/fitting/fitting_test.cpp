@@ -125,6 +125,26 @@ TEST(Fitting, FindsTheCentreBiasOfAConstantMap) {
   EXPECT_NEAR(held_out_gain(set, {fit, fit}), gain(set.truths[0].saliency, set.truths[0].saliency), 0.01);
 }
 
+TEST(Fitting, TakesAllConstantMapsForTheSameHoweverTheyAreBlurred) {
+  const GroundTruth truth{noise("truth"), {}};
+  const auto counts = [&](double value) {
+    return density_counts(ScalarField(kGrid.vertices.size(), value), kGrid.vertices, kEdges, truth, 0);
+  };
+  const DensityCounts middle = counts(0.5);
+  for (const double value : {-3.0, 0.0, 0.1, 7.0}) {
+    EXPECT_EQ(counts(value).cells, middle.cells) << value;
+    EXPECT_EQ(counts(value).marked, middle.marked) << value;
+  }
+  const std::size_t in_one_blur = middle.cells.size() / kBlurWidths.size();
+  for (std::size_t k = in_one_blur; k < middle.cells.size(); ++k)
+    EXPECT_EQ(middle.points[k], middle.points[k - in_one_blur]);
+  DensityFit fit{.shapes = 1, .blur = 0.08};
+  for (std::size_t k = 0; k < kValueKnots; ++k) fit.value[k] = static_cast<double>(k);
+  const ScalarField density =
+      fitted_density(ScalarField(kGrid.vertices.size(), -3), kGrid.vertices, kEdges, fit);
+  EXPECT_EQ(density, ScalarField(kGrid.vertices.size(), 1));
+}
+
 TEST(Fitting, BlursAMapThatIsTooFine) {
   const Set set = set_of([&](const ScalarField& map) {
     const ScalarField smooth = smoothed_by_steps(map, kEdges, 20);
