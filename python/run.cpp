@@ -34,7 +34,7 @@ namespace {
 // --- a model ---------------------------------------------------------------------------------------------
 
 // A model as salbench/_run.py describes it: name, function, reads (points, normals, faces, fpfh), version,
-// and the text that its key has; of one that was trained, that text by shape, and how.
+// and the text that its key has; of one that was trained, that text by shape, and how; what it has seen.
 struct FunctionModel {
   std::string name;
   py::object function;
@@ -43,6 +43,7 @@ struct FunctionModel {
   std::string key;
   std::map<std::string, std::string> trained_keys = {};    // empty: it was not
   std::string trained = {};                                // "cross-validated, 5 folds by class"
+  Words trained_on = {};                                   // items and splits
   mutable std::map<std::string, std::string> traces = {};  // by shape: of what it raised
 };
 
@@ -239,7 +240,8 @@ class Run {
       const auto part = row.cast<py::tuple>();
       models_.push_back({part[0].cast<std::string>(), part[1], part[2].cast<Words>(),
                          part[3].cast<std::int32_t>(), part[4].cast<std::string>(),
-                         part[5].cast<std::map<std::string, std::string>>(), part[6].cast<std::string>()});
+                         part[5].cast<std::map<std::string, std::string>>(), part[6].cast<std::string>(),
+                         part[7].cast<Words>()});
     }
     const Arguments arguments = arguments_from(settings);
     Config config = config_from(settings, arguments);
@@ -344,6 +346,7 @@ class Run {
                         RuleTable& table,
                         const ShapeOutputs& shape) { return add_function(table, shape, model, caller_); },
          .given = trained ? training_files(model) : nullptr,
+         .trained_on = model.trained_on,
          .reads_originals = std::ranges::find(model.reads, "source") != model.reads.end()});
   }
 

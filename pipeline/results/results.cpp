@@ -127,7 +127,7 @@ std::vector<std::string> training_remarks(const RunState& run) {
     std::size_t scored = 0;
     for (const Family& family : run.units().families()) {
       const DatasetItem& item = item_of(family.source);
-      if (!family.chosen || !item.has_truth()) continue;
+      if (!family.chosen || !(item.has_truth() || run.config.simulated())) continue;
       ++scored;
       if (std::ranges::any_of(model.trained_on, [&](const std::string& name) {
             return name == item.name || name == item.shape_name() || is_in_split(item.split, name);

@@ -47,6 +47,8 @@ class Model:
         shape's file, whose content counts then, with that of its textures.
     cache : bool
         False: maps are computed in each call.
+    trained_on : sequence of str
+        Items and splits that it was trained on: tables and report name those of them that are scored.
     """
 
     predict: Predict
@@ -54,9 +56,10 @@ class Model:
     depends: Iterable[Any] = ()
     reads: Iterable[str] = ("normals", "faces")
     cache: bool = True
+    trained_on: Iterable[str] = ()
 
     def __post_init__(self) -> None:
-        for name in ("depends", "reads"):  # a generator would be empty in the second run
+        for name in ("depends", "reads", "trained_on"):  # a generator would be empty in the second run
             given = getattr(self, name)
             if isinstance(given, (str, bytes, os.PathLike)):
                 raise ValueError(f"{name} must be a sequence, such as [{given!r}]")
@@ -207,7 +210,7 @@ def configuration_path(given: str | os.PathLike[str] | None) -> str:
     raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folder}")
 
 
-def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str, dict[bytes, str], str]:
+def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str, dict[bytes, str], str, list[str]]:
     made = given if isinstance(given, Model) else Model(given)
     reads = list(made.reads)
     for part in reads:
@@ -216,7 +219,8 @@ def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], in
     version = 1 if made.version is None else operator.index(made.version)
     keys = {os.fsencode(item): key for item, key in made.keys.items()} if isinstance(made, Learned) else {}
     parts = [part for part in ("points", *PARTS) if part in reads]
-    return name, made.predict, parts, version, key_of(name, made), keys, made.trained if isinstance(made, Learned) else ""
+    trained = made.trained if isinstance(made, Learned) else ""
+    return name, made.predict, parts, version, key_of(name, made), keys, trained, list(made.trained_on)
 
 
 def key_of(name: str, made: Model) -> str:

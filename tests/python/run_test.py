@@ -174,6 +174,8 @@ class Runs(Folders):
         self.run_with({"TWO": predict})
         self.assertEqual(seen[shape.id].normals.shape, shape.points.shape)
         self.assertIsNone(seen[shape.id].source)
+        results = self.run_with({"TWO": salbench.Model(predict, trained_on=[shape.id.split("_")[0]])})
+        self.assertIn("# TWO was trained on shapes that it is scored on here", (results.folder / "results.csv").read_text())
         self.run_with({"THREE": salbench.Model(predict, reads=["source"])})
         self.assertEqual(pathlib.Path(seen[shape.id].source).suffix, ".off")
         with self.assertRaisesRegex(KeyError, "reads 'colour'"):
