@@ -50,8 +50,8 @@ std::string owner_of(Session& session, const ScalarField& map, const std::string
   return models.empty() ? std::string() : models.front();
 }
 
-// The result of a job of the model with another map in place of its own; other rules keep their results. So do
-// those of the density that is fitted to maps: what a shape is scored by was fitted without its own.
+// The result of a job of the model with another map in place of its own; other rules keep their results. So
+// do those of the density that is fitted to maps: what a shape is scored by was fitted without its own.
 ValuePtr with_map(Session& session, const Job& job, const Job& map_job, const ValuePtr& map) {
   const Project& project = session.setup.project;
   const Rule& rule = project.rule(job);

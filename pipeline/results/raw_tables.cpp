@@ -121,8 +121,8 @@ Table smoothed_table(const RunState& run, const Metrics& metrics) {
 }
 
 Table fitted_table(const RunState& run) {
-  Table table{
-      .columns = {"dataset", "model", "fold", "shapes", "blur", "gain", "of", "at", "log_density"}, .rows = {}};
+  Table table{.columns = {"dataset", "model", "fold", "shapes", "blur", "gain", "of", "at", "log_density"},
+              .rows = {}};
   for (const Job& job : run.project().jobs_of(Unit{})) {
     const Rule& rule = run.project().rule(job);
     if (!has_role(rule, Role::density_fits) || !run.decision(job).known()) continue;
@@ -132,9 +132,9 @@ Table fitted_table(const RunState& run) {
       const DensityFit& fit = fits[fold];
       const auto add_knots = [&](const char* of, const auto& knots) {
         for (std::size_t k = 0; k < knots.size(); ++k)
-          table.rows.push_back(cells(std::string(shapes_name(rule.over)), rule.subject, fold, fit.shapes, fit.blur,
-                                     fit.gain, std::string(of),
-                                     static_cast<double>(k) / static_cast<double>(knots.size() - 1), knots[k]));
+          table.rows.push_back(cells(
+              std::string(shapes_name(rule.over)), rule.subject, fold, fit.shapes, fit.blur, fit.gain,
+              std::string(of), static_cast<double>(k) / static_cast<double>(knots.size() - 1), knots[k]));
       };
       if (fit.shapes == 0) continue;
       add_knots("value", fit.value);

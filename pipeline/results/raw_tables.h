@@ -26,8 +26,8 @@ Table people_table(const std::vector<MeshCurve>& curves, const Metrics& metrics)
 // `smoothing`, the number of steps, before the columns of results_table; no rows if the run smooths no maps.
 Table smoothed_table(const RunState& run, const Metrics& metrics);
 
-// dataset, model, fold, shapes, blur, gain, of, at, log_density: what was fitted to the maps of each model, knot by
-// knot. No rows if no metric reads fitted densities.
+// dataset, model, fold, shapes, blur, gain, of, at, log_density: what was fitted to the maps of each model,
+// knot by knot. No rows if no metric reads fitted densities.
 Table fitted_table(const RunState& run);
 
 // Rows of a constant map, one for each shape that the rows have, those of a shape being together. `varying`

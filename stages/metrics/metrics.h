@@ -54,10 +54,7 @@ struct MetricsOptions {
     visit("names", self.names,
           {"metrics, or all: docs/metrics.md has a table of them", "", {}, "[auc, auc_exact, nss, cc, lcc]"});
     visit("matching", self.matching,
-          {"reading of the maps, for all metrics or by name; else as in docs/metrics.md",
-           "",
-           {},
-           "{}"});
+          {"reading of the maps, for all metrics or by name; else as in docs/metrics.md", "", {}, "{}"});
     visit("floor", self.floor,
           {"least value of maps in [0, 1] that are read as densities", "", between(0, 1), "0"});
     visit("peak_radius", self.peak_radius,

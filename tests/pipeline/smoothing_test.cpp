@@ -5,8 +5,8 @@
 
 #include "pipeline/results/raw_tables.h"
 #include "stages/core/field.h"
-#include "stages/matching/matching.h"
 #include "stages/core/laplacian.h"
+#include "stages/matching/matching.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
