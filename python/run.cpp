@@ -89,8 +89,8 @@ ScalarField call(const FunctionModel& model, const std::string& id, const py::ob
   }
 }
 
-// What the map of each shape was trained on, as a file of that shape: a fold that is trained anew leaves the
-// maps of the others as they are.
+// A file per shape with the digest of its training data: training a fold again leaves maps of the others as
+// they are.
 std::shared_ptr<const GivenMaps> training_files(const FunctionModel& model) {
   GivenMaps files{.source = model.trained};
   for (const auto& [item, key] : model.trained_keys) files.items.insert(item);

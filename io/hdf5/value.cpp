@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "io/hdf5/value_arrays.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 
@@ -17,27 +18,6 @@ namespace {
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::int32_t));
 
 constexpr const char* kMeshLength = "mesh length unit";
-
-template <class T>
-Array scalar(const char* name, T value, const char* unit, const char* description) {
-  return {name, {}, std::vector<T>{value}, unit, description};
-}
-
-template <class T>
-const std::vector<T>& values_of(const Arrays& arrays, std::string_view name) {
-  const Array* array = find_array(arrays, name);
-  if (array == nullptr) throw InputError(fmt::format("the data set '{}' is missing", name));
-  const auto* values = std::get_if<std::vector<T>>(&array->values);
-  if (values == nullptr) throw InputError(fmt::format("the data set '{}' has another type", name));
-  return *values;
-}
-
-template <class T>
-T scalar_of(const Arrays& arrays, std::string_view name) {
-  const auto& values = values_of<T>(arrays, name);
-  if (values.size() != 1) throw InputError(fmt::format("the data set '{}' is not one number", name));
-  return values[0];
-}
 
 template <class Triple>
 std::vector<Triple> triples_of(const Arrays& arrays, std::string_view name) {
@@ -305,66 +285,6 @@ CentreDensity from(const Arrays& arrays, Is<CentreDensity>) {
 Arrays arrays_of(const ShapeInForm& shape) { return one_form_arrays(shape); }
 ShapeInForm from(const Arrays& arrays, Is<ShapeInForm>) { return shape_in_arrays(arrays, "the one form"); }
 
-Arrays arrays_of(const DensityCounts& counts) {
-  return {scalar("fold", counts.fold, "1", "part of the set that the shape belongs to"),
-          column("cells", counts.cells, "1", "(blur * 76 + value bin) * 18 + distance bin, ascending"),
-          column("points", counts.points, "1", "share of the points in each cell"),
-          column("marked", counts.marked, "1", "share of the ground truth in each cell")};
-}
-DensityCounts from(const Arrays& arrays, Is<DensityCounts>) {
-  DensityCounts counts{scalar_of<std::int32_t>(arrays, "fold"), values_of<std::int32_t>(arrays, "cells"),
-                       values_of<float>(arrays, "points"), values_of<float>(arrays, "marked")};
-  const auto cells = counts.cells.size();
-  if (counts.points.size() != cells || counts.marked.size() != cells ||
-      !std::ranges::is_sorted(counts.cells) || (cells > 0 && counts.cells[0] < 0))
-    throw InputError("the data sets 'cells', 'points' and 'marked' do not fit each other");
-  return counts;
-}
-
-// One row per fold.
-Arrays arrays_of(const DensityFits& fits) {
-  std::vector<std::int64_t> shapes;
-  std::vector<double> blur, gain, value, distance;
-  for (const DensityFit& fit : fits) {
-    shapes.push_back(fit.shapes);
-    blur.push_back(fit.blur);
-    gain.push_back(fit.gain);
-    value.insert(value.end(), fit.value.begin(), fit.value.end());
-    distance.insert(distance.end(), fit.distance.begin(), fit.distance.end());
-  }
-  return {column("shapes", std::move(shapes), "1", "of the other folds, which each was fitted to; 0: none"),
-          column("blur", std::move(blur), "R", "standard deviation of the blur along the surface"),
-          column("gain", std::move(gain), "bits", "information gain over the uniform map on these shapes"),
-          {"value",
-           {fits.size(), kValueKnots},
-           std::move(value),
-           "1",
-           "logarithm of the density at values 0, 1/19, ..., 1 of the map"},
-          {"distance",
-           {fits.size(), kDistanceKnots},
-           std::move(distance),
-           "1",
-           "added to it at distances 0, 1/9, ..., 1 R from the centroid"}};
-}
-DensityFits from(const Arrays& arrays, Is<DensityFits>) {
-  const auto& shapes = values_of<std::int64_t>(arrays, "shapes");
-  const auto& blur = values_of<double>(arrays, "blur");
-  const auto& gain = values_of<double>(arrays, "gain");
-  const auto& value = values_of<double>(arrays, "value");
-  const auto& distance = values_of<double>(arrays, "distance");
-  const std::size_t n = shapes.size();
-  if (blur.size() != n || gain.size() != n || value.size() != n * kValueKnots ||
-      distance.size() != n * kDistanceKnots)
-    throw InputError("the data sets of the fits have other sizes");
-  DensityFits fits(n);
-  for (std::size_t fold = 0; fold < n; ++fold) {
-    fits[fold] = {.shapes = shapes[fold], .blur = blur[fold], .gain = gain[fold]};
-    std::copy_n(value.data() + fold * kValueKnots, kValueKnots, fits[fold].value.begin());
-    std::copy_n(distance.data() + fold * kDistanceKnots, kDistanceKnots, fits[fold].distance.begin());
-  }
-  return fits;
-}
-
 // --- the name of each kind --------------------------------------------------------------------------------
 
 constexpr std::string_view kind_of(Is<Mesh>) { return "mesh"; }
@@ -382,8 +302,6 @@ constexpr std::string_view kind_of(Is<PointCloud>) { return "point_cloud"; }
 constexpr std::string_view kind_of(Is<ScoreTable>) { return "score_table"; }
 constexpr std::string_view kind_of(Is<CentreDensity>) { return "centre_density"; }
 constexpr std::string_view kind_of(Is<ShapeInForm>) { return "shape_in_form"; }
-constexpr std::string_view kind_of(Is<DensityCounts>) { return "density_counts"; }
-constexpr std::string_view kind_of(Is<DensityFits>) { return "density_fits"; }
 
 }  // namespace
 
@@ -413,7 +331,5 @@ template struct ArrayForm<PointCloud>;
 template struct ArrayForm<ScoreTable>;
 template struct ArrayForm<CentreDensity>;
 template struct ArrayForm<ShapeInForm>;
-template struct ArrayForm<DensityCounts>;
-template struct ArrayForm<DensityFits>;
 
 }  // namespace salbench

@@ -10,7 +10,6 @@
 #include "io/arrays.h"
 #include "io/hdf5/one_form.h"
 #include "stages/core/centre.h"
-#include "stages/core/fitted.h"
 #include "stages/core/picture.h"
 #include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
@@ -26,9 +25,8 @@ template <class T, class... Known>
 concept OneOf = (std::same_as<T, Known> || ...);
 
 template <class T>
-concept Storable =
-    OneOf<T, Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram, Scores, HumanCurve,
-          Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm, DensityCounts, DensityFits>;
+concept Storable = OneOf<T, Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
+                         Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm>;
 
 template <Storable T>
 struct ArrayForm<T> {

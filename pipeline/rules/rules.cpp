@@ -60,7 +60,7 @@ void add_picture(RuleTable& table, const Config& config, Level level, const Func
   table.add(level, head, picture, arguments..., section("picture", config.picture), kRandom);
 }
 
-// What stays together where a density is fitted to other shapes: the shapes of a class, or the views of one.
+// Names of folds' groups: shapes of one class, or views of one mesh, are in the same fold.
 FileColumnPtr groups_of(const Units& units, Level level, FoldGroup by) {
   auto column = std::make_shared<FileColumn>();
   column->files.resize(units.slots(level));

@@ -61,7 +61,7 @@ ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   return table;
 }
 
-// What metrics read of the points of a shape, or of the faces of a mesh.
+// Measures of what is scored: points of a shape, or faces of a mesh.
 Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n, Points points,
                      Surface surface, const CentreDensity* own = nullptr,
                      const CentreDensity* set = nullptr) {

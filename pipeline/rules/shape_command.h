@@ -27,8 +27,7 @@ inline constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", "shape.
                                                               {"{out}", "out.val"},
                                                               {"{out.npy}", "out.npy"},
                                                               {"{out.h5}", "out.h5"}}};
-// Placeholders of what a command may read of its own accord: the file that the shape was read from, with what
-// lies beside it, such as textures; and the shape's name.
+// Path of the file that the shape was read from, beside which its textures lie; and the shape's name.
 inline constexpr std::string_view kSource = "{source}", kItem = "{item}";
 // Placeholders of a list of shapes. Each line of it names two files: that of {mesh}, or of {shape}, and that
 // of {out}.

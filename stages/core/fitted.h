@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is fitted to the maps of a set, so that they can be read as densities, and of what. stages/fitting
-// does it.
+// Fitted densities, and the counts that they are fitted to; stages/fitting computes both.
 #pragma once
 
 #include <array>
@@ -12,8 +11,8 @@ namespace salbench {
 
 inline constexpr std::size_t kValueKnots = 20, kDistanceKnots = 10;
 
-// What a fit has to know of one shape and map: shares of its points, and of what people marked, by blur,
-// value and distance from the centroid.
+// Input of a fit: shares of the points of a shape, and of its ground truth, by blur, value of the map and
+// distance from the centroid.
 struct DensityCounts {
   std::int32_t fold = 0;                 // part of the set that the shape belongs to
   std::vector<std::int32_t> cells = {};  // ascending: (blur * value bins + value bin) * distance bins + bin

@@ -32,7 +32,7 @@ class Blur {
         squares += (at(points, j) - points[i]).squaredNorm() / (static_cast<double>(ring.size()) + 1);
     }
     const double radius = bounding_radius(points);
-    // Of one coordinate of the two of a surface, and in R.
+    // Variance along one of the two axes of the surface, in R^2.
     step_ = squares / (2 * static_cast<double>(points.size()) * radius * radius);
   }
 
