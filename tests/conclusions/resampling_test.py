@@ -18,22 +18,26 @@ def skewed(units, columns=1):
     return np.exp(np.random.default_rng(6).normal(size=(units, columns)))
 
 
+def rows_of(blocks):
+    return np.concatenate(list(blocks))
+
+
 class ResamplesTest(unittest.TestCase):
     def test_are_the_draws_that_they_have_always_been(self):  # PCG64's raw output, which no release of NumPy may change
-        np.testing.assert_array_equal(Bootstrap(2016, 2).counts(8), [[4, 0, 0, 1, 2, 0, 0, 1], [1, 1, 1, 1, 1, 0, 2, 1]])
+        np.testing.assert_array_equal(rows_of(Bootstrap(2016, 2).counts(8)), [[4, 0, 0, 1, 2, 0, 0, 1], [1, 1, 1, 1, 1, 0, 2, 1]])
 
     def test_signs_are_all_that_there_are_or_draws_that_they_have_always_been(self):
-        few = Bootstrap(2016, 32).signs(6)
+        few = rows_of(Bootstrap(2016, 32).signs(6))
         self.assertEqual((few.shape, few[0].tolist(), few[5].tolist()), ((32, 6), [1] * 6, [-1, 1, -1, 1, 1, 1]))
         self.assertEqual(len(np.unique(np.vstack([few, -few]), axis=0)), 64)
-        np.testing.assert_array_equal(Bootstrap(2016, 3).signs(9), [[1] * 9, [1, -1, -1, 1, 1, -1, -1, -1, -1],
+        np.testing.assert_array_equal(rows_of(Bootstrap(2016, 3).signs(9)), [[1] * 9, [1, -1, -1, 1, 1, -1, -1, -1, -1],
                                                                      [-1, 1, -1, -1, -1, 1, 1, 1, 1]])
-        many = Bootstrap(1).signs(100)
+        many = rows_of(Bootstrap(1).signs(100))
         self.assertLess(np.abs(many.mean(axis=0)).max(), .05)  # five standard errors
         self.assertLess(np.abs(many.T.astype(float) @ many / 1e4 - np.eye(100)).max(), .055)
 
     def test_draw_every_unit_as_often(self):
-        counts = Bootstrap(1).counts(19)
+        counts = rows_of(Bootstrap(1).counts(19))
         np.testing.assert_array_equal(counts.sum(axis=1), 19)
         drawn = counts.sum(axis=0, dtype=float)
         self.assertGreater(stats.chisquare(drawn).pvalue, 1e-4)
@@ -44,16 +48,19 @@ class ResamplesTest(unittest.TestCase):
         bootstrap = Bootstrap(7, 50)
         step = 2.0 ** (np.ceil(np.log2(np.abs(values - values[0]).max() * 40)) - 53)
         grid = np.rint((values - values[0]) / step)
-        for row, counts in zip(bootstrap.means(values), bootstrap.counts(40)):
+        for row, counts in zip(bootstrap.means(values), rows_of(bootstrap.counts(40))):
             for column in range(3):
                 total = sum(int(c) * int(g) for c, g in zip(counts, grid[:, column]))
                 self.assertEqual(row[column], float(Fraction(total) * Fraction(step)) / 40 + values[0, column])
-        np.testing.assert_allclose(bootstrap.means(values), bootstrap.counts(40) @ values / 40, rtol=1e-11)
+        np.testing.assert_allclose(bootstrap.means(values), rows_of(bootstrap.counts(40)) @ values / 40, rtol=1e-11)
 
     def test_are_the_same_whatever_is_multiplied_at_once(self):
         values = skewed(25, 4)
         whole = Bootstrap(1, 500).means(values)
-        with mock.patch.object(resampling, "_BLOCK", 7):
+        for what in ("_ROWS", "_UNITS"):
+            with mock.patch.object(resampling, what, 7):
+                np.testing.assert_array_equal(Bootstrap(1, 500).means(values), whole)
+        with mock.patch.object(resampling, "_MOST_KEPT", 0):
             np.testing.assert_array_equal(Bootstrap(1, 500).means(values), whole)
         for one, other in zip(Bootstrap(1, 500).means_of_each([values, skewed(9), values[:, :1]]), (whole, None, whole[:, :1])):
             if other is not None:

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
-_MOST = 8  # each has arrays of its own
+MOST_THREADS = 8  # each has arrays of its own
 T = TypeVar("T")
 R = TypeVar("R")
 
 
 def mapped(function: Callable[[T], R], items: Iterable[T], threads: int | None = None) -> list[R]:
     """function(item) of each. threads: by default one per core that the process may use."""
-    with ThreadPoolExecutor(min(_MOST, threads or len(os.sched_getaffinity(0)))) as pool:
+    with ThreadPoolExecutor(min(MOST_THREADS, threads or len(os.sched_getaffinity(0)))) as pool:
         return list(pool.map(function, items))

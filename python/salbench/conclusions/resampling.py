@@ -6,21 +6,25 @@ product is exact, and so the same bytes whatever library multiplies, in whatever
 a grid on which no sum of them needs more than the 53 bits of a double.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from salbench.conclusions.parallel import mapped
+from salbench.conclusions.parallel import MOST_THREADS, mapped
 from salbench.conclusions.samples import TAIL, means
 from salbench.conclusions.units import Floats
 
 Draws = NDArray[np.integer[Any]]
 
 RESAMPLES = 10_000
-_BLOCK = 128  # resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their own need
+# Resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their own need. Signs of 64 rows
+# fill whole words.
+_ROWS = _UNITS = 128
+_MOST_KEPT = 50_000_000  # counts of as many units: a byte each
 
 # With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do all resamples, whatever
 # percentiles are taken; and of 16 ways to flip signs none is rarer than one in twenty.
@@ -28,38 +32,47 @@ FEWEST = 6
 
 
 class Bootstrap:
-    """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone."""
+    """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone.
+
+    Draws come as blocks of rows, and a block is multiplied before the next ones are drawn: all draws of 20 000 units take 200 MB.
+    """
 
     def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
         """threads: that may multiply; by default one per core."""
         self._seed, self._resamples, self._threads = seed, resamples, threads
-        self._counts: dict[int, Draws] = {}
+        self._kept: dict[int, list[Draws]] = {}
 
-    def counts(self, n: int) -> Draws:
-        """How often each of n units is drawn: resamples x n."""
-        if n not in self._counts:
-            while len(self._counts) > 3:  # of thousands of scans, 48 MB each
-                del self._counts[next(iter(self._counts))]
-            self._counts[n] = np.concatenate(list(self._drawn(n)))
-        return self._counts[n]
+    def counts(self, n: int) -> Iterable[Draws]:
+        """How often each of n units is drawn: blocks of resamples x n. Those of a few units are kept, since many tables draw them."""
+        if self._resamples * n > _MOST_KEPT:
+            return self._drawn(n)
+        if n not in self._kept:
+            while len(self._kept) > 3:
+                del self._kept[next(iter(self._kept))]
+            self._kept[n] = list(self._drawn(n))
+        return self._kept[n]
 
-    def signs(self, n: int) -> Draws:
-        """+1 or -1 for each of n units, draws x n: all ways but for the sign of the whole where these are few, each once. The first is the
-        sample itself, in which all are +1."""
-        if 2 ** (n - 1) <= self._resamples:
-            flipped = (np.arange(2 ** (n - 1))[:, None] >> np.arange(n)) & 1
-        else:
-            words = np.random.PCG64([self._seed, n, 1]).random_raw(-(-self._resamples * n // 64))
-            flipped = np.unpackbits(words.astype("<u8").view(np.uint8), count=self._resamples * n).reshape(self._resamples, n)
-            flipped[0] = 0
-        signs: Draws = 1 - 2 * flipped.astype(np.int8)
-        return signs
+    def signs(self, n: int) -> Iterable[Draws]:
+        """+1 or -1 for each of n units, blocks of draws x n: all ways but for the sign of the whole where these are few, each once. The
+        first is the sample itself, in which all are +1."""
+        draws = min(self._resamples, 2 ** (n - 1))
+        words = np.random.PCG64([self._seed, n, 1])
+        for first in range(0, draws, _ROWS):
+            rows = min(_ROWS, draws - first)
+            if 2 ** (n - 1) <= self._resamples:
+                flipped = ((np.arange(first, first + rows)[:, None] >> np.arange(n)) & 1).astype(np.int8)
+            else:
+                bits = words.random_raw(-(-rows * n // 64)).astype("<u8").view(np.uint8)
+                flipped = np.unpackbits(bits, count=rows * n).reshape(rows, n).astype(np.int8)
+                if first == 0:
+                    flipped[0] = 0
+            yield 1 - 2 * flipped
 
     def _drawn(self, n: int) -> Iterator[NDArray[np.uint8]]:
-        """Block by block. Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that taking
+        """Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that taking
         the upper 32 bits times n makes no unit likelier by more than n / 2^32."""
         generator = np.random.PCG64([self._seed, n])
-        block = max(1, 1_000_000 // n)
+        block = max(1, min(_ROWS, 1_000_000 // n))
         for first in range(0, self._resamples, block):
             rows = min(block, self._resamples - first)
             units = ((generator.random_raw(rows * n) >> np.uint64(32)) * np.uint64(n)) >> np.uint64(32)
@@ -83,7 +96,7 @@ class Bootstrap:
         """Sums of the columns of samples on the grid with the signs of each draw, draws x columns; none for fewer units than tell."""
         return self._sums_of_each(self.signs, samples, FEWEST)
 
-    def _sums_of_each(self, draws: Callable[[int], Draws], samples: Sequence[Floats], fewest: int) -> list[Floats]:
+    def _sums_of_each(self, draws: Callable[[int], Iterable[Draws]], samples: Sequence[Floats], fewest: int) -> list[Floats]:
         """Those of as many units share one product, which takes far less time."""
         sums: list[Floats] = [np.empty((0, values.shape[1])) for values in samples]
         for n in sorted({len(values) for values in samples if len(values) >= fewest and values.size}):
@@ -94,18 +107,20 @@ class Bootstrap:
                 sums[place] = own
         return sums
 
-    def _product(self, draws: Draws, values: Floats) -> Floats:
+    def _product(self, draws: Iterable[Draws], values: Floats) -> Floats:
         """Sums of the columns over each draw."""
-        sums = np.zeros((len(draws), values.shape[1]))
 
-        def multiply(row: int) -> None:
-            rows = slice(row, row + _BLOCK)
-            for unit in range(0, len(values), _BLOCK):
-                units = slice(unit, unit + _BLOCK)
-                sums[rows] += draws[rows, units].astype(float) @ values[units]
+        def multiply(block: Draws) -> Floats:
+            sums = np.zeros((len(block), values.shape[1]))
+            for unit in range(0, len(values), _UNITS):
+                units = slice(unit, unit + _UNITS)
+                sums += block[:, units].astype(float) @ values[units]
+            return sums
 
-        mapped(multiply, range(0, len(draws), _BLOCK), self._threads)
-        return sums
+        blocks, sums = iter(draws), list[Floats]()
+        while some := list(islice(blocks, 2 * MOST_THREADS)):
+            sums += mapped(multiply, some, self._threads)
+        return np.concatenate(sums)
 
 
 def on_grid(values: Floats) -> Floats:
