@@ -38,16 +38,6 @@ std::string csv_field(const std::string& text) {
   return escaped + '"';
 }
 
-void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
-  const std::size_t begin = csv.size();
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (i > 0) csv += ',';
-    csv += csv_field(csv_text(cells[i]));
-  }
-  if (csv.size() == begin) csv += "\"\"";  // a blank line would not be read as a row
-  csv += '\n';
-}
-
 // Goes over the fields of a CSV text and counts the lines.
 class CsvReader {
  public:
@@ -186,6 +176,16 @@ ConsoleColumn console_column(const Table& table, std::size_t index, int decimals
 }
 
 }  // namespace
+
+void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
+  const std::size_t begin = csv.size();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) csv += ',';
+    csv += csv_field(csv_text(cells[i]));
+  }
+  if (csv.size() == begin) csv += "\"\"";  // a blank line would not be read as a row
+  csv += '\n';
+}
 
 std::string to_csv(const Table& table) {
   std::string csv;

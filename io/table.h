@@ -28,6 +28,9 @@ struct Table {
 // fields are quoted where they must be.
 std::string to_csv(const Table& table);
 
+// Adds a row to such a text.
+void append_csv_line(std::string& csv, const std::vector<Cell>& cells);
+
 // The first line names the columns, after any lines that begin with '#'; every cell is read as text. Throws
 // InputError, one line "PATH:LINE: what is wrong", for a line with another number of fields, a quote that
 // does not close, or a column named twice.

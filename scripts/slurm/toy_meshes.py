@@ -25,15 +25,18 @@ def bumpy_torus(around, across, bumps):
     return vertices, faces
 
 
+def write_mesh(path, vertices, faces):
+    with open(path, "w") as file:
+        file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
+        file.writelines("{:.6f} {:.6f} {:.6f}\n".format(*v) for v in vertices)
+        file.writelines("3 {} {} {}\n".format(*f) for f in faces)
+
+
 def main():
     folder, (count, around, across) = sys.argv[1], map(int, sys.argv[2:])
     os.makedirs(folder)
     for k in range(1, count + 1):
-        vertices, faces = bumpy_torus(around, across, k + 1)
-        with open(f"{folder}/{k}.off", "w") as file:
-            file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
-            file.writelines("{:.6f} {:.6f} {:.6f}\n".format(*v) for v in vertices)
-            file.writelines("3 {} {} {}\n".format(*f) for f in faces)
+        write_mesh(f"{folder}/{k}.off", *bumpy_torus(around, across, k + 1))
 
 
 if __name__ == "__main__":

@@ -118,20 +118,20 @@ class CheckTest(unittest.TestCase):
         scripts.mkdir()
         for name in ("check", "common.sh"):
             shutil.copy(SCRIPTS / name, scripts)
-        for name, text in {"setup": "[[ $1 != fuzz ]]", "build": "echo well", "perf_shapes": "echo first; echo 'the end'; exit 3"}.items():
+        for name, text in {"setup": "[[ $1 != fuzz ]]", "build": "echo well", "scale": "echo first; echo 'the end'; exit 3"}.items():
             (scripts / name).write_text(f"#!/usr/bin/env bash\n{text}\n")
             (scripts / name).chmod(0o755)
         environment = {name: value for name, value in os.environ.items() if name != "SALBENCH_DATA"}
 
         def checked(*names):
             return subprocess.run([scripts / "check", *names], capture_output=True, text=True, env=environment)
-        done = checked("odr", "perf_shapes", "fidelity", "fuzz")
+        done = checked("odr", "scale", "fidelity", "fuzz")
         self.assertEqual((done.returncode, done.stderr), (1, ""))
         self.assertEqual([re.sub(" +", " ", re.sub(r" \d+ s\b", " N s", line)) for line in done.stdout.splitlines()], [
-            "passed odr N s well", "failed perf_shapes N s exit status 3, build/check/perf_shapes.log: the end",
+            "passed odr N s well", "failed scale N s exit status 3, build/check/scale.log: the end",
             "skipped fidelity - needs real data: SALBENCH_DATA",
             "skipped fuzz - needs packages that cannot be installed: scripts/setup fuzz", "1 passed, 1 failed, 2 skipped in N s"])
-        self.assertEqual((Path(holder.name) / "build/check/perf_shapes.log").read_text(), "well\nfirst\nthe end\n")
+        self.assertEqual((Path(holder.name) / "build/check/scale.log").read_text(), "well\nfirst\nthe end\n")
         self.assertEqual(checked("odr", "fuzz").returncode, 0)
 
     def test_without_a_name_it_says_how_it_is_used(self):
