@@ -53,7 +53,7 @@ class ReleaseTest(unittest.TestCase):
         self.assert_refused(self.release("3.2.1", "--commit", "nothing"), "there is no nothing")
 
     def test_a_part_that_is_not_there(self):
-        self.assert_refused(self.release("3.2.1", "--commit", "HEAD", "--part", "11/*"), "there is no part '11/\\*'; there are: .* 13/odr ")
+        self.assert_refused(self.release("3.2.1", "--commit", "HEAD", "--part", "11/*"), "there is no part '11/\\*'; there are: .* 12/odr .* 13/test both/results")
 
     def test_a_tag_of_another_version(self):
         self.git("tag", "v3.2.2")
