@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An old cache is found: a run over it computes nothing."""
+
+import json
+import tarfile
+import unittest
+
+import record
+import support
+
+REMEDY = """the old cache is not found: {causes}.
+Keys have changed. If no output did, give what is new in a key a value that older keys imply (CONTRIBUTING.md, Options). If the version of
+a stage was raised, say under "Changes results" in CHANGELOG.md what changes, and then make the example anew: tests/stability/record.py"""
+
+
+class Cache(support.OldExamples):
+    def test_runs_over_it_compute_nothing(self):
+        for run in support.RUNS:
+            with self.subTest(run):
+                plan = json.loads(self.said(run.replace("run", "plan") + " --format json"))
+                causes = [f"{stage['stage']}: {reason['why']}" for stage in plan["stages"] if stage["to_compute"] for reason in stage["reasons"]]
+                self.assertEqual(plan["open"], 0, REMEDY.format(causes="; ".join(causes)))
+                self.assertEqual(json.loads(self.said(run + " --format json"))["computed"], 0)
+
+    def test_its_artefacts_are_sound_and_of_the_form_of_today(self):
+        (cache,) = json.loads(self.said("verify --cache cache --format json"))["caches"]
+        self.assertEqual((cache["artefacts"], cache["other_files"], cache["faults"]), (len(list(self.folder.glob("cache/*/*/*.h5"))), 0, []))
+
+    def test_the_example_can_be_made_anew(self):
+        with tarfile.open(self.folder / support.COMPUTED) as old:
+            names = set(old.getnames())
+        record.compute(self.folder)
+        with tarfile.open(self.folder / support.COMPUTED) as made:
+            self.assertLessEqual(names, set(made.getnames()))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the tests of docs/stability.md share: old examples, in a folder where today's program meets them.
+
+examples/set has two tori and a point cloud, as salbench.datasets.write of 0.2.0 wrote them, and computed.tar.xz the cache and the export
+that 0.2.0 made of them. Whatever 1.0 reads or writes like that stays as it is until 2.0. record.py adds what a version promises in
+addition.
+"""
+
+import os
+import shlex
+import shutil
+import subprocess
+import tarfile
+import tempfile
+import unittest
+from pathlib import Path
+
+EXAMPLES = Path(__file__).resolve().parent / "examples"
+PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(EXAMPLES.parents[2] / "build/release/salbench"))
+COMPUTED = "computed.tar.xz"
+RUNS = ("run meshes.yaml", "run scans.yaml --items 1 --reference items")  # whose artefacts the old cache has
+EXPORT = "export meshes.yaml --items 1,cloud --models LS,HS,RS --pictures"
+
+
+def salbench(folder, line):
+    return subprocess.run([PROGRAM, *shlex.split(line)], cwd=folder, capture_output=True, text=True)
+
+
+class OldExamples(unittest.TestCase):
+    """Each class of tests has the examples in a folder of its own."""
+
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = Path(holder.name)
+        shutil.copytree(EXAMPLES, cls.folder, dirs_exist_ok=True)
+        with tarfile.open(EXAMPLES / COMPUTED) as computed:
+            computed.extractall(cls.folder)
+
+    def said(self, line):
+        done = salbench(self.folder, line)
+        self.assertEqual(done.returncode, 0, f"salbench {line}: {done.stderr}")
+        return done.stdout
