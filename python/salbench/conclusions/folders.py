@@ -57,7 +57,14 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
 
 def read_record(folder: Path) -> Any:
     """run.yaml."""
-    return _yaml(folder / "run.yaml")
+    import yaml
+
+    path = folder / "run.yaml"
+    try:
+        with open(path, encoding="utf-8") as file:
+            return yaml.load(file, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: {error}") from None
 
 
 def trained_models(record: Any) -> dict[str, str]:
@@ -125,13 +132,3 @@ def write(path: Path, text: str) -> None:
         replace_file(path, text.encode("utf-8", "surrogateescape"))
     except OSError as error:
         raise StorageError(f"{path}: cannot be written: {error.strerror}; choose another folder with --out") from None
-
-
-def _yaml(path: Path) -> Any:
-    import yaml
-
-    try:
-        with open(path, encoding="utf-8") as file:
-            return yaml.load(file, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: {error}") from None
