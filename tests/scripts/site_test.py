@@ -136,6 +136,7 @@ class SiteTest(unittest.TestCase):
         page = re.sub(r"<[^>]*>", "", (self.site / "leaderboards/schelling/index.html").read_text(encoding="utf-8"))
         for model in ("RS", "CB", "NV", "VD", "MC", "constant"):
             self.assertIn(f"{model} floor", page)
+        self.assertIn("There are no submissions yet", page)
         self.assertNotIn("HS ceiling", page)
         self.assertNotIn("LS floor", page)
 
