@@ -72,7 +72,8 @@ def leaderboard(arguments: Sequence[str]) -> int:
     parser = Parser("leaderboard", leaderboard.__doc__ or "", "FOLDER")
     parser.add_argument("folder", metavar="FOLDER", help="folder of the submissions (NAME.zip)")
     parser.add_argument("--to", metavar="DIR", required=True, help="folder of the site")
-    parser.add_argument("--models", metavar="NAMES", help="also these of the configuration, such as LS,PS (default: people and chance alone)")
+    parser.add_argument("--models", metavar="NAMES", help="also these of the configuration, such as LS,PS (default: people and chance alone); "
+                        "with them FOLDER may be empty")
     return _over_data("leaderboard", parser, arguments)
 
 
@@ -109,6 +110,8 @@ def report_(arguments: Sequence[str]) -> int:
                         help="exports of shapes to show, with the pictures that --pictures of salbench export takes (default: OUT/shapes.h5 if it exists)")
     parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
     parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
+    parser.add_argument("--no-viewer", dest="viewer", action="store_false",
+                        help="pictures alone: neither coordinates nor ground truth of the shapes, for pages that go where the data may not")
     parser.add_argument("--processes", metavar="N", type=int, default=len(os.sched_getaffinity(0)),
                         help="that draw at the same time; the report does not depend on it (default: one per core)")
     parser.add_report("no path; warnings and errors only")
@@ -119,7 +122,7 @@ def report_(arguments: Sequence[str]) -> int:
 
         page = write_report(Path(given.results), to=Path(given.to) if given.to else None, exports=given.export,
                             compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
-                            processes=given.processes)
+                            processes=given.processes, viewer=given.viewer)
     report(given, "report", {"page": str(page)}, f"{page}\n")
     return ALL_DONE
 

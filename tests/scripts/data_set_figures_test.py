@@ -38,15 +38,17 @@ class Figures(unittest.TestCase):
                              for (a, b), (low, high) in intervals.items()])
 
     def test_better_is_better_than_every_floor_by_the_whole_interval(self):
-        floors = self.figures.FLOORS
+        from salbench.conclusions.floors import FLOORS as floors
+
+        above = self.figures.better_than_floors
         wins = {("A", floor): (0.1, 0.2) for floor in floors} | {("B", floor): (0.1, 0.2) for floor in floors}
-        self.assertIn("cc: A, B.", self.figures.above_floors(self.pairs("cc", wins)))
-        self.assertIn("kl: none.", self.figures.above_floors(self.pairs("kl", wins)), "less is better")
+        self.assertIn("cc: A, B.", above(self.pairs("cc", wins)))
+        self.assertIn("kl: none.", above(self.pairs("kl", wins)), "less is better")
         turned = {(floor, model): (low, high) for (model, floor), (low, high) in wins.items()}
-        self.assertIn("kl: A, B.", self.figures.above_floors(self.pairs("kl", turned)))
-        self.assertIn("cc: A.", self.figures.above_floors(self.pairs("cc", wins | {("B", floors[-1]): (-0.01, 0.3)})))
+        self.assertIn("kl: A, B.", above(self.pairs("kl", turned)))
+        self.assertIn("cc: A.", above(self.pairs("cc", wins | {("B", floors[-1]): (-0.01, 0.3)})))
         del wins["A", floors[0]], wins["B", floors[0]]
-        self.assertIn("cc: none.", self.figures.above_floors(self.pairs("cc", wins)), "a floor without scores")
+        self.assertIn("cc: none.", above(self.pairs("cc", wins)), "a floor without scores")
 
     def test_models_stand_before_floors_and_those_without_scores_are_left_out(self):
         rows = [{"model": model, "metric": "cc", "n": n, "mean": 0.5, "ci95_low": 0.25, "ci95_high": 0.75}

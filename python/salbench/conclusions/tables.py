@@ -74,6 +74,11 @@ def _typed(pieces: list[Any], type: str) -> Any:
     return pandas.Series(values).astype(type)  # NaN is an empty cell of "Int64", and an error in "int64"
 
 
+def of_all(frame: pandas.DataFrame) -> pandas.DataFrame:
+    """Rows over everything that ran: of several splits there are rows for each of them, too."""
+    return frame if "split" not in frame or frame["split"].nunique() == 1 else frame[frame["split"] == ""]
+
+
 def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
     """The cells as a file has them: empty where a value is not known."""
     def of(values: pandas.Series) -> list[str]:

@@ -64,10 +64,10 @@ class Board:
         return [entry for entry in self.entries if entry.status in status]
 
 
-def archives_in(folder: str) -> list[Entry]:
+def archives_in(folder: str, may_be_none: bool) -> list[Entry]:
     found = sorted(entry.path for entry in os.scandir(folder) if entry.name.lower().endswith(".zip") and not entry.is_dir())
-    if not found:
-        raise InputError(f"{folder}: has no submission (NAME.zip, as salbench submit writes them)")
+    if not found and not may_be_none:
+        raise InputError(f"{folder}: has no submission (NAME.zip, as salbench submit writes them); --models ranks models of the program alone")
     return [Entry(Path(path)) for path in found]
 
 
@@ -248,15 +248,22 @@ def _is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
     return (frame["dataset"] == level.dataset) & ((frame["split"] == level.split) if "split" in frame else True)
 
 
+def _constant(study: Study) -> pandas.DataFrame | None:
+    """Rows of compact.csv of the map that is the same everywhere, a floor."""
+    return None if study.constant is None else compact.compact(replace(study, scores=replace(study.scores, frame=study.constant)))
+
+
 def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
     made = {name: frame for name, frame in tables_of(board.study) if frame is not None}
     made["leaders"] = leaders.framed_leaders(board.leaders, board.study.in_splits)
     for level in board.leaders:
         if not level.leaders:
             made["compact"].loc[_is_of(made["compact"], level), "best"] = 0
+    made["compact"] = pandas.concat([made["compact"], _constant(board.study)], ignore_index=True)
     made["history"] = history(board, made["ranking"])
     made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])
-    made["submissions"] = pandas.DataFrame([{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)])
+    columns = list(submissions([Entry(Path())])[0])  # of no submissions, too
+    made["submissions"] = pandas.DataFrame([{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)], columns=columns)
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
     made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
                                         for name, of in record_of(results)["metrics"].items()])

@@ -131,7 +131,7 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
 
 def leaderboard(given: argparse.Namespace) -> int:
     """given: FOLDER, --to and --models beside the arguments of both."""
-    entries = board.archives_in(given.folder)
+    entries = board.archives_in(given.folder, may_be_none=bool(given.models))
     to = Path(given.to)
     folder.require_own(to)
     with tempfile.TemporaryDirectory(prefix="salbench-") as name:

@@ -12,6 +12,7 @@ import pandas
 
 from salbench.conclusions import glossary, words
 from salbench.conclusions.compact import cut
+from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
 from salbench.conclusions.significance import joint_interval
 from salbench.leaderboard.board import Board, Entry
@@ -90,7 +91,7 @@ def named(board: Board, model: str) -> Cell:
     """A model in a table: a link where it was submitted, and what there is to say of it."""
     entry = next((entry for entry in board.of_status("ranked", "beside") if entry.card.name == model), None)
     if entry is None:
-        return Cell(model)
+        return Cell(model, after=role(model))
     seen = len(set(entry.card.test_overlap))
     said = [f"beside: it has seen {seen} items" if seen else "", entry.remark]
     return Cell(model, href=f"models/{model}.html", below="; ".join(filter(None, said)))
@@ -112,7 +113,8 @@ def ranking(board: Board) -> list[Any]:
         better = dict(zip(part["metric"], part["better"]))
         rows = [[named(board, model), *(mean_cell(by_cell.get((model, metric))) for metric in better)] for model in part["model"].unique()]
         caption = (f"{heading(next(iter(by_cell.values())))}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best in bold. Models "
-                   "that share a letter cannot be told apart. Models without a letter are people, chance, or stand beside the ranking.")
+                   "that share a letter cannot be told apart. Models without a letter are people, chance, a constant map, or stand beside the ranking. "
+                   "A floor uses nothing that a model should be praised for.")
         blocks.append(Table("ranking-" + re.sub(r"\W+", "-", heading(next(iter(by_cell.values())))), caption, ["Model", *map(label_of, better)], rows,
                             [False] + [True] * len(better), better=["", *better.values()]))
     return blocks or [Note("No submission could be ranked.", missing=True)]

@@ -36,7 +36,7 @@ PAGES = (
     Page("index.html", "Results", "Which saliency models predict what people find important?", ""),
     Page("ranking.html", "Ranking", "How the models rank, and how sure that is",
          "One table to paste into a paper; how far each model is behind; ranks with their intervals."),
-    Page("scores.html", "Shapes", "", "Every shape under every model, with a viewer."),
+    Page("scores.html", "Shapes", "", "Every shape under every model."),
     Page("gallery.html", "Gallery", "", "Pictures; where each model is worst."),
     Page("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores."),
     Page("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model."),

@@ -17,15 +17,15 @@ from salbench.report.workshop import Workshop
 HERE = Path(__file__).parent
 
 
-def copy_static(folder: Folder) -> None:
-    """Style, scripts, colour bars; three.js where it is installed, without which pages have no viewer."""
+def copy_static(folder: Folder, viewer: bool) -> None:
+    """Style, scripts, colour bars; for the viewer three.js, where it is installed."""
     for place in (rendering.HERE, HERE):
         for file in sorted((place / "static").iterdir()):
             shutil.copyfile(file, folder.file(f"static/{file.name}"))
     colour_bar().save(folder.file("static/colourbar.png"))
     colour_bar("diverging").save(folder.file("static/colourbar-difference.png"))
     with suppress(FileNotFoundError):
-        for file in three_js():
+        for file in three_js() if viewer else ():
             shutil.copyfile(file, folder.file(f"static/{file.name}"))
 
 

@@ -35,7 +35,7 @@ class Task:
     shape: Shape
     title: str    # in the viewer
     folder: str   # of its pictures
-    script: str
+    script: str   # empty: without the viewer
     models: dict[str, str]  # model -> its part of file names
 
     def picture(self, what: str, when: str) -> str:
@@ -57,7 +57,8 @@ def draw_all(shop: Workshop) -> dict[str, Facts]:
 
 def task_of(shop: Workshop, shape: Shape) -> Task:
     title = f"Scan {shape.view}" if shape.view else KIND_NAMES[shape.dataset].capitalize()
-    return Task(shape, title, f"pictures/{shop.shape_files[shape.item]}", f"{shop.shape_files[shape.name]}.js", shop.model_files)
+    script = f"{shop.shape_files[shape.name]}.js" if shop.viewer else ""
+    return Task(shape, title, f"pictures/{shop.shape_files[shape.item]}", script, shop.model_files)
 
 
 # Of what draws: files that something else drew are drawn again.
@@ -117,7 +118,8 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
                 image = dotted(image, picture, shape.picks, points)
             write(task.picture(what, when), webp(image, small=bool(shape.view)))
         painted.append([what, when, task.picture(what, when) if image else ""])
-    script = viewer.script(shape, {viewer.label_of(*key): values for key, values in maps.items()}, task.title, picture)
+    shown = {viewer.label_of(*key): values for key, values in maps.items()}
+    script = viewer.script(shape, shown, task.title, picture) if task.script else None
     if script is not None:
         write(f"shapes/{task.script}", script.encode())
     return names, {"picture": picture is not None, "maps": painted, "script": task.script if script else "",

@@ -36,6 +36,7 @@ class Workshop:
     scores: "Scores | None" = None          # made when first needed
     other: Results | None = None            # of the run to compare with
     processes: int = 1                      # that draw
+    viewer: bool = True                     # False: no coordinates, faces or values of shapes are written
     drawn: dict[str, Facts] = field(default_factory=dict)  # shape name -> of its files (shape_files.draw_all)
     waiting: list[tuple[str, tuple[str, Drawing, str]]] = field(default_factory=list)  # figures yet to be drawn: (name, (name, drawing, key))
 

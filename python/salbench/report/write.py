@@ -18,17 +18,17 @@ from salbench.report.workshop import Workshop
 
 
 def write_report(out: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (), compare: Path | None = None,
-                 examples: Sequence[str] = (), processes: int = 1) -> Path:
+                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True) -> Path:
     """The path of index.html. InputError if there is nothing to report of, or nowhere to write. exports: OUT/shapes.h5, where there is
-    one, unless some are named."""
+    one, unless some are named. viewer: of shapes, which writes their coordinates and values."""
     results = read_results(out)
     other = read_results(compare) if compare else None
     default = out / "shapes.h5"
     shapes = Shapes(exports or ([default] if default.is_file() else []))
     folder = Folder(to or out / "report")
-    copy_static(folder)
+    copy_static(folder, viewer)
     shop = Workshop(results, folder, shapes, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
-                    processes=processes)
+                    processes=processes, viewer=viewer)
     shop.drawn = shape_files.draw_all(shop)
     metrics = bool(metric_page.others(shop))
     present = pages_of(shop, {"index.html", "scores.html", "run.html", "metrics.html" if metrics else "",

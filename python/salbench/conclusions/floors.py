@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Floors and the ceiling of a benchmark: what a model has to be better than, and what people reach."""
+
+from collections.abc import Sequence
+
+import pandas
+
+from salbench.conclusions.metrics import lower_is_better
+
+FLOORS = ("RS", "CB", "NV", "VD", "MC")  # these use nothing that a model should be praised for: docs/data_sets.md
+CONSTANT = "constant"  # the map that is the same everywhere, a floor of constant.csv
+CEILING = "HS"
+
+
+def role(model: str) -> str:
+    """ "floor", "ceiling", or "" for a model."""
+    return "floor" if model in (*FLOORS, CONSTANT) else "ceiling" if model == CEILING else ""
+
+
+def above_floors(significance: pandas.DataFrame, floors: Sequence[str] = FLOORS) -> dict[str, list[str]]:
+    """metric -> models that are better than every floor by their paired intervals, without a correction. significance: one data set."""
+    found = {}
+    for metric, pairs in significance.groupby("metric", sort=False):
+        sign = -1 if lower_is_better(metric) else 1
+        wins: dict[str, list[bool]] = {}  # by model, floor after floor
+        for pair in pairs.to_dict("records"):
+            for model, other, direction in ((pair["model_a"], pair["model_b"], sign), (pair["model_b"], pair["model_a"], -sign)):
+                if other in floors and not role(model):
+                    wins.setdefault(model, []).append(min(direction * pair["ci95_low"], direction * pair["ci95_high"]) > 0)
+        found[metric] = [model for model, of in wins.items() if len(of) == len(floors) and all(of)]
+    return found
