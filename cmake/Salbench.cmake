@@ -27,6 +27,22 @@ if(SALBENCH_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
+# Debian's Python, which sees Debian's packages. It has no sanitizer of its own: that of our module has to be there from the start, before
+# all that it replaces, and what Python keeps until its end is no leak.
+set(SALBENCH_TEST_PYTHON /usr/bin/python3)
+if(SALBENCH_SANITIZE)
+  string(SUBSTRING ${SALBENCH_SANITIZE} 0 1 letter)
+  foreach(name IN ITEMS ${letter}san stdc++)
+    execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=lib${name}.so OUTPUT_VARIABLE file OUTPUT_STRIP_TRAILING_WHITESPACE)
+    list(APPEND preloaded ${file})
+  endforeach()
+  list(JOIN preloaded ":" preloaded)
+  set(SALBENCH_TEST_PYTHON ${PROJECT_BINARY_DIR}/python3)
+  file(WRITE ${SALBENCH_TEST_PYTHON} "#!/bin/sh\nexec env LD_PRELOAD=\"${preloaded}\${LD_PRELOAD:+:$LD_PRELOAD}\" \\
+  ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:verify_asan_link_order=0 /usr/bin/python3 \"$@\"\n")
+  file(CHMOD ${SALBENCH_TEST_PYTHON} FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+endif()
+
 if(SALBENCH_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)  # what leads libFuzzer: which branches were taken
 endif()
@@ -69,12 +85,11 @@ function(salbench_test name)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 1200)
 endfunction()
 
-# salbench_python_tests(name TIMEOUT s MODULES ...): test NAME.MODULE for each module of this folder, by Debian's Python, which
-# sees Debian's packages.
+# salbench_python_tests(name TIMEOUT s MODULES ...): test NAME.MODULE for each module of this folder.
 function(salbench_python_tests name)
   cmake_parse_arguments(arg "" "TIMEOUT" "MODULES" ${ARGN})
   foreach(module IN LISTS arg_MODULES)
-    add_test(NAME ${name}.${module} COMMAND /usr/bin/python3 -B -m unittest -v ${module}
+    add_test(NAME ${name}.${module} COMMAND ${SALBENCH_TEST_PYTHON} -B -m unittest -v ${module}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
     set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT
       "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=$<TARGET_FILE:salbench>")

@@ -43,8 +43,8 @@ class Imports : public testing::Test {
     const fs::path file = toy_.write(
         "python.sh",
         fmt::format("#!/bin/sh\nfor word; do [ \"$word\" = {} ] && {{ echo refused >&2; exit 9; }}; "
-                    "done\nexec /usr/bin/python3 \"$@\"\n",
-                    command));
+                    "done\nexec {} \"$@\"\n",
+                    command, kPython));
     fs::permissions(file, fs::perms::owner_all);
     return file.string();
   }

@@ -107,7 +107,7 @@ TEST(SystemError, ADefectIsNotTheUsersFault) {
 }
 
 TEST(SystemError, MemoryThatRunsOutForAFileCostsItsItemAlone) {
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "AddressSanitizer needs all of the address space";
 #endif
   const Workspace toy(kMeshesOnly);
