@@ -52,7 +52,8 @@ struct FolderStore::Impl {
   NameIndex names;
   std::mutex listing;  // of `listed`, which on_demand needs
   std::map<std::string, std::bitset<kShards>, std::less<>> listed;
-  std::once_flag prepared;
+  std::mutex preparing;
+  bool prepared = false;
   std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 
   fs::path path(std::string_view stage, const ArtefactName& name) const {
@@ -199,7 +200,9 @@ std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& ke
 }
 
 void FolderStore::prepare() {
-  std::call_once(impl_->prepared, [&] { prepare_cache(impl_->folder); });
+  const std::lock_guard lock(impl_->preparing);
+  if (!impl_->prepared) prepare_cache(impl_->folder);
+  impl_->prepared = true;
 }
 
 Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,

@@ -18,15 +18,13 @@ FileData read(const File& file) {
   return {file_digest(text), std::move(text)};
 }
 
-FileData read_now(File& file) {
+FileData read_now(const File& file) {
   FileData data;
   try {
     data = read(file);
   } catch (const InputError& error) {
     data.error = error.what();
   }
-  file.digest = data.digest;
-  file.is_read = true;
   return data;
 }
 
@@ -35,15 +33,17 @@ FileData read_now(File& file) {
 void look(File& file, FileData* data) {
   if (file.is_read && data == nullptr) return;
   FileData now = read_now(file);
+  file.digest = now.digest;
+  file.is_read = true;
   if (data != nullptr) *data = std::move(now);
 }
 
-std::vector<FileData> read_again(std::span<File> files) {
+std::vector<FileData> read_again(std::span<const File> files) {
   std::vector<FileData> all;
-  for (File& file : files) {
-    const std::optional<Digest> planned = file.digest;
+  for (const File& file : files) {
     all.push_back(read_now(file));
-    if (planned && file.digest && file.digest != planned)
+    const std::optional<Digest>& now = all.back().digest;
+    if (file.digest && now && now != file.digest)
       spdlog::warn("{}: changed since this run was planned; the results are of what it holds now",
                    file.place);
   }
@@ -56,10 +56,10 @@ std::vector<FileData> read_all(std::span<const File> files) {
   return all;
 }
 
-std::vector<FileData> read_unchanged(std::span<const File> files) {
+std::vector<FileData> read_unchanged(std::span<const File> files, const Digests& digests) {
   std::vector<FileData> all = read_all(files);
   for (std::size_t i = 0; i < files.size(); ++i)
-    if (all[i].digest != files[i].digest)
+    if (all[i].digest != digests[i])
       throw InputError(fmt::format("{}: changed since this run was planned; run it again", files[i].place));
   return all;
 }

@@ -32,13 +32,17 @@ struct File {
   std::string place;                          // in messages: its path, or "maps.h5: data set 52"
   std::shared_ptr<const ReadFile> read = {};  // nothing: the whole file at `place`
   bool is_read = false;                       // at least once
-  std::optional<Digest> digest = {};          // then, of what it held last; nothing if it is unreadable
+  std::optional<Digest> digest = {};          // then, of what it held; nothing if it is unreadable
   std::string title = {};                     // "mesh file 52.off", in messages; empty: the name
 };
 
 using FilesOfUnit = std::vector<File>;
 
-// The files of one kind of all units of a level. Their digests follow files that change during a run.
+// Of files, in their order; nothing: unreadable.
+using Digests = std::vector<std::optional<Digest>>;
+
+// The files of one kind of all units of a level. Several rules may read them, at the same time: nothing of
+// them changes once a run has begun.
 struct FileColumn {
   std::vector<FilesOfUnit> files;  // [unit's index]
   bool expected = true;            // of every unit; false: some units are left out
@@ -49,14 +53,13 @@ using FileColumnPtr = std::shared_ptr<FileColumn>;
 // Only files that somebody asks for are ever read.
 void look(File& file, FileData* data = nullptr);
 
-// Reads the files again. Where one holds something else by now, its digest follows it, with a warning that
-// names it.
-std::vector<FileData> read_again(std::span<File> files);
+// Reads the files again, whatever was planned. A warning names one that holds something else by now.
+std::vector<FileData> read_again(std::span<const File> files);
 
 // Reads the files, whatever was planned. Throws InputError where one cannot be read.
 std::vector<FileData> read_all(std::span<const File> files);
 
-// Reads them as they were planned. Throws InputError where one cannot be read or has changed.
-std::vector<FileData> read_unchanged(std::span<const File> files);
+// Reads what has these digests. Throws InputError where one cannot be read or has changed.
+std::vector<FileData> read_unchanged(std::span<const File> files, const Digests& digests);
 
 }  // namespace salbench

@@ -54,14 +54,15 @@ std::optional<Decision> stopped_by_members(const Project& project, const Plan& p
   return without_key(Verdict::not_applicable, Reason::no_files);
 }
 
-std::optional<Decision> stopped_by_files(const Project& project, const Job& job) {
+std::optional<Decision> stopped_by_files(const Project& project, const Plan& plan, const Job& job) {
   const FileColumnPtr& column = project.rule(job).files;
   if (column == nullptr) return {};
   const std::span<File> files = project.files(job);
   if (files.empty())
     return without_key(Verdict::not_applicable, column->expected ? Reason::no_files : Reason::not_given);
-  for (File& file : files) look(file);
-  if (std::any_of(files.begin(), files.end(), [](const File& file) { return !file.digest; }))
+  if (plan.read[job.rule][job.unit.index].empty())
+    for (File& file : files) look(file);
+  if (std::ranges::any_of(digests_of_files(project, plan, job), [](const auto& digest) { return !digest; }))
     return without_key(Verdict::compute, Reason::unreadable);
   return {};
 }
@@ -73,14 +74,16 @@ std::optional<Decision> stopped(const Project& project, const Plan& plan, const 
     return without_key(Verdict::not_applicable, Reason::inapplicable);
   if (rule.gathers) return stopped_by_members(project, plan, job);
   if (const auto by_input = stopped_by_inputs(project, plan, job)) return by_input;
-  return stopped_by_files(project, job);
+  return stopped_by_files(project, plan, job);
 }
 
 Plan nothing_decided(const Project& project) {
   Plan plan;
-  for (const Rule& rule : project.rules)
-    plan.decisions.emplace_back(project.units.slots(rule.level()),
-                                without_key(Verdict::not_applicable, Reason::none));
+  for (const Rule& rule : project.rules) {
+    const std::size_t slots = project.units.slots(rule.level());
+    plan.decisions.emplace_back(slots, without_key(Verdict::not_applicable, Reason::none));
+    plan.read.emplace_back(rule.files == nullptr ? 0 : slots);
+  }
   return plan;
 }
 
@@ -155,6 +158,14 @@ std::size_t Plan::open(std::size_t rule) const {
                                                 [](const Decision& decision) { return decision.open(); }));
 }
 
+Digests digests_of_files(const Project& project, const Plan& plan, const Job& job) {
+  if (project.rule(job).files == nullptr) return {};
+  Digests digests = plan.read[job.rule][job.unit.index];
+  if (digests.empty())
+    for (const File& file : project.files(job)) digests.push_back(file.digest);
+  return digests;
+}
+
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
   const Rule& rule = project.rule(job);
   Recipe recipe{rule.stage, rule.version, {}, {}, {}};
@@ -170,8 +181,10 @@ Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
     else
       for (const Job& member : project.input_jobs(job, i))
         if (plan[member].known()) recipe.inputs.emplace_back(project.name(member), plan[member].content);
-  for (const File& file : project.files(job))
-    if (file.digest) recipe.inputs.emplace_back(file.name, *file.digest);
+  const std::span<const File> files = project.files(job);
+  const Digests digests = digests_of_files(project, plan, job);
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (digests[i]) recipe.inputs.emplace_back(files[i].name, *digests[i]);
   return recipe;
 }
 

@@ -30,6 +30,12 @@ class AtWork {
   std::atomic<int>& jobs_;
 };
 
+Digests digests_of(const std::vector<FileData>& files) {
+  Digests digests;
+  for (const FileData& file : files) digests.push_back(file.digest);
+  return digests;
+}
+
 Recipe recipe_of_remark(const std::string& stage, const Digest& key) {
   return {std::string(kRemarkStage), 1, {}, {}, {{stage, key}}};
 }
@@ -58,6 +64,7 @@ void Resolver::finish(const Job& job) {
   Decision& decision = plan_[job];
   // The key is of what the files hold now: they may have been edited since they were planned with.
   std::vector<FileData> files = read_again(project_.files(job));
+  if (!files.empty()) plan_.read[job.rule][job.unit.index] = digests_of(files);
   // The plan's reason is kept: why the job was computed is asked afterwards.
   const Reason reason = decision.reason;
   decision = decide(project_, plan_, job, [&](std::string_view stage, const Digest& key) {
@@ -150,7 +157,7 @@ ValuePtr Resolver::restored(const Job& job) {
   const std::lock_guard lock(restoring_);
   if (ValuePtr value = held(job)) return value;
   plan_[job].reason = Reason::damaged;
-  const Result result = run(job, read_unchanged(project_.files(job)));
+  const Result result = run(job, files_as_known(job));
   if (save(job, result) != plan_[job].content)
     throw std::logic_error(
         fmt::format("stage {} gave another result than before for the same inputs: it is not deterministic; "
@@ -162,7 +169,11 @@ ValuePtr Resolver::restored(const Job& job) {
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
 
-ValuePtr Resolver::recompute(const Job& job) { return run(job, read_unchanged(project_.files(job))).value; }
+ValuePtr Resolver::recompute(const Job& job) { return run(job, files_as_known(job)).value; }
+
+std::vector<FileData> Resolver::files_as_known(const Job& job) const {
+  return read_unchanged(project_.files(job), digests_of_files(project_, plan_, job));
+}
 
 Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
   const Rule& rule = project_.rule(job);

@@ -136,18 +136,18 @@ TEST(Source, TheDigestIsOfTheBytesThatAreHandedOut) {
   const auto path = folder.write("1.val", "1\n2\n");
   FilesOfUnit files = {{.name = "saliency file", .place = path}};
   look(files[0]);
-  const Digest planned = *files[0].digest;
-  EXPECT_EQ(read_unchanged(files)[0].text(), "1\n2\n");
+  const Digests planned = {files[0].digest};
+  EXPECT_EQ(read_unchanged(files, planned)[0].text(), "1\n2\n");
   folder.write("1.val", "3\n");
-  EXPECT_THAT([&] { read_unchanged(files); }, ThrowsMessage<InputError>(HasSubstr("1.val: changed")));
+  EXPECT_THAT([&] { read_unchanged(files, planned); },
+              ThrowsMessage<InputError>(HasSubstr("1.val: changed")));
   const std::vector<FileData> now = read_again(files);
   EXPECT_EQ(now[0].text(), "3\n");
   EXPECT_EQ(now[0].digest, file_digest("3\n"));
-  EXPECT_EQ(files[0].digest, file_digest("3\n"));
-  EXPECT_NE(*files[0].digest, planned);
+  EXPECT_EQ(files[0].digest, planned[0]);
+  EXPECT_EQ(read_unchanged(files, {now[0].digest})[0].text(), "3\n");
   std::filesystem::remove(path);
   EXPECT_THAT(read_again(files)[0].error, HasSubstr("No such file"));
-  EXPECT_FALSE(files[0].digest);
 }
 
 // --- defects ----------------------------------------------------------------------------------------------
