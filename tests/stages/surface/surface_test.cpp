@@ -118,9 +118,12 @@ TEST(PartialMesh, DependsNeitherOnTheUnitNorOnThePlace) {
   Scan moved = scan;
   for (Vec3& p : moved.points) p = 1e-5 * p + Vec3(3, -8, 1);  // in float, the shape would be gone
   const Faces faces = partial_mesh(scan.points, normals), after = partial_mesh(moved.points, normals);
-  EXPECT_NEAR(static_cast<double>(after.size()), static_cast<double>(faces.size()),
-              0.01 * static_cast<double>(faces.size()));
-  EXPECT_NEAR(surface_area({moved.points, after}) * 1e10, surface_area({scan.points, faces}), 0.01);
+  const auto count = static_cast<double>(faces.size());
+  const double area = surface_area({scan.points, faces});
+  EXPECT_NEAR(static_cast<double>(after.size()), count, 0.01 * count);
+  // Rounding decides between faces of nearly equal angles: over views 1 to 11, up to 22 % of them are others, and the area moves by up
+  // to 0.3 % on x86.
+  EXPECT_NEAR(surface_area({moved.points, after}) * 1e10, area, 0.01 * area);
 }
 
 TEST(PartialMesh, EdgesKeepToTheReach) {
