@@ -49,6 +49,9 @@ class Parser(argparse.ArgumentParser):
         formatter.add_text(self.epilog)
         return formatter.format_help()
 
+    def print_help(self, file: Any = None) -> None:
+        _write_output(self.format_help())
+
     def parsed(self, arguments: Any) -> argparse.Namespace:
         given = self.parse_args(arguments)
         if given.format not in ("text", "json"):
@@ -66,6 +69,11 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
         text = text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # of names that are no UTF-8
     elif getattr(given, "quiet", False):
         return
+    _write_output(text)
+
+
+def _write_output(text: str) -> None:
+    """Standard output has the text, or the command ends: with an error, or as the program ends where nobody reads."""
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
@@ -73,6 +81,7 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
         if isinstance(error, BrokenPipeError) and "broken_pipe_is_an_error" not in sys._xoptions:  # an end without a word, as of the program
             signal.signal(signal.SIGPIPE, signal.SIG_DFL)
             os.kill(os.getpid(), signal.SIGPIPE)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # for what is left of the text: Python ends with status 120 where it cannot write that
         closed = error.errno == errno.EBADF
         raise StorageError(f"standard output: {'it is closed' if closed else f'cannot be written: {error.strerror}'}") from None
 

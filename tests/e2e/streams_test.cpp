@@ -21,7 +21,9 @@ using testing::SizeIs;
 
 // The command after the shell has changed its standard streams: "exec > /dev/full".
 Outcome run_after(const std::string& change, std::vector<std::string> command) {
-  command.insert(command.begin(), {"/bin/sh", "-c", change + " && exec \"$0\" \"$@\""});
+  // As for most users, Python has a buffer.
+  command.insert(command.begin(),
+                 {"/bin/sh", "-c", change + " && unset PYTHONUNBUFFERED && exec \"$0\" \"$@\""});
   return run_process(command);
 }
 
@@ -79,7 +81,8 @@ TEST_P(StandardOutput, ThatNobodyReadsEndsTheProgramSilently) {
 }
 INSTANTIATE_TEST_SUITE_P(Calls, StandardOutput,
                          testing::Values("run", "export", "plan", "explain", "config", "verify", "gc",
-                                         "inspect", "import", "--help", "run --help", "--version"),
+                                         "inspect", "import", "--help", "run --help", "inspect --help",
+                                         "--version"),
                          [](const auto& test) {
                            std::string name;
                            for (const char c : std::string(test.param))
