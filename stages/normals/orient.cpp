@@ -39,6 +39,7 @@ class DisjointSets {
   std::vector<std::size_t> parent_;
 };
 
+// One for each point; all but those of a root are empty.
 std::vector<Component> connected_parts(const NearestPoints& near, const OrientationGraph& graph,
                                        const Normals& normals) {
   CHECK_EQ(near.size(), normals.size());
@@ -56,7 +57,6 @@ std::vector<Component> connected_parts(const NearestPoints& near, const Orientat
   std::vector<Component> by_root(normals.size());
   for (std::size_t i = 0; i < normals.size(); ++i)
     by_root[sets.root(i)].push_back(static_cast<std::int32_t>(i));
-  std::erase_if(by_root, [](const Component& part) { return part.empty(); });
   return by_root;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#define H5_USE_110_API  // newer libraries offer it too
 #include <hdf5.h>
 
 #include "io/arrays.h"
