@@ -52,7 +52,7 @@ struct FolderStore::Impl {
   NameIndex names;
   std::mutex listing;  // of `listed`, which on_demand needs
   std::map<std::string, std::bitset<kShards>, std::less<>> listed;
-  std::mutex preparing;
+  std::mutex preparing;  // call_once would hang under ThreadSanitizer where preparing throws
   bool prepared = false;
   std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 

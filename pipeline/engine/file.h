@@ -38,7 +38,7 @@ struct File {
 
 using FilesOfUnit = std::vector<File>;
 
-// Of files, in their order; nothing: unreadable.
+// The digests of some files, in the order of the files; nothing stands for one that is unreadable.
 using Digests = std::vector<std::optional<Digest>>;
 
 // The files of one kind of all units of a level. Several rules may read them, at the same time: nothing of

@@ -82,8 +82,8 @@ struct Decision {
 
 struct Plan {
   std::vector<std::vector<Decision>> decisions;  // [rule][unit's index]; of no unit: not applicable
-  // Of what a job's files held when they were read for it: of rules that read some, [rule][unit's index].
-  // They may have been edited since they were planned with. Empty: not read yet.
+  // [rule][unit's index], for rules with files: the digests of a job's files when the job read them. They
+  // differ from those planned with where a file was edited in between. Empty: not read yet.
   std::vector<std::vector<Digests>> read;
 
   Decision& operator[](const Job& job) { return decisions[job.rule][job.unit.index]; }
@@ -91,7 +91,7 @@ struct Plan {
   std::size_t open(std::size_t rule) const;  // jobs to compute or waiting
 };
 
-// Of what a job's files held when they were read for it; until then, when they were planned with.
+// The digests of a job's files when the job read them or, until it has, those it was planned with.
 Digests digests_of_files(const Project& project, const Plan& plan, const Job& job);
 
 // Everything the job's result is a function of, as far as its inputs are known.

@@ -73,7 +73,7 @@ def report(given: argparse.Namespace, name: str, document: dict[str, Any], text:
 
 
 def _write_output(text: str) -> None:
-    """Standard output has the text, or the command ends: with an error, or as the program ends where nobody reads."""
+    """To standard output. Where that fails the command ends: with an error or, where nobody reads, by SIGPIPE."""
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
