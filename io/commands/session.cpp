@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -89,10 +90,11 @@ void run_guard(int told) try {
   for (int i = 0; i < 2; ++i) static_cast<void>(::open("/dev/null", O_RDWR));
 
   std::set<pid_t> sessions;
-  pid_t number = 0;
+  std::array<char, 16> text;
   for (ssize_t got = 0;
-       (got = ::read(STDIN_FILENO, &number, sizeof number)) > 0 || (got < 0 && errno == EINTR);) {
-    if (got != sizeof number) continue;
+       (got = ::read(STDIN_FILENO, text.data(), text.size())) > 0 || (got < 0 && errno == EINTR);) {
+    pid_t number = 0;
+    if (got < 0 || std::from_chars(text.data(), text.data() + got, number).ec != std::errc()) continue;
     if (number > 0) sessions.insert(number);
     if (number < 0) sessions.erase(-number);
     if (number == kAskToEnd)

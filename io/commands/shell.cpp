@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/commands/shell.h"
 
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdint>
 #include <memory>
@@ -61,7 +63,9 @@ class Guard {
 
   bool is_ours() const { return program_ == ::getpid(); }  // not in a copy of the program
   static void tell(pid_t number) {                         // safe in a signal handler
-    if (guarded >= 0) ::send(guarded, &number, sizeof number, MSG_NOSIGNAL);
+    std::array<char, 16> text;
+    const char* const end = std::to_chars(text.begin(), text.end(), number).ptr;
+    if (guarded >= 0) ::send(guarded, text.data(), end - text.data(), MSG_NOSIGNAL);
   }
 
  private:
@@ -79,6 +83,12 @@ const Guard& guard() {
   return *one;
 }
 
+// Killed in the moment of a start, the program could not tell the guard of the session. So the session does,
+// by a copy of the program's end of the socket (3); the guard reads until that is closed, too.
+constexpr int kCopy = 3;
+constexpr char kTellAndRun[] =
+    "trap '' PIPE; echo $$ 2>/dev/null >&3; trap - PIPE; exec /bin/sh -c \"$1\" sh 3>&-";
+
 // The shell of a command, in a session of its own, with nothing of the program but its environment.
 pid_t spawn_shell(const std::string& command, const fs::path& folder, int input, int output, int errors) {
   posix_spawn_file_actions_t files;
@@ -89,7 +99,8 @@ pid_t spawn_shell(const std::string& command, const fs::path& folder, int input,
     ::posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
   ::posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
   ::posix_spawn_file_actions_adddup2(&files, errors, STDERR_FILENO);
-  ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
+  ::posix_spawn_file_actions_adddup2(&files, guarded, kCopy);
+  ::posix_spawn_file_actions_addclosefrom_np(&files, kCopy + 1);
   ::posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
   posix_spawnattr_t attributes;
   ::posix_spawnattr_init(&attributes);
@@ -100,8 +111,9 @@ pid_t spawn_shell(const std::string& command, const fs::path& folder, int input,
   ::posix_spawnattr_setsigmask(&attributes, &none);
   ::posix_spawnattr_setflags(&attributes,
                              POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-  std::string words[] = {"sh", "-c", command};
-  char* const argv[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
+  std::string words[] = {"sh", "-c", kTellAndRun, "sh", command};
+  char* const argv[] = {words[0].data(), words[1].data(), words[2].data(),
+                        words[3].data(), words[4].data(), nullptr};
   pid_t shell = -1;
   errno = ::posix_spawn(&shell, "/bin/sh", &files, &attributes, argv, environ);
   ::posix_spawn_file_actions_destroy(&files);
@@ -124,7 +136,6 @@ Shell::Shell(const std::string& command, const fs::path& folder, int input, int 
   if (struct sigaction now{}; ::sigaction(SIGCHLD, nullptr, &now) == 0 && now.sa_handler == SIG_IGN)
     std::signal(SIGCHLD, SIG_DFL);
   shell_ = spawn_shell(command, folder, input, output, errors);
-  Guard::tell(shell_);
   end_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, shell_, 0)));
   if (end_.get() >= 0) return;
   const int error = errno;

@@ -2,8 +2,10 @@
 #include "io/commands/process.h"
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -118,6 +120,26 @@ TEST_P(StrayProcess, EndsWithAProgramThatIsKilled) {
 }
 INSTANTIATE_TEST_SUITE_P(RunCommand, StrayProcess, testing::ValuesIn(kStrays),
                          testing::PrintToStringParamName());
+
+// Also in the moment of its start, when the program cannot have told anybody of it.
+TEST(RunCommand, EndsWithAProgramThatIsKilledAtAnyMoment) {
+  const TemporaryFolder kept;
+  const fs::path mark = kept / "mark";  // a program, so that its processes can be told from others
+  fs::copy("/bin/sleep", mark);
+  for (int moment = 0; moment < 100; ++moment) {
+    const pid_t program = ::fork();
+    if (program == 0) {
+      prepare_commands();
+      std::thread killer([&] {
+        std::this_thread::sleep_for(std::chrono::microseconds(20 * moment));
+        ::kill(::getpid(), SIGKILL);
+      });
+      failure_of("exec " + mark.string() + " 100");
+    }
+    ::waitpid(program, nullptr, 0);
+  }
+  EXPECT_TRUE(soon([&] { return processes_with(mark.string()).empty(); }));
+}
 
 TEST(RunCommand, EndsEveryProcessAtTheTimeoutEvenIfItResists) {
   const TemporaryFolder kept;
