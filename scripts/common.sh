@@ -59,7 +59,7 @@ inside() {
   unshare --mount --pid --fork --kill-child bash -c '
     mount --bind "$1" "$1" &&  # a root that is a mount lets a further root be entered from within
     mount --bind "$(dirname "$1")/archives" "$1/var/cache/apt/archives" && mount -t proc proc "$1/proc" &&
-    mount -t tmpfs tmpfs "$1/dev/shm" &&
+    mount -t tmpfs tmpfs "$1/dev/shm" && mount --rbind /sys "$1/sys" &&  # slurmd reads its groups of processes
     { [[ ! -d $1/checkout ]] || mount --bind -o ro . "$1/checkout"; } &&
     exec chroot --userspec="$2:$2" "$1" /usr/bin/env -i PATH=/env/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 \
       DEBIAN_FRONTEND=noninteractive "${@:3}"' inside "$root" "$user" "$@"

@@ -174,7 +174,7 @@ class Results(Tables):
         to = pathlib.Path(folder)
         to.mkdir(parents=True, exist_ok=True)
         for item, values in maps.items():
-            (to / f"{item}.val").write_text("".join(f"{value!r}\n" for value in values.tolist()))
+            (to / f"{item}.val").write_text("".join(f"{float(value)!r}\n" for value in values))
         lines = [f"{key}: {json.dumps(value)}\n" for key, value in {"name": model, **learned, **card}.items()]
         (to / "card.yaml").write_text("".join(lines))
         return to

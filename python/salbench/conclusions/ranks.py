@@ -122,7 +122,7 @@ def compact_letters(differ: NDArray[np.bool_], order: Sequence[int] | Numbers) -
             if fits[item]:
                 group[item], fits = True, fits & same[item]
         missing &= ~np.outer(group, group)
-        groups.append(np.flatnonzero(group).tolist())
+        groups.append([int(place) for place in np.flatnonzero(group)])
     letters = [""] * len(order)
     for place, members in enumerate(sorted(groups)):
         for item in members:

@@ -65,7 +65,7 @@ def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None, m
         first, *others = known[number]
         higher_is_better = level.metrics[number].higher_is_better
         ranking = rank_models(first.scores.values, flipped[number], first.means, higher_is_better)
-        at_chance = np.full(len(first.scores.models), np.nan)
+        at_chance: Floats = np.full(len(first.scores.models), np.nan)
         if level.n_missing(number)[first.scores.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
             at_chance = ranks(means(filled), higher_is_better)
         return RankedMetric(first, others, ranking, at_chance)

@@ -80,7 +80,7 @@ def _matrix(content: bytes, order: str) -> _Matrix:
     if len(flags) != 8 or len(extents) % 4 or not 8 <= len(extents) <= 128:
         raise _Damaged
     word = int(np.frombuffer(flags, order + "u4")[0])
-    sizes = tuple(np.frombuffer(extents, order + "i4").tolist())
+    sizes = tuple(int(size) for size in np.frombuffer(extents, order + "i4"))
     if min(sizes) < 0:
         raise _Damaged
     return _Matrix(word & 0xff, word >> 8 & 0xff, sizes, name, content[used:], order)

@@ -20,7 +20,7 @@ MAX_COORDINATE = 1e150  # stages square distances, which must not overflow
 
 def wrong_with_points(points: Floats) -> tuple[int, str] | None:
     """The first row whose coordinates meshes may not have, and why."""
-    finite = np.isfinite(points).all(axis=1)
+    finite = np.all(np.isfinite(points), axis=1)
     with np.errstate(invalid="ignore"):
         usable = finite & (np.abs(points).max(axis=1) <= MAX_COORDINATE)
     if usable.all():

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, is_dataclass
 from functools import cache
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 import numpy
 import pandas
@@ -20,7 +20,7 @@ class Drawing:
     draw: Callable[..., None]   # of a module: takes an empty figure and the arguments, and reads nothing else
     arguments: tuple[Any, ...]
     size: tuple[float, float]   # width and height, inches
-    layout: str | None = "constrained"
+    layout: Literal["constrained"] | None = "constrained"
 
     def key(self) -> str:
         """A digest of what is drawn and of the code that draws it. TypeError for an argument without a content that could be told."""

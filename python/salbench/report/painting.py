@@ -44,10 +44,10 @@ class Canvas:
         self.shade = (LIGHTEST + (1 - LIGHTEST) * shade)[:, None]
         self.alpha = 255 if picture.coverage is None else picture.coverage.reshape(-1)[self.seen]
 
-    def values(self, values: Floats) -> Floats:
+    def values(self, values: Floats) -> NDArray[numpy.floating[Any]]:
         """Of n values, those of the pixels that show something."""
         of_corners = numpy.asarray(values, numpy.float32)[self.corners]
-        found: Floats = of_corners[:, 0] if self.weights is None else numpy.einsum("kc,kc->k", of_corners, self.weights)
+        found: NDArray[numpy.floating[Any]] = of_corners[:, 0] if self.weights is None else numpy.einsum("kc,kc->k", of_corners, self.weights)
         return found
 
     def paint(self, values: Floats, name: str = "palette") -> Any:
