@@ -11,11 +11,13 @@ the same bytes; of the others, the largest difference between two values over th
 and array where that is. Metrics, those without a difference in one row: the largest difference between two scores. Exit status 1
 if that is above the tolerance (default 1e-6), or if an artefact or an array of other length is in one export only. Prints one
 table of folders: how many cells of their .csv files, but for timeline.csv, are equal, and the largest difference between two
-numbers over the larger one, to which the tolerance applies. Needs python3-h5py.
+numbers over the largest one of their column and metric, since an interval may end near 0. The tolerance applies to it. Needs
+python3-h5py.
 """
 
 import csv
 import sys
+from collections import defaultdict
 from pathlib import Path
 
 import h5py
@@ -111,24 +113,24 @@ def number(cell):
         return numpy.nan
 
 
-def relative(a, b):
-    """The difference of two cells over the larger of their numbers; infinite where that is not known."""
-    a, b = number(a), number(b)
-    if a == b:
-        return 0.0
-    off = abs(a - b) / max(abs(a), abs(b))
-    return off if off == off else numpy.inf
-
-
 def compare_cells(first, second):
-    """How many cells two tables have, how many are equal, the largest relative difference, and the column where that is."""
+    """How many cells two tables have, how many are equal, the largest difference, and the column where that is."""
     ours, theirs = ([row for row in csv.reader(path.read_text(encoding="utf-8").splitlines()) if not "".join(row).startswith("#")]
                     for path in (first, second))
     cells = sum(map(len, ours))
     if [len(row) for row in ours] != [len(row) for row in theirs]:
         return cells, 0, numpy.inf, "other rows"
-    off = [(relative(a, b), column) for row, other in zip(ours, theirs) for a, b, column in zip(row, other, ours[0]) if a != b]
-    return cells, cells - len(off), *max(off, default=(0.0, "-"))
+    header = ours[0]
+    metric = header.index("metric") if "metric" in header else None
+    size, off = defaultdict(float), []
+    for row, other in zip(ours, theirs):
+        for column, a, b in zip(header, row, other):
+            place = "" if metric is None else row[metric], column
+            size[place] = numpy.fmax(size[place], abs(number(a)))
+            if a != b:
+                off.append((abs(number(a) - number(b)), place))
+    found = [(apart / size[place] if apart <= size[place] else numpy.inf, place[1]) for apart, place in off]
+    return cells, cells - len(off), *max(found, default=(0.0, "-"))
 
 
 def compare_tables(first, second):
