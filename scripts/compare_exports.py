@@ -122,7 +122,7 @@ def compare_cells(first, second):
         return cells, 0, numpy.inf, "other rows"
     header = ours[0]
     metric = header.index("metric") if "metric" in header else None
-    size, off = defaultdict(float), []
+    size, off = defaultdict(lambda: numpy.finfo(float).tiny), []  # all may be 0
     for row, other in zip(ours, theirs):
         for column, a, b in zip(header, row, other):
             place = "" if metric is None else row[metric], column

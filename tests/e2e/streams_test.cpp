@@ -21,7 +21,7 @@ using testing::SizeIs;
 
 // The command after the shell has changed its standard streams: "exec > /dev/full".
 Outcome run_after(const std::string& change, std::vector<std::string> command) {
-  // Where a developer sets it, Python keeps nothing in a buffer that it could fail to write at its end.
+  // With PYTHONUNBUFFERED, Python has no buffered output left at exit, and cannot fail to write it.
   command.insert(command.begin(),
                  {"/bin/sh", "-c", change + " && unset PYTHONUNBUFFERED && exec \"$0\" \"$@\""});
   return run_process(command);
