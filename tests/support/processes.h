@@ -29,10 +29,11 @@ inline std::string process_file(std::string_view number, std::string_view name) 
   return text;
 }
 
-// Gone, or a zombie that nobody has reaped yet.
+// Gone, or dead: a zombie that nobody has reaped yet, or one that is being reaped (X).
 inline bool is_gone(std::string_view number) {
   const std::string status = process_file(number, "status");
-  return status.empty() || status.find("State:\tZ") != std::string::npos;
+  const auto is_in = [&](const char* state) { return status.find(state) != std::string::npos; };
+  return status.empty() || is_in("State:\tZ") || is_in("State:\tX");
 }
 
 // Numbers of the processes one of whose files holds the text.
