@@ -31,7 +31,7 @@ const Format* format_of(const std::filesystem::path& path) {
 }
 
 bool announces_faces(std::string_view bytes) try {
-  TextScanner in(bytes, "");
+  TextScanner in(bytes, "", '\0', LineEnds::as_first);
   const ply::Header header = ply::read_header(in);
   const ply::Element* face = header.find("face");
   return (face != nullptr && face->count > 0) || header.find("tristrips") != nullptr;

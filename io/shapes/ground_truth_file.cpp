@@ -10,21 +10,20 @@
 namespace salbench {
 namespace {
 
+// Of a column. A damaged number, such as "12#3" or "0,5", is none.
 bool is_name(std::string_view word) {
-  const std::string_view digits = without_plus(word);
+  constexpr std::string_view kInNumbers = "+-.,#0123456789";
   double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  const bool is_number = error != std::errc::invalid_argument && end == digits.data() + digits.size();
-  return !is_number && decimal_comma_in(word).empty();
+  const auto error = std::from_chars(word.data(), word.data() + word.size(), value).ec;  // reads "nan"
+  return error != std::errc() && kInNumbers.find(word[0]) == std::string_view::npos;
 }
 
 }  // namespace
 
 ScalarField parse_values(std::string_view text, std::string_view name, const Elements& elements) {
-  TextScanner in(text, name);
+  TextScanner in(text, name, '#');
   ScalarField values;
   for (bool first = true; in.next_filled_line();) {
-    if (in.peek_word().starts_with('#')) continue;
     const bool is_header = first && is_name(in.peek_word());
     first = false;
     is_header ? in.skip_word() : values.push_back(in.number());

@@ -19,12 +19,12 @@ class ObjParser {
 
   Mesh parse(PolygonCounts& counts) {
     while (in_.next_line()) {
+      const std::string_view record = in_.peek_word();
+      if (record != "v" && record != "f") continue;
+      const bool is_vertex = record == "v";
       join_continued_lines();
-      const std::string_view record = in_.word();
-      if (record == "v")
-        read_vertex();
-      else if (record == "f")
-        read_face();
+      in_.skip_word();
+      is_vertex ? read_vertex() : read_face();
     }
     check_forward_references();
     if (mesh_.vertices.empty()) in_.fail("the file ends without a vertex (v): expected an OBJ file");
@@ -39,7 +39,8 @@ class ObjParser {
     std::size_t line_number;
   };
 
-  // A backslash at a line's end joins the next line to it.
+  // A backslash at a line's end joins the next line to it. In other records it may end the name of a material
+  // or a group.
   void join_continued_lines() {
     if (!ends_in_backslash(in_.line())) return;
     joined_.clear();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Object File Format of Geomview, text form, with the liberties that files take: counts on the header's line
-// or glued to it (ModelNet's "OFF490 518 0"), no header word, colours behind faces. Line by line, since only
-// the line's end tells where optional columns stop.
+// or glued to it (ModelNet's "OFF490 518 0"), no header word, colours behind faces.
 
 #include <algorithm>
 #include <array>
+#include <exception>
 
 #include <fmt/format.h>
 
@@ -47,19 +47,28 @@ void skip_header_word(TextScanner& in) {
 }
 
 std::int64_t read_count(TextScanner& in, std::string_view plural) {
+  if (in.peek_word().empty() && !in.next_filled_line())
+    in.fail("the file ends before the counts: copy it again");
   const std::int64_t count = in.integer();
   if (const std::string wrong = wrong_with_count(count, plural); !wrong.empty()) in.fail(wrong);
   return count;
 }
 
+// Which nobody keeps right; it may be missing, or stand alone on the next line.
+void skip_number_of_edges(TextScanner& in) {
+  TextScanner next = in;
+  const bool on_next_line = next.peek_word().empty() && next.next_filled_line();
+  if (!is_count(next.word()) || (on_next_line && !next.peek_word().empty())) return;
+  in = next;
+}
+
 Counts read_counts(TextScanner& in) {
   if (!in.next_filled_line()) in.fail("the file has no text but comments: expected an OFF file");
   skip_header_word(in);
-  if (in.peek_word().empty() && !in.next_filled_line())
-    in.fail("the file ends before the counts: copy it again");
   const std::int64_t vertices = read_count(in, "vertices");
   const std::int64_t faces = read_count(in, "faces");
-  return {vertices, faces};  // a number of edges may follow, which nobody keeps right
+  skip_number_of_edges(in);
+  return {vertices, faces};
 }
 
 // "3 0 1 2", a colour behind it or not.
@@ -74,19 +83,25 @@ void read_face(TextScanner& in, std::int64_t n_vertices, std::vector<std::int32_
   }
 }
 
-}  // namespace
+// Further columns: colours, normals or texture coordinates, which no file announces reliably. Only a line's
+// end tells where they stop, so that a record with some begins a line.
+enum class FurtherColumns { skipped, none };
 
-Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* counts) {
-  TextScanner in(text, name, '#');
-  const Counts announced = read_counts(in);
+Mesh read_body(TextScanner in, const Counts& announced, FurtherColumns columns, PolygonCounts& counts) {
+  const auto end_record = [&] {
+    if (columns == FurtherColumns::skipped) in.skip_further_columns();
+    in.end_record();
+  };
   Mesh mesh;
-  mesh.vertices.reserve(room_for(announced.vertices, text.size()));
-  mesh.faces.reserve(room_for(announced.faces, text.size()));
+  mesh.vertices.reserve(room_for(announced.vertices, in.text_after_line().size()));
+  mesh.faces.reserve(room_for(announced.faces, in.text_after_line().size()));
+  if (columns == FurtherColumns::skipped) in.skip_line();  // behind the counts
 
   in.begin_records(announced.vertices, "vertices");
   for (std::int64_t i = 0; i < announced.vertices; ++i) {
     in.next_record();
     mesh.vertices.push_back(read_point(in));
+    end_record();
   }
   in.begin_records(announced.faces, "faces");
   Polygons polygons;
@@ -95,14 +110,33 @@ Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* coun
     in.next_record();
     read_face(in, announced.vertices, polygon);
     polygons.add(polygon, in.line_number(), mesh.faces);
+    end_record();
   }
-  if (in.next_filled_line())
-    in.fail(fmt::format("there is more text after {} vertices and {} faces: the counts at the top are wrong",
-                        announced.vertices, announced.faces));
-  const PolygonCounts found =
-      polygons.split(mesh, [&](std::size_t line, const std::string& why) { in.fail_at(line, why); });
-  if (counts != nullptr) *counts = found;
+  in.end_records(
+      fmt::format("there is more text after {} vertices and {} faces: the counts at the top are wrong",
+                  announced.vertices, announced.faces));
+  counts = polygons.split(mesh, [&](std::size_t line, const std::string& why) { in.fail_at(line, why); });
   return mesh;
+}
+
+}  // namespace
+
+// Where lines do not fit the counts, several records may share one.
+Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* counts) {
+  TextScanner in(text, name, '#');
+  const Counts announced = read_counts(in);
+  PolygonCounts found;
+  if (counts == nullptr) counts = &found;
+  try {
+    return read_body(in, announced, FurtherColumns::skipped, *counts);
+  } catch (const InputError&) {
+    const std::exception_ptr by_lines = std::current_exception();
+    try {
+      return read_body(in, announced, FurtherColumns::none, *counts);
+    } catch (const InputError&) {
+      std::rethrow_exception(by_lines);
+    }
+  }
 }
 
 }  // namespace salbench

@@ -63,10 +63,10 @@ void read_ascii(TextScanner in, const Header& header, const ChosenColumns& wante
       else
         for (std::int64_t k = 0; k < field.count; ++k) in.skip_word();
     }
-    if (!in.peek_word().empty()) in.fail("the line has more values than the header says");
+    in.end_record();
     add_point(cloud, values, wanted.count);
   }
-  if (in.next_filled_line()) in.fail("there is more text after the last point: the header is wrong");
+  in.end_records("there is more text after the last point: the header is wrong");
 }
 
 template <class T>
@@ -164,7 +164,7 @@ std::vector<char> decompressed(std::string_view& bytes, const Header& header, st
 }  // namespace
 
 PointCloud parse_pcd(std::string_view bytes, std::string_view name) {
-  TextScanner in(bytes, name, '#');
+  TextScanner in(bytes, name, '#', LineEnds::as_first);
   const Header header = pcd::read_header(in);
   if (header.points == 0) in.fail("the header announces no points");
   const ChosenColumns wanted(header);

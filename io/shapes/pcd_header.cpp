@@ -27,7 +27,7 @@ class HeaderParser {
       else if (keyword == "TYPE")
         read_each([&](Field& field) { read_type(field); });
       else if (keyword == "COUNT")
-        read_each([&](Field& field) { field.count = whole_number(1, kMaxCount); });
+        read_each([&](Field& field) { field.count = whole_number(0, kMaxCount); });
       else if (keyword == "WIDTH")
         width_ = whole_number(0, kMaxVertices);
       else if (keyword == "HEIGHT")
@@ -90,6 +90,7 @@ class HeaderParser {
 
   Header finished() {
     header_.data = read_data();
+    in_.end_header();
     header_.height = height_.value_or(1);
     const std::optional<std::int64_t> size =
         width_ ? std::optional(*width_ * header_.height) : std::nullopt;  // both below 2^31
@@ -99,7 +100,7 @@ class HeaderParser {
     header_.points = points_ ? *points_ : *size;
     if (const std::string wrong = wrong_with_count(header_.points, "points"); !wrong.empty()) in_.fail(wrong);
     for (const Field& field : header_.fields)
-      if (field.type == 'F' && field.size < 4)
+      if (field.type == 'F' && field.size < 4 && field.count > 0)
         in_.fail(fmt::format("field {}: floating point of {} bytes cannot be read", in_quotes(field.name),
                              field.size));
     for (const char* axis : {"x", "y", "z"})

@@ -17,7 +17,7 @@ struct Field {
   std::string name;
   std::int64_t size = 4;   // bytes of one value: 1, 2, 4, 8
   char type = 'F';         // I: signed, U: unsigned, F: floating point
-  std::int64_t count = 1;  // values per point
+  std::int64_t count = 1;  // values per point; 0: takes no bytes, as drivers of lidars write it
 
   std::int64_t bytes() const { return size * count; }
 };

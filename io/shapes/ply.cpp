@@ -39,25 +39,20 @@ std::string plural_of(const Element& element) {
   return fmt::format("elements {}", in_quotes(element.name));
 }
 
-// One record per line.
 class AsciiBody {
  public:
   AsciiBody(const TextScanner& after_header, bool finite) : in_(after_header), finite_(finite) {}
 
   void begin(const Element& element) { in_.begin_records(element.count, plural_of(element)); }
   void next_record() { in_.next_record(); }
-  void end_record() {
-    if (!in_.peek_word().empty()) in_.fail("the line has more values than the header says");
-  }
+  void end_record() { in_.end_record(); }
   double value(Type) { return finite_ ? in_.number() : in_.number_or_nan(); }
   void skip(Type, std::int64_t n) {
     for (std::int64_t i = 0; i < n; ++i) in_.skip_word();
   }
-  void end() {
-    if (in_.next_filled_line()) in_.fail("there is more text after the last element: the header is wrong");
-  }
+  void end() { in_.end_records("there is more text after the last element: the header is wrong"); }
   [[noreturn]] void fail(std::string_view what) const { in_.fail(what); }
-  std::size_t place() const { return in_.line_number(); }  // of the record
+  std::size_t place() const { return in_.line_number(); }  // of the record's end
 
  private:
   TextScanner in_;
@@ -259,7 +254,7 @@ void check_faces(const TextScanner& in, const ply::Header& header) {
 }  // namespace
 
 Mesh parse_ply(std::string_view bytes, std::string_view name, PolygonCounts* counts) {
-  TextScanner in(bytes, name);
+  TextScanner in(bytes, name, '\0', LineEnds::as_first);
   const ply::Header header = ply::read_header(in);
   check_vertices(in, header, "mesh");
   check_faces(in, header);
@@ -291,7 +286,7 @@ Mesh parse_ply(std::string_view bytes, std::string_view name, PolygonCounts* cou
 }
 
 PointCloud parse_ply_cloud(std::string_view bytes, std::string_view name) {
-  TextScanner in(bytes, name);
+  TextScanner in(bytes, name, '\0', LineEnds::as_first);
   const ply::Header header = ply::read_header(in);
   check_vertices(in, header, "point cloud");
   const Element *vertex = header.find("vertex"), *face = header.find("face");

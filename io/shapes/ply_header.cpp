@@ -40,6 +40,14 @@ Encoding read_encoding(TextScanner& in) {
                       in_quotes(word)));
 }
 
+// A word too many may be the next line of a header whose lines end in different ways.
+void require_line_end(TextScanner& in) {
+  const std::string_view word = in.peek_word();
+  if (!word.empty())
+    in.fail(fmt::format("{} is a word too many; the lines of a header have to end as its first one does",
+                        in_quotes(word)));
+}
+
 std::string read_name(TextScanner& in) {
   const std::string_view word = in.word();
   if (word.empty()) in.fail("the line ends where a name is expected");
@@ -53,6 +61,7 @@ Element read_element(TextScanner& in) {
   if (element.count < 0)
     in.fail(
         fmt::format("{} elements {}: a count cannot be negative", element.count, in_quotes(element.name)));
+  require_line_end(in);
   return element;
 }
 
@@ -64,6 +73,7 @@ Property read_property(TextScanner& in) {
   }
   property.type = read_type(in);
   property.name = read_name(in);
+  require_line_end(in);
   return property;
 }
 
@@ -89,6 +99,7 @@ Header read_header(TextScanner& in) {
       elements.back().properties.push_back(read_property(in));
     } else if (keyword == "end_header") {
       if (!encoding) in.fail("the header names no format");
+      in.end_header();
       return {*encoding, std::move(elements)};
     } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
       in.fail(fmt::format("{} is not a keyword of a PLY header", in_quotes(keyword)));

@@ -40,7 +40,8 @@ struct Header {
   const Element* find(std::string_view element) const;
 };
 
-// Reads up to and with "end_header"; the body is then in.text_after_line(). Throws InputError.
+// Reads up to and with "end_header"; the body is then in.text_after_line(). The scanner takes line ends as in
+// the first line: the bytes of a binary body could pass for one. Throws InputError.
 Header read_header(TextScanner& in);
 
 }  // namespace salbench::ply

@@ -15,23 +15,47 @@ bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 bool is_ascii_digit(char c) { return c >= '0' && c <= '9'; }
 
+// The character that ends the first line: LF for CR LF as well; '\0' if there is one line alone.
+char end_of_first_line(std::string_view text) {
+  const std::size_t end = text.find_first_of("\r\n");
+  if (end == std::string_view::npos) return '\0';
+  return text[end] == '\r' && text.substr(end + 1, 1) != "\n" ? '\r' : '\n';
+}
+
+std::string_view without_comment(std::string_view line, char comment) {
+  for (std::size_t at = line.find(comment); at != std::string_view::npos; at = line.find(comment, at + 1))
+    if (at == 0 || is_space(line[at - 1])) return line.substr(0, at);
+  return line;
+}
+
+std::string_view hint_for(std::string_view word) {
+  if (is_windows_non_number(word)) return ": older Windows programs write infinity and NaN so";
+  return decimal_comma_in(word);
+}
+
 }  // namespace
 
-TextScanner::TextScanner(std::string_view text, std::string_view name, char comment)
-    : text_(without_byte_order_mark(text)),
-      name_(name),
-      comment_(comment),
-      line_end_(text.find('\n') == std::string_view::npos ? '\r' : '\n') {}
+TextScanner::TextScanner(std::string_view text, std::string_view name, char comment, LineEnds ends)
+    : text_(without_byte_order_mark(text)), name_(name), comment_(comment) {
+  if (ends == LineEnds::as_first) only_line_end_ = end_of_first_line(text_);
+}
+
+std::size_t TextScanner::line_length() const {
+  if (only_line_end_ != '\0') return std::min(text_.find(only_line_end_), text_.size());
+  const auto* const end = std::ranges::find_if(text_, [](char c) { return c == '\n' || c == '\r'; });
+  return static_cast<std::size_t>(end - text_.begin());
+}
 
 bool TextScanner::next_line() {
   if (text_.empty()) {
     line_ = {};
     return false;
   }
-  const std::size_t end = text_.find(line_end_);
-  line_ = text_.substr(0, end);
-  text_.remove_prefix(end == text_.npos ? text_.size() : end + 1);
-  if (comment_ != '\0') line_ = line_.substr(0, line_.find(comment_));
+  line_ = text_.substr(0, line_length());
+  text_.remove_prefix(line_.size());
+  const bool two = only_line_end_ == '\0' && text_.starts_with("\r\n");
+  text_.remove_prefix(std::min<std::size_t>(two ? 2 : 1, text_.size()));
+  if (comment_ != '\0') line_ = without_comment(line_, comment_);
   ++line_number_;
   return true;
 }
@@ -42,16 +66,58 @@ bool TextScanner::next_filled_line() {
   return false;
 }
 
+void TextScanner::skip_line() { line_ = {}; }
+
+void TextScanner::end_header() {
+  skip_line();
+  only_line_end_ = '\0';
+}
+
 void TextScanner::begin_records(std::int64_t announced, std::string_view plural) {
+  require_no_more_on_last_line();
   records_announced_ = announced;
-  records_begun_ = 0;
+  records_begun_ = records_on_line_ = records_per_line_ = 0;
   records_ = plural;
 }
 
 void TextScanner::next_record() {
-  if (!next_filled_line()) fail(ends_early(records_begun_, records_announced_, records_));
+  record_begins_line_ = peek_word().empty();
+  expected_at_line_end_ = {};
+  if (record_begins_line_) {
+    if (records_per_line_ == 0) records_per_line_ = records_on_line_;
+    if (records_on_line_ != records_per_line_) fail_as_uneven();
+    records_on_line_ = 0;
+    if (!next_filled_line()) fail(ends_early(records_begun_, records_announced_, records_));
+  }
   ++records_begun_;
 }
+
+void TextScanner::skip_further_columns() {
+  if (expected_at_line_end_.empty()) skip_line();
+}
+
+void TextScanner::end_record() {
+  ++records_on_line_;
+  if (!expected_at_line_end_.empty() && !peek_word().empty())
+    fail_at(first_line_end_, fmt::format("the line ends where {} is expected", expected_at_line_end_));
+}
+
+void TextScanner::require_no_more_on_last_line() const {
+  if (records_per_line_ != 0 && records_on_line_ > records_per_line_) fail_as_uneven();
+}
+
+void TextScanner::fail_as_uneven() const {
+  fail(fmt::format("the line has {} {}, and the lines before have {}", records_on_line_, records_,
+                   records_per_line_));
+}
+
+void TextScanner::end_records(std::string_view more) {
+  require_no_more_on_last_line();
+  if (!peek_word().empty()) fail_too_many();
+  if (next_filled_line()) fail(more);
+}
+
+void TextScanner::fail_too_many() const { fail("the line has more values than the header says"); }
 
 std::string_view TextScanner::word() {
   std::size_t begin = 0;
@@ -73,8 +139,14 @@ std::string_view TextScanner::peek_word() {
 std::string_view TextScanner::expected_word(std::string_view what) {
   const std::string_view found = word();
   if (!found.empty()) return found;
-  if (text_.empty() && !records_.empty()) fail(ends_early(records_begun_ - 1, records_announced_, records_));
-  fail(fmt::format("the line ends where {} is expected", what));
+  if (records_.empty()) fail(fmt::format("the line ends where {} is expected", what));
+  if (!record_begins_line_) fail_too_many();
+  if (expected_at_line_end_.empty()) {
+    expected_at_line_end_ = what;
+    first_line_end_ = line_number_;
+  }
+  if (!next_filled_line()) fail(ends_early(records_begun_ - 1, records_announced_, records_));
+  return word();
 }
 
 void TextScanner::skip_word() { expected_word("a value"); }
@@ -89,7 +161,7 @@ Number TextScanner::parsed(std::string_view what, std::string_view type) {
     fail(fmt::format("{} does not fit {}", in_quotes(found), type));
   if (error != std::errc() || end != digits.data() + digits.size())
     fail(fmt::format("{} is not {}{}", in_quotes(found), what,
-                     std::is_floating_point_v<Number> ? decimal_comma_in(found) : ""));
+                     std::is_floating_point_v<Number> ? hint_for(found) : ""));
   return value;
 }
 
@@ -125,6 +197,11 @@ std::string_view decimal_comma_in(std::string_view word) {
   after = after.substr(0, after.find_first_of("eE"));
   return is_digits(before) && !after.empty() && is_digits(after) ? ": write its decimal comma as a point"
                                                                  : "";
+}
+
+bool is_windows_non_number(std::string_view word) {
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  return word.starts_with("1.#");
 }
 
 bool is_digits(std::string_view word) {

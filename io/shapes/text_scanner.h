@@ -11,20 +11,31 @@
 
 namespace salbench {
 
-// Lines end in LF, CR LF, or (if the text has no LF at all) CR; spaces and tabs separate words. A byte order
-// mark at the start is skipped. The text must outlive the scanner.
+// any: LF, CR LF and CR each end a line wherever they stand.
+// as_first: the end of the first line decides, for a header before bytes that could pass for line ends.
+enum class LineEnds { any, as_first };
+
+// Spaces and tabs separate words. A byte order mark at the start is skipped. The text must outlive the
+// scanner.
 class TextScanner {
  public:
-  // Skips from `comment` to the end of the line; '\0' for a format without comments.
-  TextScanner(std::string_view text, std::string_view name, char comment = '\0');
+  // Skips from a word that begins with `comment` to the end of the line; '\0' for a format without comments.
+  TextScanner(std::string_view text, std::string_view name, char comment = '\0',
+              LineEnds ends = LineEnds::any);
 
   bool next_line();         // false at the end of the text
   bool next_filled_line();  // the next line that has a word
+  void skip_line();         // what is left of this one
+  void end_header();        // from here on, lines end in any way; what is left of this one is skipped
 
-  // For formats that announce how many records follow, one to a line: from here on, a text that ends too
-  // early is reported as "ends after 5 of 10 vertices".
+  // For formats whose header fixes how many records follow and how many words each has. A record takes one
+  // line, several whole ones, or a part of one; the first line of several records says how many all have.
+  // Elsewhere a value is missing or too many, and fails with the line where that is.
   void begin_records(std::int64_t announced, std::string_view plural);
-  void next_record();  // the next line that has a word; fails if there is none
+  void next_record();           // fails with "ends after 5 of 10 vertices" at the end of the text
+  void skip_further_columns();  // of a record on one line
+  void end_record();
+  void end_records(std::string_view more);  // fails with `more` if any text follows
 
   std::string_view word();       // the next word of the line; empty at its end
   std::string_view peek_word();  // the same, staying before it
@@ -43,7 +54,11 @@ class TextScanner {
   [[noreturn]] void fail_at(std::size_t line_number, std::string_view what) const;
 
  private:
+  std::size_t line_length() const;
   std::string_view expected_word(std::string_view what);
+  void require_no_more_on_last_line() const;  // than on the first
+  [[noreturn]] void fail_as_uneven() const;
+  [[noreturn]] void fail_too_many() const;
   template <class Number>
   Number parsed(std::string_view what, std::string_view type);
 
@@ -53,9 +68,14 @@ class TextScanner {
   std::size_t line_number_ = 0;
   std::int64_t records_announced_ = 0;
   std::int64_t records_begun_ = 0;
-  std::string records_;  // "vertices"; empty outside records
+  std::int64_t records_on_line_ = 0;   // that end there
+  std::int64_t records_per_line_ = 0;  // 0 before the first line of records has ended
+  std::string records_;                // "vertices"; empty outside records
+  bool record_begins_line_ = false;
+  std::string_view expected_at_line_end_;  // in the record; empty if it has gone over no line's end
+  std::size_t first_line_end_ = 0;         // line number of that place
   char comment_;
-  char line_end_;
+  char only_line_end_ = '\0';  // '\0': any
 };
 
 // A number as std::from_chars takes it: without the plus sign that files do contain.
@@ -63,6 +83,9 @@ std::string_view without_plus(std::string_view word);
 
 // ": write its decimal comma as a point" of a number such as "0,5"; empty for another word.
 std::string_view decimal_comma_in(std::string_view word);
+
+// What older C libraries of Windows print for infinity and NaN: "1.#INF", "-1.#IND", "1.#QNAN".
+bool is_windows_non_number(std::string_view word);
 
 bool is_digits(std::string_view word);  // 0 to 9, or nothing
 

@@ -2,6 +2,7 @@
 // Points as text, one per line. The format has no header, so what the columns are is told by their number.
 
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -27,6 +28,7 @@ class XyzParser {
     const std::int64_t n = std::ssize(cloud_.points);
     if (n == 0) in_.fail("the file ends without a point");
     if (announced_ && n < *announced_) in_.fail(ends_early(n, *announced_, "points"));
+    if (!cloud_.normals.empty() && !has_unit_normal_) fail_as_colours(cloud_.normals[0], first_point_);
     return std::move(cloud_);
   }
 
@@ -48,6 +50,7 @@ class XyzParser {
     const std::int64_t n = std::ssize(cloud_.points);
     if (announced_ && n == *announced_)
       in_.fail(fmt::format("there are more points than the {} that the first line announces", n));
+    if (n == 0) first_point_ = in_.line_number();
     if (n == kMaxVertices) in_.fail(wrong_with_count(n + 1, "points"));
     std::array<double, 6> values{};
     std::size_t count = 0;
@@ -60,21 +63,28 @@ class XyzParser {
     if (count == 6) add_normal({values[3], values[4], values[5]});
   }
 
-  // Columns have no names: three numbers of another length may be a colour.
+  // Columns have no names, and three numbers of another length may be a colour. Rounding to two decimals
+  // leaves a unit normal within 1 %. NaN and zeros: no normal was measured there.
   void add_normal(const Vec3& normal) {
-    constexpr double kShortest = 0.5, kLongest = 2;
+    constexpr double kTolerance = 0.01;
     const double length = normal.stableNorm();
-    if (length > 0 && (length < kShortest || length > kLongest))
-      in_.fail(
-          fmt::format("the last three of six values are {} {} {}, which is not a unit normal: write x y z "
-                      "alone if they are something else",
-                      normal.x(), normal.y(), normal.z()));
+    if (length > 0 && !(std::abs(length - 1) <= kTolerance)) fail_as_colours(normal, in_.line_number());
+    if (length > 0) has_unit_normal_ = true;
     cloud_.normals.push_back(normal);
+  }
+
+  [[noreturn]] void fail_as_colours(const Vec3& values, std::size_t line) const {
+    in_.fail_at(line,
+                fmt::format("the last three of six values are {} {} {}, which is not a unit normal: are these "
+                            "colours? Write x y z alone, or name the columns in a description",
+                            values.x(), values.y(), values.z()));
   }
 
   TextScanner in_;
   PointCloud cloud_;
   std::optional<std::int64_t> announced_;
+  std::size_t first_point_ = 0;  // line number
+  bool has_unit_normal_ = false;
 };
 
 }  // namespace

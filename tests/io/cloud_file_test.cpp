@@ -201,7 +201,7 @@ TEST(Pcd, NamesTheLineOfTheHeaderThatIsWrong) {
   refused("SIZE 8 8 8", "SIZE 8 8 8 8", "a.pcd:4: the line has more values than the 3 fields");
   refused("SIZE 8 8 8", "SIZE 8 2 8", "field \"y\": floating point of 2 bytes");
   refused("TYPE F F F", "TYPE F D F", "a.pcd:5: \"D\" is not a PCD type: expected I, U or F");
-  refused("COUNT 1 1 1", "COUNT 1 0 1", "a.pcd:6: 0 is not between 1 and 100000");
+  refused("COUNT 1 1 1", "COUNT 1 -1 1", "a.pcd:6: -1 is not between 0 and 100000");
   refused("COUNT 1 1 1", "COUNT 1 2 1", "the header has no field \"y\" of one number per point");
   refused("WIDTH 2", "WIDTH -2", "a.pcd:7: -2 is not between 0 and 2147483647");
   refused("WIDTH 2", "WIDTH 5", "the header announces 2 points, and 5 x 1");

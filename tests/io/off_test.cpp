@@ -106,7 +106,7 @@ TEST(Off, RefusesHeadersThatCannotBe) {
   expect_refusal("", "x.off: the file has no text");
   expect_refusal(" \n# only a comment\n", "the file has no text");
   expect_refusal("OFF\n", "the file ends before the counts");
-  expect_refusal("OFF\n4\n", "x.off:2: the line ends where a whole number is expected");
+  expect_refusal("OFF\n4\n", "x.off:2: the file ends before the counts");
   expect_refusal("OFF\n-4 4 6\n", "x.off:2: -4 vertices: a count cannot be negative");
   expect_refusal("OFF\n4 -4 6\n", "x.off:2: -4 faces: a count cannot be negative");
   expect_refusal("OFF BINARY\n", "binary OFF cannot be read");

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files as people have them: one row per input, and what comes of it. A further case is a row.
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/file.h"
+#include "io/shapes/cloud_file.h"
+#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/mesh_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+using namespace std::string_literals;
+
+std::string text_of(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
+
+std::string parsed_shape(std::string_view bytes, const std::string& file) {
+  std::vector<std::string> parts;
+  if (is_point_cloud(bytes, file)) {
+    const PointCloud cloud = parse_cloud(bytes, file);
+    for (const Vec3& point : cloud.points) parts.push_back(text_of(point));
+    for (const Vec3& normal : cloud.normals) parts.push_back("n " + text_of(normal));
+  } else {
+    const Mesh mesh = parse_mesh(bytes, file);
+    for (const Vec3& vertex : mesh.vertices) parts.push_back(text_of(vertex));
+    for (const Triangle& face : mesh.faces)
+      parts.push_back(fmt::format("f {} {} {}", face[0], face[1], face[2]));
+  }
+  return fmt::format("{}", fmt::join(parts, " | "));
+}
+
+// "0 0 0 | 1 0 0 | f 0 1 2", "n 0 0 1" for a normal, the values of .val and .pid; or the message.
+std::string outcome(const std::string& file, std::string_view bytes) {
+  try {
+    const std::string extension = lower_case_extension(file);
+    if (extension == ".val")
+      return fmt::format("{}", fmt::join(parse_values(bytes, file, {Elements::kUnknown}), " "));
+    if (extension == ".pid") return fmt::format("{}", fmt::join(parse_picks(bytes, file, {20}), " "));
+    return parsed_shape(bytes, file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+struct Row {
+  const char* file;
+  std::string bytes;
+  const char* expected;  // the beginning of the outcome
+};
+
+void expect_outcomes(const std::vector<Row>& rows) {
+  for (const Row& row : rows)
+    EXPECT_THAT(outcome(row.file, row.bytes), testing::StartsWith(row.expected)) << row.bytes;
+}
+
+// "ply", the header of points with these properties, and the body; lines end in `end`.
+std::string ply(std::string_view format, int points, std::string_view body, std::string_view end = "\n") {
+  std::string text;
+  for (const std::string& line :
+       {"ply"s, fmt::format("format {} 1.0", format), fmt::format("element vertex {}", points),
+        "property float x"s, "property float y"s, "property float z"s, "end_header"s})
+    text += line + std::string(end);
+  return text + std::string(body);
+}
+
+std::string pcd(std::string_view fields, int points, std::string_view data, std::string_view body,
+                std::string_view end = "\n") {
+  std::string text;
+  for (const std::string& line :
+       {"# .PCD v0.7"s, "VERSION 0.7"s, std::string(fields), fmt::format("WIDTH {}", points), "HEIGHT 1"s,
+        fmt::format("POINTS {}", points), fmt::format("DATA {}", data)}) {
+    for (const char c : line + "\n") c == '\n' ? text += end : text += c;
+  }
+  return text + std::string(body);
+}
+const std::string kXyz = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1";
+
+std::string floats(std::initializer_list<float> values) {
+  std::string bytes;
+  for (const float value : values) bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  return bytes;
+}
+
+constexpr const char* kTriangle = "0 0 0 | 1 0 0 | 0 1 0 | f 0 1 2";
+
+TEST(Dialects, ACommentBeginsAWord) {
+  expect_outcomes({
+      {"a.off", "OFF\n3 1 0\n0 0 0 # a\n1 0 0\t#b\n#c\n0 1 0\n3 0 1 2 #d\n", kTriangle},
+      {"a.off", "OFF\n3 1 0\n0 0 1.#INF\n1 0 0\n0 1 0\n3 0 1 2\n",
+       "a.off:3: \"1.#INF\" is not a number: older Windows programs write infinity and NaN so"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2#d\n", "a.off:6: \"2#d\" is not a whole number"},
+      {"a.off", "OFF\n3#v 1 0\n", "a.off:2: \"3#v\" is not a whole number"},
+      {"a.obj", "v 0 0 -1.#IND\n", "a.obj:1: \"-1.#IND\" is not a number: older Windows"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3#4\n", "a.obj:4: \"3#4\" is not a corner of a face"},
+      {"a.obj", "v 0 0 0 # a\nv 1 0 0\nv 0 1 0\nf 1 2 3 # b\n", kTriangle},
+      {"a.ply", ply("ascii", 1, "0 1.#QNAN 0\n"), "a.ply:8: \"1.#QNAN\" is not a number: older Windows"},
+      {"a.pcd", pcd(kXyz, 1, "ascii", "0 0 +1.#SNAN\n"), "a.pcd:11: \"+1.#SNAN\" is not a number"},
+      {"a.pcd", pcd(kXyz, 2, "ascii", "# one\n0 0 0 # a\n1 0 0\n"), "0 0 0 | 1 0 0"},
+      {"a.xyz", "1 2 1.#INF\n", "a.xyz:1: \"1.#INF\" is not a number: older Windows"},
+      {"a.xyz", "1 2 1.5#\n", "a.xyz:1: \"1.5#\" is not a number"},
+      {"a.xyz", "2#points\n1 2 3\n4 5 6\n", "a.xyz:1: \"2#points\" is not a whole number"},
+      {"a.xyz", "#h\n1 2 3 #a\n", "1 2 3"},
+      {"a.pid", "12#3\n", "a.pid:1: \"12#3\" is not a whole number"},
+      {"a.pid", "12 # 3\n#4\n5\n", "12 5"},
+      {"a.val", "1.#INF\n0.5\n", "a.val:1: \"1.#INF\" is not a number: older Windows"},
+      {"a.val", "0.5\n-1.#IND\n", "a.val:2: \"-1.#IND\" is not a number: older Windows"},
+      {"a.val", "12#3\n0.5\n", "a.val:1: \"12#3\" is not a number"},
+      {"a.val", ".5x\n0.5\n", "a.val:1: \".5x\" is not a number"},
+      {"a.val", "# of 2\nsaliency\n0.5 # the first\n1\n", "0.5 1"},
+  });
+}
+
+TEST(Dialects, EachLineEndsInItsOwnWay) {
+  const std::string lf_floats = "\n\n\n\n"s + floats({1, 2}), cr_floats = "\r\n\r\n"s + floats({1, 2});
+  expect_outcomes({
+      {"a.off", "OFF\r3 1 0\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\n", kTriangle},    // CR, and one LF at the end
+      {"a.off", "OFF\r\n3 1 0\r0 0 0\n1 0 0\r\n0 1 0\r3 0 1 2", kTriangle},  // all three
+      {"a.off", "OFF\n\r3 1 0\n\r0 0 0\n\r1 0 0\n\r0 1 x\n\r3 0 1 2", "a.off:9: \"x\" is not a number"},
+      {"a.obj", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\n", kTriangle},
+      {"a.obj", "v 0 0 0 \\\r\nv 1 0 0\n", "0 0 0"},
+      {"a.xyz", "1 2 3\r4 5 6\n7 8 9\r10 11 12\n", "1 2 3 | 4 5 6 | 7 8 9 | 10 11 12"},  // in turn
+      {"a.xyz", "1 2 3\r4 5 6\r7 8 9\n", "1 2 3 | 4 5 6 | 7 8 9"},
+      {"a.xyz", "1 2 3\r4 5\r7 8 9\n", "a.xyz:2: a point needs 3 values"},
+      {"a.val", "1\r2\r3\n", "1 2 3"},
+      {"a.val", "1\r2\r\nx\n", "a.val:3: \"x\" is not a number"},
+      {"a.pid", "1\r2\n3\r\n4", "1 2 3 4"},
+      {"a.ply", ply("ascii", 2, "0 0 0\r1 2 3\n", "\r"), "0 0 0 | 1 2 3"},
+      {"a.ply", ply("ascii", 2, "0 0 0\n1 2 3\r", "\r\n"), "0 0 0 | 1 2 3"},
+      {"a.ply", ply("binary_little_endian", 1, floats({1, 2, 3}), "\r"), "1 2 3"},
+      {"a.ply", ply("binary_little_endian", 1, floats({1, 2, 3}), "\r\n"), "1 2 3"},
+      // Bodies that begin with what could end a line.
+      {"a.ply", ply("binary_little_endian", 1, lf_floats, "\r"), "6.646346445936972e-33 1 2"},
+      {"a.ply", ply("binary_little_endian", 1, lf_floats, "\n"), "6.646346445936972e-33 1 2"},
+      {"a.ply", ply("binary_little_endian", 1, cr_floats, "\n"), "6.790793395817922e-33 1 2"},
+      {"a.ply", ply("binary_little_endian", 1, cr_floats, "\r\n"), "6.790793395817922e-33 1 2"},
+      {"a.ply", ply("binary_little_endian", 1, cr_floats, "\r"), "6.790793395817922e-33 1 2"},
+      {"a.pcd", pcd(kXyz, 1, "binary", floats({1, 2, 3}), "\r"), "1 2 3"},
+      {"a.pcd", pcd(kXyz, 1, "binary", lf_floats, "\r"), "6.646346445936972e-33 1 2"},
+      {"a.pcd", pcd(kXyz, 1, "binary", cr_floats, "\r\n"), "6.790793395817922e-33 1 2"},
+      {"a.pcd", pcd(kXyz, 2, "ascii", "0 0 0\r1 2 3\n", "\r"), "0 0 0 | 1 2 3"},
+      // A header whose lines end in different ways would lose a line.
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\rproperty float x\nend_header\n",
+       "a.ply:3: \"property\" is a word too many"},
+      {"a.ply", "ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty uchar a\rproperty float x\r\n",
+       "a.ply:4: \"property\" is a word too many"},
+  });
+}
+
+TEST(Dialects, ThreeNumbersBehindAPointAreNormalsIfAllHaveUnitLength) {
+  const char* const kAsked = "is not a unit normal: are these colours?";
+  const auto refused = [&](const std::string& text, std::string_view where) {
+    const std::string said = outcome("a.xyz", text);
+    EXPECT_THAT(said, testing::StartsWith(where)) << text;
+    EXPECT_THAT(said, testing::HasSubstr(kAsked)) << text;
+  };
+  refused("1 2 3 0.9 0.4 0.5\n4 5 6 0 0 1\n", "a.xyz:1: ");  // a random colour
+  refused("1 2 3 0 0 1\n4 5 6 0.5 0.5 0.5\n", "a.xyz:2: ");  // grey
+  refused("1 2 3 1 1 1\n4 5 6 1 1 1\n", "a.xyz:1: ");        // white
+  refused("1 2 3 0 0 0\n4 5 6 0 0 0\n", "a.xyz:1: ");        // black, or nothing measured at all
+  refused("1 2 3 0 0 0\n4 5 6 0.6 0.6 0.6\n", "a.xyz:2: ");  // black, then grey
+  refused("1 2 3 0 0 1.02\n", "a.xyz:1: ");
+  refused("1 2 3 0 0 inf\n", "a.xyz:1: ");
+  refused("1 2 3 nan nan nan\n", "a.xyz:1: ");
+  refused("1 2 3 255 128 0\n", "a.xyz:1: ");
+  expect_outcomes({
+      {"a.xyz", "1 2 3 0 0 1\n4 5 6 0.58 0.58 0.57\n", "1 2 3 | 4 5 6 | n 0 0 1 | n 0.58 0.58 0.57"},
+      {"a.xyz", "1 2 3 0 0 1\n4 5 6 0 0 0\n", "1 2 3 | 4 5 6 | n 0 0 1 | n 0 0 0"},  // not measured there
+      {"a.xyz", "1 2 3 nan nan nan\n4 5 6 0 0 1\n", "1 2 3 | 4 5 6 | n nan nan nan | n 0 0 1"},
+  });
+}
+
+TEST(Dialects, AFieldOfCountZeroHasNoBytes) {
+  const std::string fields = "FIELDS x _ y z intensity\nSIZE 4 1 4 4 2\nTYPE F U F F F\nCOUNT 1 0 1 1 0";
+  expect_outcomes({
+      {"a.pcd", pcd(fields, 2, "binary", floats({1, 2, 3, 4, 5, 6})), "1 2 3 | 4 5 6"},
+      {"a.pcd", pcd(fields, 2, "ascii", "1 2 3\n4 5 6\n"), "1 2 3 | 4 5 6"},
+      {"a.pcd", pcd(fields, 2, "binary", floats({1, 2, 3, 4, 5})),
+       "a.pcd: the file ends after 1 of 2 points"},
+      {"a.pcd", pcd("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 0", 1, "ascii", "1 2\n"),
+       "a.pcd:10: the header has no field \"z\" of one number per point"},
+      {"a.pcd", pcd("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 -1", 1, "ascii", "1 2\n"),
+       "a.pcd:6: -1 is not between 0 and"},
+  });
+}
+
+std::string ply_mesh(std::string_view body, std::string_view more = "", int faces = 1) {
+  return fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{}"
+      "element face {}\nproperty list uchar int vertex_indices\nend_header\n{}",
+      more, faces, body);
+}
+
+TEST(Dialects, ARecordMaySpanLinesWhereTheHeaderFixesTheCount) {
+  const char* const kColours = "property uchar r\nproperty uchar g\nproperty uchar b\n";
+  expect_outcomes({
+      // PLY: a vertex over two lines, everything on one line, a number per line.
+      {"a.ply", ply_mesh("0 0 0\n9 9 9\n1 0 0\n9 9 9\n0 1 0\n9 9 9\n3 0 1 2\n", kColours), kTriangle},
+      {"a.ply", ply_mesh("0 0 0 1 0 0 0 1 0 3 0 1 2\n"), kTriangle},
+      {"a.ply", ply_mesh("0 0 0 1 0 0 0 1 0\n3\n0 1 2"), kTriangle},
+      {"a.ply", ply_mesh("0\n0\n0\n\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n"), kTriangle},
+      {"a.ply", ply_mesh("0 0 0 1 0 0\n0 1 0\n3 0 1 2 3 2 1 0\n", "", 2),
+       "0 0 0 | 1 0 0 | 0 1 0 | f 0 1 2 | f 2"},
+      // A value that is missing, or one too many, names its line.
+      {"a.ply", ply_mesh("0 0 0\n1 0\n0 1 0\n3 0 1 2\n"),
+       "a.ply:11: the line ends where a number is expected"},
+      {"a.ply", ply_mesh("0 0 0\n1 0 0 7\n0 1 0\n3 0 1 2\n"), "a.ply:11: the line has more values"},
+      {"a.ply", ply_mesh("0 0 0\n1 0 0\n0 1 0 3\n3 0 1 2\n"), "a.ply:12: the line has more values"},
+      {"a.ply", ply_mesh("0 0 0\n1 0 0 1 0 0\n0 1 0\n3 0 1 2\n"),
+       "a.ply:11: the line has 2 vertices, and the lines"},
+      {"a.ply", ply_mesh("0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), "a.ply:13: the file ends after 0 of 1 faces"},
+      {"a.ply", ply_mesh("0 0 0\n1 0 0\n0 1 0\n3 0 1\n3 0 1 2\n", "", 2),
+       "a.ply:14: vertex index 3 is out of range"},
+      {"a.ply", ply_mesh("0 0 0\n1 0 0\n0 1 0\n3 0 1 2 7\n"), "a.ply:13: the line has more values"},
+      {"a.ply", ply_mesh("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n7\n"), "a.ply:14: there is more text after the last"},
+      {"a.ply", ply("ascii", 3, "0 0 0\n1 0\n2 0 0 5\n"),
+       "a.ply:9: the line ends where a number is expected"},
+      {"a.ply", ply("ascii", 3, "0 0 0 5\n1 0\n2 0 0\n"), "a.ply:8: the line has more values"},
+      // PCD in text.
+      {"a.pcd", pcd(kXyz, 2, "ascii", "1 2\n3\n4 5\n6\n"), "1 2 3 | 4 5 6"},
+      {"a.pcd", pcd(kXyz, 2, "ascii", "1 2 3 4 5 6\n"), "1 2 3 | 4 5 6"},
+      {"a.pcd", pcd(kXyz, 3, "ascii", "1 2 3\n4 5\n6 7 8 9\n"), "a.pcd:12: the line ends where a number"},
+      {"a.pcd", pcd(kXyz, 2, "ascii", "1 2 3 4\n5 6 7\n"), "a.pcd:11: the line has more values"},
+      // OFF: counts and records over lines; several on one; further columns end with the line.
+      {"a.off", "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", kTriangle},
+      {"a.off", "OFF\n3 1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", kTriangle},
+      {"a.off", "OFF\n3\n1 3\n0 0\n0\n1 0\n0\n0 1\n0\n3\n0 1 2\n", kTriangle},
+      {"a.off", "OFF 3 1 3 0 0 0 1 0 0 0 1 0 3 0 1 2\n", kTriangle},
+      {"a.off", "OFF\n3 1 3\n0 0 0 1 0 0 0 1 0\n3 0 1 2\n", kTriangle},
+      {"a.off", "OFF\n4 2 0\n0 0 0 1 0 0\n0 1 0 1 1 0\n3 0 1 2 3 2 1 3\n",
+       "0 0 0 | 1 0 0 | 0 1 0 | 1 1 0 | f 0 1 2 | f 2 1 3"},
+      {"a.off", "OFF\n3 1 0\n0 0 0 .1 .2 .3\n1 0 0 .1 .2 .3\n0 1 0 .1 .2 .3\n3 0 1 2 9 9 9\n", kTriangle},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n",
+       "a.off:4: the line ends where a number is expected"},
+      {"a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n3 2 1 0\n",
+       "a.off:7: vertex index 3 is out of range"},
+      {"a.off", "OFF\n3 1 0\n0 0 0 1\n0 0 0 1\n0\n3 0 1 2\n",
+       "a.off:5: the line ends where a number is expected"},
+  });
+}
+
+TEST(Dialects, ABackslashContinuesCoordinatesAndCornersOfObj) {
+  expect_outcomes({
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl mats\\wood\\\nf 1 2 3\n", kTriangle},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\\\nf 1 2 3\n", kTriangle},
+      {"a.obj", "mtllib C:\\maps\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", kTriangle},
+      {"a.obj", "v 0 0 0\nv 1 \\\n0 0\nv 0 1 0\nf 1 \\\n 2 \\\n 3\n", kTriangle},
+      {"a.obj", "# a \\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 \\\n", kTriangle},
+  });
+}
+
+}  // namespace
+}  // namespace salbench
