@@ -46,6 +46,9 @@ class Numbers(Texts):
         self.expect([2, 4], "1; 2\n3; 4", "2")
         self.expect([7], "\ufeffvalue\n7\n", "value")
         self.expect([1, 2], "1\r2\r", "1")
+        for text in ("1\r2\r3\n", "1\r\n2\n3\r", "1\r2\n3", "1\n\r2\r\r3\r\n\n"):  # each line ends in its own way
+            self.expect([1, 2, 3], text, "1")
+        self.expect("3: \"x\" is not a number", "1\r2\nx\r\n", "1")
         self.expect([1, 2], "saliency\n1\n2\n", "")
         self.expect([[4, 8], [1, 5], [2, 6]], "x y z s\n1 2 3 4\n5 6 7 8", "s", "x", "2")
         self.expect([1e-320, 5e-324, 0], "1e-320\n5e-324\n0e-999\n", "")
@@ -148,7 +151,7 @@ class RowsOfElements(Texts):
 
 class Picks(unittest.TestCase):
     def test_order_and_repetitions_are_kept(self):
-        for text, base, expected in [(b"7\r\n0\r\n7\r\n", 0, [7, 0, 7]), (b"", 0, []), (b"# from 0\n7 # here\n+0\n", 0, [7, 0]),
+        for text, base, expected in [(b"7\r\n0\r\n7\r\n", 0, [7, 0, 7]), (b"", 0, []), (b"# from 0\n7 # here\n+0\n", 0, [7, 0]), (b"7\r0\n7\r\n1", 0, [7, 0, 7, 1]),
                                      (b"1\n8\n", 1, [0, 7])]:
             self.assertEqual(read_picks(text, "9_0.pid", Indices(base), Elements(8)).tolist(), expected)
 

@@ -53,7 +53,5 @@ def decimal_comma_in(word: bytes) -> str:
 
 
 def lines_of(data: bytes) -> list[bytes]:
-    """Lines end in LF, CR LF, or (if there is no LF at all) CR; a CR before an LF stays at its line."""
-    data = data.removeprefix(BYTE_ORDER_MARK)
-    lines = data.split(b"\n" if b"\n" in data else b"\r")
-    return lines[:-1] if not lines[-1] else lines
+    """LF, CR LF and CR each end a line wherever they stand."""
+    return data.removeprefix(BYTE_ORDER_MARK).splitlines()
