@@ -58,6 +58,7 @@ std::string write_results(const Session& session, RunRecord record) {
   std::vector<std::string> remarks;
   if (record.interrupted) remarks.emplace_back(kPartialNote);
   if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
+  if (!session.setup.inputs.remark.empty()) remarks.push_back(session.setup.inputs.remark);
   for (const std::string& remark : training_remarks(record.run)) {
     spdlog::warn("{}", remark);
     remarks.push_back(remark);

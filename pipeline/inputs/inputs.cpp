@@ -271,7 +271,8 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           std::make_shared<FileColumn>(std::move(shapes)),
           std::make_shared<FileColumn>(std::move(truths)),
           dataset.importer,
-          shard};
+          shard,
+          dataset.remark};
 }
 
 }  // namespace salbench

@@ -229,7 +229,8 @@ Dataset listed_dataset(std::string_view document) try {
                   .items = {},
                   .notes = texts_at(json, "notes"),
                   .splits_where = text_at(json, "splits_where"),
-                  .no_splits = text_at(json, "no_splits")};
+                  .no_splits = text_at(json, "no_splits"),
+                  .remark = text_at(json, "remark")};
   for (const Json& entry : json.at("unknown"))
     dataset.unknown.push_back({text_at(entry, "split"), text_at(entry, "name"), text_at(entry, "where")});
   for (const Json& row : json.at("items")) dataset.items.push_back(item_from(row));

@@ -167,6 +167,7 @@ std::string run_yaml(const RunRecord& record) {
   const auto& [config, inputs, resolver] = record.run;
   std::string yaml;
   if (config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
+  if (!inputs.remark.empty()) yaml += fmt::format("# {}\n", inputs.remark);
   yaml += fmt::format("program: salbench {}\nresults: {}\nhost: {}\n", SALBENCH_VERSION, state_line(record),
                       yaml_quoted(host_name()));
   yaml += fmt::format("libraries: {}\n", yaml_quoted(fmt::format("{}", fmt::join(libraries(), ", "))));

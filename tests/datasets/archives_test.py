@@ -48,6 +48,7 @@ MINIATURES = {  # files, and the items that are in them
     "princeton": ({"MeshsegBenchmark-1.0/data/off/400.off": off(*SPHERE)} | study("SchellingData/", 400), ["400"]),
     "sal3d": ({f"Gaze/{name}.txt": gaze(SPHERE[0]) for name in ("cow", "ant")} | {"splits.csv": "item,split\ncow,test\nant,train\n"}, ["ant", "cow"]),
     "sal3d_meshes": ({"Meshes/cow.obj": obj(*SPHERE), "Gaze/cow.txt": gaze(SPHERE[0]), "splits.csv": "item,split\ncow,test\n"}, ["cow"]),
+    "sal3d_spread": ({f"Gaze/{name}.txt": gaze(SPHERE[0]) for name in ("cow", "ant")} | {"splits.csv": "item,split\ncow,test\nant,train\n"}, ["ant", "cow"]),
     "zaragoza": ({"Meshes/hand.off": off(*SPHERE)} | study("", "hand"), ["hand"]),
 }
 
@@ -132,6 +133,27 @@ class Miniatures(WithArchive):
         self.setUp()
         self.write({"Meshes/bunny.off": off(), "FixationMaps/bunny_a.txt": "1\n-1\n3\n-1\n", "FixationMaps/bunny_b.txt": "3\n2\n-1\n-1\n"})
         self.equal(self.truth("3dva").saliency, [2, 2, 3, np.nan])
+
+    def test_3dva_knows_people_by_view(self):
+        """The ground truth stays the published one; what the mask hides is hidden to people, too."""
+        self.make("3dva")
+        people = {"T01": "4\n3\n2\n1\n", "T02": "0\n1\n0\n5\n"}
+        self.write({f"PerSubjectFixations/bunny_300.csv.{name}.result": text for name, text in people.items()})
+        self.write({"PerSubjectFixations/cow_300.csv.T01.result": "1\n"})
+        listing = self.list("3dva")
+        self.assertEqual([(item.name, item.viewers) for item in listing.items],
+                         [("bunny_300", 2), ("bunny_413", 0), ("dragon_300", 0), ("dragon_413", 0)])
+        self.assertEqual([note.replace(str(self.root), "ROOT") for note in listing.notes],
+                         ["ROOT/PerSubjectFixations/cow_300.csv.T01.result: a viewer of no item"])
+        form = self.read("3dva", "bunny_300")
+        self.equal(form.truths[0].saliency, [1, 2, 3, np.nan])
+        self.equal(form.truths[0].viewers, [[4, 3, 2, np.nan], [0, 1, 0, np.nan]])
+        self.assertEqual(form.about["viewers"], "01\n02")
+        self.setUp()
+        self.write({"3DModels-Simplif/hand-35K.off": off(), "FixationMaps/hand-35K_300norm.txt": "1\n2\n3\n4\n",
+                    "CentricityAndVisibilityMaps/hand-35K_300_visibility.txt": "1\n1\n1\n1\n"}
+                   | {f"PerSubjectFixations/hand_300.csv.{name}.result": text for name, text in people.items()})
+        self.equal(self.truth("3dva", "hand-35K_300").viewers, [[4, 3, 2, 1], [0, 1, 0, 5]])
 
     def test_dutagaci_takes_one_cell(self):
         self.make("dutagaci")

@@ -122,7 +122,7 @@ constexpr const char* kRow =
     R"( "participants": 0, "viewers": 0, "problem": "", "files": [{"name": "mesh file .off", "path": "/cow.off", "title": ""}], "how": {}})";
 
 std::string list_of(const std::string& rows) {
-  return R"({"layout": "x", "version": 1, "notes": [], "splits_where": "", "no_splits": "", "unknown": [], "items": [)" +
+  return R"({"layout": "x", "version": 1, "notes": [], "splits_where": "", "no_splits": "", "remark": "", "unknown": [], "items": [)" +
          rows + "]}";
 }
 

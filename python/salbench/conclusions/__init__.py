@@ -121,5 +121,5 @@ def conclude_if_missing(folder: Path) -> None:
 
 
 def _text(overview: pandas.DataFrame, source: folders.Source, found: Sequence[leaders.LevelLeaders]) -> str:
-    shown = [remark for remark in source.remarks if remark.startswith("SIMULATED") or remark in source.trained]
+    shown = tables.of_truth(source.remarks) + [remark for remark in source.remarks if remark in source.trained]
     return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*shown, *(level.sentence for level in found)))

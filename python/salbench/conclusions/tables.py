@@ -89,6 +89,11 @@ def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
     return pandas.DataFrame({name: of(frame[name]) for name in frame}, columns=frame.columns)
 
 
+def of_truth(remarks: Iterable[str]) -> list[str]:
+    """Those that say what kind of ground truth scores are against, which nobody may overlook."""
+    return [remark for remark in remarks if remark.startswith(("SIMULATED", "TRUTH"))]
+
+
 def csv(frame: pandas.DataFrame, remarks: Sequence[str] = ()) -> str:
     """RFC 4180, below a line of '#' per remark."""
     parts = [f"# {remark}\n" for remark in remarks]

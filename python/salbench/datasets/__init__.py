@@ -27,6 +27,7 @@ ARCHIVES = {
     "princeton": "princeton",
     "sal3d": "sal3d",
     "sal3d_meshes": "sal3d_meshes",
+    "sal3d_spread": "sal3d_spread",
     "zaragoza": "zaragoza",
 }
 NATIVE = {  # which C++ lists by itself, and on what terms their authors give them

@@ -11,7 +11,8 @@ from typing import TypeVar
 
 from salbench.datasets._cameras import wrong_with_camera
 from salbench.datasets._files import read_file
-from salbench.datasets._layout import Cameras, Columns, Indices, Layout, Pattern, Place, Splits, TruthPlace, Values, number_text, positive_rule
+from salbench.datasets._layout import (
+    LISTED, SPACE, SURFACE, Cameras, Columns, Indices, Layout, Pattern, Place, Splits, TruthPlace, Values, number_text, positive_rule)
 from salbench.datasets._patterns import has_viewers, has_views, one_file_per_item, wrong_with_mesh_pattern, wrong_with_truth_pattern
 from salbench.datasets._section import MAX_BYTES, Section
 from salbench.datasets._text import finite_number, is_number
@@ -22,6 +23,7 @@ KNOWN = ("automatic", "domain", "classes", "ground_truth", "places", "values", "
 METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 LF = b"\n"
 ROUNDING = 1e-9  # of shares that sum to 1
+MAX_NEIGHBOURS = 100_000
 
 Options = TypeVar("Options", Values, Indices, Columns)
 
@@ -45,6 +47,9 @@ def layout_of(root: Section, name: str) -> Layout:
         root.fail("index", "is there beside `places`: a set is in the one form or in files of its own")
     if not places and not index:
         root.fail("places", "is missing; expected a list of places with meshes")
+    for listed in root.list("places"):
+        if ("neighbours" in listed) != (values.spread_along == LISTED):
+            listed.fail("neighbours", "and values.spread: {along: listed} belong together")
     scale, unit_where = _unit(root)
     rule = positive_rule(values.positives)
     if rule != ("picks", 0.0) and (columns.flag or any(truth.picks for place in places for truth in place.truth)):
@@ -71,12 +76,18 @@ def _words(section: Section, key: str, default: tuple[str, ...]) -> tuple[str, .
 
 
 def _values(section: Section) -> Values:
-    section.reject_unknown(_names(Values))
+    section.reject_unknown([*(name for name in _names(Values) if not name.startswith("spread_")), "spread"])
     new, positives = Values(), section.text("positives")
+    spread = section.child("spread")
+    spread.reject_unknown(("neighbours", "from", "along"))
     values = Values(section.choice("per", ("vertex", "face", "point"), new.per), section.text("column") or "",
                     _words(section, "points", new.points), _above_0(section, "max_distance", new.max_distance), section.text("unseen") or "",
                     section.text("variable") or "", _above_0(section, "scale", new.scale),
-                    new.positives if positives is None else positives)
+                    new.positives if positives is None else positives,
+                    spread.whole("neighbours", 0), spread.number("from", new.spread_from),
+                    spread.choice("along", (SPACE, SURFACE, LISTED), new.spread_along))
+    if "spread" in section:
+        _check_spread(section, spread, values)
     if values.per == "point" and not values.column:
         section.fail("column", "is missing; values per point stand beside coordinates: expected a column")
     if len(values.points) != 3:
@@ -86,6 +97,17 @@ def _values(section: Section) -> Values:
     if positive_rule(values.positives) is None:
         section.fail("positives", f"is '{values.positives}', not picks, above mean, or a share such as top 20%")
     return values
+
+
+def _check_spread(section: Section, spread: Section, values: Values) -> None:
+    if "neighbours" not in spread:
+        section.fail("spread", "needs neighbours: how many a point adds to")
+    if not 1 <= values.spread_neighbours <= MAX_NEIGHBOURS:
+        spread.fail("neighbours", f"must be between 1 and {MAX_NEIGHBOURS}, not {values.spread_neighbours}")
+    if not 0 < values.spread_from <= 1:
+        spread.fail("from", f"must be a share above 0 and at most 1, not {number_text(values.spread_from)}")
+    if values.per == "face" or (values.per == "point" and values.spread_along == SURFACE):
+        section.fail("spread", f"is there with values per {values.per}, which have no neighbours along {values.spread_along}")
 
 
 def _indices(section: Section) -> Indices:
@@ -121,7 +143,7 @@ def _pattern(section: Section, key: str, wrong: Callable[[str], str]) -> Pattern
 
 
 def _place(section: Section) -> Place:
-    section.reject_unknown(("meshes", "needs", "root_is", "truth", "views"))
+    section.reject_unknown(("meshes", "needs", "root_is", "truth", "views", "neighbours"))
     meshes = _pattern(section, "meshes", wrong_with_mesh_pattern)
     if not meshes:
         section.fail("meshes", "is missing; expected a pattern such as Meshes/*")
@@ -136,11 +158,12 @@ def _place(section: Section) -> Place:
         section.fail("views", "is 'scored', but saliency has no {view} in its pattern")
     if views == "averaged" and any(has_views(truth.saliency) and has_viewers(truth.saliency) for truth in truths):
         section.fail("views", "must be 'scored' where saliency has both {view} and {viewer}: people are told apart in each view")
-    return Place(meshes, tuple(truths), needs, root_is, views)
+    neighbours = _pattern(section, "neighbours", lambda text: wrong_with_truth_pattern(text, ()))
+    return Place(meshes, tuple(truths), needs, root_is, views, neighbours)
 
 
 def _truth(section: Section) -> TruthPlace:
-    section.reject_unknown(("saliency", "picks", "mask", "visible_from", "visible_from_direction"))
+    section.reject_unknown(("saliency", "picks", "viewers", "mask", "visible_from", "visible_from_direction"))
     saliency = _pattern(section, "saliency", lambda text: wrong_with_truth_pattern(text, ("{view}", "{viewer}")))
     picks = _pattern(section, "picks", lambda text: wrong_with_truth_pattern(text, ("{participant}",)))
 
@@ -151,6 +174,9 @@ def _truth(section: Section) -> TruthPlace:
         more = (has_viewers(text) and not has_viewers(saliency)) or (has_views(text) and not has_views(saliency))
         return "must have the {view} or {viewer} that `saliency` has, or none" if more else ""
 
+    viewers = _pattern(section, "viewers", lambda text: wrong_with_truth_pattern(text, ("{view}", "{viewer}")))
+    if viewers and not (saliency and has_viewers(viewers) and not has_viewers(saliency) and has_views(viewers) == has_views(saliency)):
+        section.fail("viewers", "must have {viewer}, and {view} where saliency has it; saliency must be there, without {viewer}")
     mask = _pattern(section, "mask", wrong_with_mask)
     if mask and not saliency:
         section.fail("mask", "is there without saliency: expected a pattern of the files that it masks")
@@ -158,7 +184,7 @@ def _truth(section: Section) -> TruthPlace:
     if place in section and direction in section:
         section.fail(direction, "is there beside visible_from: expected one of them")
     key = direction if direction in section else place
-    return TruthPlace(saliency, picks, mask, _cameras(section, key, key == direction) if key in section else Cameras())
+    return TruthPlace(saliency, picks, viewers, mask, _cameras(section, key, key == direction) if key in section else Cameras())
 
 
 def _cameras(section: Section, key: str, at_infinity: bool) -> Cameras:

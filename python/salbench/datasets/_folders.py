@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import copy
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from salbench.datasets._cameras import FoundCameras, find_cameras
 from salbench.datasets._files import below, extension, stem
-from salbench.datasets._layout import Cameras, Columns, Layout, Pattern, Place, TruthPlace
+from salbench.datasets._layout import LISTED, Cameras, Columns, Layout, Pattern, Place, TruthPlace, Values
 from salbench.datasets._patterns import (
     expected_name, files_like, filled_in, has_folder_for, has_viewers, has_views, natural_order, one_file_per_item, place_of)
 from salbench.datasets._splits import Entry, read_splits, text_of_unknown
@@ -38,6 +38,8 @@ class Candidate:
     views: list[str] = field(default_factory=list)  # of each file of saliency, where there may be several: its view
     viewers: list[str] = field(default_factory=list)  # and its viewer
     picks: list[str] = field(default_factory=list)
+    people: list[tuple[str, str, str]] = field(default_factory=list)  # files of viewers beside the saliency: path, view, viewer
+    neighbours: str = ""
     masks: list[tuple[str, str]] = field(default_factory=list)  # one per file of saliency: path, and what to do if it is missing
     cameras: list[tuple[tuple[float, float, float], str]] = field(default_factory=list)  # likewise; one if there is no saliency
     view: str = ""  # that is scored
@@ -55,6 +57,8 @@ class Found:
     read: list[str] = field(default_factory=list)
     no_splits: str = ""
     unknown: list[Entry] = field(default_factory=list)
+    values: Values = Values()  # those of the layout; not spread where lists of neighbours are missing
+    remark: str = ""
 
 
 def is_column_cloud(path: str, columns: Columns) -> bool:
@@ -66,13 +70,14 @@ def find(layout: Layout, root: str, twins: str = "refuse") -> Found:
     """The items of a data set, in natural order, and what there is to say about its folder. Reads no file but those of splits and cameras."""
     folder = os.path.normpath(root) if root else root  # "data/" is "data"
     place, meshes = _find_meshes(layout, folder)
-    found = Found(layout, place, [], None)
+    found = Found(layout, place, [], None, values=layout.values, remark=layout.remark)
     files = without_twins(meshes, twins, found.notes)
     items = {name: Candidate(name, _category(mesh, layout.classes), mesh, name)
              for name, mesh in sorted(files.items(), key=lambda file: natural_order(file[0]))}
     if layout.classes == "shrec07":
         _note_missing_numbers(items, found.notes)
     found.truth = _add_truth(found, folder, items)
+    _add_neighbours(found, folder, place.neighbours, items)
     _add_splits(found, folder, items)
     for entry in items.values():
         found.entries += _views(entry) if place.views == "scored" and entry.views else [entry]
@@ -172,6 +177,7 @@ def _add_truth(found: Found, root: str, items: dict[str, Candidate]) -> TruthPla
     for name in sorted(without_mesh, key=natural_order):
         found.notes.append(f"{name}: ground truth without a mesh or point cloud ({without_mesh[name]})")
     _add_masks(found, root, truth, items)
+    _add_viewers(found, root, truth, items)
     return truth
 
 
@@ -227,6 +233,34 @@ def _add_masks(found: Found, root: str, truth: TruthPlace, items: dict[str, Cand
                                              f"take the mask away ({found.layout.where(truth.saliency.where)})"))
 
 
+def _add_viewers(found: Found, root: str, truth: TruthPlace, items: dict[str, Candidate]) -> None:
+    """Files of viewers beside the saliency. An item may have none."""
+    pattern, aliases = truth.viewers, dict(found.layout.aliases)
+    for file in files_like(root, pattern, {*items, *aliases}).fit:
+        name = file.item if file.item in items else aliases.get(file.item, file.item)
+        if name in items:
+            items[name].people.append((file.path, file.part, file.viewer))
+        else:
+            found.notes.append(f"{file.path}: a viewer of no item")
+
+
+def _add_neighbours(found: Found, root: str, pattern: Pattern, items: dict[str, Candidate]) -> None:
+    """The lists that values are spread over. Where there is no folder of them, all values stay as their files have them."""
+    if found.values.spread_along != LISTED:
+        return
+    if not has_folder_for(root, pattern):
+        found.values = replace(found.values, spread_neighbours=0, spread_along=Values.spread_along)
+        found.remark = found.layout.remark_unlisted
+        return
+    files = {file.item: file.path for file in files_like(root, pattern, items).fit}
+    for name, entry in items.items():
+        entry.neighbours = files.pop(name, "")
+    found.notes += [f"{path}: neighbours of no item" for path in files.values()]
+    if without := [name for name, entry in items.items() if not entry.neighbours]:
+        found.notes.append(f"{len(without)} of {len(items)} items have no list of neighbours ({place_of(root, pattern)}), and so no ground truth: "
+                           f"{_first_of(without)}")
+
+
 def _add_splits(found: Found, root: str, items: dict[str, Candidate]) -> None:
     splits = found.layout.splits
     if not splits:
@@ -243,9 +277,12 @@ def _add_splits(found: Found, root: str, items: dict[str, Candidate]) -> None:
         if not entry.split and not entry.problem:
             in_none.append(name)
     if result.of_item and in_none:
-        found.notes.append(f"{len(in_none)} of {len(items)} items are in no split ({where}): "
-                           f"{', '.join(in_none[:MAX_NAMED])}{', ...' if len(in_none) > MAX_NAMED else ''}")
+        found.notes.append(f"{len(in_none)} of {len(items)} items are in no split ({where}): {_first_of(in_none)}")
     found.no_splits, found.unknown = result.missing, result.unknown
+
+
+def _first_of(names: list[str]) -> str:
+    return ", ".join(names[:MAX_NAMED]) + (", ..." if len(names) > MAX_NAMED else "")
 
 
 def _views(entry: Candidate) -> list[Candidate]:
@@ -258,6 +295,7 @@ def _views(entry: Candidate) -> list[Candidate]:
         part.saliency, part.views, part.viewers = ([column[k] for k in files] for column in (entry.saliency, entry.views, entry.viewers))
         part.masks = [entry.masks[k] for k in files if entry.masks]
         part.cameras = []
+        part.people = [person for person in entry.people if person[1] == view]
         if without := [k for k, path in enumerate(part.saliency) if not path]:
             part.problem, part.saliency = part.masks[without[0]][1], []
         views.append(part)

@@ -10,6 +10,7 @@ from typing import Any
 from salbench.datasets._text import finite_number
 
 Words = tuple[str, ...]
+SPACE, SURFACE, LISTED = "space", "surface", "listed"
 
 
 class Pattern(str):
@@ -36,6 +37,9 @@ class Values:
     variable: str = ""  # name in a MAT file
     scale: float = 1.0  # what the coordinates beside values are multiplied by to be in the shape's unit
     positives: str = "picks"  # points that count as picked: picks, above mean, or "top 20%" of what was seen
+    spread_neighbours: int = 0  # how many neighbours a point that was looked at adds to; 0: densities stay as the file has them
+    spread_from: float = 0.9  # what the first of them gets, as a share of the point's value; the last one gets 0
+    spread_along: str = SPACE  # how neighbours are found: space, surface (along edges), or listed in files of their own
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,7 @@ class Cameras:
 class TruthPlace:
     saliency: Pattern = Pattern()  # one file per item, or one per view or viewer
     picks: Pattern = Pattern()  # one file per participant, or one per item
+    viewers: Pattern = Pattern()  # one file per viewer, or per view and viewer, beside a saliency that is not made of them
     mask: Pattern = Pattern()  # 0 for hidden, 1 for seen; one file per file of saliency, or one per item
     cameras: Cameras = Cameras()  # what they do not see is hidden, too
 
@@ -88,6 +93,7 @@ class Place:
     needs: str = ""  # folder without which the place is not looked at
     root_is: str = ""  # the name that the root itself must have
     views: str = "averaged"  # or scored: each is a unit of its own
+    neighbours: Pattern = Pattern()  # lists that saliency is spread over, one file per item
 
 
 @dataclass(frozen=True)
@@ -121,6 +127,9 @@ class Layout:
     unit_where: str = ""  # where a unit of length is given; "": nowhere
     index: str = ""  # file below the folder that lists items in the one form; no places then
     licence: str = ""  # on what terms the authors give the data, as far as is known
+    aliases: tuple[tuple[str, str], ...] = ()  # name of an item in files of viewers, and its name elsewhere
+    remark: str = ""  # what every table has to say of the ground truth
+    remark_unlisted: str = ""  # likewise, where lists of neighbours would lie but do not
 
     def where(self, written: str) -> str:
         """Of something in a user's description, its file and line; of an archive's own layout its name."""

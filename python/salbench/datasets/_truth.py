@@ -12,7 +12,7 @@ import numpy as np
 from salbench import _core
 from salbench.datasets._columns import Rows, read_rows
 from salbench.datasets._files import read_file
-from salbench.datasets._layout import Columns, Indices, Values, positive_rule
+from salbench.datasets._layout import SURFACE, Columns, Indices, Values, positive_rule
 from salbench.datasets._order import Elements
 from salbench.datasets._values import read_mask, read_picks, read_values
 from salbench.datasets.records import AsRead, Floats, Form, InputError, Ints, Item, Truth
@@ -52,6 +52,17 @@ class _Shape:
             return self.in_file
         assert self.form.faces is not None
         return Elements(len(self.form.faces), "mesh", "face", "faces")
+
+    @property
+    def kept(self) -> Ints:
+        """Numbers in the file of the points that are left."""
+        return np.delete(np.arange(self.in_file.n or 0, dtype=np.int32), self.left_out)
+
+    def number_left(self, in_file: Ints) -> Ints:
+        """Numbers of points of the file among those that are left; -1: left out."""
+        numbers = np.full(self.in_file.n or 0, -1, np.int32)
+        numbers[self.kept] = np.arange(len(self.form.points), dtype=np.int32)
+        return np.asarray(numbers[in_file])
 
     def left(self, in_file: Floats) -> Floats:
         """Values of the points that are left."""
@@ -102,10 +113,11 @@ def read_item(item: Item) -> Form:
     shape = _Shape(path, _shape_form(path, data, item.kind) if rows is None else
                    _cloud_form(_core.checked_cloud(rows.points, rows.normals, os.fsencode(path))))
     truth: Truth | None = None
+    lists = reader.next() if how.get("neighbours") else None
     if rows is not None and (columns.density or columns.flag):
-        truth = _truth_in_columns(shape, rows, item.view)
+        truth = _truth_in_columns(shape, rows, item.view, options_of(how, Values), lists)
     elif how.get("saliency") or how.get("picks"):
-        truth = _read_truth(shape, item, reader)
+        truth = _read_truth(shape, item, reader, lists)
     if truth is not None:
         shape.form.truths = (_finished(shape, truth, how),)
     while reader.place < len(item.files):
@@ -127,12 +139,13 @@ def _shape_form(path: str, data: bytes, kind: str) -> Form:
     return Form(points, faces, polygons=(split, concave))
 
 
-def _truth_in_columns(shape: _Shape, rows: Rows, view: str) -> Truth:
+def _truth_in_columns(shape: _Shape, rows: Rows, view: str, values: Values, lists: tuple[str, bytes] | None) -> Truth:
     """Flags of rows that are no points do not count."""
     picks = rows.flagged[~np.isin(rows.flagged, shape.left_out)]
     if rows.density is None and not len(picks):
         raise InputError(f"{shape.path}: no point has its flag set: there is nothing to compare with")
-    return Truth(view, None if rows.density is None else shape.left(rows.density), None, (picks,) if len(picks) else ())
+    density = None if rows.density is None else _spread(shape, values, shape.left(rows.density), None, lists)
+    return Truth(view, density, None, (picks,) if len(picks) else ())
 
 
 def _hide_unseen(values: Floats, shape: _Shape, how: dict[str, Any], k: int) -> Floats:
@@ -141,7 +154,7 @@ def _hide_unseen(values: Floats, shape: _Shape, how: dict[str, Any], k: int) -> 
     return np.where(shape.visible(cameras[k]), values, np.nan) if cameras else values
 
 
-def _read_truth(shape: _Shape, item: Item, reader: _Reader) -> Truth:
+def _read_truth(shape: _Shape, item: Item, reader: _Reader, lists: tuple[str, bytes] | None) -> Truth:
     """All but positives. Picks count the points of the file."""
     how = item.how
     values, indices = options_of(how, Values), options_of(how, Indices)
@@ -151,7 +164,7 @@ def _read_truth(shape: _Shape, item: Item, reader: _Reader) -> Truth:
             for path, data in (reader.next() for _ in range(how.get("saliency", 0)))]
     masks = [_read_mask(reader, values, len(found), shape) if how.get("masks") else None for _, found, _ in read]
     masked = [found if mask is None else np.where(mask == 0, np.nan, found) for (_, found, _), mask in zip(read, masks)]
-    maps = [_hide_unseen(_on_points(shape, values, found, points), shape, how, k)
+    maps = [_hide_unseen(_on_points(shape, values, found, points, lists), shape, how, k)
             for k, (found, (_, _, points)) in enumerate(zip(masked, read))]
     by_viewer = bool(how.get("by_viewer"))
     truth = Truth(item.view)
@@ -160,9 +173,9 @@ def _read_truth(shape: _Shape, item: Item, reader: _Reader) -> Truth:
         if np.isnan(truth.saliency).all():
             raise InputError(f"{read[0][0]}: no point of the shape has a value; expected are values of what was seen, and points within "
                              "max_distance of it")
-        truth.viewers = np.stack(maps) if by_viewer and len(maps) >= MIN_VIEWERS else None
+        truth.viewers = _enough(maps) if by_viewer else None
         truth.face_values = _mean(masked) if values.per == "face" else None
-    is_all = values.per == "vertex" and not how.get("masks") and (len(maps) == 1 or by_viewer)
+    is_all = values.per == "vertex" and not how.get("masks") and (len(maps) == 1 or by_viewer) and not values.spread_neighbours
     if not is_all and not (values.per == "face" and len(maps) == 1 and not how.get("masks")):
         truth.as_read = tuple(AsRead(os.path.basename(path), values.per, found, points, mask)
                               for (path, found, points), mask in zip(read, masks))
@@ -170,10 +183,45 @@ def _read_truth(shape: _Shape, item: Item, reader: _Reader) -> Truth:
              for path, data in (reader.next() for _ in range(how.get("picks", 0)))]
     if any(len(one) for _, one in picks):
         truth.picks = tuple(one for _, one in picks)
-    elif truth.saliency is None:
+    elif truth.saliency is None and picks:
         empty = picks[0][0]
         raise InputError(f"{empty}: nobody picked a point and there is no saliency file; remove the empty {os.path.splitext(empty)[1]} files")
+    if how.get("people"):
+        truth.viewers = _read_viewers(shape, truth, how["people"], values, reader, lists)
     return truth
+
+
+def _enough(maps: list[Floats]) -> Floats | None:
+    return np.stack(maps) if len(maps) >= MIN_VIEWERS else None
+
+
+def _read_viewers(shape: _Shape, truth: Truth, count: int, values: Values, reader: _Reader, lists: tuple[str, bytes] | None) -> Floats | None:
+    """Files of viewers beside a saliency that is not made of them; what it hides is hidden to them, too."""
+    hidden = np.isnan(np.zeros(1) if truth.saliency is None else truth.saliency)
+    maps = []
+    for _ in range(count):
+        path, data = reader.next()
+        found, points = read_values(data, path, values, shape.described_by(values))
+        maps.append(np.where(hidden, np.nan, _on_points(shape, values, found, points, lists)))
+    return _enough(maps)
+
+
+def _spread(shape: _Shape, values: Values, found: Floats, points: Floats | None, lists: tuple[str, bytes] | None) -> Floats:
+    """Densities of the points left of the shape, or of points of their own, with what those that were looked at add to their neighbours."""
+    if not values.spread_neighbours:
+        return found
+    from salbench.datasets._spread import looked_at, nearest_in_space, nearest_on_surface, read_lists, spread
+
+    sources, count = looked_at(found), values.spread_neighbours
+    if lists is not None:
+        path, data = lists
+        listed = read_lists(data, path, (shape.in_file.n or 0) if points is None else len(points), count)
+        neighbours = shape.number_left(listed[shape.kept[sources]]) if points is None else listed[sources]
+    elif values.spread_along == SURFACE:
+        neighbours = nearest_on_surface(shape.form.points, shape.faces(), sources, count)
+    else:
+        neighbours = nearest_in_space(shape.form.points if points is None else points, sources, count)
+    return spread(found, sources, neighbours, count, values.spread_from)
 
 
 def _read_mask(reader: _Reader, values: Values, count: int, shape: _Shape) -> Floats:
@@ -181,14 +229,15 @@ def _read_mask(reader: _Reader, values: Values, count: int, shape: _Shape) -> Fl
     return read_mask(data, path, Elements(count, "file", "point", "points") if values.per == "point" else shape.described_by(values))
 
 
-def _on_points(shape: _Shape, values: Values, found: Floats, points: Floats | None) -> Floats:
+def _on_points(shape: _Shape, values: Values, found: Floats, points: Floats | None, lists: tuple[str, bytes] | None) -> Floats:
     """Values of a file, carried over to the points of the shape."""
     if values.per == "face":
         return np.asarray(_core.vertex_values_of_faces(shape.form.points, shape.form.faces, found))
     if values.per == "point":
         far = values.max_distance * _radius(shape.form.points)
+        found = _spread(shape, values, found, points, lists)
         return np.asarray(_core.vertex_values_of_samples(shape.form.points, points, found, far))
-    return shape.left(found)
+    return _spread(shape, values, shape.left(found), None, lists)
 
 
 def _radius(points: Floats) -> float:
@@ -228,12 +277,10 @@ def _may_hide(how: dict[str, Any]) -> bool:
 def _finished(shape: _Shape, truth: Truth, how: dict[str, Any]) -> Truth:
     """Picks by the points that are left, and of what was seen; or those that a rule makes of densities."""
     if len(shape.left_out) and truth.picks:
-        numbers = np.full(shape.in_file.n or 0, -1, np.int32)
-        numbers[np.delete(np.arange(len(numbers)), shape.left_out)] = np.arange(len(shape.form.points), dtype=np.int32)
         for k, picks in enumerate(truth.picks):
-            for lost in picks[numbers[picks] < 0][:1]:
+            for lost in picks[shape.number_left(picks) < 0][:1]:
                 raise InputError(f"{shape.path}: participant {k} picked point {lost} (0-based), which has no position")
-        truth.picks = tuple(numbers[picks] for picks in truth.picks)
+        truth.picks = tuple(shape.number_left(picks) for picks in truth.picks)
     if truth.saliency is None:
         return _smoothed(shape, truth, how) if how.get("cameras") else truth
     if _may_hide(how):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from salbench.datasets._files import extension
 from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
-from salbench.datasets._layout import Columns, Indices, Layout, Values, described, number_text
+from salbench.datasets._layout import LISTED, Columns, Indices, Layout, Values, described, number_text
 from salbench.datasets.records import InputError, Item, Listing, Native, Source
 
 if TYPE_CHECKING:
@@ -36,9 +36,10 @@ def items(layout: Layout, root: str, twins: str = "refuse", beside: Callable[[st
     rows = [_item(found, entry, native) for entry in found.entries]
     if beside is not None:
         rows = [replace(row, files=(*row.files, *beside(row.files[0].path))) for row in rows]
-    listing = Listing(rows, found.notes, found.read, layout.splits and layout.where(layout.splits.where) or "", found.no_splits,
+    notes = found.notes + ([found.remark] if found.remark else [])
+    listing = Listing(rows, notes, found.read, layout.splits and layout.where(layout.splits.where) or "", found.no_splits,
                       [{"split": one.split, "name": one.item, "where": one.where} for one in found.unknown], layout.scale, layout.unit_where,
-                      layout.licence, layout.values.positives)
+                      layout.licence, layout.values.positives, found.remark)
     if layout.unit_where:
         from salbench.datasets._sizes import fail_mixed_units
 
@@ -96,7 +97,7 @@ def _is_native(found: Found) -> bool:
         return plain
     one_file = all(len(entry.saliency) <= 1 and not entry.views for entry in found.entries)
     endings = truth.saliency.endswith(".val") or not truth.saliency, truth.picks.endswith(".pid") or not truth.picks
-    return one_file and all(endings) and not truth.mask and not truth.cameras
+    return one_file and all(endings) and not truth.mask and not truth.cameras and not truth.viewers
 
 
 def kind_of(path: str) -> str:
@@ -116,30 +117,45 @@ def kind_of(path: str) -> str:
 def _item(found: Found, entry: Candidate, native: bool) -> Item:
     layout = found.layout
     in_columns = is_column_cloud(entry.mesh, layout.columns)
-    has_columns = in_columns and bool(layout.columns.density or layout.columns.flag)
+    unlisted = found.values.spread_along == LISTED and not entry.neighbours
+    if unlisted:
+        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[])
+    has_columns = in_columns and not unlisted and bool(layout.columns.density or layout.columns.flag)
     problem = entry.problem or next((missing for _, missing in entry.masks if missing), "")
     by_viewer = bool(found.truth and "{viewer}" in found.truth.saliency)
     item = Item(entry.name, entry.shape, entry.view, entry.category, entry.split, "cloud" if in_columns else kind_of(entry.mesh),
-                bool(entry.saliency or entry.picks or has_columns or problem), len(entry.picks), len(entry.saliency) if by_viewer else 0, problem)
+                bool(entry.saliency or entry.picks or has_columns or problem), len(entry.picks),
+                len(entry.saliency) if by_viewer else len(entry.people), problem)
     if native:
         item.native = Native(entry.mesh, tuple(entry.saliency), tuple(entry.picks))
         return item
     if problem:
-        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[])
-    files = [_shape_source(layout, entry, item.kind, in_columns)]
+        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[], neighbours="")
+    unread = bool(problem) or unlisted
+    files = [_shape_source(found, entry, item.kind, in_columns, unread)]
     how: dict[str, Any] = {"columns": _given(layout.columns)} if in_columns else {}
+    if entry.neighbours:
+        files.append(Source("neighbours", entry.neighbours, _titled("neighbours file", entry.neighbours)))
+        how["neighbours"] = True
     if has_columns and not problem:
-        how |= _nonzero(values=_given(Values(positives=layout.values.positives)))
+        how |= _nonzero(values=_given(_of_columns(found.values)))
     elif entry.saliency or entry.picks:
         at_infinity = bool(found.truth and found.truth.cameras.at_infinity)
         how |= _nonzero(saliency=len(entry.saliency), picks=len(entry.picks), masks=bool(entry.masks), by_viewer=by_viewer,
-                        views=entry.viewers if by_viewer else [], values=_given(layout.values), indices=_given(layout.indices),
+                        views=entry.viewers if by_viewer else [person for _, _, person in entry.people], people=len(entry.people),
+                        values=_given(found.values), indices=_given(layout.indices),
                         cameras=[{"place": list(place), "at_infinity": at_infinity, "where": where} for place, where in entry.cameras])
-        files += _truth_sources(layout, entry, how)
-    if problem and has_columns:
+        files += _truth_sources(found, entry, how)
+    if unread and in_columns:
         how["columns"] = _given(replace(layout.columns, density="", flag=""))
     item.files, item.how = tuple(files), how
     return item
+
+
+def _of_columns(values: Values) -> Values:
+    """Those that also count where the ground truth stands beside a point cloud."""
+    return Values(positives=values.positives, spread_neighbours=values.spread_neighbours, spread_from=values.spread_from,
+                  spread_along=values.spread_along)
 
 
 def _given(options: Any) -> dict[str, Any]:
@@ -156,12 +172,13 @@ def _titled(kind: str, path: str) -> str:
     return f"{kind} {path.rpartition('/')[2]}"
 
 
-def _shape_source(layout: Layout, entry: Candidate, kind: str, in_columns: bool) -> Source:
+def _shape_source(found: Found, entry: Candidate, kind: str, in_columns: bool, unread: bool) -> Source:
+    """unread: the ground truth that may stand in the same file is left out."""
     name = f"{'point cloud' if kind == 'cloud' else 'mesh'} file"
     how = ""
     if in_columns:
-        how = described(layout.columns, **({"density": "", "flag": ""} if entry.problem else {}))
-        how += described(Values(positives=layout.values.positives))
+        how = described(found.layout.columns, **({"density": "", "flag": ""} if unread else {}))
+        how += described(_of_columns(found.values))
     view = f", view {entry.view}" if entry.view else ""
     return Source(f"{name} {extension(entry.mesh)}{how}{view}", entry.mesh, _titled(name, entry.mesh))
 
@@ -174,17 +191,19 @@ def _camera_text(how: dict[str, Any], k: int) -> str:
     return f" from {'direction ' if camera['at_infinity'] else ''}[{', '.join(map(number_text, camera['place']))}]"
 
 
-def _truth_sources(layout: Layout, entry: Candidate, how: dict[str, Any]) -> list[Source]:
-    """Files of saliency, masks and picks. How they are read, and from where the shape was seen, is part of their names."""
-    files = []
+def _truth_sources(found: Found, entry: Candidate, how: dict[str, Any]) -> list[Source]:
+    """Files of saliency, masks, picks and viewers. How they are read, and from where the shape was seen, is part of their names."""
+    layout, files = found.layout, []
     for k, path in enumerate(entry.saliency):
         viewer = f", {how['views'][k]}" if how.get("by_viewer") else ""
         name = f"saliency of viewer {k}{viewer}" if viewer else f"saliency file {k}" if len(entry.saliency) > 1 else "saliency file"
         numbered = ", rows by their numbers" if layout.values.column and layout.values.per != "point" else ""
-        files.append(Source(f"{name}{described(layout.values)}{numbered}{_camera_text(how, k)}", path, _titled("saliency file", path)))
+        files.append(Source(f"{name}{described(found.values)}{numbered}{_camera_text(how, k)}", path, _titled("saliency file", path)))
     files += [Source(f"mask {k}", path, _titled("mask", path)) for k, (path, _) in enumerate(entry.masks)]
     hides = entry.saliency and (entry.masks or entry.cameras or layout.values.unseen or layout.values.per != "vertex")
     for k, path in enumerate(entry.picks):
         camera = _camera_text(how, k) if not entry.saliency and k == 0 else ""
         files.append(Source(f"picks {k}{described(layout.indices)}{' of what was seen' if hides else ''}{camera}", path, _titled("picks", path)))
+    files += [Source(f"saliency of viewer {k}, {viewer}{described(found.values)}, beside the shape's", path, _titled("saliency file", path))
+              for k, (path, _, viewer) in enumerate(entry.people)]
     return files

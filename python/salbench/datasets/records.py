@@ -91,6 +91,7 @@ class Listing:
     unit_where: str = ""
     licence: str = ""
     positives: str = "picks"
+    remark: str = ""  # what every table has to say of the ground truth; one of the notes
 
 
 @dataclass

@@ -4,7 +4,10 @@
 Seen: none of the meshes; their gaze is that of sal3d.
 """
 
-from salbench.datasets._layout import Layout, Pattern, Place, Splits, TruthPlace, Values
+from dataclasses import replace
 
-LAYOUT = Layout("sal3d_meshes", (Place(Pattern("Meshes/*.obj"), (TruthPlace(Pattern("Gaze/{item}.txt")),)),),
-                values=Values("point", "7", ("1", "2", "3")), splits=Splits(table="splits.csv"), licence="not known; ask the authors")
+from salbench.datasets import sal3d
+from salbench.datasets._layout import Columns, Pattern, Place, TruthPlace
+
+LAYOUT = replace(sal3d.LAYOUT, name="sal3d_meshes", columns=Columns(), places=(
+    Place(Pattern("Meshes/*.obj"), (TruthPlace(Pattern("Gaze/{item}.txt")),), neighbours=sal3d.LISTS),))

@@ -155,7 +155,6 @@ def leaderboard(given: argparse.Namespace) -> int:
 
 
 def _text(made: board.Board, given: argparse.Namespace) -> str:
-    simulated = [remark for remark in made.remarks if remark.startswith("SIMULATED")]
-    lines = [tables.aligned(means.overview(made.study)), *simulated, *made.sentences]
+    lines = [tables.aligned(means.overview(made.study)), *tables.of_truth(made.remarks), *made.sentences]
     lines += [f"refused: {entry.file.name}: {entry.refused}" for entry in made.of_status("refused")]
     return "\n".join([*lines, f"the leaderboard is {Path(given.to, 'index.html')}\n"])

@@ -10,7 +10,7 @@ from typing import Any
 
 import pandas
 
-from salbench.conclusions import glossary, words
+from salbench.conclusions import glossary, tables, words
 from salbench.conclusions.compact import cut
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
@@ -30,7 +30,7 @@ Row = dict[str, Any]
 def write_pages(board: Board, site: Path) -> None:
     own, metrics = models_of_the_program(board), list(board.tables["metrics"]["metric"])
     template = environment(HERE, glossary.titles(own, metrics)).get_template("leaderboard.html")
-    banners = [SIMULATED] if any(remark.startswith("SIMULATED") for remark in board.remarks) else []
+    banners = [SIMULATED if remark.startswith("SIMULATED") else remark for remark in tables.of_truth(board.remarks)]
 
     def write(path: str, title: str, sections: Sequence[tuple[str, list[Any]]], **values: Any) -> None:
         text = template.render(path=path, root="../" * path.count("/"), navigation=NAVIGATION, banners=banners, board=board, title=title, web=is_web,

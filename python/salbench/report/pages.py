@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from salbench.conclusions import folders, glossary
+from salbench.conclusions import folders, glossary, tables
 from salbench.pages import rendering
 from salbench.pages.viewer_parts import three_js
 from salbench.report.folder import Folder
@@ -57,6 +57,7 @@ def banners(results: Results) -> list[str]:
     said = []
     if results.simulated:
         said.append(rendering.SIMULATED)
+    said += [remark for remark in tables.of_truth(results.remarks) if not remark.startswith("SIMULATED")]
     if results.state != "finished":
         said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
     if changed := folders.changed(results.folder):
