@@ -20,7 +20,7 @@ OPTIONS = ("scan.", "normals.", "scan_normals.", "surface.", "fpfh.", "scan_fpfh
 
 def read(name: str) -> Frame:
     """A table of configs/paper: text, but for the columns mean, ci95 and margin, which is NaN where there is none."""
-    return _tables.read(FOLDER / name, numbers=("mean", "ci95", "margin"))
+    return _tables.read(FOLDER / name, lambda column: "float64" if column in ("mean", "ci95", "margin") else "str")
 
 
 def per_class() -> dict[tuple[str, str], tuple[float, float]]:

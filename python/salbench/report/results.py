@@ -14,14 +14,15 @@ import pandas
 import yaml
 
 from salbench import _tables
-from salbench.conclusions import conclude_if_missing, folders, text_columns
+from salbench.conclusions import conclude_if_missing, folders, type_of
 from salbench._errors import InputError, StorageError
 from salbench.conclusions.metrics import PAPERS, leading_metrics
+from salbench.conclusions.units import TEXTS
 from salbench.pages.blocks import Missing
 from salbench.report import metrics
 from salbench.report.metrics import Metric
 
-NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
+NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv beside metrics
 Frame: TypeAlias = pandas.DataFrame
 Row = Mapping[Any, Any]  # of a table, by column
 BASE_LOADER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)  # every scalar is text
@@ -97,7 +98,7 @@ class Results:
         """Every metric that run.yaml or a table has by its name, the leading ones first."""
         found = list(self._listed)
         if self.has("results.csv") and "model" in self.table("results.csv"):
-            found += [name for name in self.table("results.csv") if name not in text_columns().union(NO_METRICS)]
+            found += [name for name in self.table("results.csv") if name not in NO_METRICS]
         if self.has("summary.csv") and "metric" in self.table("summary.csv"):
             found += [name for name in self.table("summary.csv")["metric"].unique() if name]
         first = leading_metrics(self._listed or PAPERS)
@@ -165,8 +166,11 @@ def number_of(value: Any, otherwise: float = float("nan")) -> float:
 def read_table(path: Path) -> tuple[Frame, int]:
     """A table with its texts and float64 alone, and how many of its numbers cannot be used: infinite ones and those beyond LARGEST.
     What is no number is NaN, and so is what a last line that was cut short lacks."""
-    table, unusable = _tables.read(path, errors="replace"), 0
-    for column in table.columns.difference(list(text_columns())):
+    def text_or_any(column: str) -> str | None:
+        return "str" if type_of(path.stem, column) == "str" else None
+
+    table, unusable = _tables.read(path, text_or_any, errors="replace"), 0
+    for column in [name for name in table if text_or_any(name) is None]:
         values = pandas.to_numeric(table[column], errors="coerce").astype(float)
         too_large = values.abs() > LARGEST
         unusable += int(too_large.sum())
