@@ -7,7 +7,7 @@ from typing import Any
 import numpy
 
 from salbench import _tables
-from salbench.report.results import Frame, Results, flatten, text_of
+from salbench.report.results import Frame, Results, flatten
 
 FOLDER = Path(__file__).parent.parent / "configs/paper"
 CLASSES = 20
@@ -41,8 +41,7 @@ def other_data(results: Results) -> str:
         return "the participants are simulated"
     if not results.record:
         return "run.yaml does not say of which data and protocol the scores are"
-    found = results.record.get("data_set")
-    layout = text_of(found.get("layout")) if isinstance(found, dict) else ""
+    layout = results.record.get("data_set", {}).get("layout", "")
     if layout not in LAYOUTS:
         return f"these are not the paper's data, but of the layout {layout or 'unknown'}"
     return ""
