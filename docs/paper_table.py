@@ -33,7 +33,7 @@ results
 # Means of the paper's metrics with their 95 % intervals, and the groups of models that are not shown to differ.
 
 # %%
-table = results.summary.pivot_table(index="model", columns="metric", values="mean")
+table = results.summary.pivot(index="model", columns="metric", values="mean")
 table[["auc", "nss", "lcc"]].round(3)
 
 # %%

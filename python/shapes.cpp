@@ -217,6 +217,7 @@ py::tuple picture(const PictureOptions& options, py::handle points_of, py::handl
 }  // namespace
 
 void bind_shapes(py::module_& module) {
+  module.attr("views") = kViews;
   define(module, "mesh_normals", &normals_of_mesh, "estimate_normals");
   define(module, "cloud_normals", &normals_of_points, "estimate_normals");
   define(module, "fpfh", &descriptors_of<FpfhOptions>);

@@ -77,10 +77,15 @@ def main():
     parser.add_argument("--cache", default="salbench-cache")
     parser.add_argument("--out", default="salbench-out/forest")
     given = parser.parse_args()
-    results = salbench.cross_validate({"FOREST": fit}, given.data, given.config, folds=given.folds, by=given.by, cache=given.cache,
-                                      out=given.out)
+    try:
+        results = salbench.cross_validate({"FOREST": fit}, given.data, given.config, folds=given.folds, by=given.by, cache=given.cache,
+                                          out=given.out)
+    except (KeyError, ValueError) as error:  # no such split, fewer classes than folds
+        parser.error(error.args[0])
     print(f"FOREST: {results.trained['FOREST']}")
-    print(results.summary.pivot(index="model", columns="metric", values="mean").round(3).to_string())
+    summary = results.summary
+    rows = [name for name in ("dataset", "split") if name in summary and summary[name].nunique() > 1]
+    print(summary.pivot(index=[*rows, "model"], columns="metric", values="mean").round(3).to_string(sparsify=False))
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import inspect
 import struct
 import sys
 import types
+import weakref
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -39,7 +40,7 @@ OPAQUE = {id(value): name for name, value in {
 # Objects that are made of these attributes.
 ATTRIBUTES: dict[type, tuple[str, ...]] = {
     types.MethodType: ("__func__", "__self__"), staticmethod: ("__func__",), classmethod: ("__func__",),
-    property: ("fget", "fset", "fdel"), functools.cached_property: ("func",),
+    property: ("fget", "fset", "fdel"), functools.cached_property: ("func",), functools.singledispatchmethod: ("dispatcher", "func"),
     dataclasses.Field: ("name", "default", "default_factory", "metadata"),
     types.MethodWrapperType: ("__name__", "__self__"),
     **dict.fromkeys((types.WrapperDescriptorType, types.MethodDescriptorType, types.ClassMethodDescriptorType,
@@ -63,6 +64,8 @@ CLASS_SKIPPED = {"__dict__", "__weakref__", "__module__", "__qualname__", "__ann
                  "__type_params__", "_value2member_map_"}
 MODULE_SKIPPED = {"__builtins__", "__cached__", "__doc__", "__file__", "__loader__", "__name__", "__package__",
                   "__path__", "__spec__", "__annotations__", "__warningregistry__"}
+CACHES_OF_DISPATCH = {"dispatch_cache", "cache_token"}  # in closures of functools.singledispatch, beside its registry
+_WRAPPER = {*functools.WRAPPER_ASSIGNMENTS, "__wrapped__", "cache_parameters"}  # in the attributes of functools.cache
 
 
 def sorted_names(names: Mapping[Any, Any], skipped: Iterable[str] = ()) -> list[tuple[Any, Any]]:
@@ -70,6 +73,12 @@ def sorted_names(names: Mapping[Any, Any], skipped: Iterable[str] = ()) -> list[
     texts = sorted(name for name in names if isinstance(name, str) and name not in skipped)
     return [(f".{name}", names[name]) for name in texts] + [
         ("other", entry) for entry in names.items() if not isinstance(entry[0], str)]
+
+
+def of_function(function: Any) -> list[tuple[Any, Any]]:
+    """The attributes of a function, without what empties the cache of functools.singledispatch: wrappers hand it on."""
+    names = {name: value for name, value in vars(function).items() if getattr(value, "__func__", None) is not weakref.WeakKeyDictionary.clear}
+    return sorted_names(names, () if isinstance(function, types.FunctionType) else _WRAPPER)
 
 
 def attributes(value: Any) -> list[tuple[Any, Any]]:

@@ -14,6 +14,7 @@ annotations. What cannot be seen: files, the environment and clocks that a funct
 import builtins
 import copyreg
 import functools
+import gc
 import hashlib
 import os
 import pickle
@@ -25,8 +26,8 @@ from typing import Any
 import numpy as np
 
 from salbench._content import (
-    ATOM_TAGS, ATOMS, ATTRIBUTES, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OF_PACKAGES, OPAQUE, UNNUMBERED, attributes,
-    extension_file, has_own_state, is_plain, no_content, place, sorted_names)
+    ATOM_TAGS, ATOMS, ATTRIBUTES, CACHES_OF_DISPATCH, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OF_PACKAGES, OPAQUE, UNNUMBERED,
+    attributes, extension_file, has_own_state, is_plain, no_content, of_function, place, sorted_names)
 from salbench._data import Dataset
 from salbench._names import Origin, Unwalkable, imported, names_in, of_module, origin_of, resolved
 
@@ -60,7 +61,7 @@ class _Walk:
             tuple: enumerate, list: enumerate, dict: self._dict, set: self._set, frozenset: self._set,
             types.MappingProxyType: self._dict, types.CodeType: self._code, types.FunctionType: self._function,
             types.BuiltinFunctionType: self._builtin, functools._lru_cache_wrapper: self._cached,
-            types.CellType: self._cell, Origin: self._named,
+            types.CellType: self._cell, Origin: self._named, type(functools.cmp_to_key(int.__sub__)): self._referents,
         }
         self._kinds: tuple[tuple[Any, Callable[[Any], Parts]], ...] = (
             (tuple(ATTRIBUTES), self._made_of_attributes), (types.ModuleType, self._module),
@@ -158,7 +159,9 @@ class _Walk:
         names = function.__globals__
         parts: list[tuple[Any, Any]] = [("default", function.__defaults__), ("keyword default", function.__kwdefaults__)]
         parts += zip(function.__code__.co_freevars, function.__closure__ or ())
-        parts += sorted_names(vars(function))
+        if names is vars(functools):
+            parts = [part for part in parts if part[0] not in CACHES_OF_DISPATCH]
+        parts += of_function(function)
         origin = self._origin_of(names)
         if origin:
             self._put(function.__qualname__.encode())
@@ -192,7 +195,11 @@ class _Walk:
         return [("name", function.__name__), ("of", owner)]
 
     def _cached(self, function: Any) -> Parts:
-        return [("function", function.__wrapped__), ("parameters", function.cache_parameters())]
+        return [("function", function.__wrapped__), ("parameters", function.cache_parameters()), *of_function(function)]
+
+    def _referents(self, value: Any) -> Parts:
+        """Of an object that shows its parts to the garbage collector alone."""
+        return enumerate(gc.get_referents(value))
 
     def _cell(self, cell: types.CellType) -> Parts:
         try:

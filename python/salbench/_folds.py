@@ -26,7 +26,6 @@ from salbench._types import ArrayLike
 from salbench.datasets.records import Item
 
 Fit = Callable[[list[Shape]], Predict]
-SCANS = 12  # of a mesh: "52_0" to "52_11"
 
 
 def cross_validate(
@@ -184,7 +183,7 @@ def _mesh(item: Item) -> str:
 def with_scans(plan: Plan) -> Plan:
     fold_of = dict(plan.fold_of)
     for name, fold in plan.fold_of.items():
-        for view in range(SCANS):
+        for view in range(_core.views):
             if fold_of.setdefault(f"{name}_{view}", fold) != fold:
                 raise ValueError(f"{name}_{view} is the name of a shape and of scan {view} of {name}, which are in two folds: "
                                  "rename it, or leave scans out")

@@ -105,7 +105,7 @@ class Results(Tables):
         """By name of a model that learned how it did, such as "cross-validated, 5 folds by class"; `cross_validate` makes them."""
         from salbench.conclusions import folders
 
-        return folders.trained_models(folders.read_record(self.folder))
+        return folders.trained_models(folders.read_record(self.folder / "run.yaml"))
 
     @cached_property
     def reference(self) -> Reference:

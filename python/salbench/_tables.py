@@ -2,9 +2,12 @@
 """The program's tables as data frames: the same doubles, and names as texts whatever they look like."""
 
 import os
-from collections.abc import Container
-from functools import cached_property
+from collections.abc import Callable
+from functools import cached_property, partial
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+from salbench._errors import InputError
 
 if TYPE_CHECKING:
     import pandas
@@ -21,23 +24,26 @@ def remarks_of(path: str | os.PathLike[str]) -> list[str]:
     return remarks
 
 
-def read(path: str | os.PathLike[str], numbers: Container[str] | None = None, errors: str = "surrogateescape") -> "pandas.DataFrame":
+def read(path: str | os.PathLike[str], type_of: Callable[[str], str | None] | None = None, errors: str = "surrogateescape") -> "pandas.DataFrame":
     """The one reader of tables that the program or this package has written; conclusions.csv_file reads those of anybody, strictly.
 
-    Texts are as they stand in the file, "" where it has none; numbers are the same doubles, NaN where it has none. numbers: all columns
-    that are; otherwise those that no table of scores or conclusions has as text. errors: for bytes that are not UTF-8.
+    Texts are as they stand in the file, "" where it has none; numbers are the same doubles, NaN where it has none. type_of: of a column
+    by its name, whatever is in it, as conclusions.type_of declares it by default; None: what pandas makes of it. errors: for bytes that
+    are not UTF-8. Throws InputError for what is no such table.
     """
     import pandas
 
-    from salbench.conclusions import text_columns
+    from salbench import conclusions
 
+    type_of = type_of or partial(conclusions.type_of, Path(path).stem)
     above = len(remarks_of(path))
-    names = pandas.read_csv(path, skiprows=above, nrows=0, encoding_errors=errors).columns
-    known = text_columns() if numbers is None else ()
-    texts = [name for name in names if (name in known if numbers is None else name not in numbers)]
-    frame = pandas.read_csv(path, skiprows=above, dtype=dict.fromkeys(texts, str), keep_default_na=False, na_values=[""],
-                            float_precision="round_trip", encoding_errors=errors)
-    return frame.fillna(dict.fromkeys(texts, ""))
+    try:
+        types = {name: type_of(name) for name in pandas.read_csv(path, skiprows=above, nrows=0, encoding_errors=errors)}
+        frame = pandas.read_csv(path, skiprows=above, dtype={name: type for name, type in types.items() if type}, keep_default_na=False,
+                                na_values=[""], float_precision="round_trip", encoding_errors=errors)
+    except (TypeError, ValueError) as error:  # as pandas raises them
+        raise InputError(f"{os.fspath(path)}: {' '.join(str(error).split())}") from None
+    return frame.fillna(dict.fromkeys((name for name, type in types.items() if type == "str"), ""))
 
 
 class Tables:

@@ -31,24 +31,15 @@ class Conclusions(Tables):
     def __init__(self, study: "Study") -> None:
         self._study = study
 
-    def _made(self, name: str) -> "pandas.DataFrame":
+    def _table(self, name: str) -> "pandas.DataFrame":
         from salbench.conclusions import TABLES
 
         return next(table for table in TABLES if table.name == name).make(self._study)
-
-    def _table(self, name: str) -> "pandas.DataFrame":
-        return _as_read(self._made(name))
 
     @cached_property
     def power(self) -> "pandas.DataFrame":
         """Which differences the scores could have shown [cohen1988]."""
         return self._table("power")
-
-
-def _as_read(frame: "pandas.DataFrame") -> "pandas.DataFrame":
-    """With the types of a table that is read from a file."""
-    counts = {name: values.astype(float if values.isna().any() else int) for name, values in frame.items() if values.dtype == "Int64"}
-    return frame.assign(**counts)
 
 
 def _text(value: Any) -> str:

@@ -4,6 +4,7 @@
 import csv
 import io
 import re
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import pandas
 from support import NAN
 
 from salbench import conclusions
+from salbench._errors import InputError
+from salbench._tables import read
 from salbench.conclusions import tables
 from salbench.conclusions.tables import SPLIT, count, framed, number, optional_count, text
 
@@ -55,6 +58,54 @@ class TextTest(unittest.TestCase):
         self.assertEqual(tables.aligned(frame), "name  n   rank  mean\n".replace("n   rank  mean", " n  rank    mean")
                          + "a      1  1     0.3333\nlong  20             -\n")
         self.assertEqual(tables.aligned(framed((number("x", ""),), [{"x": [1e-6, 0]}])), "      x\n1.0e-06\n 0.0000\n")
+
+
+class ReadTest(unittest.TestCase):
+    """A column has the type that it is declared with, whatever the cells of a file look like."""
+
+    CELLS = {"str": ("12", "", "nan", "1e5"), "int64": ("1", "20"), "Int64": ("", "3"), "float64": ("1", "0.5", "", "1e+300", "12345678901234567890")}
+
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def read(self, name, columns, rows):
+        (self.folder / name).write_text("".join(",".join(line) + "\n" for line in (columns, *rows)))
+        return read(self.folder / name)
+
+    def expect(self, name, types):
+        wanted = {"str": "object"}
+        for at in range(max(map(len, self.CELLS.values()))):
+            row = [self.CELLS[kind][at % len(self.CELLS[kind])] for kind in types.values()]
+            for rows in ([row], [row, row], []):
+                frame = self.read(name, types, rows)
+                self.assertEqual({column: str(kind) for column, kind in frame.dtypes.items()},
+                                 {column: wanted.get(kind, kind) for column, kind in types.items()}, (name, row))
+                for column, cell in zip(types, row if rows else ()):
+                    if types[column] == "str":
+                        self.assertEqual(set(frame[column]), {cell})
+                    else:
+                        self.assertEqual([cell == "" or float(cell) == value for value in frame[column]], [True] * len(rows), column)
+
+    def test_tables_of_conclusions(self):
+        for table in conclusions.TABLES:
+            self.expect(f"{table.name}.csv", {column.name: column.type for column in table.columns})
+
+    def test_tables_of_a_run(self):
+        for name in ("results", "constant", "people", "smoothed"):
+            self.expect(f"{name}.csv", {"item": "str", "class": "str", "view": "str", "model": "str", "auc": "float64", "n_picks": "int64"})
+        self.expect("mean_histograms_meshes.csv", {"bin_left": "float64", "GS": "float64", "class": "float64", "n_picks": "float64"})
+
+    def test_a_frame_that_was_never_written_has_the_same_types(self):
+        for table in conclusions.TABLES:
+            if table.columns:
+                frame = framed(table.columns, [])
+                (self.folder / f"{table.name}.csv").write_text(tables.csv(frame))
+                self.assertEqual(list(read(self.folder / f"{table.name}.csv").dtypes), list(frame.dtypes), table.name)
+
+    def test_what_is_not_of_the_type_names_the_file(self):
+        for column, cell in (("n", "x"), ("n", ""), ("n", "1.5"), ("mean", "x"), ("rank", "1.5")):
+            with self.subTest(column, cell=cell), self.assertRaisesRegex(InputError, r"/ranking\.csv: .+"):
+                self.read("ranking.csv", ["dataset", column], [["meshes", cell]])
 
 
 class DictionaryTest(unittest.TestCase):

@@ -152,13 +152,53 @@ class Importing(WithArchive):
             self.assertEqual((shape.id, shape.split), (expected.id, expected.split))
 
 
+# A worker that is held at every shape from a number on, as long as a file is there: so that a run stays in the middle.
+HELD = """import os, pathlib, time
+from salbench.datasets import sets
+read = sets.read
+def held(layout, root, item, licence=""):
+    if int(item.name[1:]) >= {first}:
+        pathlib.Path({folder!r}, "held").touch()
+        while os.path.exists({folder!r} + "/hold"):
+            time.sleep(.01)
+    return read(layout, root, item, licence)
+sets.read = held
+from salbench.datasets.worker import main
+main()"""
+# The command over such workers, which leaves a file when it hears Ctrl-C.
+COMMAND = """import pathlib, signal, sys
+from salbench.datasets import _workers
+def interrupted(*_):
+    pathlib.Path({folder!r}, "interrupted").touch()
+    raise KeyboardInterrupt
+signal.signal(signal.SIGINT, interrupted)
+_workers._START = {held!r}
+from salbench.__main__ import main
+sys.exit(main(sys.argv[1:]))"""
+
+
 class Command(Importing):
     def started(self, *arguments, **how):
-        line = [sys.executable, "-P", "-m", "salbench", "import", *map(str, arguments)]
-        return subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **how)
+        return subprocess.Popen([sys.executable, "-P", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **how)
+
+    def held(self, shapes):
+        """The command in the middle of so many shapes, which waits until the file `hold` is gone."""
+        self.clouds(*(f"c{number}" for number in range(shapes)))
+        folder = str(self.root.parent)
+        self.hold = self.root.parent / "hold"
+        self.hold.touch()
+        code = COMMAND.format(folder=folder, held=HELD.format(folder=folder, first=shapes // 2))
+        process = self.started("-c", code, "import", "sal3d", "--data", self.root, "--to", self.to, "--quiet", start_new_session=True)
+        self.wait(process, "held")
+        return process
+
+    def wait(self, process, name):
+        while not (self.root.parent / name).exists():
+            self.assertIsNone(process.poll(), f"ended before it was {name}")
+            time.sleep(.01)
 
     def ended(self, *arguments):
-        process = self.started(*arguments)
+        process = self.started("-m", "salbench", "import", *arguments)
         out, err = process.communicate()
         return process.returncode, out, err
 
@@ -192,25 +232,21 @@ class Command(Importing):
                 self.assertEqual(err.count("\n"), 1, err)
 
     def test_what_was_done_before_ctrl_c_is_kept(self):
-        self.clouds(*(f"c{number}" for number in range(400)))
-        process = self.started("sal3d", "--data", self.root, "--to", self.to, "--quiet", start_new_session=True)
-        while not (self.to / "items").exists() or len(os.listdir(self.to / "items")) < 5:
-            time.sleep(0.01)
+        process = self.held(100)
         os.killpg(process.pid, signal.SIGINT)
+        self.wait(process, "interrupted")
+        self.hold.unlink()
         out, err = process.communicate()
         self.assertEqual((process.returncode, out), (130, ""), err)
         self.assertIn(f"salbench import sal3d --data {self.root}", err)
         rows = one_form.read_index(str(self.to))
-        self.assertTrue(5 <= len(rows) < 400)
+        self.assertTrue(0 < len(rows) < 100)
         self.assertEqual({f"{row[0]}.h5" for row in rows}, set(os.listdir(self.to / "items")))
-        self.assertEqual(len(self.imported()), 400)
+        self.assertEqual(len(self.imported()), 100)
         self.assertEqual(self.done.count("unchanged"), len(rows))
 
     def test_a_kill_leaves_a_folder_that_the_next_call_completes(self):
-        self.clouds(*(f"c{number}" for number in range(100)))
-        process = self.started("sal3d", "--data", self.root, "--to", self.to, "--quiet", start_new_session=True)
-        while not (self.to / "items").exists() or len(os.listdir(self.to / "items")) < 5:
-            time.sleep(0.01)
+        process = self.held(100)
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
         self.assertEqual(set(self.imported().values()), {"written", "unchanged"})

@@ -57,6 +57,18 @@ class Numbers(Texts):
     def test_what_was_not_seen(self):
         self.expect([NAN, 0, NAN], "-1\n0\n-1.0\n", "", unseen="-1")
         self.expect([NAN, 0, NAN], "nan\n0\nNaN\n", "", unseen="nan")
+        self.expect([NAN, 0], "x,s\n1,-nan\n2,0\n", "s", unseen="NaN")
+        self.expect([[NAN, 0], [1, 2]], "s x other\nNAN 1 nan\n0 2 3\n", "s", "x", unseen="nan")
+        self.expect([5, 4], "s other\n5 nan\n4 inf\n", "s")
+        self.expect('2: "nan" is not a finite number', "5\nnan\n", "", unseen="-1")
+        self.expect('2: "NaN" is not a finite number', "s,x\nnan,NaN\n", "s", "x", unseen="nan")
+        self.expect('2: "na" is not a number', "nan\nna\n", "", unseen="nan")
+
+    def test_what_was_not_seen_is_read_in_one_piece(self):
+        with mock.patch.object(_numbers, "_line_by_line", side_effect=AssertionError):
+            for text, columns in (("1\nnan\n", ("",)), ("x,s\n1,NaN\n2,3\n", ("s",)), ("x y z s\n1 2 3 nan\n1 2 3 4\n", ("s", "x", "y", "z"))):
+                self.assertEqual(sum(map(np.isnan, outcome(text, columns, "nan")[0])), 1, text)
+            self.assertEqual(outcome("s,x\n1,2\n4,nan\n", ("s",)), [[1, 4]])
 
     def test_file_line_and_what_was_expected(self):
         alone = ("the line has 2 columns, expected one value: keep that column alone, or, of ground truth, name it in the description "

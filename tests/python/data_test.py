@@ -364,18 +364,20 @@ class Warnings(Folder):
     def test_threads_and_the_end_of_the_interpreter(self):
         self.write("odd.off", off(np.vstack([POINTS, [[9, 9, 9]]])))
         script = f"""
-            import logging, salbench, threading, time
+            import logging, salbench, threading
             logging.basicConfig(filename={str(self.folder / "log")!r})
             dataset = salbench.Dataset("folder", {str(self.root)!r})
+            has_read = threading.Event()
             def read():
                 while True:
                     dataset[0]
+                    has_read.set()
             for _ in range(4):
                 threading.Thread(target=read, daemon=True).start()
-            time.sleep(0.3)
+            has_read.wait()
             """
         for _ in range(5):
-            ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=60)
+            ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script)], capture_output=True, text=True)
             self.assertEqual((ended.returncode, ended.stderr), (0, ""))
         self.assertIn("WARNING:salbench:odd: 1 isolated vertices", (self.folder / "log").read_text())
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a function depends on: every change changes the digest, and a new interpreter does not."""
 
+import collections.abc
 import functools
 import os
 import pathlib
@@ -69,6 +70,30 @@ CHANGES = {
     "decorator": ("def d(g):\n @functools.wraps(g)\n def w(s): return g(s) * {}\n return w\n@d\ndef f(s): return s", "1", "2"),
     "what was decorated": ("def d(g):\n @functools.wraps(g)\n def w(s): return g(s)\n return w\n@d\ndef f(s): return s * {}", "1", "2"),
     "cached function": ("@functools.lru_cache\ndef g(x): return x * {}\ndef f(s): return g(s)", "1", "2"),
+    "attribute of a cached function": ("@functools.cache\ndef g(x): return x\ng.a = {}\ndef f(s): return g.a", "1", "2"),
+    "size of a cache": ("@functools.lru_cache(maxsize={})\ndef f(s): return s", "1", "2"),
+    "cached method": ("class C:\n @functools.cache\n def g(self, s): return {}\nf = C().g", "1", "2"),
+    "function by type": ("@functools.singledispatch\ndef g(x): return 1\n@g.register\ndef _(x: int): return {}\ndef f(s): return g(s)", "1", "2"),
+    "function by type, of other types": ("@functools.singledispatch\ndef g(x): return {}\n@g.register\ndef _(x: int): return 1\n"
+                                         "def f(s): return g(s)", "1", "2"),
+    "function by type, which type": ("@functools.singledispatch\ndef g(x): return 1\ng.register({}, lambda x: 2)\ndef f(s): return g(s)",
+                                     "int", "float"),
+    "function by type, by itself": ("@functools.singledispatch\ndef f(x): return {}", "1", "2"),
+    "function by type, attribute": ("@functools.singledispatch\ndef g(x): return 1\ng.a = {}\ndef f(s): return g.a", "1", "2"),
+    "function by type, found": ("@functools.singledispatch\ndef g(x): return {}\nh = g.dispatch\ndef f(s): return h(int)(s)", "1", "2"),
+    "function by type, cached": ("@functools.cache\n@functools.singledispatch\ndef f(x): return {}", "1", "2"),
+    "function by type, wrapped": ("@functools.singledispatch\ndef g(x): return {}\n@functools.wraps(g)\ndef f(x): return g(x)", "1", "2"),
+    "method by type": ("class C:\n @functools.singledispatchmethod\n def g(self, x): return 1\n @g.register\n def _(self, x: int): return {}\n"
+                       "c = C()\ndef f(s): return c.g(s)", "1", "2"),
+    "method by type, bound": ("class C:\n @functools.singledispatchmethod\n def g(self, x): return 1\n @g.register\n"
+                              " def _(self, x: int): return {}\nf = C().g", "1", "2"),
+    "partial method": ("class C:\n def h(self, a, s): return a\n g = functools.partialmethod(h, {})\nc = C()\ndef f(s): return c.g(s)", "1", "2"),
+    "partial method, bound": ("class C:\n def h(self, a, s): return a\n g = functools.partialmethod(h, {})\nf = C().g", "1", "2"),
+    "partial of a bound method": ("class C:\n def __init__(self, w): self.w = w\n def h(self, a, s): return a\nf = functools.partial(C({}).h, 1)",
+                                  "1", "2"),
+    "attribute of a partial": ("f = functools.partial(max, 1)\nf.a = {}", "1", "2"),
+    "order by comparison": ("c = functools.cmp_to_key(lambda a, b: a * {})\ndef f(s): return sorted(s, key=c)", "1", "2"),
+    "order filled in": ("@functools.total_ordering\nclass C:\n def __lt__(self, o): return {}\ndef f(s): return C() >= C()", "1", "2"),
     "callable object": ("class N:\n def __init__(self, w): self.w = w\n def __call__(self, s): return s * self.w\nf = N({})", "1", "2"),
     "method of an object's class": ("class N:\n def __call__(self, s): return self.g() * {}\n def g(self): return 1\nf = N()", "1", "2"),
     "method of a base": ("class B:\n def g(self): return {}\nclass N(B):\n def __call__(self, s): return self.g()\nf = N()", "1", "2"),
@@ -218,6 +243,17 @@ class Changes(unittest.TestCase):
         for _ in range(5000):
             f(1)
         self.assertEqual(fingerprint(f), before)
+
+    def test_what_functools_has_cached_is_the_same(self):
+        for name in ("cached function", "size of a cache", "cached method", "function by type", "function by type, by itself",
+                     "function by type, found", "function by type, cached", "function by type, wrapped", "method by type", "method by type, bound"):
+            text, value, _ = CHANGES[name]
+            f = made(text.format(value))
+            before = fingerprint(f)
+            f(1)
+            collections.abc.Sized.register(type("Own", (), {}))  # as any library may, and what was dispatched is looked up again
+            f("a")
+            self.assertEqual(fingerprint(f), before, name)
 
     def test_one_middle_element_of_a_large_array(self):
         values = np.zeros((1000, 1000))

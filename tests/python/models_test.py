@@ -135,7 +135,7 @@ class Artefacts:
                            ("agreement", "ranking_agreement"), ("per_class", "per_class"), ("human_share", "human_share")):
             expected = (out / f"{file}.csv").read_text()
             expected = expected[expected.index("dataset,"):]
-            self.assertEqual(tables.csv(found._made(file)), expected, name)
+            self.assertEqual(tables.csv(found._table(file)), expected, name)
             frame = getattr(found, name)
             self.assertEqual(list(frame.columns), expected.split("\n", 1)[0].split(","))
             self.assertEqual(len(frame), expected.count("\n") - 1)

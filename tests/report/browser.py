@@ -26,8 +26,14 @@ def start(width=1280, height=1000):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     browser = webdriver.Chrome(service=Service(DRIVER), options=options)
-    browser.set_page_load_timeout(60)
+    browser.set_page_load_timeout(600)
+    browser.set_script_timeout(600)
     return browser
+
+
+def settle(browser):
+    """Until the page is laid out, its observers of sizes have been told, and what these changed is laid out, too: two frames later."""
+    browser.execute_async_script("const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))")
 
 
 def kinds_of_pages(report):

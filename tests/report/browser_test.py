@@ -3,7 +3,6 @@
 
 import base64
 import re
-import time
 import unittest
 from io import BytesIO
 
@@ -38,7 +37,7 @@ class Browser(support.BrowserTest):
         strangers = [url for url in asked if not url.startswith((inside, "data:"))]
         self.assertEqual(strangers, [], "requests that leave the folder")
 
-    def wait(self, condition, seconds=60):
+    def wait(self, condition, seconds=600):
         return WebDriverWait(self.browser, seconds).until(lambda _: condition())
 
     def test_index_is_usable_within_two_seconds(self):
@@ -93,7 +92,7 @@ class Browser(support.BrowserTest):
         """A page with everything unfolded, when what scrolls is known."""
         self.open(path)
         self.browser.execute_script("document.querySelectorAll('details').forEach(one => { one.open = true; })")
-        time.sleep(0.3)
+        chromium.settle(self.browser)
 
     def test_no_verdict_is_outside_the_screen(self):
         self.size(1280, 800)
@@ -108,7 +107,7 @@ class Browser(support.BrowserTest):
         self.assertGreater(found, 40)
         for page, table in (("ranking.html", "ranking"), ("claims.html", "claims"), ("classes.html", "classes-meshes-auc")):
             self.open(page)
-            time.sleep(0.3)
+            chromium.settle(self.browser)
             box = self.browser.find_element(By.CSS_SELECTOR, f"#sheet-{table} .scroll")
             self.assertIsNone(box.get_attribute("data-scrolls"), f"{table} fits")
 
@@ -305,7 +304,7 @@ class Browser(support.BrowserTest):
         self.size(400, 800)
         for path in chromium.kinds_of_pages(self.to):
             self.open(path)
-            time.sleep(0.2)
+            chromium.settle(self.browser)
             wider = self.browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
             self.assertLessEqual(wider, 0, path)
 

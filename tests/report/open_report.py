@@ -16,7 +16,7 @@ def wrong(browser, report, page):
     """What is wrong with a page, one line each."""
     browser.get(page.as_uri())
     if browser.execute_script("return document.querySelector('.viewer') !== null"):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 600
         while browser.execute_script("return document.querySelector('.viewer').dataset.ready") != "yes":
             if time.monotonic() > deadline:
                 yield "the viewer does not start"

@@ -7,7 +7,6 @@ with its columns and its function, and a row here. Files are read and written in
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -55,11 +54,15 @@ TABLES = (
 )
 
 
-@cache
-def text_columns() -> frozenset[str]:
-    """Names of the columns of text, in tables of scores, of conclusions, of the time that a run took, and of
-    what was fitted to maps."""
-    return frozenset((*TEXTS, "node", "of")) | {column.name for table in TABLES for column in table.columns if column.type == "str"}
+_DECLARED = {table.name: {column.name: column.type for column in table.columns} for table in TABLES}
+_OF_RUNS = {**dict.fromkeys((*TEXTS, "node", "of"), "str"), "n_points": "int64", "n_picks": "int64"}
+
+
+def type_of(table: str, column: str) -> str:
+    """The type of a column of TABLE.csv, whatever is in it: what conclusions declare, and of tables of a run texts and counts. All others
+    are numbers, and so is all of a table whose columns are models."""
+    declared = _DECLARED.get(table, {} if table.startswith("mean_histograms") else _OF_RUNS)
+    return declared.get(column, "float64")
 
 
 @dataclass(frozen=True)

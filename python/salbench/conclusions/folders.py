@@ -3,7 +3,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ import pandas
 
 from salbench._errors import StorageError as StorageError
 from salbench._files import replace_file
-from salbench.conclusions import tables
+from salbench.conclusions import record, tables
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
@@ -20,6 +20,10 @@ from salbench.conclusions.study import DEFAULT_SEED, Study
 
 CONCLUDED = "conclusions.json"
 SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
+
+
+class Unreadable(InputError):
+    """A file that was cut short, or is another one."""
 
 
 @dataclass(frozen=True)
@@ -36,42 +40,44 @@ class Source:
 
 def read_run(folder: Path, unit: str | None = None) -> Source:
     """What `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by the metrics, seed and unit of run.yaml."""
-    record = read_record(folder)
-    if not isinstance(record, dict) or "metrics" not in record:
+    of_run = read_record(folder / "run.yaml")
+    if not of_run.get("metrics"):
         raise InputError(f"{folder / 'run.yaml'}: is no record of a finished run; let `salbench run` end before its scores are concluded")
-    known, configuration = of_program(), record.get("configuration") or {}
-    metrics = [known.get(name, Metric(name, of["better"] == "higher")) for name, of in record["metrics"].items()]
-    own_unit = (configuration.get("statistics") or {}).get("unit", "mesh")
+    known, configuration = of_program(), of_run.get("configuration", {})
+    if unknown := [name for name, of in of_run["metrics"].items() if name not in known and not of.get("better")]:
+        raise InputError(f"{folder / 'run.yaml'}: metrics.{unknown[0]} does not say which scores are better: higher or lower")
+    metrics = [known.get(name) or Metric(name, of["better"] == "higher") for name, of in of_run["metrics"].items()]
+    own_unit = configuration.get("statistics", {}).get("unit") or "mesh"
     results = read_results(folder / "results.csv", metrics)
 
     def if_there(name: str, read: Any) -> Any:
         return read(folder / name, metrics) if (folder / name).is_file() else None
 
     constant = if_there("constant.csv", read_results)
-    study = Study(results.scores, unit or own_unit, int(configuration.get("seed", DEFAULT_SEED)), if_there("people.csv", read_people),
+    study = Study(results.scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), if_there("people.csv", read_people),
                   if_there("smoothed.csv", read_smoothed), constant and constant.scores.frame)
-    digest = record.get("scores_digest") if study.unit == own_unit else None
-    trained = [f"{model}: {how}" for model, how in trained_models(record).items()]
+    digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
+    trained = [f"{model}: {how}" for model, how in trained_models(of_run).items()]
     return Source(study, folder, results.remarks + trained, digest=digest, trained=trained)
 
 
-def read_record(folder: Path) -> Any:
-    """run.yaml."""
+def read_record(path: Path) -> dict[str, Any]:
+    """run.yaml, as record.py checks it. Throws InputError, Unreadable for what is no YAML."""
     import yaml
 
-    path = folder / "run.yaml"
     try:
-        with open(path, encoding="utf-8") as file:
-            return yaml.load(file, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: {error}") from None
+        found = yaml.load(path.read_text(encoding="utf-8", errors="replace"), getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+        return record.checked(found)
+    except yaml.YAMLError as error:
+        raise Unreadable(f"{path}: {' '.join(str(error).split())}") from None
+    except InputError as error:
+        raise InputError(f"{path}: {error}; write it as the run did, or run salbench again") from None
 
 
-def trained_models(record: Any) -> dict[str, str]:
+def trained_models(of_run: Mapping[str, Any]) -> dict[str, str]:
     """By name of a model that learned how it did: "cross-validated, 5 folds by class"."""
-    configuration = record.get("configuration") if isinstance(record, dict) else None
-    models = configuration.get("models") if isinstance(configuration, dict) else None
-    return {name: str(of["trained"]) for name, of in (models.items() if isinstance(models, dict) else ()) if isinstance(of, dict) and "trained" in of}
+    models = of_run.get("configuration", {}).get("models", {})
+    return {name: of["trained"] for name, of in models.items() if "trained" in of}
 
 
 def read_table(path: Path, unit: str | None = None, classes: str | None = None, higher: Sequence[str] = (), lower: Sequence[str] = ()) -> Source:

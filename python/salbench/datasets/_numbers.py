@@ -20,7 +20,7 @@ from salbench.datasets.records import Floats, InputError
 
 MAX_NAMED = 20  # columns in a message
 _AROUND = b' \t\r"'
-_PLAIN = b"0123456789+-.eE,; \t\r\n"
+_PLAIN = b"0123456789+-.eE,; \t\r\nnNaA"
 _TINY = re.compile(rb"[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # numbers that no double may hold
 _LONG = re.compile(rb"[0-9.]{300}")
 _ZEROS_IN_FRONT = re.compile(rb',[ \t\r"]*[-+]?0[0-9]')
@@ -138,7 +138,8 @@ class _Table:
     # --- all rows at once
 
     def all_at_once(self) -> list[Floats] | None:
-        """The columns, and that which numbers the rows; None if a row is not plainly numbers, as many as the first line has cells."""
+        """The columns, and that which numbers the rows; None if a row is not plainly numbers, as many as the first line has cells. The first
+        may have NaN."""
         rows = self.lines[self.begin:]
         body = b"\n".join(rows)
         if not body.strip() or body.translate(None, _PLAIN) or _TINY.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
@@ -153,9 +154,10 @@ class _Table:
             table = np.loadtxt(rows, delimiter=delimiter, comments=None, ndmin=2)
         except ValueError:
             return None
-        if table.shape[1] != self.size or max(wanted) >= self.size or not np.isfinite(table).all():
+        if table.shape[1] != self.size or max(wanted) >= self.size:
             return None
-        return [table[:, place].copy() for place in wanted]
+        first, *others = [table[:, place].copy() for place in wanted]
+        return None if np.isinf(first).any() or not np.isfinite(others).all() else [first, *others]
 
     # --- line by line
 
@@ -222,7 +224,7 @@ def read_columns(text: bytes, name: str, columns: Sequence[str], unseen: str = "
     table.read_header(expected)
     wanted = unseen.encode()
     values = table.all_at_once()
-    if values is None:
+    if values is None or (np.isnan(values[0]).any() and not is_same_number(float("nan"), wanted)):
         values = _line_by_line(table, wanted, wrong_with_rows)
     elif wanted and (number := number_in(wanted)) is not None:
         values[0] = np.where(values[0] == number, np.nan, values[0])

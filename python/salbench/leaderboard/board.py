@@ -83,10 +83,7 @@ def expected_of(results: Any, protocol: str) -> Expected:
 
 def record_of(results: Any) -> dict[str, Any]:
     """run.yaml, with every value as text."""
-    import yaml
-
-    record: dict[str, Any] = yaml.load((results.folder / "run.yaml").read_bytes(), Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader))
-    return record
+    return folders.read_record(results.folder / "run.yaml")
 
 
 def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: Iterable[str], threads: int | None) -> list[Submission]:

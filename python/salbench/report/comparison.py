@@ -10,7 +10,7 @@ from salbench.conclusions.samples import summarise
 from salbench.pages.blocks import Block, Cell, Fold, Missing, Note, Table, attempt, cell, first_of, interval
 from salbench.pages.names import DATASETS
 from salbench.report import statistics
-from salbench.report.results import Frame, Results, flatten, text_of
+from salbench.report.results import Frame, Results, flatten
 from salbench.report.score_pages import page_data
 from salbench.report.tables import signed
 from salbench.report.units import HEAD, count_cell
@@ -20,17 +20,16 @@ ABSENT = "–"
 
 
 def digest(results: Results) -> str:
-    entry = results.record.get("data_set")
-    return text_of(entry.get("digest")) if isinstance(entry, dict) else ""
+    return str(results.record.get("data_set", {}).get("digest", ""))
 
 
 FACTS: dict[str, Callable[[Results], str | None]] = {
-    "Program": lambda run: text_of(run.record.get("program")),
+    "Program": lambda run: run.record.get("program"),
     "Results": lambda run: run.state,
     "Protocol": lambda run: run.option("protocol"),
     "Seed": lambda run: run.option("seed"),
     "Data, digest": digest,
-    "Reference": lambda run: text_of(run.record.get("reference")),
+    "Reference": lambda run: run.record.get("reference"),
     "Models of one's own": lambda run: ", ".join(run.evaluated),
     "Participants": lambda run: "simulated" if run.simulated else "measured",
 }
@@ -73,7 +72,7 @@ def differing(first: Mapping[str, str], second: Mapping[str, str], caption: str,
 
 def configuration(results: Results, other: Results) -> Block:
     first, second = (run.record.get("configuration") for run in (results, other))
-    if not isinstance(first, dict) or not isinstance(second, dict):
+    if not first or not second:
         raise Missing("One of the two run.yaml holds no configuration.")
     return differing(flatten(first), flatten(second), "Options that differ.", "compared-options", names(results, other),
                      "All options")
@@ -83,9 +82,9 @@ def versions(results: Results, other: Results) -> Block:
     found = []
     for run in (results, other):
         stages = run.record.get("stages")
-        if not isinstance(stages, dict):
+        if not stages:
             raise Missing("One of the two run.yaml does not name the versions of its stages.")
-        found.append({stage: text_of(entry.get("version")) for stage, entry in stages.items() if isinstance(entry, dict)})
+        found.append({stage: entry.get("version", "") for stage, entry in stages.items()})
     return differing(found[0], found[1], "Stages whose version differs, or that only one run has.", "compared-versions",
                      names(results, other), "The versions of all stages")
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from salbench.conclusions import glossary, words
 from salbench.pages.blocks import Missing, Note
-from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
+from salbench.pages.names import DATASETS, KIND_NAMES, several
 from salbench.report import examples, paper, statistics
 from salbench.report.gallery import describe
 from salbench.report.lag import Behind, lags
-from salbench.report.results import Results, text_of
+from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
 PANELS = 2   # data sets with panels; the page of the ranking has all
@@ -211,8 +211,8 @@ def add_facts(shop: Workshop, made: Front) -> None:
 
 
 def people(results: Results, counts: Mapping[str, int]) -> str:
-    entry = results.record.get("data_set")
-    layout = text_of(entry.get("layout")) if isinstance(entry, dict) else ""
+    entry = results.record.get("data_set", {})
+    layout = entry.get("layout", "")
     of = f", data set {layout}" if layout else ""
     if results.simulated:
         return f"simulated by the program{of}: nothing here is about people"
@@ -220,12 +220,13 @@ def people(results: Results, counts: Mapping[str, int]) -> str:
     return f"{told_apart(entry)}{of}{scans}"
 
 
-def told_apart(entry: Any) -> str:
+def told_apart(entry: Mapping[str, Any]) -> str:
     """How many people there were per shape, as far as the files tell them apart."""
-    found = entry.get("participants") if isinstance(entry, dict) else None
-    if not found:
+    if not entry.get("participants"):
         return "real people"
-    few, many = found
+    few, many = map(int, entry["participants"])
     if many == 0:
         return "real people, pooled"
+    if few == 0:
+        return f"real people, up to {many} per shape, pooled on some"
     return f"{few if few == many else f'{few} to {many}'} real people per shape"

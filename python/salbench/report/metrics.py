@@ -4,7 +4,7 @@
 import math
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from salbench.conclusions.metrics import label_of, lower_is_better
 
@@ -53,8 +53,8 @@ class Metric:
         return {key for key, value in known.items() if abs(value - top) <= TIE * abs(top)}
 
 
-def described(name: str, entry: Any = None) -> Metric:
+def described(name: str, entry: Mapping[str, str] | None = None) -> Metric:
     """entry: {"unit": ..., "better": ..., "matching": ...} of run.yaml, if it has one."""
-    entry = entry if isinstance(entry, dict) else {}
+    entry = entry or {}
     lower = entry["better"] == "lower" if entry.get("better") else lower_is_better(name)
-    return Metric(name, label_of(name), str(entry.get("unit") or "1"), lower, str(entry.get("matching") or ""))
+    return Metric(name, label_of(name), entry.get("unit") or "1", lower, entry.get("matching", ""))

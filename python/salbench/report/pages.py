@@ -11,7 +11,7 @@ from salbench.pages import rendering
 from salbench.pages.viewer_parts import three_js
 from salbench.report.folder import Folder
 from salbench.report.painting import colour_bar
-from salbench.report.results import Results, text_of
+from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
 HERE = Path(__file__).parent
@@ -36,7 +36,7 @@ class Pages:
         self.shop = shop
         self.titles = titles(shop.results, shop.models)
         self.templates = rendering.environment(HERE, self.titles)
-        self.common = {"results": shop.results, "navigation": navigation, "program": text_of(shop.results.record.get("program"))}
+        self.common = {"results": shop.results, "navigation": navigation, "program": shop.results.record.get("program", "")}
 
     def write(self, path: str, template: str, **values: Any) -> None:
         """path: within the report; links in templates start with `root`."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy
 
 from salbench import _tables
-from salbench.report.results import Frame, Results, flatten, text_of
+from salbench.report.results import Frame, Results, flatten
 
 FOLDER = Path(__file__).parent.parent / "configs/paper"
 CLASSES = 20
@@ -20,7 +20,7 @@ OPTIONS = ("scan.", "normals.", "scan_normals.", "surface.", "fpfh.", "scan_fpfh
 
 def read(name: str) -> Frame:
     """A table of configs/paper: text, but for the columns mean, ci95 and margin, which is NaN where there is none."""
-    return _tables.read(FOLDER / name, numbers=("mean", "ci95", "margin"))
+    return _tables.read(FOLDER / name, lambda column: "float64" if column in ("mean", "ci95", "margin") else "str")
 
 
 def per_class() -> dict[tuple[str, str], tuple[float, float]]:
@@ -41,8 +41,7 @@ def other_data(results: Results) -> str:
         return "the participants are simulated"
     if not results.record:
         return "run.yaml does not say of which data and protocol the scores are"
-    found = results.record.get("data_set")
-    layout = text_of(found.get("layout")) if isinstance(found, dict) else ""
+    layout = results.record.get("data_set", {}).get("layout", "")
     if layout not in LAYOUTS:
         return f"these are not the paper's data, but of the layout {layout or 'unknown'}"
     return ""

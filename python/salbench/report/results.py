@@ -11,20 +11,19 @@ from typing import Any, TypeAlias
 
 import numpy
 import pandas
-import yaml
 
 from salbench import _tables
-from salbench.conclusions import conclude_if_missing, folders, text_columns
+from salbench.conclusions import conclude_if_missing, folders, type_of
 from salbench._errors import InputError, StorageError
 from salbench.conclusions.metrics import PAPERS, leading_metrics
+from salbench.conclusions.units import TEXTS
 from salbench.pages.blocks import Missing
 from salbench.report import metrics
 from salbench.report.metrics import Metric
 
-NO_METRICS = ("n_points", "n_picks", "key", "content")  # columns of results.csv beside text and metrics
+NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv beside metrics
 Frame: TypeAlias = pandas.DataFrame
 Row = Mapping[Any, Any]  # of a table, by column
-BASE_LOADER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)  # every scalar is text
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
 
@@ -33,7 +32,7 @@ class Results:
     """A results folder. Tables are read when first asked for; what cannot be read is Missing."""
 
     folder: Path
-    record: dict[str, Any] = field(default_factory=dict)  # run.yaml with every scalar as text
+    record: dict[str, Any] = field(default_factory=dict)  # run.yaml, as record.py checks it; empty if it is missing or broken
     remarks: list[str] = field(default_factory=list)  # lines of '#' at the head of run.yaml and of the tables
     unusable: list[str] = field(default_factory=list)  # sentences on tables that hold infinite numbers
     pivoted: dict[tuple[str, str | None], Any] = field(default_factory=dict)  # (data set, metric) -> scores, for statistics.scores
@@ -88,25 +87,21 @@ class Results:
         return said or self.option("dataset.participants") == "simulated"
 
     @cached_property
-    def _listed(self) -> dict[str, Any]:
-        listed = self.record.get("metrics")
-        return listed if isinstance(listed, dict) else {}
-
-    @cached_property
     def metrics(self) -> dict[str, Metric]:
         """Every metric that run.yaml or a table has by its name, the leading ones first."""
-        found = list(self._listed)
+        listed = self.record.get("metrics", {})
+        found = list(listed)
         if self.has("results.csv") and "model" in self.table("results.csv"):
-            found += [name for name in self.table("results.csv") if name not in text_columns().union(NO_METRICS)]
+            found += [name for name in self.table("results.csv") if name not in NO_METRICS]
         if self.has("summary.csv") and "metric" in self.table("summary.csv"):
             found += [name for name in self.table("summary.csv")["metric"].unique() if name]
-        first = leading_metrics(self._listed or PAPERS)
-        return {name: metrics.described(name, self._listed.get(name)) for name in dict.fromkeys(first + found)}
+        first = leading_metrics(listed or PAPERS)
+        return {name: metrics.described(name, listed.get(name)) for name in dict.fromkeys(first + found)}
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
         """The metrics that every page shows: the paper's, where the run has them."""
-        return {name: self.metrics[name] for name in leading_metrics(self._listed or PAPERS)}
+        return {name: self.metrics[name] for name in leading_metrics(self.record.get("metrics") or PAPERS)}
 
     def metric(self, name: str) -> Metric:
         return self.metrics.get(name) or metrics.described(name)
@@ -114,7 +109,7 @@ class Results:
     @property
     def state(self) -> str:
         """"finished", "partial, 3 of 12 shapes ..." or why it is not known."""
-        return text_of(self.record.get("results")) or "unknown: run.yaml is missing or was not completed"
+        return self.record.get("results") or "unknown: run.yaml is missing or was not completed"
 
     def option(self, path: str) -> str | None:
         """An option of the configuration as text, such as option("fpfh.radius"); None if it is not recorded."""
@@ -133,13 +128,8 @@ class Results:
     @cached_property
     def evaluated(self) -> list[str]:
         """Names of the models whose maps another program made (salbench run --maps)."""
-        value = self.record.get("evaluated") or []
-        entries = value if isinstance(value, list) else [value]
-        return [entry["model"] for entry in entries if isinstance(entry, dict) and "model" in entry]
-
-
-def text_of(value: Any) -> str:
-    return value if isinstance(value, str) else ""
+        given = self.record.get("evaluated", {})
+        return [given["model"]] if "model" in given else []
 
 
 def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
@@ -165,22 +155,16 @@ def number_of(value: Any, otherwise: float = float("nan")) -> float:
 def read_table(path: Path) -> tuple[Frame, int]:
     """A table with its texts and float64 alone, and how many of its numbers cannot be used: infinite ones and those beyond LARGEST.
     What is no number is NaN, and so is what a last line that was cut short lacks."""
-    table, unusable = _tables.read(path, errors="replace"), 0
-    for column in table.columns.difference(list(text_columns())):
+    def text_or_any(column: str) -> str | None:
+        return "str" if type_of(path.stem, column) == "str" else None
+
+    table, unusable = _tables.read(path, text_or_any, errors="replace"), 0
+    for column in [name for name in table if text_or_any(name) is None]:
         values = pandas.to_numeric(table[column], errors="coerce").astype(float)
         too_large = values.abs() > LARGEST
         unusable += int(too_large.sum())
         table[column] = values.mask(too_large)
     return table, unusable
-
-
-def read_record(path: Path) -> dict[str, Any]:
-    """run.yaml with every scalar as text: a model named NO stays one. Empty if there is no such file or it is broken."""
-    try:
-        record = yaml.load(path.read_text(encoding="utf-8", errors="replace"), Loader=BASE_LOADER)
-    except (OSError, yaml.YAMLError):
-        return {}
-    return record if isinstance(record, dict) else {}
 
 
 def read_results(folder: Path) -> Results:
@@ -192,8 +176,10 @@ def read_results(folder: Path) -> Results:
     if not (folder / "summary.csv").is_file():
         with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
             conclude_if_missing(folder)
-    results = Results(folder, read_record(folder / "run.yaml"))
+    results = Results(folder)
     if (folder / "run.yaml").is_file():
+        with suppress(folders.Unreadable, OSError):  # the pages say that it cannot be read
+            results.record = folders.read_record(folder / "run.yaml")
         results._note_remarks(folder / "run.yaml")
     for name in ("results.csv", "summary.csv"):
         results.has(name)  # gathers their remarks

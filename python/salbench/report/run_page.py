@@ -8,7 +8,7 @@ import pandas
 
 from salbench.pages.blocks import Block, Cell, Missing, Note, Plot, Table, attempt, cell, count
 from salbench.report.drawing import Drawing
-from salbench.report.results import Frame, Results, flatten, number_of, text_of
+from salbench.report.results import Frame, Results, flatten, number_of
 from salbench.report.workshop import Workshop
 
 MOST_INTERVALS = 100_000  # of a timeline; the program writes a thousand at most
@@ -31,10 +31,9 @@ def known_record(shop: Workshop) -> dict[str, Any]:
 
 def facts(shop: Workshop) -> Table:
     record = known_record(shop)
-    lines = {key: text_of(record.get(key)) for key in FACTS if text_of(record.get(key))}
+    lines = {key: record[key] for key in FACTS if record.get(key)}
     for key in ("data_set", "evaluated"):
-        if isinstance(record.get(key), dict):
-            lines |= {f"{key}: {name}": text_of(value) for name, value in record[key].items()}
+        lines |= {f"{key}: {name}": value if isinstance(value, str) else " to ".join(value) for name, value in record.get(key, {}).items()}
     for key in ("protocol", "seed"):
         if chosen := shop.results.option(key):
             lines[key] = chosen
@@ -46,9 +45,7 @@ def facts(shop: Workshop) -> Table:
 
 def failed(results: Results) -> list[dict[str, str]]:
     """The failed jobs of run.yaml: item, stage and cause of each."""
-    entries = results.record.get("failed")
-    return [{key: text_of(entry.get(key)) for key in ("item", "stage", "cause")}
-            for entry in (entries if isinstance(entries, list) else []) if isinstance(entry, dict)]
+    return [{key: entry.get(key, "") for key in ("item", "stage", "cause")} for entry in results.record.get("failed", [])]
 
 
 def failures(shop: Workshop) -> Block:
@@ -63,13 +60,11 @@ def failures(shop: Workshop) -> Block:
 def stages(shop: Workshop) -> Table:
     """Per stage what was computed and why; everything else came from the cache."""
     found = known_record(shop).get("stages")
-    if not isinstance(found, dict):
+    if not found:
         raise Missing("run.yaml does not say why stages were computed.")
     rows = []
     for stage, entry in found.items():
-        entry = entry if isinstance(entry, dict) else {}
-        why = entry.get("why") or {}
-        reasons = "; ".join(f"{reason}: {n}" for reason, n in why.items()) if isinstance(why, dict) else ""
+        reasons = "; ".join(f"{reason}: {n}" for reason, n in entry.get("why", {}).items())
         rows.append([Cell(stage), count(number_of(entry.get("version"))), Cell(reasons or "nothing: all from the cache")])
     return Table("stages", "Versions of the stages, and why this run computed what it did (counts of jobs).",
                  ["Stage", "Version", "Computed because"], rows, [False, True, False])
@@ -77,7 +72,6 @@ def stages(shop: Workshop) -> Table:
 
 def node_table(shop: Workshop) -> Frame:
     nodes = known_record(shop).get("nodes")
-    nodes = [node for node in nodes if isinstance(node, dict)] if isinstance(nodes, list) else []
     if not nodes:
         raise Missing("run.yaml holds no nodes.")
     table = pandas.DataFrame(nodes)
@@ -162,7 +156,7 @@ def timeline(shop: Workshop) -> Plot:
 
 def cache(shop: Workshop) -> Table:
     sizes = known_record(shop).get("cache_bytes")
-    if not isinstance(sizes, dict) or not sizes:
+    if not sizes:
         raise Missing("run.yaml does not say how large the cache is: an older version of the program wrote it.")
     total = sum(number_of(size, 0) for size in sizes.values())
     rows = [[Cell(stage), cell(number_of(size) / 1e6, 2), cell(100 * number_of(size) / total if total else 0, 1)]
@@ -173,7 +167,7 @@ def cache(shop: Workshop) -> Table:
 
 def configuration(shop: Workshop) -> Table:
     found = known_record(shop).get("configuration")
-    if not isinstance(found, dict):
+    if not found:
         raise Missing("run.yaml holds no configuration.")
     return Table("configuration", "The complete configuration, as the program understood it.", ["Option", "Value"],
                  [[Cell(path), Cell(value)] for path, value in flatten(found).items()], [False, False])

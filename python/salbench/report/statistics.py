@@ -45,7 +45,7 @@ def shown(results: Results) -> list[str]:
 
 def models(results: Results) -> list[str]:
     """Every model that any table names, in the order of the configuration."""
-    found = list(results.record.get("configuration", {}).get("models") or []) if results.record else []
+    found = list(results.record.get("configuration", {}).get("models", []))
     for name in ("summary.csv", "results.csv"):
         if results.has(name) and "model" in results.table(name):
             found += list(results.table(name)["model"].unique())

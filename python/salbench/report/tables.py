@@ -189,7 +189,7 @@ def parameters(shop: Workshop) -> list[Block]:
     ours = shop.results.option("protocol") or ""
     configuration = shop.results.record.get("configuration")
     flat = {name: model_options(values) for name, values in shop.protocols.items()}
-    if isinstance(configuration, dict):
+    if configuration:
         own = model_options(configuration)
         if flat.get(ours) == own:
             del flat[ours]  # the run's own column says the same

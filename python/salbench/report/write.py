@@ -13,7 +13,7 @@ from salbench.report.elements import numbered, pages_of, sections
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.pages import Pages, copy_static
-from salbench.report.results import BASE_LOADER, read_results
+from salbench.report.results import read_results
 from salbench.report.workshop import Workshop
 
 
@@ -68,4 +68,5 @@ def protocols() -> dict[str, dict[str, Any]]:
     """protocol -> its complete configuration, scalars as text."""
     from salbench import _core
 
-    return {protocol: yaml.load(_core.protocol_configuration(protocol), Loader=BASE_LOADER) for protocol in ("published", "text")}
+    loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
+    return {protocol: yaml.load(_core.protocol_configuration(protocol), loader) for protocol in ("published", "text")}

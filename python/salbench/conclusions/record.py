@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""run.yaml, what a run says of itself: every scalar is a text, so that a model named NO stays one, and what is read of it is of the kind
+that the program writes. Somebody may have edited it."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from salbench._errors import InputError, quoted
+from salbench.conclusions.units import UNITS
+
+
+class Scalar(NamedTuple):
+    words: str
+    fits: Callable[[str], bool] = lambda text: True
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def one_of(*words: str) -> Scalar:
+    return Scalar(f"one of {', '.join(words)}", words.__contains__)
+
+
+TEXT, NUMBER = Scalar("a text"), Scalar("a number", _is_number)
+COUNT = Scalar("a whole number", lambda text: text.isascii() and text.isdigit() and len(text) <= 20)
+
+# A field in {}: by its name, "*" any other one; in []: any number of them; in (): as many. Absent or empty all of them may be.
+_KINDS: dict[str, Any] = {
+    **dict.fromkeys(("program", "results", "host", "libraries", "shard", "scores_digest", "reference"), TEXT),
+    **dict.fromkeys(("threads", "seconds", "peak_memory_mb", "artefacts_computed"), NUMBER),
+    "data_set": {"participants": (COUNT, COUNT), "meshes": COUNT, "clouds": COUNT, "files": COUNT, "*": TEXT},
+    "evaluated": {"*": TEXT},
+    "metrics": {"*": {"better": one_of("higher", "lower"), "*": TEXT}},
+    "stages": {"*": {"version": COUNT, "why": {"*": COUNT}}},
+    "nodes": [{"stage": TEXT, "of": TEXT, "scope": TEXT, "*": NUMBER}],
+    "cache_bytes": {"*": NUMBER},
+    "failed": [{"*": TEXT}],
+    "configuration": {
+        "protocol": TEXT, "seed": COUNT, "cache": TEXT, "dataset": {"participants": TEXT}, "statistics": {"unit": one_of(*UNITS)},
+        "models": {"*": {"trained": TEXT}}},
+}
+
+
+def checked(found: Any) -> dict[str, Any]:
+    """What YAML made of the file; empty for a run that did not end. Throws InputError with the name of a field of another kind."""
+    record: dict[str, Any] = _checked(found, _KINDS, "") if isinstance(found, dict) else {}
+    return record
+
+
+def _checked(value: Any, kind: Any, name: str) -> Any:
+    """The value, with {} and [] where these are empty."""
+    if isinstance(kind, Scalar):
+        return value if isinstance(value, str) and (not value or kind.fits(value)) else _fail(value, kind.words, name)
+    if value == "":
+        return {} if isinstance(kind, dict) else []
+    if isinstance(kind, dict):
+        if not isinstance(value, dict):
+            _fail(value, "a mapping of names to values", name)
+        kinds = {key: kind.get(key, kind.get("*")) for key in value}
+        return {key: inner if kinds[key] is None else _checked(inner, kinds[key], f"{name}.{key}" if name else key) for key, inner in value.items()}
+    if not isinstance(value, list) or isinstance(kind, tuple) and len(value) != len(kind):
+        _fail(value, f"a list of {len(kind)}" if isinstance(kind, tuple) else "a list", name)
+    return [_checked(inner, kind[at % len(kind)], f"{name}[{at}]") for at, inner in enumerate(value)]
+
+
+def _fail(value: Any, words: str, name: str) -> Any:
+    found = quoted(value) if isinstance(value, str) else "a mapping" if isinstance(value, dict) else "a list"
+    raise InputError(f"{name} is {found}, not {words}")
