@@ -15,7 +15,9 @@ bool is_name(std::string_view word) {
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool is_number = error != std::errc::invalid_argument && end == digits.data() + digits.size();
-  return !is_number && decimal_comma_in(word).empty();
+  const bool begins_as_number = word.find_first_not_of("+-.0123456789") != 0;
+  const bool is_infinity = begins_as_number && word.find('#') != word.npos;  // 1.#INF, as older programs wrote
+  return !is_number && !is_infinity && decimal_comma_in(word).empty();
 }
 
 }  // namespace

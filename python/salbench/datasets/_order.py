@@ -24,9 +24,15 @@ class Elements:
     shape: str = "mesh"
     one: str = "vertex"
     plural: str = "vertices"
+    polygons: int | None = None  # of faces, n of them after some were split: how many the shape's file has
+
+    def has(self, count: int) -> bool:
+        """True of as many values as there are elements, or polygons of which these are parts."""
+        return self.n is None or count in (self.n, self.polygons)
 
     def wrong_count(self, count: int) -> str:
-        return f"the file has {count} values, but the {self.shape} has {self.n} {self.plural}"
+        there = f"{self.n} {self.plural}" if self.polygons is None else f"{self.polygons} {self.plural}, split into {self.n} triangles"
+        return f"the file has {count} values, but the {self.shape} has {there}"
 
 
 def _how_sure(name: bytes, is_first: bool, elements: Elements) -> int:

@@ -53,7 +53,10 @@ def decimal_comma_in(word: bytes) -> str:
 
 
 def lines_of(data: bytes) -> list[bytes]:
-    """Lines end in LF, CR LF, or (if there is no LF at all) CR; a CR before an LF stays at its line."""
-    data = data.removeprefix(BYTE_ORDER_MARK)
-    lines = data.split(b"\n" if b"\n" in data else b"\r")
-    return lines[:-1] if not lines[-1] else lines
+    """LF, CR LF and CR each end a line, wherever they stand."""
+    return data.removeprefix(BYTE_ORDER_MARK).splitlines()
+
+
+def before_comment(words: list[bytes]) -> list[bytes]:
+    """The words before that with which a comment begins: a '#' within a word, as in 1.#INF, begins none."""
+    return words[:next((place for place, word in enumerate(words) if word.startswith(b"#")), None)]
