@@ -317,7 +317,8 @@ class Columns(WithArchive):
 
     def test_wrong_rows_are_named(self):
         named = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], normal: [4, 5, 6], density: 7}\n"
-        self.assertRegex(self.error_of(lambda: self.read_rows(named)), "^ROOT/Gaze/cat.txt:1: the normal is not of unit length: name its columns, or add")
+        self.assertEqual(self.error_of(lambda: self.read_rows(named)), "ROOT/Gaze/cat.txt:1: the normal has length 20, not 1: are these colours? name the "
+                         "columns of the normals, or none; for directions of any length add `normalise_normals: true`")
         for row, wrong in [("1 1 1 1 0 0 0.5 0.5", "the flag is neither 0 nor 1"), ("1 1 1 1 0 0 0.5", "the line has 7 columns, expected column 8"),
                            ("1e151 1 1 1 0 0 0 0", "a coordinate is larger than 1e150"), ("nan 1 1 1 0 0 0 0", '"nan" is not a finite number')]:
             self.rows[3] = row
@@ -325,6 +326,26 @@ class Columns(WithArchive):
         self.rows = [row[:-3] + "0" for row in self.rows[:3] + self.rows[4:]]
         own = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], flag: 8}\n"
         self.assertEqual(self.error_of(lambda: self.read_rows(own)), "ROOT/Gaze/cat.txt: no point has its flag set: there is nothing to compare with")
+
+
+    def test_colours_are_no_normals(self):
+        """They have length 1 within 1 %, or 0 where none is known."""
+        named = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], normal: [4, 5, 6]}\n"
+        random = np.random.default_rng(5).random((12, 3))
+        for name, columns, wrong in [
+                ("unit", self.normals, None), ("rounded", self.normals * 0.9901, None), ("longer", self.normals * 1.0099, None),
+                ("none known", self.normals * 0, None), ("too short", self.normals * 0.9899, "1: the normal has length 0.99"),
+                ("too long", self.normals * 1.0101, "1: the normal has length 1.01"), ("one of them", np.where(self.around[:, None] == 7, 0.5, self.normals), "8: the normal"),
+                ("random colours", random, "1: the normal"), ("random colours up to 255", 255 * random, "1: the normal"),
+                ("one grey", np.full((12, 3), 0.5), "1: the normal has length 0.866"), ("greys", np.outer(self.around / 11, [1, 1, 1]), "2: the normal"),
+                ("white", np.ones((12, 3)), "1: the normal has length 1.73"), ("yellow among red", np.where(self.around[:, None] == 4, [1, 1, 0], [1, 0, 0]), "5: the normal")]:
+            self.rows = [" ".join(map(repr, row)) for row in np.column_stack([self.points, columns]).tolist()]
+            with self.subTest(name):
+                if wrong is None:
+                    found = self.read_rows(named).normals
+                    self.equal(found is None, name == "none known")
+                else:
+                    self.assertIn(f"ROOT/Gaze/cat.txt:{wrong}", self.error_of(lambda: self.read_rows(named)))
 
 
 class OneForm(WithArchive):
