@@ -16,7 +16,8 @@ bool is_name(std::string_view word) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool is_number = error != std::errc::invalid_argument && end == digits.data() + digits.size();
   const bool begins_as_number = word.find_first_not_of("+-.0123456789") != 0;
-  const bool is_infinity = begins_as_number && word.find('#') != word.npos;  // 1.#INF, as older programs wrote
+  const bool is_infinity =
+      begins_as_number && word.find('#') != word.npos;  // 1.#INF, as older programs wrote
   return !is_number && !is_infinity && decimal_comma_in(word).empty();
 }
 
@@ -37,8 +38,8 @@ ScalarField parse_values(std::string_view text, std::string_view name, const Ele
           "...})");
   }
   if (elements.n != Elements::kUnknown && values.size() != elements.n)
-    in.fail(fmt::format("the file has {} values, but the {} has {} {}", values.size(), elements.shape,
-                        elements.n, elements.plural));
+    in.fail(fmt::format("the file has {} values, but the {} has {} {}{}", values.size(), elements.shape,
+                        elements.n, elements.plural, elements.others ? elements.others(values.size()) : ""));
   if (values.empty()) in.fail("the file has no values");
   return values;
 }
