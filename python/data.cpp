@@ -132,6 +132,11 @@ py::dict native_items(const std::string& layout, const std::string& root, const 
   return listing;
 }
 
+// Of "automatic", the layout that fits.
+py::str automatic(const std::string& root) {
+  return file_text(computed(1, [&] { return automatic_layout(data_folder(root)); }));
+}
+
 // What the program reads by itself: a mesh or a cloud, values per point, picks per participant. `as_written`:
 // a mesh as its file has it.
 ShapeInForm native_shape(const DatasetItem& item, bool as_written) {
@@ -181,6 +186,7 @@ py::dict native_form(const std::string& name, const std::string& mesh, std::vect
 }  // namespace
 
 void bind_data(py::module_& module) {
+  module.def("automatic_layout", &automatic, py::arg("root"));
   module.def("native_items", &native_items, py::arg("layout"), py::arg("root"), py::arg("twins") = "refuse");
   module.def("load_native", &load_native, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
              py::arg("picks"));

@@ -41,12 +41,16 @@ auto naming(const std::string& file, const Function& function) {
 
 // --- the strict readers -----------------------------------------------------------------------------------
 
+// Points, triangles, polygons and how many of these are concave, and where there are polygons which face of
+// the file each triangle is part of.
 py::tuple mesh_of_bytes(const py::bytes& data, const std::string& name) {
   const std::string_view bytes = data;
   PolygonCounts polygons;
   Mesh mesh = computed([&] { return parse_mesh(bytes, name, &polygons); });
+  py::object face_of = py::none();
+  if (polygons.split > 0) face_of = moved(faces_of_triangles(polygons, mesh.faces.size()));
   return py::make_tuple(moved(std::move(mesh.vertices)), moved(std::move(mesh.faces)), polygons.split,
-                        polygons.concave);
+                        polygons.concave, face_of);
 }
 
 py::tuple cloud_tuple(PointCloud cloud, const std::string& name) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -303,7 +304,11 @@ bool ServingCommand::ask(const std::string& line, const std::string& answer,
   const std::string failure = process.failure();
   const bool unread = process.unread() == line.size() + 1;
   if (failure.empty() || (running_->has_answered && unread)) return false;
-  throw InputError(fmt::format("{}; {}", failure, process.said()));
+  const std::string what = fmt::format("{}; {}", failure, process.said());
+  constexpr std::array kFromOutside = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT};
+  if (std::ranges::find(kFromOutside, process.status() - 128) != kFromOutside.end())
+    throw EndedFromOutside(what);
+  throw InputError(what);
 }
 
 std::string shell_quoted(const std::string& text) {

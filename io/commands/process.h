@@ -7,7 +7,14 @@
 #include <memory>
 #include <string>
 
+#include "stages/core/errors.h"
+
 namespace salbench {
+
+// A command was ended by a signal that nothing in it raises: by a person, or a system without memory.
+struct EndedFromOutside : InputError {
+  using InputError::InputError;
+};
 
 // Starts the guard, a copy of this process that ends the commands of a program that was killed: for a moment
 // when the program is small, since the first command does it otherwise. Throws StorageError.
@@ -50,7 +57,7 @@ class ServingCommand {
   // Writes the line, and waits until the command prints `answer` as a whole line. What else it prints counts
   // for messages only. False if the line is not to blame for its end: it ended with status 0, or, after
   // other answers, without reading the line. Otherwise throws InputError and Interrupted as
-  // run_command does; the command is of no use then.
+  // run_command does, or EndedFromOutside; the command is of no use then.
   bool ask(const std::string& line, const std::string& answer, std::chrono::duration<double> timeout);
 
   std::string last_lines() const;  // of what it printed since it was asked, for a message

@@ -36,8 +36,8 @@ void add_shape(Arrays& arrays, const ShapeInForm& shape) {
   if (!shape.is_cloud)
     arrays.push_back(triples("shape/faces", shape.mesh.faces, kNumber,
                              "0-based points at the corners of the triangles, in the order of the source"));
-  if (const auto& [split, concave] = shape.polygons; split > 0)
-    arrays.push_back(column<std::int64_t>("shape/polygons", {split, concave}, kNumber,
+  if (const PolygonCounts& counts = shape.polygons; counts.split > 0)
+    arrays.push_back(column<std::int64_t>("shape/polygons", {counts.split, counts.concave}, kNumber,
                                           "polygons of the source that were split, those of them that were "
                                           "concave"));
   const PointCloud& cloud = shape.cloud;

@@ -93,6 +93,20 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
+// Those with an extension, in upper or lower case, with their names without it.
+std::vector<NamedFile> files_ending(const fs::path& folder, std::string_view extension) {
+  std::vector<NamedFile> files;
+  std::map<std::string, fs::path> same;
+  for (const fs::path& file : files_in(folder)) {
+    if (lower_case_extension(file) != extension) continue;
+    files.push_back({file.stem(), file});
+    if (const auto [first, is_new] = same.emplace(file.stem(), file); !is_new)
+      throw InputError(fmt::format("{} and {} differ by case alone: keep one of them", first->second.string(),
+                                   file.string()));
+  }
+  return files;
+}
+
 std::vector<fs::path> shapes_in(const fs::path& folder) {
   std::vector<fs::path> files = files_in(folder);
   std::erase_if(files, [](const fs::path& file) { return !has_shape_extension(file); });
@@ -124,12 +138,9 @@ void add_truth(const fs::path& folder, ItemsByName& items, std::vector<std::stri
     without_shape.emplace(name, file);
     return static_cast<DatasetItem*>(nullptr);
   };
-  for (const fs::path& file : files_in(folder / "Distributions"))
-    if (file.extension() == ".val")
-      if (DatasetItem* item = item_named(file.stem(), file)) item->saliency = file;
-  for (const fs::path& file : files_in(folder / "RawData")) {
-    if (file.extension() != ".pid") continue;
-    const std::string stem = file.stem();
+  for (const auto& [stem, file] : files_ending(folder / "Distributions", ".val"))
+    if (DatasetItem* item = item_named(stem, file)) item->saliency = file;
+  for (const auto& [stem, file] : files_ending(folder / "RawData", ".pid")) {
     const std::size_t end = stem.rfind('_');
     if (end == std::string::npos || end == 0 || end + 1 == stem.size() || !is_digits(stem.substr(end + 1)))
       notes.push_back(fmt::format("{}: is not named NAME_NUMBER.pid and was left out", file.string()));

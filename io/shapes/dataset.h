@@ -98,8 +98,9 @@ bool has_shapes(const std::filesystem::path& folder);
 std::string places_of(const std::filesystem::path& root, std::string_view layout);
 
 // Lists folders and reads no file but an index; the result does not depend on the order in which the system
-// lists them. Throws InputError if there are no shapes, if several files have the same name and `twins` does
-// not tell which of them counts, or if an item has two files where one is meant.
+// lists them; extensions may be in upper or lower case. Throws InputError if there are no shapes, if several
+// shapes have the same name and `twins` does not tell which of them counts, or if two other files differ by
+// the case of their extensions alone.
 Dataset native_dataset(const std::filesystem::path& root, std::string_view layout,
                        Twins twins = Twins::refuse);
 

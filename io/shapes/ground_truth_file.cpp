@@ -13,9 +13,10 @@ namespace {
 // Of a column. A damaged number, such as "12#3" or "0,5", is none.
 bool is_name(std::string_view word) {
   constexpr std::string_view kInNumbers = "+-.,#0123456789";
-  double value = 0;
-  const auto error = std::from_chars(word.data(), word.data() + word.size(), value).ec;  // reads "nan"
-  return error != std::errc() && kInNumbers.find(word[0]) == std::string_view::npos;
+  double value = 0;  // "nan" and "inf" are numbers, too
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool is_number = error == std::errc() && end == word.data() + word.size();
+  return !is_number && kInNumbers.find(word[0]) == std::string_view::npos;
 }
 
 }  // namespace
@@ -34,8 +35,8 @@ ScalarField parse_values(std::string_view text, std::string_view name, const Ele
           "...})");
   }
   if (elements.n != Elements::kUnknown && values.size() != elements.n)
-    in.fail(fmt::format("the file has {} values, but the {} has {} {}", values.size(), elements.shape,
-                        elements.n, elements.plural));
+    in.fail(fmt::format("the file has {} values, but the {} has {} {}{}", values.size(), elements.shape,
+                        elements.n, elements.plural, elements.others ? elements.others(values.size()) : ""));
   if (values.empty()) in.fail("the file has no values");
   return values;
 }

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +18,8 @@ struct Elements {
   static constexpr std::size_t kUnknown = std::numeric_limits<std::size_t>::max();
   std::size_t n = kUnknown;
   std::string_view shape = "mesh", one = "vertex", plural = "vertices";
+  // What else there are so many of, and what to do then: the end of a message about a wrong number of values.
+  std::function<std::string(std::size_t count)> others = {};
 };
 
 // Both throw InputError, one line "PATH:LINE: what is wrong". Blank lines are skipped, and so are comments:

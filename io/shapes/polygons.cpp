@@ -172,13 +172,39 @@ class EarCutter {
 
 }  // namespace
 
+std::size_t faces_in_file(const PolygonCounts& counts, std::size_t n_triangles) {
+  for (const SplitPolygon& polygon : counts.polygons) n_triangles -= polygon.triangles - 1;
+  return n_triangles;
+}
+
+std::vector<std::int32_t> faces_of_triangles(const PolygonCounts& counts, std::size_t n_triangles) {
+  std::vector<std::int32_t> faces;
+  faces.reserve(n_triangles);
+  std::int32_t face = 0;
+  const auto add_triangles_before = [&](std::size_t end) {
+    while (faces.size() < end) faces.push_back(face++);
+  };
+  for (const auto& [first, triangles] : counts.polygons) {
+    add_triangles_before(first);
+    faces.insert(faces.end(), triangles, face++);
+  }
+  add_triangles_before(n_triangles);
+  return faces;
+}
+
+std::string text_of_faces(std::size_t n_in_file, std::size_t n_triangles) {
+  return n_in_file == n_triangles ? fmt::format("{} faces", n_triangles)
+                                  : fmt::format("{} faces, split into {} triangles", n_in_file, n_triangles);
+}
+
 void Polygons::add(std::span<const std::int32_t> corners, std::size_t place, std::vector<Triangle>& faces) {
   if (corners.size() > 3) fans_.push_back({faces.size(), corners.size(), place});
   for (std::size_t i = 2; i < corners.size(); ++i) faces.push_back({corners[0], corners[i - 1], corners[i]});
 }
 
 PolygonCounts Polygons::split(Mesh& mesh, const Refuse& refuse) const {
-  PolygonCounts counts{std::ssize(fans_), 0};
+  PolygonCounts counts{.split = std::ssize(fans_)};
+  for (const Fan& fan : fans_) counts.polygons.push_back({fan.first, fan.corners - 2});
   std::vector<std::int32_t> vertices;
   std::vector<Vec3> corners;
   for (const Fan& fan : fans_) {

@@ -13,10 +13,24 @@
 
 namespace salbench {
 
-struct PolygonCounts {
-  std::int64_t split = 0;    // faces with more than three corners
-  std::int64_t concave = 0;  // those of them with a reflex corner
+// The triangles that a face with more than three corners was split into: those from the first on.
+struct SplitPolygon {
+  std::size_t first, triangles;
 };
+
+struct PolygonCounts {
+  std::int64_t split = 0;                   // faces with more than three corners
+  std::int64_t concave = 0;                 // those of them with a reflex corner
+  std::vector<SplitPolygon> polygons = {};  // in the order of the file; empty where no file was parsed
+};
+
+// Of a mesh as its file was parsed: how many faces the file has, and which of them, from 0, each triangle is
+// part of.
+std::size_t faces_in_file(const PolygonCounts& counts, std::size_t n_triangles);
+std::vector<std::int32_t> faces_of_triangles(const PolygonCounts& counts, std::size_t n_triangles);
+
+// "16 faces, split into 32 triangles", "12 faces"
+std::string text_of_faces(std::size_t n_in_file, std::size_t n_triangles);
 
 // Takes the faces of a file in their order, before or after their vertices. n corners become n - 2 triangles
 // over these corners, with the orientation of the polygon.

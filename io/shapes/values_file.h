@@ -17,15 +17,11 @@ namespace salbench {
 void require_value_per_element(std::string_view name, std::size_t n_values, std::size_t n_points,
                                std::size_t n_faces = 0);
 
-// Reads text (a number per line, as .val), NumPy's .npy (float32 or float64, n, n x 1 or 1 x n) or, by
-// `read_hdf5`, HDF5; the content tells which. `name` stands for the file in messages. Throws InputError:
+// Reads text (a number per line, as .val), NumPy's .npy (io/shapes/npy_file.h) or, by `read_hdf5`, HDF5; the
+// content tells which. `name` stands for the file in messages. Throws InputError:
 // unreadable, another number of values than above, a value that is not finite.
 using ReadValues = std::function<ScalarField(const std::filesystem::path&)>;
 ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n_points,
                               const ReadValues& read_hdf5, std::size_t n_faces = 0);
-
-// .npy alone, from memory: any number of values, finite or not. Throws InputError.
-bool is_npy(std::string_view bytes);
-ScalarField parse_npy(std::string_view bytes, std::string_view name);
 
 }  // namespace salbench

@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/ground_truth_file.h"
+#include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
 #include "stages/core/check.h"
@@ -51,6 +52,19 @@ GroundTruth read_truth(const Files& files, const Elements& points) {
         fmt::format("{}: nobody picked a point and there is no saliency file; remove the empty {} files",
                     item.picks.front(), std::filesystem::path(item.picks.front()).extension().string()));
   return truth;
+}
+
+// As many values as the mesh's file has faces, or triangles after polygons were split, may be of these.
+std::string told_of_faces(const DatasetItem& item, std::size_t count) try {
+  PolygonCounts counts;
+  const std::size_t triangles =
+      parse_mesh(read_file(item.mesh, kMaxItemBytes), item.mesh, &counts).faces.size();
+  const std::size_t in_file = faces_in_file(counts, triangles);
+  if (count != in_file && count != triangles) return {};
+  return fmt::format(", and {}: values of faces need a description of the data set (values: {{per: face}})",
+                     text_of_faces(in_file, triangles));
+} catch (const InputError&) {
+  return {};
 }
 
 GroundTruth with_saliency(GroundTruth truth, const Mesh& shape) {
@@ -103,7 +117,8 @@ FilesOfUnit truth_files_of(const DatasetItem& item) {
 }
 
 GroundTruth measured_truth(const Mesh& mesh, const Files& files) {
-  return read_truth(files, {mesh.vertices.size()});
+  const auto faces = [&](std::size_t count) { return told_of_faces(item_of(files.source), count); };
+  return read_truth(files, {.n = mesh.vertices.size(), .others = faces});
 }
 
 GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files) {

@@ -56,9 +56,20 @@ Importer::Importer(DataImporter of)
 std::string Importer::answer(const std::string& request, const std::string& about) {
   const ScratchFolder scratch;
   const fs::path out = scratch.path() / "answer", error = scratch.path() / "answer.error";
+  const auto ask = [&] {
+    return servers_.ask(fmt::format("{}\t{}", request, out.string()), out.string(), kTimeout);
+  };
   std::string said;
   try {
-    said = servers_.ask(fmt::format("{}\t{}", request, out.string()), out.string(), kTimeout);
+    try {
+      said = ask();
+    } catch (const EndedFromOutside&) {  // which says nothing about the file
+      said = ask();
+    }
+  } catch (const EndedFromOutside& end) {
+    throw InputError(
+        fmt::format("{}: its importer was ended from outside, twice: {}; run it again, with more memory free",
+                    about, end.what()));
   } catch (const InputError& failure) {
     throw InputError(fmt::format("{}: its importer failed: {}; copy the file again, or leave the item out",
                                  about, failure.what()));

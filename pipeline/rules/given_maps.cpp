@@ -7,6 +7,7 @@
 
 #include "io/file.h"
 #include "io/shapes/ground_truth_file.h"
+#include "io/shapes/mesh_file.h"
 #include "io/shapes/text_scanner.h"
 #include "io/shapes/values_file.h"
 #include "pipeline/package/importer.h"
@@ -19,10 +20,15 @@ namespace fs = std::filesystem;
 
 GivenMaps maps_in_folder(const fs::path& folder) {
   GivenMaps maps{.source = folder};
-  for (const FolderEntry& entry : list_folder(folder))
-    if (entry.path.extension() == ".val") maps.items.insert(entry.path.stem().string());
-  maps.read = [folder](const std::string& item) -> FileData {
-    std::string text = read_file(folder / (item + ".val"), kMaxItemBytes);
+  for (const FolderEntry& entry : list_folder(folder)) {
+    if (lower_case_extension(entry.path) != ".val") continue;
+    if (!maps.items.insert(entry.path.stem()).second)
+      throw ConfigError(fmt::format("--maps {} and {} differ by case alone: keep one of them",
+                                    maps.files.at(entry.path.stem()).string(), entry.path.string()));
+    maps.files[entry.path.stem()] = entry.path;
+  }
+  maps.read = [files = maps.files](const std::string& item) -> FileData {
+    std::string text = read_file(files.at(item), kMaxItemBytes);
     return {file_digest(text), std::move(text)};
   };
   return maps;
@@ -42,9 +48,32 @@ GivenMaps maps_in_file(const fs::path& path) try {
   throw ConfigError(fmt::format("--maps {}", error.what()));
 }
 
+ScalarField values_in(const FileData& data, const std::string& where) {
+  const auto* values = std::get_if<ScalarField>(&data.content);
+  return values != nullptr ? *values : parse_values(data.text(), where);
+}
+
+// What is wrong with the map or the mesh is said where they are used.
+FileData of_triangles(FileData data, const std::string& item, const std::string& mesh_file) try {
+  if (!has_mesh_extension(mesh_file)) return data;
+  PolygonCounts counts;
+  const Mesh mesh = parse_mesh(read_file(mesh_file, kMaxItemBytes), mesh_file, &counts);
+  if (counts.split == 0) return data;
+  const ScalarField of_faces = values_in(data, item);
+  const bool of_vertices = of_faces.size() == mesh.vertices.size();  // first, where there are as many of both
+  if (of_vertices || of_faces.size() != faces_in_file(counts, mesh.faces.size())) return data;
+  ScalarField values;
+  for (const std::int32_t face : faces_of_triangles(counts, mesh.faces.size()))
+    values.push_back(of_faces[static_cast<std::size_t>(face)]);
+  return {content_digest({column(item, values, "1", "")}), std::move(values)};
+} catch (const InputError&) {
+  return data;
+}
+
 }  // namespace
 
 std::string GivenMaps::place(const std::string& item) const {
+  if (const auto file = files.find(item); file != files.end()) return file->second.string();
   return is_folder(source) ? (source / (item + ".val")).string()
                            : fmt::format("{}: data set {}", source.string(), item);
 }
@@ -52,8 +81,7 @@ std::string GivenMaps::place(const std::string& item) const {
 ScalarField GivenMaps::checked(const FileData& data, const std::string& item, std::size_t n_points,
                                std::size_t n_faces, const PointCloud* cloud) const {
   const std::string where = place(item);
-  const auto* values = std::get_if<ScalarField>(&data.content);
-  ScalarField map = values != nullptr ? *values : parse_values(data.text(), where);
+  ScalarField map = values_in(data, where);
   if (cloud != nullptr && map.size() == cloud->size_in_file()) map = values_left(*cloud, map);
   require_value_per_element(where, map.size(), n_points, n_faces);
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -76,10 +104,11 @@ GivenMaps find_given_maps(const fs::path& source, bool matched) {
 }
 
 std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
-                                         const std::vector<Level>& levels) {
-  const auto file_of = [&](const std::string& item) {
-    const auto read = [maps, item] {
-      if (maps->items.contains(item)) return maps->read(item);
+                                         const std::vector<Level>& levels, bool on_faces) {
+  const auto file_of = [&](const std::string& item, const std::string& mesh) {
+    const auto read = [maps, item, mesh, on_faces] {
+      if (maps->items.contains(item))
+        return on_faces ? of_triangles(maps->read(item), item, mesh) : maps->read(item);
       throw InputError(fmt::format("{}: missing, although other items have a map", maps->place(item)));
     };
     return File{.name = "map file", .place = maps->place(item), .read = std::make_shared<ReadFile>(read)};
@@ -103,7 +132,8 @@ std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>&
     column->expected = false;
     column->files.resize(units.slots(level));
     for (const Unit unit : all)
-      if (any_here) column->files[unit.index].push_back(file_of(name_of_map(unit)));
+      if (any_here)
+        column->files[unit.index].push_back(file_of(name_of_map(unit), item_of(units, unit).mesh));
     for (const Unit unit : all)
       if (units.family_of(unit) == units.family_of(all.front())) example = maps->place(name_of_map(unit));
     columns[level] = std::move(column);

@@ -20,6 +20,7 @@ struct GivenMaps {
   std::filesystem::path source;      // a folder with ITEM.val, or an HDF5 file with a data set ITEM
   bool matched = false;              // the values are histogram-matched already: they lie in [0, 1]
   std::set<std::string> items = {};  // that there are maps of: "52", "52_3"
+  std::map<std::string, std::filesystem::path> files = {};  // of a folder: each item's
 
   // Reads the map of one of these items. Throws InputError.
   std::function<FileData(const std::string& item)> read = {};
@@ -35,8 +36,10 @@ struct GivenMaps {
 GivenMaps find_given_maps(const std::filesystem::path& source, bool matched);
 
 // The maps as files of the units of the levels given: [level]. Where no shape of a level has a map, none is
-// expected of any; otherwise a missing one is its unit's failure. Throws ConfigError if no unit has one.
+// expected of any; otherwise a missing one is its unit's failure. Where faces are scored, values of the faces
+// of a mesh's file, as many as there are before polygons are split, are read as those of their triangles.
+// Throws ConfigError if no unit has one.
 std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
-                                         const std::vector<Level>& levels);
+                                         const std::vector<Level>& levels, bool on_faces = false);
 
 }  // namespace salbench

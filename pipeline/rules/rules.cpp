@@ -97,7 +97,8 @@ void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units
                     const std::shared_ptr<const GivenMaps>& maps) {
   std::vector<Level> levels;
   for (const ShapeOutputs* shape : shapes) levels.push_back(shape->level);
-  const auto columns = map_files(maps, units, levels);
+  const bool on_faces = std::ranges::any_of(shapes, &ShapeOutputs::on_faces);
+  const auto columns = map_files(maps, units, levels, on_faces);
   for (ShapeOutputs* shape : shapes) shape->map_files = columns.at(shape->level);
 }
 

@@ -11,7 +11,7 @@ from salbench._errors import InputError, quoted
 Row = tuple[int, list[str]]  # the line on which it begins, and its fields
 
 # What the module csv says, in our words.
-_WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
+WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
           "',' expected after '\"'": "there is text after the quote that closes a field"}
 
 
@@ -55,7 +55,7 @@ def _rows(reader: Any, name: str, above: int) -> Iterator[Row]:
         try:
             fields = next(reader, None)
         except csv.Error as error:
-            raise InputError(f"{name}:{line}: {_WRONG.get(str(error), str(error))}") from None
+            raise InputError(f"{name}:{line}: {WRONG.get(str(error), str(error))}") from None
         if fields is None:
             return
         if fields:

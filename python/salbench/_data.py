@@ -13,7 +13,7 @@ from typing import SupportsIndex, overload
 from salbench import _core
 from salbench._shape import Shape
 from salbench.datasets import _workers, is_description, sets
-from salbench.datasets._files import read_file
+from salbench.datasets._files import extension, read_file
 from salbench.datasets.records import InputError, Item
 
 Path = str | os.PathLike[str]
@@ -184,7 +184,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
         loaded = _core.finished(read_file(path), *names)
         if loaded is None:  # another program's bytes
             loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names)
-    elif any(file.path.lower().endswith(".mat") for file in item.files):
+    elif any(extension(file.path) == ".mat" for file in item.files):
         loaded = _core.finished(_workers.asked({"do": "item", "layout": layout, "root": root, "item": item.to_json()}), *names)
     else:
         loaded = _core.finished(sets.read(layout, root, item), *names)

@@ -92,6 +92,22 @@ class Folders(WithArchive):
         self.empty("cat/1.off", "dog/1.off")
         self.assertIn("ROOT/cat/1.off and ROOT/dog/1.off; an item", self.error_of(lambda: self.list(BARE.replace("'*'", "'*/*.off'"))))
 
+    def test_extensions_may_be_in_upper_or_lower_case(self):
+        own = "places: [{meshes: 'off/*.off', truth: {saliency: 'maps/{item}.csv', picks: 'p/{item}_{participant}.pid', mask: 'm/{item}_seen.txt'}}]\n"
+        self.empty("off/1.OFF", "off/2.off", "maps/1.CSV", "maps/2.csv", "p/1_0.PID", "p/1_1.Pid", "p/readme.PID", "m/1_seen.TXT", "m/2_seen.txt", "m/2_SEEN.txt")
+        self.assertEqual(self.rows(own), ["1 - off/1.OFF maps/1.CSV m/1_seen.TXT p/1_0.PID p/1_1.Pid", "2 - off/2.off maps/2.csv m/2_seen.txt"])
+        self.assertEqual(self.list(own).notes, [f"{self.root}/p/readme.PID: is not named NAME_NUMBER.pid and was left out"])
+        self.setUp()
+        self.empty("Meshes/1.OFF", "Distributions/1.VAL", "RawData/1_0.PID")
+        self.assertEqual(self.rows("zaragoza"), ["1 - Meshes/1.OFF Distributions/1.VAL RawData/1_0.PID"])
+
+    def test_files_that_differ_by_case_alone_are_named(self):
+        own = "places: [{meshes: 'off/*.off', truth: {saliency: 'maps/{item}.csv', picks: 'p/{item}_{participant}.pid'}}]\n"
+        for one, other in [("off/1.OFF", "off/1.off"), ("maps/1.CSV", "maps/1.csv"), ("p/1_0.PID", "p/1_0.pid")]:
+            self.setUp()
+            self.empty("off/1.off", "maps/1.csv", "p/1_0.pid", one, other)
+            self.assertEqual(self.error_of(lambda: self.list(own)), f"ROOT/{one} and ROOT/{other} differ by case alone: keep one of them")
+
     def test_what_was_looked_for_and_where(self):
         self.write({"off/cat.off": off(), "maps/cat.csv": "1\n2\n3\n4\n", "more_maps/cat.csv": "1\n2\n3\n4\n"})
         none = "ROOT: no .off, .obj or .ply meshes found, and no .ply, .pcd or .xyz point clouds; looked in "

@@ -65,10 +65,13 @@ class Numbers(Texts):
         self.expect('2: "na" is not a number', "nan\nna\n", "", unseen="nan")
 
     def test_what_was_not_seen_is_read_in_one_piece(self):
-        with mock.patch.object(_numbers, "_line_by_line", side_effect=AssertionError):
+        with mock.patch.object(_numbers, "_row_by_row", side_effect=AssertionError):
             for text, columns in (("1\nnan\n", ("",)), ("x,s\n1,NaN\n2,3\n", ("s",)), ("x y z s\n1 2 3 nan\n1 2 3 4\n", ("s", "x", "y", "z"))):
                 self.assertEqual(sum(map(np.isnan, outcome(text, columns, "nan")[0])), 1, text)
             self.assertEqual(outcome("s,x\n1,2\n4,nan\n", ("s",)), [[1, 4]])
+        self.expect([[NAN, 1], [2, 3]], "nan 2 nan\n1 3 nan\n", "1", "2", unseen="nan")
+        self.expect('1: "nan" is not a finite number', "1 nan\nnan 3\n", "1", "2", unseen="nan")
+        self.expect('2: "nan" is not a finite number', "-1\nnan\n", "", unseen="-1")
 
     def test_file_line_and_what_was_expected(self):
         alone = ("the line has 2 columns, expected one value: keep that column alone, or, of ground truth, name it in the description "
@@ -90,10 +93,42 @@ class Numbers(Texts):
                             ("0." + "0" * 400 + "1", "does not fit a double"), ("+-1", "is not a number"), ("1_000", "is not a number"),
                             ("0x1", "is not a number"), ("1e", "is not a number"), (".", "is not a number"), ("--1", "is not a number"),
                             ("nan", "is not a finite number"), ("1\0", "is not a number"), ("\u0661", "is not a number"),
-                            ("1\v", "is not a number")]:
-            found = outcome(f"1\n{word}\n", ("1",))
+                            ("1\v", "is not a number"), ("1.#INF", "is not a number"), ("-1.#IND", "is not a number"), ("1.#QNAN", "is not a number"),
+                            ("1.#SNAN", "is not a number"), ("-1.#INF00e+000", "is not a number"), ("-1.#J", "is not a number"), ("0.5#1", "is not a number")]:
+            if "#" in word:
+                self.assertRegex(outcome(f"{word}\n1\n", ("",)), rf'^a\.csv:1: ".*" {wrong}$')
+            found = outcome(f"1,2\n{word},2\n", ("1",))
             if word != "1\v":  # a blank between words
                 self.assertRegex(found, rf'^a\.csv:2: ".*" {wrong}$')
+
+    def test_quotes_hold_a_cell_together(self):
+        for text, column, expected in [
+                ('"a,b",0.5\n"c, d",0.25\n', "2", [0.5, 0.25]), ('"x","s"\n"a ""q"", b","0.5"\n', "s", [0.5]), ('"a;b";1\n', "2", [1]),
+                ('"two\nlines",1\n"# no comment\r\n\r\nhere",2\n# one\n"x",3\n', "2", [1, 2, 3]), ('"two\nlines",s\nx,4\n', "s", [4]),
+                ('s,"two\nlines"\n1,2\n', "two\nlines", [2]), ('"x"  "the s"\n"1"\t0.5 \n', "the s", [0.5]), ('x,s\n5" pipe,1\n6",2\n', "s", [1, 2]),
+                ('"a\tb"\t1\n', "2", [1]), ('# "one, two",s\n"1",2\n', "one, two", [1]), ('s\n"1"\n"2"\n', "", [1, 2]), ('# 5" pipes\n1\n', "", [1]),
+                ('"1,5";2\n', "2", [2]), ('id,s\n1,"2",\n', "s", [2]), ('1, "2"\n', "2", [2]), ('x,s\n"a\rb",1\n', "s", [1])]:
+            self.expect(expected, text, column)
+
+    def test_a_first_row_of_numbers_is_no_header_whatever_names_are_in_it(self):
+        self.expect([[3, 4], [1, 2]], "cat,1,3\ndog,2,4\n", "3", "2")
+        self.expect([2], "cat,x,3\ndog,2,4\n", "2")
+        self.expect([1, 2], "cat,1\ndog,2\n", "2")
+
+    def test_quotes_that_hold_no_number_together(self):
+        comma = ' is not a number: write its decimal comma as a point'
+        for text, column, wrong in [
+                ('"1,2","5,2"\n', "2", f'1: "5,2"{comma}'), ('"1,2","5,2"\n', "1", f'1: "1,2"{comma}'), ('x,s\n1,"0,5"\n', "s", f'2: "0,5"{comma}'),
+                ('"1,2"\n"3,4"\n', "", f'1: "1,2"{comma}'), ('"a,b",c\n"d\ne",0.5\nf,g\n', "2", '4: "g" is not a number'),
+                ('x,s\n\n"a,1\nb,2\n', "s", "3: a quote opens a field that nothing closes"),
+                ('x,s\na,1\n"b"c,2\n', "s", "3: there is text after the quote that closes a field"),
+                ('"x\ny",s\na,1\n', "t", '1: no column "t": the header has "x?y", "s"')]:
+            self.expect(wrong, text, column)
+
+    def test_lines_end_in_lf_crlf_or_cr_wherever_they_stand(self):
+        for text in ("1\n2\n3", "1\r\n2\r\n3\r\n", "1\r2\r3\r", "1\r2\r3\n", "1\n2\r3\r\n", "1\r\r\n2\n\r3"):
+            self.expect([1, 2, 3], text, "")
+            self.expect([1, 2, 3], text.replace("1", "x,s\n9,1").replace("2", "9,2").replace("3", "9,3"), "s")
 
     def test_decimal_commas_are_named(self):
         for text, column, line, word in [("saliency\n0,5\n", "", 2, "0,5"), ("1\n-0,5e-3\n", "1", 2, "-0,5e-3")]:
@@ -163,7 +198,8 @@ class RowsOfElements(Texts):
 
 class Picks(unittest.TestCase):
     def test_order_and_repetitions_are_kept(self):
-        for text, base, expected in [(b"7\r\n0\r\n7\r\n", 0, [7, 0, 7]), (b"", 0, []), (b"# from 0\n7 # here\n+0\n", 0, [7, 0]), (b"7\r0\n7\r\n1", 0, [7, 0, 7, 1]),
+        for text, base, expected in [(b"7\r\n0\r\n7\r\n", 0, [7, 0, 7]), (b"", 0, []), (b"# from 0\n7 # here\n+0\n", 0, [7, 0]),
+                                     (b"7 #here\r0\r\n#1\n", 0, [7, 0]), (b"7\r0\n7\r\n1", 0, [7, 0, 7, 1]),
                                      (b"1\n8\n", 1, [0, 7])]:
             self.assertEqual(read_picks(text, "9_0.pid", Indices(base), Elements(8)).tolist(), expected)
 
@@ -173,7 +209,8 @@ class Picks(unittest.TestCase):
                 (b"-1\n", 0, ":1: vertex -1 is out of range"),
                 (b"3\n0\n", 1, ":2: vertex 0 is out of range: the mesh has 8 vertices, numbered from 1"), (b"1.5\n", 0, ':1: "1.5" is not a whole'),
                 (b"1 2\n", 0, ":1: the line has more than one value"), (b"99999999999999999999\n", 0, "does not fit 64 bits"),
-                (b"1_0\n", 0, "is not a whole number")]:
+                (b"1_0\n", 0, "is not a whole number"), (b"7\n1#2\n", 0, ':2: "1#2" is not a whole'), (b"1.#INF", 0, ':1: "1.#INF" is not'),
+                (b"-1.#IND 0", 0, ':1: "-1.#IND" is not'), (b"7 0#1\n", 0, ":1: the line has more than one value")]:
             with self.assertRaisesRegex(InputError, wrong):
                 read_picks(text, "9_0.pid", Indices(base), Elements(8))
 

@@ -107,6 +107,47 @@ class Saliency(WithArchive):
         form = self.read(MAPS)
         self.assertEqual((form.polygons, form.faces.tolist()), ((1, 0), [[0, 1, 2], [0, 2, 3], [0, 2, 1]]))
 
+    def test_a_value_per_polygon_is_that_of_its_triangles(self):
+        """Files of the three formats, with faces of three to six corners; values may be of polygons or of triangles."""
+        points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1.0], [0, 2, 1]])
+        polygons = [[0, 1, 4, 5], [6, 0, 5], [1, 2, 3, 4], [7, 5, 6], [0, 6, 2, 1], [7, 6, 0, 2, 3, 5]]
+        triangles = [k for k, corners in enumerate(polygons) for _ in corners[2:]]
+        plain = "".join(f"{x} {y} {z}\n" for x, y, z in points) + "".join(f"{len(corners)} {' '.join(map(str, corners))}\n" for corners in polygons)
+        written = {"off": f"OFF\n8 6 0\n{plain}", "ply": "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+                   f"element face 6\nproperty list uchar int vertex_indices\nend_header\n{plain}",
+                   "obj": "".join(f"v {x} {y} {z}\n" for x, y, z in points) + "".join(f"f {' '.join(str(k + 1) for k in corners)}\n" for corners in polygons)}
+        values, numbered = np.array([5, 1, 4, 2, 3, 0.5]), "face,s\n" + "".join(f"{k},{v}\n" for k, v in [(5, 0.5), (0, 5), (4, 3), (1, 1), (2, 4), (3, 2)])
+        (self.root / "off/cat.off").unlink()
+        for ending, mesh in written.items():
+            self.write({f"off/cat.{ending}": mesh})
+            for content, more in [(lines(values), ""), (lines(values[triangles]), ""), (npy(values), ""), (mat(a=values), ", variable: a"), (numbered, ", column: s")]:
+                self.write({"maps/cat.csv": content})
+                form = self.read(MAPS + f"values: {{per: face{more}}}\n")
+                self.equal(form.truths[0].face_values, values[triangles])
+                np.testing.assert_allclose(form.truths[0].saliency, self.truth_of_triangles(form, values[triangles]))
+            self.write({"maps/cat.csv": "5\n1\n-1\n2\n3\n0.5\n"})
+            self.equal(self.truth(MAPS + "values: {per: face, unseen: -1}\n").face_values, np.where(np.array(triangles) == 2, NAN, values[triangles]))
+            (self.root / f"off/cat.{ending}").unlink()
+        self.write({"off/cat.off": written["off"]})
+        for count, per, wrong in [
+                (5, "face", "5 values, but the mesh has 6 faces, split into 12 triangles"), (6, "vertex", "6 values, but the mesh has 8 vertices, and 6 faces, split "
+                 "into 12 triangles: if they are of faces, write `values: {per: face}`"), (12, "vertex", "12 values, but the mesh has 8 vertices, and 6 faces, split into 12 "
+                 "triangles: if they are of faces, write `values: {per: face}`"), (7, "vertex", "7 values, but the mesh has 8 vertices")]:
+            for content in (lines(np.ones(count)), npy(np.ones(count))):
+                self.write({"maps/cat.csv": content})
+                self.assertTrue(self.error_of(lambda: self.truth(MAPS + f"values: {{per: {per}, unseen: -1}}\n")).endswith(wrong), count)
+        self.write({"maps/cat.csv": lines(values), "seen/cat.txt": "1\n0\n1\n1\n1\n0\n"})
+        masked = MAPS.replace("csv'", "csv', mask: 'seen/{item}.txt'") + "values: {per: face}\n"
+        self.equal(self.truth(masked).face_values, np.where(np.isin(triangles, [1, 5]), NAN, values[triangles]))
+
+    @staticmethod
+    def truth_of_triangles(form, values):
+        """Means around each vertex, by area."""
+        corners = form.points[form.faces]
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        around = [(form.faces == k).any(axis=1) for k in range(len(form.points))]
+        return [np.average(values[near], weights=areas[near]) for near in around]
+
     def test_what_the_form_says_of_its_sources(self):
         about = self.read(MAPS + "licence: ask\nclasses: folder\nsplits: {items: {test: [cat]}}\n").about
         self.assertEqual({key: about[key] for key in ("item", "class", "split", "source", "licence")},
@@ -317,7 +358,8 @@ class Columns(WithArchive):
 
     def test_wrong_rows_are_named(self):
         named = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], normal: [4, 5, 6], density: 7}\n"
-        self.assertRegex(self.error_of(lambda: self.read_rows(named)), "^ROOT/Gaze/cat.txt:1: the normal is not of unit length: name its columns, or add")
+        self.assertEqual(self.error_of(lambda: self.read_rows(named)), "ROOT/Gaze/cat.txt:1: the normal has length 20, not 1: are these colours? name the "
+                         "columns of the normals, or none; for directions of any length add `normalise_normals: true`")
         for row, wrong in [("1 1 1 1 0 0 0.5 0.5", "the flag is neither 0 nor 1"), ("1 1 1 1 0 0 0.5", "the line has 7 columns, expected column 8"),
                            ("1e151 1 1 1 0 0 0 0", "a coordinate is larger than 1e150"), ("nan 1 1 1 0 0 0 0", '"nan" is not a finite number')]:
             self.rows[3] = row
@@ -325,6 +367,26 @@ class Columns(WithArchive):
         self.rows = [row[:-3] + "0" for row in self.rows[:3] + self.rows[4:]]
         own = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], flag: 8}\n"
         self.assertEqual(self.error_of(lambda: self.read_rows(own)), "ROOT/Gaze/cat.txt: no point has its flag set: there is nothing to compare with")
+
+
+    def test_colours_are_no_normals(self):
+        """They have length 1 within 1 %, or 0 where none is known."""
+        named = "places: [{meshes: 'Gaze/*'}]\ncolumns: {position: [1, 2, 3], normal: [4, 5, 6]}\n"
+        random = np.random.default_rng(5).random((12, 3))
+        for name, columns, wrong in [
+                ("unit", self.normals, None), ("rounded", self.normals * 0.9901, None), ("longer", self.normals * 1.0099, None),
+                ("none known", self.normals * 0, None), ("too short", self.normals * 0.9899, "1: the normal has length 0.99"),
+                ("too long", self.normals * 1.0101, "1: the normal has length 1.01"), ("one of them", np.where(self.around[:, None] == 7, 0.5, self.normals), "8: the normal"),
+                ("random colours", random, "1: the normal"), ("random colours up to 255", 255 * random, "1: the normal"),
+                ("one grey", np.full((12, 3), 0.5), "1: the normal has length 0.866"), ("greys", np.outer(self.around / 11, [1, 1, 1]), "2: the normal"),
+                ("white", np.ones((12, 3)), "1: the normal has length 1.73"), ("yellow among red", np.where(self.around[:, None] == 4, [1, 1, 0], [1, 0, 0]), "5: the normal")]:
+            self.rows = [" ".join(map(repr, row)) for row in np.column_stack([self.points, columns]).tolist()]
+            with self.subTest(name):
+                if wrong is None:
+                    found = self.read_rows(named).normals
+                    self.equal(found is None, name == "none known")
+                else:
+                    self.assertIn(f"ROOT/Gaze/cat.txt:{wrong}", self.error_of(lambda: self.read_rows(named)))
 
 
 class OneForm(WithArchive):

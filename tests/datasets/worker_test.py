@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import unittest
+from unittest import mock
 
 import h5py
 import numpy as np
@@ -109,16 +110,31 @@ class Workers(WithArchive):
         self.worker = Worker()
         self.addCleanup(self.worker.close)
 
-    def test_one_that_dies_fails_what_it_was_asked_and_the_next_is_answered(self):
-        with h5py.File(self.root / "a.h5", "w") as file:
-            file["x"] = POINTS[0]
-        request = {"do": "maps", "path": str(self.root / "a.h5")}
-        self.assertEqual(json.loads(self.worker.ask(request)[0]), ["x"])
-        self.worker._process.kill()
-        made, problems = self.worker.ask(request)
-        self.assertIsNone(made)
-        self.assertIn("crashed (signal 9: Killed)", problems[0])
-        self.assertEqual(json.loads(self.worker.ask(request)[0]), ["x"])
+    # Answers nothing but how many signals a file has left: one worker after the other dies of the next.
+    DYING = """import sys; sys.path.insert(0, sys.argv.pop(1))
+import os, pathlib
+from salbench.datasets import worker
+def maps(request):
+    file = pathlib.Path(request["path"])
+    signals = file.read_text().split()
+    if signals:
+        file.write_text(" ".join(signals[1:]))
+        os.kill(os.getpid(), int(signals[0]))
+    return b"answered"
+worker.ANSWERS["maps"] = maps
+sys.exit(worker.main())"""
+
+    def test_one_that_dies_of_its_input_fails_it_and_one_that_is_killed_is_replaced_once(self):
+        outside, damaged = "the process that reads it was ended from outside, twice (signal ", "damaged: the process that reads it crashed (signal "
+        for signals, wrong in [("", ""), ("9", ""), ("15", ""), ("1", ""), ("9 9", f"{outside}9: Killed); run it again, with more memory free"),
+                               ("9 15", f"{outside}15: "), ("11", f"{damaged}11: "), ("6", f"{damaged}6: "), ("9 11", f"{damaged}11: "),
+                               ("24", "damaged: reading took more than")]:
+            self.write({"signals": signals})
+            request = {"do": "maps", "path": str(self.root / "signals")}
+            with self.subTest(signals), mock.patch.object(_workers, "_START", self.DYING):
+                made, problems = self.worker.ask(request)
+                self.assertEqual((made, [problem.startswith(wrong) for problem in problems]), (None, [True]) if wrong else (b"answered", []), problems)
+                self.assertEqual(self.worker.ask(request), (b"answered", []), "by the next")
 
     def test_all_are_asked_as_many_at_once_as_there_are_workers(self):
         requests = [{"do": "maps", "path": str(self.root / f"{number}.h5")} for number in range(12)]

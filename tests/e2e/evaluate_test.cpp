@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Saliency maps from outside are scored as if the program had computed them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -177,6 +178,42 @@ TEST(Evaluate, OfAKindThatHasNoMapNoneIsExpected) {
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(rows_of(toy.results(), "OWN"), SizeIs(2));
   EXPECT_THAT(rows_of(toy.results(), "PS"), SizeIs(JobCounts().of("scores.PS")));
+}
+
+TEST(Evaluate, AMapPerPolygonIsThatOfItsTriangles) {
+  const Workspace toy;
+  toy.write("data set/off/cube.off",
+            "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n"
+            "4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  toy.write("data set/maps/cube.csv", "5\n1\n2\n3\n4\n6\n");
+  toy.configure(
+      fmt::format("dataset: {{scans: false, score_on: faces, layout: '{}'}}\nmetrics: {{names: [cc], "
+                  "matching: none}}\nmodels: {{RS: }}\n",
+                  toy.write("own.yaml",
+                            "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"
+                            "values: {per: face}\n")
+                      .string()));
+  toy.write("polygons/cube.VAL", "5\n1\n2\n3\n4\n6\n");
+  toy.write("triangles/cube.val", "5\n5\n1\n1\n2\n2\n3\n3\n4\n4\n6\n6\n");
+  toy.write("others/cube.val", "5\n1\n2\n3\n4\n");
+  for (const char* maps : {"polygons", "triangles"}) {
+    const Outcome run = evaluate(toy, toy / maps);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_THAT(scores_of(toy, "OWN", {"cc"})[0], testing::ElementsAre(testing::DoubleNear(1, 1e-12)))
+        << maps;
+  }
+  const Outcome others = evaluate(toy, toy / "others");
+  EXPECT_EQ(others.status, 1);
+  EXPECT_THAT(others.err, HasSubstr("5 values, but the shape has 8 points and 12 faces"));
+}
+
+TEST(Evaluate, MapsThatDifferByCaseAloneAreNamed) {
+  const Workspace toy(kMeshesOnly);
+  toy.write("own/1.val", values(kVertices));
+  toy.write("own/1.VAL", values(kVertices));
+  const Outcome run = toy.salbench("run", {"--maps", (toy / "own").string(), "--name", "OWN"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.err, HasSubstr("1.val differ by case alone: keep one of them"));
 }
 
 TEST(Evaluate, NamesAndFoldersThatWillNotDo) {

@@ -48,6 +48,17 @@ class Imports : public testing::Test {
     fs::permissions(file, fs::perms::owner_all);
     return file.string();
   }
+  // One whose importers get SIGKILL when they have read a line: the first, or all.
+  std::string killed_in_the_middle(bool once) const {
+    const fs::path file = toy_.write(
+        "killed.sh",
+        fmt::format("#!/bin/sh\nfor word; do [ \"$word\" = _import ] && {} && "
+                    "{{ read -r line; kill -9 $$; }}; done\nexec {} \"$@\"\n",
+                    once ? fmt::format("mkdir '{}' 2> /dev/null", (toy_ / "killed").string()) : "true",
+                    kPython));
+    fs::permissions(file, fs::perms::owner_all);
+    return file.string();
+  }
   Outcome run_with(const std::string& python, const std::string& verb,
                    const std::vector<std::string>& further = {}) const {
     std::vector<std::string> words = toy_.command(verb, further);
@@ -72,6 +83,23 @@ TEST_F(Imports, AKillInTheMiddleIsResumedAndLeavesNoProcess) {
   EXPECT_LT(toy_.computed(), contents.size());
   EXPECT_EQ(toy_.contents(), contents);
   EXPECT_THAT(toy_.left_over(), IsEmpty());
+}
+
+TEST_F(Imports, AnImporterThatSomebodyElseKillsIsReplacedOnce) {
+  const Outcome sound = toy_.salbench("run");
+  ASSERT_EQ(sound.status, 0) << sound.err;
+  const std::string results = toy_.results();
+  for (const bool once : {true, false}) {
+    SCOPED_TRACE(once);
+    toy_.forget_everything();
+    const Outcome run = run_with(killed_in_the_middle(once), "run");
+    EXPECT_EQ(run.status, once ? 0 : 1) << run.err;
+    EXPECT_THAT(lines_with(run.err, ".off: its importer was ended from outside, twice: "),
+                SizeIs(once ? 0 : kItems))
+        << run.err;
+    EXPECT_THAT(run.err, Not(HasSubstr("copy the file again")));
+    EXPECT_EQ(toy_.results() == results, once);
+  }
 }
 
 TEST_F(Imports, WhatIsInTheCacheNeedsNoImporter) {

@@ -41,6 +41,7 @@ TEST(FuzzCorpus, PlyCloud) {
 TEST(FuzzCorpus, Pcd) { replay("pcd", fuzz_pcd); }
 TEST(FuzzCorpus, Xyz) { replay("xyz", fuzz_xyz); }
 TEST(FuzzCorpus, Val) { replay("val", fuzz_val); }
+TEST(FuzzCorpus, Npy) { replay("npy", fuzz_npy); }
 TEST(FuzzCorpus, Pid) { replay("pid", fuzz_pid); }
 TEST(FuzzCorpus, Hdf5Image) { replay("hdf5_image", fuzz_hdf5_image, 29); }
 TEST(FuzzCorpus, Config) { replay("config", fuzz_config); }

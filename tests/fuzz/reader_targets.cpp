@@ -12,6 +12,7 @@
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/ground_truth_file.h"
 #include "io/shapes/mesh_file.h"
+#include "io/shapes/npy_file.h"
 #include "io/shapes/shape_file.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -128,6 +129,11 @@ void fuzz_val(std::string_view bytes) {
   CHECK_EQ(values->size(), n_vertices);
   for (const double value : *values) CHECK_EQ(std::isfinite(value), true);
   CHECK_EQ(read(n_vertices + 1).has_value(), false);
+}
+
+void fuzz_npy(std::string_view bytes) {
+  const auto values = read_or_refuse([&] { return parse_npy(bytes, kFile); });
+  if (values) CHECK_LE(values->size(), bytes.size());
 }
 
 void fuzz_pid(std::string_view bytes) {

@@ -21,6 +21,7 @@ void fuzz_pcd(std::string_view bytes);
 void fuzz_xyz(std::string_view bytes);
 
 void fuzz_val(std::string_view bytes);  // finite values, and for no more than one number of vertices
+void fuzz_npy(std::string_view bytes);  // no more values than bytes
 void fuzz_pid(std::string_view bytes);  // vertices of the mesh, and of no smaller one
 
 // An image in the form that artefacts have: an array has as many values as its shape says.

@@ -139,6 +139,24 @@ TEST(Dataset, TakesTheKindOfFileThatIsChosenAmongTwins) {
   EXPECT_THROW(found(cases.path(), "folder", Twins::ply), InputError);
 }
 
+TEST(Dataset, ExtensionsMayBeInUpperOrLowerCase) {
+  const DatasetFolder folder = {"Meshes/1.OFF",        "Meshes/2.off",    "Distributions/1.VAL",
+                                "Distributions/2.val", "RawData/1_0.PID", "RawData/1_1.pid",
+                                "RawData/readme.Pid"};
+  const Dataset dataset = found(folder.path(), "schelling");
+  EXPECT_THAT(summary(dataset, folder.path()),
+              ElementsAre("1 human Meshes/1.OFF Distributions/1.VAL RawData/1_0.PID RawData/1_1.pid",
+                          "2 human Meshes/2.off Distributions/2.val"));
+  EXPECT_THAT(dataset.notes, testing::Contains(HasSubstr("readme.Pid: is not named NAME_NUMBER.pid")));
+}
+
+TEST(Dataset, NamesFilesThatDifferByCaseAlone) {
+  expect_refusal(DatasetFolder{"a.off", "Distributions/a.VAL", "Distributions/a.val"}.path(), "folder",
+                 HasSubstr("Distributions/a.val differ by case alone: keep one of them"));
+  expect_refusal(DatasetFolder{"a.off", "RawData/a_0.pid", "RawData/a_0.PID"}.path(), "folder",
+                 HasSubstr("RawData/a_0.pid differ by case alone: keep one of them"));
+}
+
 TEST(Dataset, SaysWhatItLookedForAndWhere) {
   const DatasetFolder folder = {"Meshes/readme.txt"};
   expect_refusal(folder.path(), "schelling",

@@ -112,6 +112,8 @@ TEST(Dialects, ACommentBeginsAWord) {
       {"a.val", "1.#INF\n0.5\n", "a.val:1: \"1.#INF\" is not a number: older Windows"},
       {"a.val", "0.5\n-1.#IND\n", "a.val:2: \"-1.#IND\" is not a number: older Windows"},
       {"a.val", "12#3\n0.5\n", "a.val:1: \"12#3\" is not a number"},
+      {"a.val", "info\n0.5\n", "0.5"},
+      {"a.val", "nan\n0.5\n", "a.val:1: \"nan\" is not a finite number"},
       {"a.val", ".5x\n0.5\n", "a.val:1: \".5x\" is not a number"},
       {"a.val", "# of 2\nsaliency\n0.5 # the first\n1\n", "0.5 1"},
   });

@@ -49,6 +49,17 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
   expect_refused_saliency("", 2, "9.val: the file has 0 values");
 }
 
+// As Microsoft's C library and NumPy before 1.13 wrote what is not finite; a '#' within a word is no comment.
+TEST(GroundTruthFile, NamesFileAndLineOfAWordWithANumberSign) {
+  for (const char* word : {"1.#INF", "-1.#INF", "1.#QNAN", "1.#SNAN", "-1.#IND", "1.#J", "12#3"}) {
+    for (const char* format : {"{}\n1\n", "1\r\n{}\r\n"}) {
+      const std::string text = fmt::format(fmt::runtime(format), word);
+      const int line = text.starts_with(word) ? 1 : 2;
+      expect_refused_saliency(text, 2, fmt::format("9.val:{}: \"{}\" is not a number", line, word));
+    }
+  }
+}
+
 // As numpy.savetxt and pandas write it.
 TEST(GroundTruthFile, ReadsValuesBelowCommentsAndAHeader) {
   for (const char* text : {"# saliency of vertices, mesh 9\n0.5\n0\n1e-3\n", "saliency\n0.5\n0\n1e-3\n",

@@ -325,5 +325,27 @@ TEST(Polygons, TheReadersCountThem) {
   EXPECT_EQ(counts.concave, 2);
 }
 
+TEST(Polygons, TrianglesKnowTheFaceOfTheFileThatTheyArePartOf) {
+  const auto faces_with = [](const std::vector<std::size_t>& sizes) {
+    Mesh mesh;
+    for (int i = 0; i < 9; ++i) mesh.vertices.emplace_back(std::cos(0.1 * i), std::sin(0.1 * i), 0);
+    Polygons polygons;
+    for (const std::size_t size : sizes) {
+      std::vector<std::int32_t> corners(size);
+      std::iota(corners.begin(), corners.end(), 0);
+      polygons.add(corners, 0, mesh.faces);
+    }
+    const PolygonCounts counts = polygons.split(mesh, [](std::size_t, const std::string&) {});
+    EXPECT_EQ(faces_in_file(counts, mesh.faces.size()), sizes.size());
+    return faces_of_triangles(counts, mesh.faces.size());
+  };
+  EXPECT_THAT(faces_with({}), testing::IsEmpty());
+  EXPECT_THAT(faces_with({3, 3, 3}), ElementsAre(0, 1, 2));
+  EXPECT_THAT(faces_with({4, 4}), ElementsAre(0, 0, 1, 1));
+  EXPECT_THAT(faces_with({3, 5, 3, 3, 4, 6, 3}), ElementsAre(0, 1, 1, 1, 2, 3, 4, 4, 5, 5, 5, 5, 6));
+  EXPECT_EQ(text_of_faces(16, 32), "16 faces, split into 32 triangles");
+  EXPECT_EQ(text_of_faces(12, 12), "12 faces");
+}
+
 }  // namespace
 }  // namespace salbench

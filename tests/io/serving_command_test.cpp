@@ -86,6 +86,22 @@ TEST(ServingCommand, SaysHowItEnded) {
   EXPECT_EQ(failure("echo out of memory >&2; exit 3"),
             "the command ended with status 3; its last lines: out of memory");
   EXPECT_EQ(failure("kill -9 $$"), "the command was killed by signal 9; it printed nothing");
+  for (const auto& [ending, from_outside] :
+       std::vector<std::pair<const char*, bool>>{{"kill -9 $$", true},
+                                                 {"kill -15 $$", true},
+                                                 {"sh -c 'kill -9 $$'; exit $?", true},
+                                                 {"kill -11 $$", false},
+                                                 {"kill -6 $$", false},
+                                                 {"exit 3", false}}) {
+    ServingCommand command(for_each_line(ending), folder.path());
+    const auto ask = [&] { command.ask("x", "x", std::chrono::minutes(1)); };
+    if (from_outside)
+      EXPECT_THROW(ask(), EndedFromOutside) << ending;
+    else
+      EXPECT_THAT(ask, testing::Throws<InputError>(
+                           testing::Not(testing::WhenDynamicCastTo<const EndedFromOutside&>(testing::_))))
+          << ending;
+  }
   ServingCommand missing("no-such-program", folder.path());
   EXPECT_THAT(failure_of(missing), StartsWith("the command ended with status 127"));
   EXPECT_TRUE(missing.has_ended());

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/package/listing.h"
+#include "pipeline/rules/given_maps.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 #include "tests/support/cloud_text.h"
@@ -81,6 +83,63 @@ TEST_F(OnFaces, ScoresReadTheMapOfFaces) {
   EXPECT_EQ(toy_->results()[0].scores.n_points, static_cast<std::int64_t>(sphere.faces.size()));
   run(description(kPerFace));
   EXPECT_THAT(stages(), Not(Contains(HasSubstr("face_"))));
+}
+
+// A cube whose sides are squares, but for one of two triangles.
+constexpr const char* kSquares =
+    "OFF\n8 7 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n3 4 5 6\n3 4 6 7\n"
+    "4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+
+TEST_F(OnFaces, AValuePerPolygonIsThatOfItsTriangles) {
+  data_.write("off/cat.off", kSquares);
+  for (const char* values : {"5\n1\n2\n3\n4\n-1\n6\n", "5\n5\n1\n2\n3\n3\n4\n4\n-1\n-1\n6\n6\n"}) {
+    data_.write("maps/cat.csv", values);
+    run(description(kPerFace), kOnFaces);
+    EXPECT_THAT(failures(), IsEmpty());
+    EXPECT_THAT(truth_of_faces().saliency, ElementsAre(5, 5, 1, 2, 3, 3, 4, 4, IsNan(), IsNan(), 6, 6));
+  }
+  data_.write("maps/cat.csv", "5\n1\n2\n3\n4\n");
+  run(description(kPerFace), kOnFaces);
+  EXPECT_THAT(failures(), Contains(HasSubstr("the file has 5 values, but the mesh has 7 faces, split into 12 "
+                                             "triangles")));
+}
+
+// Values of vertices come first where there are as many of both.
+TEST_F(OnFaces, AGivenMapOfPolygonsIsReadAsThatOfTriangles) {
+  const std::string eight_of_both =
+      "OFF\n8 8 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n3 4 5 6\n3 4 6 7\n"
+      "3 0 1 5\n3 0 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+  const auto read = [&](const std::string& mesh, std::size_t n, bool on_faces) {
+    data_.write("cat.off", mesh);
+    folder_.write("given/cat.val", values_of_faces(n));
+    const Inputs inputs = read_inputs(find_dataset(data_.path(), "folder"));
+    const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
+    const auto column = map_files(given, inputs.units, {kMeshes}, on_faces).at(kMeshes);
+    return (*column->files.at(0).at(0).read)().content;
+  };
+  EXPECT_THAT(std::get<ScalarField>(read(kSquares, 7, true)),
+              ElementsAre(0, 0, 1, 2, 3, 3, 4, 4, 5, 5, 6, 6));
+  for (const auto& [mesh, n, on_faces] :
+       std::vector<std::tuple<std::string, std::size_t, bool>>{{kSquares, 7, false},
+                                                               {kSquares, 8, true},
+                                                               {kSquares, 12, true},
+                                                               {kSquares, 5, true},
+                                                               {eight_of_both, 8, true}})
+    EXPECT_EQ(std::get<std::string>(read(mesh, n, on_faces)), values_of_faces(n)) << "as it stands";
+}
+
+TEST_F(OnFaces, AsManyValuesAsFacesInPlaceOfVerticesAreToldApart) {
+  data_.write("cat.off", kSquares);
+  const std::string advice = ": values of faces need a description of the data set (values: {per: face})";
+  for (const auto& [n, others] : std::vector<std::pair<std::size_t, std::string>>{
+           {7, ", and 7 faces, split into 12 triangles" + advice},
+           {12, ", and 7 faces, split into 12 triangles" + advice},
+           {6, ""}}) {
+    data_.write("Distributions/cat.val", values_of_faces(n));
+    run("folder");
+    EXPECT_THAT(failures(), Contains(testing::EndsWith(fmt::format(
+                                "the file has {} values, but the mesh has 8 vertices{}", n, others))));
+  }
 }
 
 TEST_F(OnFaces, WithoutValuesPerFaceAnItemFailsWithARemedy) {

@@ -2,6 +2,7 @@
 """Data sets as arrays, beside what the program's artefacts hold, and in other processes. Layouts: tests/datasets."""
 
 import gc
+import json
 import logging
 import multiprocessing
 import os
@@ -100,6 +101,43 @@ class Layouts(Folder):
                 self.assertTrue(shape.mask.all())
                 self.assertEqual(shape.viewers, ())
                 self.assertIsNone(shape.normals)
+
+    def test_automatic_is_what_a_run_takes(self):
+        """The same layout and items, or the same refusal."""
+        twins, none = "several files of one name: a.off and a.ply", "no .off, .obj or .ply meshes found"
+        for files, layout, ids in [
+                ("Meshes/a.off Meshes/b.off Distributions/a.val z.off", "schelling", "ab"), ("SchellingData/Meshes/a.off z.off", "schelling", "a"),
+                ("off/a.off GS/Saliency/a.val Meshes/b.off", "gs", "a"), ("Meshes/a.off Saliency/a.val", "gs", "a"), ("off/a.off Meshes/b.off", "schelling", "b"),
+                ("off/a.off Distributions/a.val z.off", "princeton", "a"), ("MeshsegBenchmark-1.0/data/off/a.off z.off", "princeton", "a"),
+                ("GS/RawData/z_0.pid z.off", "folder", "z"), ("Meshes/readme.txt off/readme.txt z.off", "folder", "z"), ("GS/Saliency/a.val Meshes/a.off", "gs", "a"),
+                ("Meshes/a.off Meshes/b.off Meshes/a.ply Distributions/a.val z.off", twins, ""), ("off/a.off off/a.ply Meshes/b.off GS/Saliency/a.val", twins, ""),
+                ("off/a.off off/a.ply z.off", twins, ""), ("a.off a.ply", twins, ""), ("Distributions/a.val", none, ""), ("more/a.off", none, ""),
+                ("Meshes/a.off Distributions/a.val Distributions/a.VAL z.off", "differ by case alone", "")]:
+            with self.subTest(files):
+                self.setUp()
+                for name in files.split():
+                    self.write(name, off() if name.endswith((".off", ".ply")) else column(VALUES) if name.lower().endswith(".val") else "")
+                config = self.folder / "config.yaml"
+                config.write_text("dataset: {scans: false}\nmodels: {RS: }\n")
+                plan = subprocess.run([os.environ["SALBENCH_PROGRAM"], "plan", config, "--data", self.root, "--cache", self.folder / "cache", "--format", "json"],
+                                      capture_output=True, text=True)
+                if ids:
+                    dataset = salbench.Dataset("automatic", self.root)
+                    self.assertEqual((dataset.layout, "".join(dataset.ids)), (layout, ids))
+                    self.assertEqual(json.loads(plan.stdout)["meshes"], len(ids))
+                else:
+                    with self.assertRaises(ValueError) as caught:
+                        salbench.Dataset("automatic", self.root)
+                    self.assertIn(layout, str(caught.exception))
+                    self.assertEqual((plan.returncode, plan.stderr), (2, f"error: {caught.exception}\n"))
+
+    def test_extensions_may_be_in_upper_or_lower_case(self):
+        self.write("1.OFF", off())
+        self.write("Distributions/1.VAL", column(VALUES))
+        self.write("RawData/1_0.PID", "3\n")
+        shape = salbench.Dataset("folder", self.root)[0]
+        self.assert_equal(shape.ground_truth, VALUES)
+        self.assertEqual([picks.tolist() for picks in shape.participants], [[3]])
 
     def test_folder_without_ground_truth(self):
         self.write("horse.off", off())

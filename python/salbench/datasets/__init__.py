@@ -49,7 +49,7 @@ def __getattr__(name: str) -> Any:
 
 
 def is_description(layout: str) -> bool:
-    return layout.endswith(DESCRIPTION) and layout != DESCRIPTION
+    return os.path.splitext(layout)[1].lower() == DESCRIPTION
 
 
 def find(layout: str) -> Any:

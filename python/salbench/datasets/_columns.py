@@ -12,7 +12,7 @@ from salbench.datasets._numbers import read_columns
 from salbench.datasets._values import wrong_with_points
 from salbench.datasets.records import Floats, InputError, Ints
 
-SHORTEST, LONGEST = 0.5, 2.0  # of what is called a unit normal
+ROUNDING = 0.01  # of the length of a unit normal; three numbers of another length may be a colour
 
 
 @dataclass
@@ -49,7 +49,7 @@ def _is_copy(rows: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
 
 
 def read_rows(data: bytes, name: str, columns: Columns) -> Rows:
-    """A cloud in columns. A normal of another length than 0.5 to 2 is no normal, unless directions are to be normalised."""
+    """A cloud in columns. Normals have length 1, or 0 where none is known, unless directions are to be normalised."""
     wanted = [*columns.position, *columns.normal, *(column for column in (columns.density, columns.flag) if column)]
     normals = slice(3, 6) if columns.normal else None
 
@@ -57,8 +57,9 @@ def read_rows(data: bytes, name: str, columns: Columns) -> Rows:
         found = [wrong_with_points(np.stack(rows[:3], axis=1))]
         if normals and not columns.normalise_normals:
             lengths = np.linalg.norm(np.stack(rows[normals], axis=1), axis=1)
-            odd = np.flatnonzero((lengths > 0) & ((lengths < SHORTEST) | (lengths > LONGEST)))
-            found += [(int(row), "the normal is not of unit length: name its columns, or add `normalise_normals: true`") for row in odd[:1]]
+            odd = np.flatnonzero((lengths > 0) & ~(np.abs(lengths - 1) <= ROUNDING))
+            found += [(int(row), f"the normal has length {lengths[row]:.3g}, not 1: are these colours? name the columns of the normals, or none; "
+                                 "for directions of any length add `normalise_normals: true`") for row in odd[:1]]
         if columns.flag:
             odd = np.flatnonzero((rows[-1] != 0) & (rows[-1] != 1))
             found += [(int(row), "the flag is neither 0 nor 1: name the column of the flag") for row in odd[:1]]

@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 
 from salbench.datasets._files import MAX_ITEM_BYTES, read_file
+from salbench.datasets._npy import doubles_of
 from salbench.datasets.records import InputError
 
 if TYPE_CHECKING:
@@ -175,11 +176,10 @@ def point_values(file: Hdf5File, name: str) -> NDArray[np.float64]:
     values = file.read(name)
     if values.size != max(values.shape, default=1):
         raise file.fail(name, f"its shape is ({', '.join(map(str, values.shape))}), expected one value per point")
-    if values.dtype.kind in "iu" and values.dtype.itemsize == 8:
-        beyond = (values > 2**53) | ((values < -(2**53)) if values.dtype.kind == "i" else False)
-        if beyond.any():
-            raise file.fail(name, f"it holds {values[beyond].ravel()[0]}: whole numbers beyond 2^53 cannot be used, scale them")
-    return values.astype(np.float64).ravel()
+    try:
+        return doubles_of(values.ravel())
+    except InputError as error:
+        raise file.fail(name, str(error)) from None
 
 
 def only_values(path: str) -> NDArray[np.float64]:

@@ -15,12 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from salbench.datasets._npy import one_per_point
+from salbench.datasets._npy import doubles_of, one_per_point
 from salbench.datasets._text import in_quotes, quoted
 from salbench.datasets.records import Floats, InputError
 
 MAT = b"MATLAB "
-EXACT = 1 << 53  # beyond it doubles have gaps
 MAX_BYTES = 1 << 30  # of a variable, unpacked
 HEAD_BYTES = 1 << 12  # that tell a matrix' name
 MAX_NAMED = 10
@@ -186,9 +185,4 @@ def _numbers(matrix: _Matrix, row_or_column: bool) -> Floats:
     dtype = np.dtype(matrix.order + DTYPES[kind]) if kind in DTYPES else None
     if dtype is None or len(content) != matrix.size * dtype.itemsize:
         raise _Damaged
-    values = np.frombuffer(content, dtype)
-    if dtype.kind in "iu" and dtype.itemsize == 8:
-        extreme = max(int(values.max()), int(values.min()), key=abs)
-        if abs(extreme) > EXACT:
-            raise InputError(f"it holds {extreme}: whole numbers beyond 2^53 cannot be used, scale them")
-    return values.astype(np.float64)
+    return doubles_of(np.frombuffer(content, dtype))

@@ -1,51 +1,45 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers of NumPy's .npy: no objects, no pickles, and a header that is matched and not evaluated."""
+"""Numbers of NumPy's .npy, and what of numbers is said of other files as well."""
 
 from __future__ import annotations
 
-import re
+import math
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any
 
 import numpy as np
 
-from salbench.datasets._text import in_quotes
+from salbench._errors import quoted
+from salbench._npy import header_of
 from salbench.datasets.records import Floats, InputError
 
 NPY = b"\x93NUMPY"
-
-_SHAPE = re.compile(rb"'shape': \(([^)]*)\)?")
+EXACT = 1 << 53  # beyond it doubles have gaps
 
 
 def one_per_point(shape: Sequence[int]) -> bool:
     return sum(extent != 1 for extent in shape) <= 1
 
 
+def doubles_of(values: np.ndarray[Any, np.dtype[Any]]) -> Floats:
+    """Numbers of any type, each equal to a double. Throws InputError, without the name of the file."""
+    if values.dtype.kind in "iu" and values.dtype.itemsize == 8:
+        beyond = (values > EXACT) | ((values < -EXACT) if values.dtype.kind == "i" else False)
+        if beyond.any():
+            raise InputError(f"it holds {values[beyond][0]}: whole numbers beyond 2^53 cannot be used, scale them")
+    return values.astype(np.float64)
+
+
 def parse_npy(data: bytes, name: str) -> Floats:
-    """float32 or float64, little-endian; n, n x 1 or 1 x n."""
-
-    def refuse(what: str) -> NoReturn:
-        raise InputError(f"{name}: not a .npy file that can be read: {what}")
-
-    if len(data) < 12:
-        refuse("it is cut short")
-    begin = 12 if data[6] >= 2 else 10
-    length = int.from_bytes(data[8:begin], "little")
-    if len(data) - begin < length:
-        refuse("it is cut short")
-    header, body = data[begin:begin + length], data[begin + length:]
-    kind = header.partition(b"'descr':")[2].lstrip(b" ")
-    if not kind.startswith((b"'<f8'", b"'<f4'")):
-        told = in_quotes(kind.partition(b", 'fortran_order")[0])
-        refuse(f"its type is {told}, neither float32 nor float64, little-endian")
-    found = _SHAPE.search(header)
-    text = found[1].decode("latin-1") if found else ""
-    if not re.fullmatch(r"[0-9]{1,18}(, *[0-9]{1,18})*,? *", text):
-        refuse("its header names no shape")
-    shape = [int(extent) for extent in re.findall("[0-9]+", text)]
-    if not one_per_point(shape):
-        refuse(f"its shape is ({text}), expected one value per point")
-    dtype = np.dtype(kind[1:4].decode())
-    if len(body) != max(shape) * dtype.itemsize:
-        refuse(f"its shape is ({text}), and it holds {len(body)} bytes of values")
-    return np.frombuffer(body, dtype).astype(np.float64)
+    """Floating-point or whole numbers of at most 64 bits; n, n x 1 or 1 x n."""
+    try:
+        shape, dtype, begin = header_of(data)
+        if dtype.kind not in "fiu" or dtype.itemsize > 8:
+            raise InputError(f"its type is {quoted(str(dtype))}, expected float16, float32, float64, or whole numbers")
+        if not shape or not one_per_point(shape):
+            raise InputError(f"its shape is {str(shape)[:100]}, expected one value per point")
+        if len(data) - begin != math.prod(shape) * dtype.itemsize:
+            raise InputError(f"its shape is {str(shape)[:100]}, and it holds {len(data) - begin} bytes of values")
+        return doubles_of(np.frombuffer(data, dtype, offset=begin))
+    except InputError as error:
+        raise InputError(f"{name}: not a .npy file that can be read: {error}") from None

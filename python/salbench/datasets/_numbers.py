@@ -1,58 +1,102 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Columns of a text of numbers, a row per line: CSV, or words between blanks.
 
-The first lines tell separator, header and columns. All rows are then converted at once; where one of them is not plainly numbers, line by
-line, which takes what else may stand in a text, and names the line that cannot be used.
+The first lines tell separator, header and columns. All rows are then converted at once; where one of them is not plainly numbers, row by
+row, which takes what else may stand in a text, and names the line that cannot be used.
 """
 
 from __future__ import annotations
 
+import csv
+import itertools
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
+from salbench._csv import WRONG
 from salbench.datasets._order import Elements, numbering_column, row_of_elements
 from salbench.datasets._text import BLANKS, decimal_comma_in, fits, in_quotes, is_number, is_same_number, lines_of, number_in
 from salbench.datasets.records import Floats, InputError
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 MAX_NAMED = 20  # columns in a message
-_AROUND = b' \t\r"'
-_PLAIN = b"0123456789+-.eE,; \t\r\nnNaA"
+_PLAIN = b"0123456789+-.eE,; \t\r\nnNaA"  # and nan
 _TINY = re.compile(rb"[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # numbers that no double may hold
 _LONG = re.compile(rb"[0-9.]{300}")
-_ZEROS_IN_FRONT = re.compile(rb',[ \t\r"]*[-+]?0[0-9]')
+_ZEROS_IN_FRONT = re.compile(rb",[ \t]*[-+]?0[0-9]")
 _WHOLE = re.compile(rb"[-+]?[0-9]+")
+_IN_QUOTES = re.compile(rb'"(?:[^"]|"")*"')
+_NO_NAME = re.compile(rb"[-+]?[0-9.]+#")  # 1.#INF, as Microsoft's C library wrote an infinity
+_TO_BLANKS = bytes.maketrans(b"\t\v\f", b"   ")
 
 Cells = list[bytes]
 WrongWithRows = Callable[[list[Floats]], "tuple[int, str] | None"]  # the first row that cannot be used, and why
 
 
-def cells_of(line: bytes, separator: bytes) -> Cells:
-    if separator == b" ":
-        return [word.strip(_AROUND) for word in line.split()]
-    return [cell.strip(_AROUND) for cell in line.split(separator)]
+def are_unseen(values: Floats, word: bytes) -> NDArray[np.bool_]:
+    """True of the number that this word is."""
+    number = number_in(word)
+    return np.zeros(len(values), bool) if number is None else np.isnan(values) if number != number else values == number
 
 
-def _separates_decimal_commas(separator: bytes, line: bytes) -> bool:
+def _rows_of(lines: Sequence[bytes], separator: bytes, begin: int = 0) -> Iterator[tuple[int, Cells]]:
+    """The line on which each row begins, from `begin` on, and its cells. Blank lines and comments are no rows; a row has several lines where
+    a quoted cell has line ends. Throws _BadRow."""
+    row = -1  # the line on which the row begins that is read; -1: none
+
+    def texts() -> Iterator[str]:
+        nonlocal row
+        for line in range(begin, len(lines)):
+            text = lines[line].translate(_TO_BLANKS).strip() if separator == b" " else lines[line].strip(b" ")
+            if row < 0:
+                start = text.lstrip(BLANKS)[:1]
+                if start in (b"", b"#"):
+                    continue
+                row = line
+            yield text.decode("latin-1") + "\n"
+
+    reader = csv.reader(texts(), delimiter=separator.decode(), skipinitialspace=True, strict=True)
+    try:
+        for cells in reader:
+            yield row, [cell.encode("latin-1").strip(BLANKS) for cell in cells]
+            row = -1
+    except csv.Error as error:
+        raise _BadRow(row, WRONG.get(str(error), str(error))) from None
+
+
+class _BadRow(Exception):
+    """The line on which it begins, and what is wrong."""
+
+
+def _cells_of(text: bytes, separator: bytes) -> Cells:
+    """Of one row; none where its quotes are not those of such a row."""
+    try:
+        return next(_rows_of(text.split(b"\n"), separator), (0, []))[1]
+    except _BadRow:
+        return []
+
+
+def _separates_decimal_commas(separator: bytes, row: bytes) -> bool:
     """True of "0,5;1" for semicolons: numbers, with a comma within one of them at least."""
-    cells = cells_of(line, separator)
+    cells = _cells_of(row, separator)
     return (len(cells) > 1 and any(decimal_comma_in(cell) for cell in cells)
             and all(is_number(cell) or decimal_comma_in(cell) for cell in cells))
 
 
-def separator_of(line: bytes) -> bytes:
-    """Commas, semicolons or tabs, whichever the first line has; else blanks."""
-    if is_number(line.strip(_AROUND)):
-        return b" "
-    of_commas = next((separator for separator in (b";", b"\t", b" ") if _separates_decimal_commas(separator, line)), None)
-    return next((separator for separator in (b",", b";", b"\t") if separator in line), b" ") if of_commas is None else of_commas
+def _separator_of(row: bytes) -> bytes:
+    """Commas, semicolons or tabs, whichever the first row has outside quotes; else blanks."""
+    outside = _IN_QUOTES.sub(b"", row)
+    of_commas = next((separator for separator in (b";", b"\t", b" ") if _separates_decimal_commas(separator, row)), None)
+    return next((separator for separator in (b",", b";", b"\t") if separator in outside), b" ") if of_commas is None else of_commas
 
 
 def _are_names(cells: Cells) -> bool:
-    return any(word and not is_number(word) and not decimal_comma_in(word) for word in cells)
+    return any(word and not is_number(word) and not decimal_comma_in(word) and not _NO_NAME.match(word) for word in cells)
 
 
 def _filled(cells: Cells) -> int:
@@ -72,6 +116,7 @@ class _Table:
     name: str
     lines: list[bytes]
     columns: Sequence[str]
+    unseen: bytes = b""  # of the first column: what stands for NaN
     separator: bytes = b" "
     header: Cells | None = None
     size: int = 0  # cells of the first line
@@ -85,25 +130,39 @@ class _Table:
         raise InputError(f"{self.name}:{number}: {what}" if number else f"{self.name}: {what}")
 
     def read_header(self, elements: Elements | None) -> None:
-        """The first line, or the last comment above it that has a name per column."""
-        comments = []
-        for line, text in enumerate(self.lines):
-            if not text.strip(BLANKS):
-                continue
-            if text.lstrip(BLANKS).startswith(b"#"):
-                comments.append(text[text.index(b"#") + 1:])
-                continue
-            self.separator = separator_of(text)
-            first = cells_of(text, self.separator)
-            self.size, self.filled, self.begin = len(first), _filled(first), line
-            above = (cells_of(comment, self.separator) for comment in reversed(comments))
-            self.header = next((names for names in [first, *above] if len(names) == self.size and _are_names(names)), None)
-            self.places = tuple(self._place(column, line) for column in self.columns)
-            if elements is not None and self.header is not None:
-                self._find_numbering(elements, line)
-            self.begin += _are_names(first)
+        """The first row, or the last comment above it that has a name per column."""
+        starts = ((line, text.lstrip(BLANKS)) for line, text in enumerate(self.lines))
+        line = next((line for line, text in starts if text and not text.startswith(b"#")), len(self.lines))
+        self.begin = line
+        if line == len(self.lines):
             return
-        self.begin = len(self.lines)
+        quotes = itertools.accumulate(text.count(b'"') for text in self.lines[line:])
+        end = next((k for k, before in enumerate(quotes, line + 1) if before % 2 == 0), len(self.lines))
+        self.separator = _separator_of(b"\n".join(self.lines[line:end]))
+        rows = self.rows()
+        _, first = next(rows)
+        self.size, self.filled = len(first), _filled(first)
+        comments = [text.lstrip(BLANKS)[1:] for text in self.lines[:line] if text.strip(BLANKS)]
+        above = (_cells_of(comment, self.separator) for comment in reversed(comments))
+        above = (names for names in above if len(names) == self.size and _are_names(names))
+        self.header = first if (has_header := self._is_header(first)) else next(above, None)
+        self.places = tuple(self._place(column, line) for column in self.columns)
+        if elements is not None and self.header is not None:
+            self._find_numbering(elements, line)
+        if has_header:
+            self.begin = next(rows, (len(self.lines),))[0]
+
+    def _is_header(self, first: Cells) -> bool:
+        """True of names, but not where a column is meant by its number and has one."""
+        by_number = [place for column in self.columns if 0 < (place := _column_number(column)) <= len(first)]
+        return _are_names(first) and not (len(by_number) == len(self.columns) and all(is_number(first[place - 1]) for place in by_number))
+
+    def rows(self) -> Iterator[tuple[int, Cells]]:
+        try:
+            yield from _rows_of(self.lines, self.separator, self.begin)
+        except _BadRow as error:
+            line, what = error.args
+            self.fail(what, line)
 
     def _place(self, column: str, line: int) -> int:
         number = _column_number(column)
@@ -156,18 +215,22 @@ class _Table:
             return None
         if table.shape[1] != self.size or max(wanted) >= self.size:
             return None
-        first, *others = [table[:, place].copy() for place in wanted]
-        return None if np.isinf(first).any() or not np.isfinite(others).all() else [first, *others]
+        values = [table[:, place].copy() for place in wanted]
+        unseen = are_unseen(values[0], self.unseen)
+        if not all(np.isfinite(column[~unseen] if k == 0 else column).all() for k, column in enumerate(values)):
+            return None
+        values[0][unseen] = np.nan
+        return values
 
-    # --- line by line
+    # --- row by row
 
-    def row(self, cells: Cells, line: int, unseen: bytes) -> list[float]:
+    def row(self, cells: Cells, line: int) -> list[float]:
         if self.separator == b",":
             self._check_commas(cells, line)
         if self.is_sure() and _filled(cells) > self.size:
             self.fail(f"{_filled(cells)} columns, but the header names {self.size}", line)
         wanted = [self._cell(cells, k, line) for k in range(len(self.places))]
-        values = [self._value(cell, line, b"" if k else unseen) for k, cell in enumerate(wanted)]
+        values = [self._value(cell, line, b"" if k else self.unseen) for k, cell in enumerate(wanted)]
         if self.numbering < 0:
             return values
         if self.numbering >= len(cells):
@@ -206,31 +269,28 @@ class _Table:
             self.fail(f"{in_quotes(cell)} is not a finite number", line)
         return number
 
-    def rows(self) -> list[int]:
-        """The lines that hold one."""
-        return [line for line in range(self.begin, len(self.lines))
-                if (text := self.lines[line].lstrip(BLANKS)) and not text.startswith(b"#")]
-
 
 def read_columns(text: bytes, name: str, columns: Sequence[str], unseen: str = "", expected: Elements | None = None,
                  wrong_with_rows: WrongWithRows | None = None) -> list[Floats]:
     """The columns named, each by its name in the header or by its number from 1, in the order of `columns`; "" is the only column of the
-    text. A first line in which a word is no number is the header. Blank lines are skipped, and so are lines that begin with '#', of which
-    the last before the numbers is a header if it has a word per column. Decimal commas are refused.
+    text. A first row in which a word is no number is the header, unless columns are meant by numbers and have numbers there. Blank lines are
+    skipped, and so are lines that begin with '#', of which the last before the numbers is a header if it has a word per column. Decimal commas
+    are refused.
 
     With `expected`, rows come in the order of the elements: a column that numbers these is obeyed, and is none beside which the only column
     would not be the only one. A value of the first column that is `unseen` becomes NaN; all others must be finite."""
-    table = _Table(name, lines_of(text), tuple(columns))
+    table = _Table(name, lines_of(text), tuple(columns), unseen.encode())
     table.read_header(expected)
-    wanted = unseen.encode()
     values = table.all_at_once()
-    if values is None or (np.isnan(values[0]).any() and not is_same_number(float("nan"), wanted)):
-        values = _line_by_line(table, wanted, wrong_with_rows)
-    elif wanted and (number := number_in(wanted)) is not None:
-        values[0] = np.where(values[0] == number, np.nan, values[0])
+    if values is None:
+        values = _row_by_row(table, wrong_with_rows)
+
+    def line_of(row: int) -> int:
+        return next(itertools.islice(table.rows(), row, None))[0]
+
     if wrong_with_rows is not None and (wrong := wrong_with_rows(values)):
-        table.fail(wrong[1], table.rows()[wrong[0]])
-    if expected is not None and expected.n is not None and len(values[0]) != expected.n:
+        table.fail(wrong[1], line_of(wrong[0]))
+    if expected is not None and not expected.has(len(values[0])):
         table.fail(expected.wrong_count(len(values[0])))
     if not len(values[0]):
         table.fail("the file has no values")
@@ -239,21 +299,22 @@ def read_columns(text: bytes, name: str, columns: Sequence[str], unseen: str = "
     assert table.header is not None
     order = row_of_elements(values.pop(), expected)
     if isinstance(order, tuple):
-        table.fail(f"column {in_quotes(table.header[table.numbering])} {order[1]}", table.rows()[order[0]])
+        table.fail(f"column {in_quotes(table.header[table.numbering])} {order[1]}", line_of(order[0]))
     return [column[order] for column in values]
 
 
-def _line_by_line(table: _Table, unseen: bytes, wrong_with_rows: WrongWithRows | None) -> list[Floats]:
+def _row_by_row(table: _Table, wrong_with_rows: WrongWithRows | None) -> list[Floats]:
     rows: list[list[float]] = []
+    lines: list[int] = []
     width = len(table.columns) + (table.numbering >= 0)
 
     def columns() -> list[Floats]:
         return list(np.array(rows).reshape(len(rows), width).T.copy())
 
-    lines = table.rows()
     try:
-        for line in lines:
-            rows.append(table.row(cells_of(table.lines[line], table.separator), line, unseen))
+        for line, cells in table.rows():
+            rows.append(table.row(cells, line))
+            lines.append(line)
     except InputError:
         if wrong_with_rows is not None and rows and (wrong := wrong_with_rows(columns())):
             table.fail(wrong[1], lines[wrong[0]])  # an earlier line

@@ -24,9 +24,22 @@ class Elements:
     shape: str = "mesh"
     one: str = "vertex"
     plural: str = "vertices"
+    faces: tuple[int, int] | None = None  # of a mesh: those of its file, and the triangles that they were split into
+
+    def has(self, count: int) -> bool:
+        """True of as many values as there are elements; of triangles also of as many as there are faces in the file."""
+        return self.n is None or count == self.n or (self.one == "face" and self.faces is not None and count == self.faces[0])
 
     def wrong_count(self, count: int) -> str:
-        return f"the file has {count} values, but the {self.shape} has {self.n} {self.plural}"
+        there, advice, faces = f"{self.n} {self.plural}", "", ""
+        if self.faces is not None:
+            in_file, triangles = self.faces
+            faces = f"{triangles} faces" if in_file == triangles else f"{in_file} faces, split into {triangles} triangles"
+        if faces and self.one == "face":
+            there = faces
+        elif self.faces is not None and count in self.faces:
+            there, advice = f"{there}, and {faces}", ": if they are of faces, write `values: {per: face}`"
+        return f"the file has {count} values, but the {self.shape} has {there}{advice}"
 
 
 def _how_sure(name: bytes, is_first: bool, elements: Elements) -> int:

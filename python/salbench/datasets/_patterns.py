@@ -6,7 +6,7 @@
     {participant}  digits
     {view}, {viewer}  any characters of one name
 
-A name that begins with a dot is hidden and fits no pattern. Paths are relative, with '/' between names. A pattern is matched name by name
+A name that begins with a dot is hidden and fits no pattern. Extensions may be in upper or lower case. Paths are relative, with '/' between names. A pattern is matched name by name
 from the root, each name by backtracking over its few pieces.
 """
 
@@ -18,6 +18,7 @@ from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 
 from salbench.datasets._files import below, list_folder
+from salbench.datasets.records import InputError
 
 STANDS_FOR = {"*": "*", "{item}": "NAME", "{participant}": "NUMBER", "{view}": "VIEW", "{viewer}": "VIEWER"}
 PARTS = ("{participant}", "{view}", "{viewer}")
@@ -119,16 +120,26 @@ def files_like(root: str, pattern: str, items: Container[str] = ()) -> FoundFile
     pieces = pieces_of(pattern.split("/")[-1])
     ending = "" if pieces[-1] in STANDS_FOR else pieces[-1]
     for folder, captured in _folders(root, pattern, items):
+        same: dict[str, str] = {}
         for name, is_folder in list_folder(folder):
             if is_folder or name.startswith("."):
                 continue
-            if fit := _fits(pieces, name, items, captured):
-                found.fit.append(FoundFile(os.path.join(folder, name), *fit))
-            elif ending and name.endswith(ending):
-                found.left_out.append(os.path.join(folder, name))
+            path, plain = os.path.join(folder, name), _with_extension_of(ending, name)
+            if fit := _fits(pieces, plain, items, captured):
+                found.fit.append(FoundFile(path, *fit))
+                if ending and same.setdefault(plain, path) != path:
+                    raise InputError(f"{same[plain]} and {path} differ by case alone: keep one of them")
+            elif ending and plain.endswith(ending):
+                found.left_out.append(path)
     found.fit.sort(key=lambda file: natural_order(file.path))
     found.left_out.sort(key=natural_order)
     return found
+
+
+def _with_extension_of(ending: str, name: str) -> str:
+    """The name with its extension as the pattern has it, of which it may be another spelling."""
+    wanted = ending[ending.rfind("."):] if "." in ending else ""
+    return name[:-len(wanted)] + wanted if wanted and name[-len(wanted):].lower() == wanted.lower() else name
 
 
 def has_folder_for(root: str, pattern: str) -> bool:

@@ -35,8 +35,9 @@ class FoundSplits:
 
 
 def _last_name(line: bytes) -> str:
-    """ "data\\rgb/Apple_v01.obj, maps/Apple_v01.csv" -> "Apple_v01.obj"."""
-    path = re.split(rb"[,;\t]", line, maxsplit=1)[0].strip(b' "\r')
+    """ "data\\rgb/Apple_v01.obj, maps/Apple_v01.csv" -> "Apple_v01.obj"; of a path in quotes all of it."""
+    in_quotes = re.match(rb' *"((?:[^"]|"")*)"', line)
+    path = in_quotes[1].replace(b'""', b'"') if in_quotes else re.split(rb"[,;\t]", line, maxsplit=1)[0].strip(b" ")
     return os.fsdecode(re.split(rb"[/\\]", path)[-1])
 
 

@@ -53,5 +53,10 @@ def decimal_comma_in(word: bytes) -> str:
 
 
 def lines_of(data: bytes) -> list[bytes]:
-    """LF, CR LF and CR each end a line wherever they stand."""
+    """LF, CR LF and CR each end a line, wherever they stand."""
     return data.removeprefix(BYTE_ORDER_MARK).splitlines()
+
+
+def before_comment(words: list[bytes]) -> list[bytes]:
+    """The words before that with which a comment begins: a '#' within a word, as in 1.#INF, begins none."""
+    return words[:next((place for place, word in enumerate(words) if word.startswith(b"#")), None)]

@@ -44,14 +44,27 @@ class _Shape:
     @property
     def in_file(self) -> Elements:
         if self.form.faces is not None:
-            return Elements(len(self.form.points))
+            return Elements(len(self.form.points), faces=self.face_counts)
         return Elements(len(self.form.points) + len(self.left_out), "point cloud", "point", "points")
 
     def described_by(self, values: Values) -> Elements:
         if values.per != "face":
             return self.in_file
-        assert self.form.faces is not None
-        return Elements(len(self.form.faces), "mesh", "face", "faces")
+        assert self.face_counts is not None
+        return Elements(self.face_counts[1], "mesh", "face", "faces", self.face_counts)
+
+    @property
+    def face_counts(self) -> tuple[int, int] | None:
+        """Of a mesh: the faces of its file, and the triangles that they were split into."""
+        if self.form.faces is None:
+            return None
+        triangles = len(self.form.faces)
+        return (triangles if self.form.face_of is None else int(self.form.face_of[-1]) + 1), triangles
+
+    def on_triangles(self, values: Values, found: Floats) -> Floats:
+        """Values of the faces of a file, polygons among them, as those of triangles."""
+        is_of_file = values.per == "face" and self.face_counts is not None and len(found) != self.face_counts[1]
+        return found[self.form.face_of] if is_of_file else found
 
     @property
     def kept(self) -> Ints:
@@ -135,8 +148,8 @@ def _shape_form(path: str, data: bytes, kind: str) -> Form:
     name = os.fsencode(path)
     if kind == "cloud":
         return _cloud_form(_core.read_cloud(data, name))
-    points, faces, split, concave = _core.read_mesh(data, name)
-    return Form(points, faces, polygons=(split, concave))
+    points, faces, split, concave, face_of = _core.read_mesh(data, name)
+    return Form(points, faces, polygons=(split, concave), face_of=face_of)
 
 
 def _truth_in_columns(shape: _Shape, rows: Rows, view: str, values: Values, lists: tuple[str, bytes] | None) -> Truth:
@@ -160,8 +173,9 @@ def _read_truth(shape: _Shape, item: Item, reader: _Reader, lists: tuple[str, by
     values, indices = options_of(how, Values), options_of(how, Indices)
     if values.per == "face" and shape.form.faces is None and how.get("saliency"):
         raise InputError(f"{item.files[reader.place].path}: has values per face, but {shape.path} is a point cloud, which has none")
-    read = [(path, *read_values(data, path, values, shape.described_by(values)))
-            for path, data in (reader.next() for _ in range(how.get("saliency", 0)))]
+    files = [reader.next() for _ in range(how.get("saliency", 0))]
+    read = [(path, shape.on_triangles(values, found), points)
+            for path, (found, points) in ((path, read_values(data, path, values, shape.described_by(values))) for path, data in files)]
     masks = [_read_mask(reader, values, len(found), shape) if how.get("masks") else None for _, found, _ in read]
     masked = [found if mask is None else np.where(mask == 0, np.nan, found) for (_, found, _), mask in zip(read, masks)]
     maps = [_hide_unseen(_on_points(shape, values, found, points, lists), shape, how, k)
@@ -226,7 +240,9 @@ def _spread(shape: _Shape, values: Values, found: Floats, points: Floats | None,
 
 def _read_mask(reader: _Reader, values: Values, count: int, shape: _Shape) -> Floats:
     path, data = reader.next()
-    return read_mask(data, path, Elements(count, "file", "point", "points") if values.per == "point" else shape.described_by(values))
+    if values.per == "point":
+        return read_mask(data, path, Elements(count, "file", "point", "points"))
+    return shape.on_triangles(values, read_mask(data, path, shape.described_by(values)))
 
 
 def _on_points(shape: _Shape, values: Values, found: Floats, points: Floats | None, lists: tuple[str, bytes] | None) -> Floats:

@@ -10,9 +10,9 @@ import numpy as np
 from salbench.datasets._layout import Indices, Values, number_text
 from salbench.datasets._mat import MAT, parse_mat
 from salbench.datasets._npy import NPY, parse_npy
-from salbench.datasets._numbers import read_columns
+from salbench.datasets._numbers import are_unseen, read_columns
 from salbench.datasets._order import Elements
-from salbench.datasets._text import in_quotes, lines_of, number_in
+from salbench.datasets._text import before_comment, in_quotes, lines_of
 from salbench.datasets.records import Floats, InputError, Ints
 
 MAX_COORDINATE = 1e150  # stages square distances, which must not overflow
@@ -45,12 +45,11 @@ def read_values(data: bytes, name: str, values: Values, elements: Elements) -> t
     if not binary:
         return read_columns(data, name, (values.column,), values.unseen, elements)[0], None
     found = parse_npy(data, name) if data.startswith(NPY) else parse_mat(data, name, values.variable, row_or_column=True)
-    number = number_in(values.unseen.encode())
-    unseen = np.zeros(len(found), bool) if number is None else np.isnan(found) if np.isnan(number) else found == number
+    unseen = are_unseen(found, values.unseen.encode())
     for place in np.flatnonzero(~np.isfinite(found) & ~unseen)[:1]:
         raise InputError(f"{name}: value {place} (0-based) is {number_text(float(found[place]))}, expected a finite number")
     found[unseen] = np.nan
-    if len(found) != elements.n:
+    if not elements.has(len(found)):
         raise InputError(f"{name}: {elements.wrong_count(len(found))}")
     return found, None
 
@@ -84,11 +83,11 @@ def read_picks(data: bytes, name: str, indices: Indices, elements: Elements) -> 
 
 
 def _picks_in_text(data: bytes, name: str, base: int, elements: Elements) -> Ints:
-    """One per line; what follows a '#' is a comment."""
+    """One per line; a comment may follow."""
     assert elements.n is not None
     picks = []
     for number, line in enumerate(lines_of(data), 1):
-        word, *others = line.partition(b"#")[0].split(None) or [b""]
+        word, *others = before_comment(line.split()) or [b""]
         if not word:
             continue
         if not re.fullmatch(rb"\+?[0-9]+|-[0-9]+", word):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processes of worker.py, from the side that asks them. One that dies fails what it was asked, and the next question starts another."""
+"""Processes of worker.py, from the side that asks them. One that dies fails what it was asked, and the next question starts another. One that
+somebody else killed says nothing about its input: another is asked the same, once."""
 
 from __future__ import annotations
 
@@ -19,6 +20,8 @@ from salbench.datasets.records import InputError
 from salbench.datasets.worker import ERROR
 
 _START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.datasets.worker import main; sys.exit(main())"
+# Of a person, a scheduler, or a system without memory; a library that crashes raises others.
+_FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
@@ -31,6 +34,16 @@ class Worker:
 
     def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
         """What it made, and what is wrong with the input: lines."""
+        for _ in range(2):
+            answer = self._answer(request)
+            if isinstance(answer, tuple):
+                return answer
+            if -answer not in _FROM_OUTSIDE:
+                return None, [_damage(answer)]
+        return None, [f"the process that reads it was ended from outside, twice ({_signal(answer)}); run it again, with more memory free"]
+
+    def _answer(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
+        """Likewise; the status with which it ended in place of an answer."""
         if self._process is None:
             self._start()
         assert self._process is not None and self._process.stdin and self._process.stdout and self._folder
@@ -41,9 +54,9 @@ class Worker:
             answered = self._process.stdout.readline()
         except BrokenPipeError:
             answered = b""
-        if not answered.endswith(b"\n"):
-            return None, [self._end()]
         made, problems = _taken(out), _taken(out + ERROR) or b""
+        if not answered.endswith(b"\n"):  # what it left is of no use
+            return self._end()
         return made, problems.decode("utf-8", "surrogateescape").splitlines()
 
     def close(self) -> None:
@@ -60,8 +73,8 @@ class Worker:
         self._process = subprocess.Popen([sys.executable, "-P", "-c", _START, _PACKAGE], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                          env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
 
-    def _end(self) -> str:
-        """Waits for it, and says how it ended."""
+    def _end(self) -> int:
+        """Waits for it: its status, minus the signal that ended it."""
         process, self._process = self._process, None
         assert process is not None and process.stdin and process.stdout
         status = process.wait()
@@ -70,10 +83,18 @@ class Worker:
             process.stdin.close()
         except BrokenPipeError:
             pass
-        if status == -signal.SIGXCPU:
-            return f"damaged: reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB; write the file again"
-        how = f"crashed (signal {-status}: {signal.strsignal(-status)})" if status < 0 else f"ended with status {status}"
-        return f"damaged: the process that reads it {how}; write the file again"
+        return status
+
+
+def _signal(status: int) -> str:
+    return f"signal {-status}: {signal.strsignal(-status)}"
+
+
+def _damage(status: int) -> str:
+    if status == -signal.SIGXCPU:
+        return f"damaged: reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB; write the file again"
+    how = f"crashed ({_signal(status)})" if status < 0 else f"ended with status {status}"
+    return f"damaged: the process that reads it {how}; write the file again"
 
 
 _own: tuple[int, Worker] | None = None

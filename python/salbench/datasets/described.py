@@ -96,7 +96,7 @@ def _is_native(found: Found) -> bool:
     if truth is None or not plain:
         return plain
     one_file = all(len(entry.saliency) <= 1 and not entry.views for entry in found.entries)
-    endings = truth.saliency.endswith(".val") or not truth.saliency, truth.picks.endswith(".pid") or not truth.picks
+    endings = extension(truth.saliency) == ".val" or not truth.saliency, extension(truth.picks) == ".pid" or not truth.picks
     return one_file and all(endings) and not truth.mask and not truth.cameras and not truth.viewers
 
 

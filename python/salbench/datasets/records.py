@@ -125,6 +125,7 @@ class Form:
     viewpoint: Floats | None = None
     left_out: Ints | None = None  # of clouds: rows of the file that are no points here, ascending
     polygons: tuple[int, int] = (0, 0)  # that were split, and how many of them were concave
+    face_of: Ints | None = None  # (f,) which face of the mesh's file, from 0, each of `faces` is part of; None: it is that of the same number
     truths: tuple[Truth, ...] = ()
     about: dict[str, str] = field(default_factory=dict)  # item, class, split, source, source_files, viewers, licence
     digests: dict[str, str] = field(default_factory=dict)  # path of each file that was read -> what xxh128sum prints of it

@@ -26,7 +26,7 @@ _found = functools.lru_cache(maxsize=16)(find)
 def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]:
     """The name of the layout, of "automatic" the one that fits, and what the folder holds."""
     if layout == AUTOMATIC:
-        return _automatic(root, twins)
+        layout = _core.automatic_layout(os.fsencode(root))
     if layout not in NATIVE:
         archive = find(layout)
         return archive.LAYOUT.name, archive.items(root, twins)
@@ -36,22 +36,6 @@ def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]
     listing.items = [_item(row) for row in found["items"]]
     listing.licence = NATIVE[found["layout"]]
     return found["layout"], listing
-
-
-def _automatic(root: str, twins: str) -> tuple[str, Listing]:
-    def has(*path: str) -> bool:
-        return os.path.isdir(os.path.join(root, *path))
-
-    layouts = ["gs"] if has("GS") or has("Saliency") else []
-    layouts.append("schelling")
-    if has("off") or has("data", "off") or has("MeshsegBenchmark-1.0", "data", "off") or os.path.basename(os.path.abspath(root)) == "off":
-        layouts.append("princeton")
-    for layout in layouts:
-        try:
-            return listed(layout, root, twins)
-        except InputError:
-            continue
-    return listed("folder", root, twins)
 
 
 def _item(row: dict[str, Any]) -> Item:

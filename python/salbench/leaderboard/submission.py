@@ -21,6 +21,8 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
+from salbench._errors import InputError
+from salbench._npy import header_of
 from salbench._types import NDArray
 from salbench.leaderboard import texts
 from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
@@ -77,23 +79,20 @@ def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     def fail(what: str) -> Refused:
         return Refused(f"{name}: not a .npy file that can be read: {what}")
 
-    file = io.BytesIO(data)
     try:
-        version = np.lib.format.read_magic(file)  # type: ignore[no-untyped-call]
-        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-        shape, _, dtype = read(file)  # type: ignore[no-untyped-call]
-    except (ValueError, TypeError, SyntaxError, RecursionError, MemoryError) as error:
-        raise fail(" ".join(str(error).split())[:100] or "its header is damaged") from None
+        shape, dtype, begin = header_of(data)
+    except InputError as error:
+        raise fail(str(error)) from None
     if dtype not in (np.dtype("<f8"), np.dtype("<f4")):
         raise fail(f"its type is {quoted(str(dtype))}, neither float32 nor float64, little-endian")
-    if not 1 <= len(shape) <= 2 or any(type(extent) is not int or extent < 0 for extent in shape) or (len(shape) == 2 and 1 not in shape):
+    if not 1 <= len(shape) <= 2 or (len(shape) == 2 and 1 not in shape):
         raise fail(f"its shape is {str(shape)[:100]}, expected one value per point")
     n = max(shape) if min(shape) else 0
-    if len(data) - file.tell() != n * dtype.itemsize:
-        raise fail(f"its shape is {str(shape)[:100]}, and it holds {len(data) - file.tell()} bytes of values")
+    if len(data) - begin != n * dtype.itemsize:
+        raise fail(f"its shape is {str(shape)[:100]}, and it holds {len(data) - begin} bytes of values")
     if n != points:
         raise Refused(f"{name}: {n} values, but the shape has {points} points")
-    values = np.frombuffer(data, dtype, offset=file.tell()).astype(np.float64)
+    values = np.frombuffer(data, dtype, offset=begin).astype(np.float64)
     bad = np.flatnonzero(~np.isfinite(values))
     if len(bad):
         raise Refused(f"{name}: value {bad[0]} (0-based) is {values[bad[0]]}, expected a finite number")
