@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The header of NumPy's .npy, read by NumPy itself: no objects, no pickles."""
+"""The header of NumPy's .npy, read by NumPy itself, which takes at most 10 000 bytes: no objects, no pickles."""
 
 import io
 import tokenize
@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 
 from salbench._errors import InputError
-
-MAX_HEADER = 10_000  # bytes: NumPy evaluates it as a literal of Python
 
 
 def header_of(data: bytes) -> "tuple[tuple[int, ...], np.dtype[Any], int]":
@@ -23,7 +21,7 @@ def header_of(data: bytes) -> "tuple[tuple[int, ...], np.dtype[Any], int]":
             if version not in ((1, 0), (2, 0), (3, 0)):
                 raise InputError(f"its version is {version[0]}.{version[1]}, expected 1.0 to 3.0")
             read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-            shape, _, dtype = read(file, max_header_size=MAX_HEADER)  # type: ignore[no-untyped-call]
+            shape, _, dtype = read(file)  # type: ignore[no-untyped-call]
     except InputError:
         raise
     except (ValueError, TypeError, SyntaxError, tokenize.TokenError, RecursionError, MemoryError) as error:

@@ -41,7 +41,7 @@ WrongWithRows = Callable[[list[Floats]], "tuple[int, str] | None"]  # the first 
 def are_unseen(values: Floats, word: bytes) -> NDArray[np.bool_]:
     """True of the number that this word is."""
     number = number_in(word)
-    return np.zeros(len(values), bool) if number is None else np.isnan(values) if number != number else values == number
+    return np.zeros(len(values), bool) if number is None else np.asarray(np.isnan(values) if number != number else values == number)
 
 
 def _rows_of(lines: Sequence[bytes], separator: bytes, begin: int = 0) -> Iterator[tuple[int, Cells]]:
@@ -76,9 +76,11 @@ class _BadRow(Exception):
 def _cells_of(text: bytes, separator: bytes) -> Cells:
     """Of one row; none where its quotes are not those of such a row."""
     try:
-        return next(_rows_of(text.split(b"\n"), separator), (0, []))[1]
+        for _, cells in _rows_of(text.split(b"\n"), separator):
+            return cells
     except _BadRow:
-        return []
+        pass
+    return []
 
 
 def _separates_decimal_commas(separator: bytes, row: bytes) -> bool:
@@ -143,9 +145,9 @@ class _Table:
         _, first = next(rows)
         self.size, self.filled = len(first), _filled(first)
         comments = [text.lstrip(BLANKS)[1:] for text in self.lines[:line] if text.strip(BLANKS)]
-        above = (_cells_of(comment, self.separator) for comment in reversed(comments))
-        above = (names for names in above if len(names) == self.size and _are_names(names))
-        self.header = first if (has_header := self._is_header(first)) else next(above, None)
+        has_header = self._is_header(first)
+        above = [names for comment in comments if len(names := _cells_of(comment, self.separator)) == self.size and _are_names(names)]
+        self.header = first if has_header else above[-1] if above else None
         self.places = tuple(self._place(column, line) for column in self.columns)
         if elements is not None and self.header is not None:
             self._find_numbering(elements, line)

@@ -33,8 +33,10 @@ def _diagonal(item: Item) -> float:
         data = read_file(path)
         if "columns" in item.how:
             points = read_rows(data, path, options_of(item.how, Columns)).points
+        elif item.kind == "cloud":
+            points = _core.read_cloud(data, os.fsencode(path))[0]
         else:
-            points = (_core.read_cloud if item.kind == "cloud" else _core.read_mesh)(data, os.fsencode(path))[0]
+            points = _core.read_mesh(data, os.fsencode(path))[0]
     except ValueError:
         return 0.0
     points = points[np.isfinite(points).all(axis=1)]

@@ -34,13 +34,10 @@ class Worker:
 
     def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
         """What it made, and what is wrong with the input: lines."""
-        for _ in range(2):
+        answer = self._answer(request)
+        if isinstance(answer, int) and -answer in _FROM_OUTSIDE:
             answer = self._answer(request)
-            if isinstance(answer, tuple):
-                return answer
-            if -answer not in _FROM_OUTSIDE:
-                return None, [_damage(answer)]
-        return None, [f"the process that reads it was ended from outside, twice ({_signal(answer)}); run it again, with more memory free"]
+        return (None, [_how_ended(answer)]) if isinstance(answer, int) else answer
 
     def _answer(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
         """Likewise; the status with which it ended in place of an answer."""
@@ -90,7 +87,9 @@ def _signal(status: int) -> str:
     return f"signal {-status}: {signal.strsignal(-status)}"
 
 
-def _damage(status: int) -> str:
+def _how_ended(status: int) -> str:
+    if -status in _FROM_OUTSIDE:
+        return f"the process that reads it was ended from outside, twice ({_signal(status)}); run it again, with more memory free"
     if status == -signal.SIGXCPU:
         return f"damaged: reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB; write the file again"
     how = f"crashed ({_signal(status)})" if status < 0 else f"ended with status {status}"
