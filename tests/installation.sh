@@ -37,6 +37,13 @@ if [[ -d $package ]]; then
   for file in py.typed configs/paper/claims.csv report/templates/index.html pages/static/report.css; do
     [[ -e $package/salbench/$file ]] || complain "salbench/$file: not installed"
   done
+  "$source/scripts/slurm/toy_meshes.py" "$prefix/meshes" 2 12 8
+  (cd "$prefix" && PYTHONPATH=$package /usr/bin/python3 -B - << 'END') || complain "Results.report(): fails"
+import salbench
+config = {"dataset": {"layout": "folder", "participants": "simulated", "scans": False}, "models": {"RS": None}}
+print(salbench.run(config, data="meshes", cache="cache", out="out", progress=False).report("report"))
+END
+  grep -q 'Simulated participants' "$prefix/report/index.html" || complain "Results.report(): wrote no report"
 fi
 
 # The manual page and the completion have every subcommand and option of the help.

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import pandas
 
 
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # in a build, beside what is compiled: files are links there
 # The report draws in processes of its own, and sets up Matplotlib: the caller's process is left as it is.
 _IN_PROCESS = "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
 
@@ -182,9 +183,8 @@ class Results(Tables):
     def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page."""
         self._conclude()
-        package = str(pathlib.Path(__file__).resolve().parent.parent)
         arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet"]
-        subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, package, *arguments], check=True)
+        subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, _PACKAGE, *arguments], check=True)
         return pathlib.Path(folder) / "index.html"
 
     def _repr_html_(self) -> str:

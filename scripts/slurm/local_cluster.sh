@@ -6,6 +6,7 @@
 # touched, and the user need not be root.
 #   start_cluster FOLDER CPUS     returns when jobs can be submitted; SLURM_CONF then leads every Slurm command to it
 #   stop_cluster                  cancels what is left, ends the daemons and whatever they started
+#   remove_left_behind NAME       ends and removes the clusters in NAME.PID.* of processes that were killed
 # The folder is to be empty, and no folder above it closed to others (munge insists on both).
 
 cluster_folder=
@@ -96,8 +97,18 @@ start_cluster() {
 
 daemons_have_ended() { ! kill -0 "${cluster_daemons[@]}"; }
 
-# Whatever a daemon of this cluster started carries its SLURM_CONF.
-processes_left() { { grep -lzFx "SLURM_CONF=$SLURM_CONF" /proc/[0-9]*/environ 2> /dev/null || true; } | cut -d/ -f3; }
+# Whatever a daemon of a cluster in this folder started carries its SLURM_CONF.
+processes_of() { { grep -lzFx "SLURM_CONF=$1/slurm.conf" /proc/[0-9]*/environ 2> /dev/null || true; } | cut -d/ -f3; }
+
+remove_left_behind() {
+  local left maker
+  for left in "$1".*; do
+    maker=${left#"$1".} maker=${maker%%.*}
+    [[ -O $left ]] && ! kill -0 "$maker" 2> /dev/null || continue
+    processes_of "$left/cluster" | xargs -r kill -KILL 2> /dev/null || true
+    rm -rf "$left"
+  done
+}
 
 stop_cluster() {
   [[ ${#cluster_daemons[@]} -gt 0 ]] || return 0
@@ -105,9 +116,7 @@ stop_cluster() {
   wait_for 15 queue_is_empty || true
   kill "${cluster_daemons[@]}" 2> /dev/null || true
   wait_for 15 daemons_have_ended || true
-  local left
-  mapfile -t left < <(processes_left)
-  kill -KILL "${left[@]}" 2> /dev/null || true
+  processes_of "$cluster_folder" | xargs -r kill -KILL 2> /dev/null || true
   wait "${cluster_daemons[@]}" 2> /dev/null || true
   cluster_daemons=()
 }

@@ -156,8 +156,8 @@ void expect_first_alone_to_fail(const Workspace& toy, const Outcome& run, const 
 struct Hostile {
   const char* name;
   const char* command;
-  const char* says;  // a regular expression
-  int timeout = 60;  // seconds; short where it is to pass
+  const char* says;   // a regular expression
+  int timeout = 600;  // seconds; where it is to pass as few as a sound command never needs
 };
 
 void PrintTo(const Hostile& param, std::ostream* out) { *out << param.name; }
@@ -180,14 +180,14 @@ INSTANTIATE_TEST_SUITE_P(
     Command, HostileCommand,
     testing::Values(
         Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
-                "longer than its timeout of 1 s.*: loading", 1},
+                "longer than its timeout of 5 s.*: loading", 5},
         Hostile{"WritesTooFew", "seq 7 > {{out}}; exit 0", "7 values, but the shape has 162 points"},
         Hostile{
             "WritesHdf5OfAnotherShape",
             "/usr/bin/python3 -c 'import h5py, numpy, sys; h5py.File(sys.argv[1], \\\"w\\\")[\\\"x\\\"] = "
             "numpy.zeros((81, 2))' {{out.h5}}; exit 0",
             "its shape is \\(81, 2\\), expected one value per point"},
-        Hostile{"KillsItself", "sh -c 'sleep 100' '{mark}' & kill -9 $$", "killed by signal 9"}),
+        Hostile{"KillsItself", "sh -c 'sleep 1000' '{mark}' & kill -9 $$", "killed by signal 9"}),
     [](const auto& test) { return test.param.name; });
 
 // Everything at once was killed, as a batch system does.
@@ -278,13 +278,13 @@ TEST_P(HostileListCommand, FailsItsShapeAloneAndTheNextOneIsServed) {
 INSTANTIATE_TEST_SUITE_P(
     Command, HostileListCommand,
     testing::Values(Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
-                            "longer than its timeout of 2 s.*: loading", 2},
-                    Hostile{"AnswersAnotherShape", "echo \"$out.npy\"; echo \" $out\"; sleep 100",
-                            "longer than its timeout", 2},
+                            "longer than its timeout of 5 s.*: loading", 5},
+                    Hostile{"AnswersAnotherShape", "echo \"$out.npy\"; echo \" $out\"; sleep 1000",
+                            "longer than its timeout", 5},
                     Hostile{"AnswersWithoutAFile", "echo no memory >&2; echo \"$out\"; continue",
                             "answered \\(its last lines: no memory\\) without a file"},
                     Hostile{"EndsWithoutAnAnswer", "exit 0", "ended without an answer"},
-                    Hostile{"KillsItself", "sh -c 'sleep 100' '{mark}' & kill -9 $$", "killed by signal 9"}),
+                    Hostile{"KillsItself", "sh -c 'sleep 1000' '{mark}' & kill -9 $$", "killed by signal 9"}),
     [](const auto& test) { return test.param.name; });
 
 // Each answer counts, and none of the shapes is to blame.

@@ -203,7 +203,7 @@ TEST(Conclude, NothingOfItOutlivesTheProgram) {
   const fs::path mark = toy / "mark";  // a program, so that its processes can be told from others
   fs::copy("/bin/sleep", mark);
   const std::string slow =
-      stand_in(toy, fmt::format("trap '' INT TERM\n(timeout 100 '{0}' 100 &)\ntouch '{1}'\n'{0}' 100\n",
+      stand_in(toy, fmt::format("trap '' INT TERM\n(timeout 1000 '{0}' 1000 &)\ntouch '{1}'\n'{0}' 1000\n",
                                 mark.string(), (toy / "at work").string()));
   for (const int signal : {SIGINT, SIGKILL}) {
     fs::remove(toy / "at work");

@@ -33,9 +33,9 @@ TEST_P(EndOfTheProgram, EndsItsCommandsAndTheNextRunGoesOn) {
   const std::string strays =
       toy.write("strays.sh", fmt::format(R"sh(trap '' HUP INT TERM
 [ -e '{1}' ] && exit
-'{0}' 100 &
-timeout 100 '{0}' 100 &
-('{0}' 100 > /dev/null 2>&1 &)
+'{0}' 1000 &
+timeout 1000 '{0}' 1000 &
+('{0}' 1000 > /dev/null 2>&1 &)
 echo started >> '{2}'
 wait
 )sh",

@@ -74,10 +74,12 @@ TEST_F(Imports, AKillInTheMiddleIsResumedAndLeavesNoProcess) {
   ASSERT_EQ(toy_.salbench("run").status, 0);
   const auto contents = toy_.contents();
   toy_.forget_everything();
-  const std::string word = own_.string();
-  const Outcome killed = run_process(with_signal_at_rename(toy_.command("run"), "3 after", SIGKILL));
+  const std::string mark = "SALBENCH_TEST_MARK=" + own_.string();  // seen in the environment of its processes
+  std::vector<std::string> command = with_signal_at_rename(toy_.command("run"), "3 after", SIGKILL);
+  command.insert(command.begin() + 1, mark);
+  const Outcome killed = run_process(command);
   EXPECT_EQ(killed.status, 128 + SIGKILL) << killed.err;
-  EXPECT_TRUE(soon([] { return processes_with("_import").empty(); }));
+  EXPECT_TRUE(soon([&] { return processes_with(mark, "environ").empty(); }));
   const Outcome resumed = toy_.salbench("run");
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_LT(toy_.computed(), contents.size());

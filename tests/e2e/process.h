@@ -40,8 +40,8 @@ class Process {
   bool reaped_ = false;
 };
 
-// Waits for a condition that the process brings about. False if the process ends without it, and, which is a
-// failure of the test, after two minutes.
+// Waits for a condition that the process is certain to bring about, and that stays: however long that takes
+// on a busy machine. False if the process ends without it.
 bool wait_until(Process& process, const std::function<bool()>& condition);
 
 // The command, sent the signal by itself at one of its renames: "3 before", "3 after" (kill_at_rename.cpp).

@@ -241,9 +241,13 @@ TEST(Storage, ACacheRemovedDuringARunCostsTheWorkAndNothingElse) {
   for (const std::size_t reached : {1U, 40U, 150U}) {
     toy.forget_everything();
     fs::remove_all(toy / "away");
-    Process process(toy.command("run"));
-    ASSERT_TRUE(wait_until(process, [&] { return toy.artefacts().size() >= reached; }));
+    std::vector<std::string> command =
+        with_signal_at_rename(toy.command("run"), fmt::format("{} after", reached), SIGSTOP);
+    command.insert(command.begin() + 1, "SALBENCH_PYTHON=/no/python");  // which would be stopped as well
+    Process process(command);
+    ASSERT_TRUE(wait_until(process, [&] { return process.stopped(); }));
     fs::rename(toy.cache(), toy / "away");
+    process.send(SIGCONT);
     const Outcome ended = process.wait();
     if (ended.status == 0)
       EXPECT_EQ(toy.results(), results);

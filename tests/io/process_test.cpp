@@ -28,7 +28,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 // The message of a failure; empty if the command succeeds.
-std::string failure_of(const std::string& command, double timeout = 60) {
+std::string failure_of(const std::string& command, double timeout = 600) {
   const ScratchFolder folder;
   try {
     run_command(command, folder.path(), std::chrono::duration<double>(timeout));
@@ -38,9 +38,9 @@ std::string failure_of(const std::string& command, double timeout = 60) {
   return {};
 }
 
-// Waits for what nobody has written for, half a minute at most. A shell's line.
+// Waits for a file with something in it, until the command is ended. A shell's line.
 std::string wait_for(const fs::path& file) {
-  return "i=0; while [ ! -s '" + file.string() + "' ] && [ $i -lt 3000 ]; do sleep 0.01; i=$((i+1)); done";
+  return "while [ ! -s '" + file.string() + "' ]; do sleep 0.01; done\n";
 }
 
 TEST(RunCommand, RunsInItsFolderWithNothingToRead) {
@@ -78,14 +78,14 @@ struct Stray {
 void PrintTo(const Stray& stray, std::ostream* out) { *out << stray.name; }
 
 constexpr std::array kStrays = {Stray{"InTheBackground", "sh -c \"$child\" &"},
-                                Stray{"InAnotherGroup", "timeout 100 sh -c \"$child\" &"},
+                                Stray{"InAnotherGroup", "timeout 1000 sh -c \"$child\" &"},
                                 Stray{"OfADeadParent", "(sh -c \"$child\" &)"},
                                 Stray{"Stopped", "sh -c \"${child%exec*}kill -STOP \\$\\$\" &"}};
 
 // A shell's lines that start one, which writes its number and resists. It sleeps for longer than any test,
 // and no longer than a forgotten process may.
 std::string started(const Stray& stray, const fs::path& number_file) {
-  return "child='trap \"\" TERM HUP INT; echo $$ > " + number_file.string() + "; exec sleep 100'\n" +
+  return "child='trap \"\" TERM HUP INT; echo $$ > " + number_file.string() + "; exec sleep 1000'\n" +
          stray.start + "\n";
 }
 
@@ -110,7 +110,7 @@ TEST_P(StrayProcess, EndsWithItsCommand) {
 TEST_P(StrayProcess, EndsWithAProgramThatIsKilled) {
   const pid_t program = ::fork();
   if (program == 0) {
-    failure_of(started(GetParam(), number_file()) + "sleep 100");
+    failure_of(started(GetParam(), number_file()) + "sleep 1000");
     ::_exit(0);
   }
   EXPECT_TRUE(soon([&] { return has_number(number_file()); }));
@@ -134,7 +134,7 @@ TEST(RunCommand, EndsWithAProgramThatIsKilledAtAnyMoment) {
         std::this_thread::sleep_for(std::chrono::microseconds(20 * moment));
         ::kill(::getpid(), SIGKILL);
       });
-      failure_of("exec " + mark.string() + " 100");
+      failure_of("exec " + mark.string() + " 1000");
     }
     ::waitpid(program, nullptr, 0);
   }
@@ -143,12 +143,18 @@ TEST(RunCommand, EndsWithAProgramThatIsKilledAtAnyMoment) {
 
 TEST(RunCommand, EndsEveryProcessAtTheTimeoutEvenIfItResists) {
   const TemporaryFolder kept;
-  std::string command = "trap '' TERM; echo ready\n";
-  for (const Stray& stray : kStrays) command += started(stray, kept / stray.name);
-  EXPECT_EQ(failure_of(command + "wait; sleep 100", 0.5),
-            "the command took longer than its timeout of 0.5 s, and was ended; its last lines: ready");
-  for (const Stray& stray : kStrays)  // a slow machine may not have come to start all
-    EXPECT_TRUE(!has_number(kept / stray.name) || is_gone_by(kept / stray.name)) << stray.name;
+  std::string command = "trap '' TERM\n";
+  for (const Stray& stray : kStrays)
+    command += started(stray, kept / stray.name) + wait_for(kept / stray.name);
+  command += "echo ready; wait; sleep 1000";
+  std::string failure;
+  for (double timeout = 0.5; !failure.ends_with(": ready") && timeout < 1000; timeout *= 4) {
+    for (const Stray& stray : kStrays) fs::remove(kept / stray.name);
+    failure = failure_of(command, timeout);
+  }
+  EXPECT_THAT(failure, StartsWith("the command took longer than its timeout of "));
+  EXPECT_THAT(failure, EndsWith(" s, and was ended; its last lines: ready"));
+  for (const Stray& stray : kStrays) EXPECT_TRUE(is_gone_by(kept / stray.name)) << stray.name;
 }
 
 // Each process of a chain starts the next one and ends: there is always one, and never the same.
@@ -188,7 +194,7 @@ TEST(RunCommand, IsInterruptedByTheProgramsEnd) {
         std::signal(SIGALRM, [](int) { end_commands(); });
         ::alarm(1);
         try {
-          run_command("sleep 50", "/", std::chrono::seconds(60));
+          run_command("sleep 500", "/", std::chrono::seconds(600));
         } catch (const Interrupted&) {
           ::_exit(7);
         }

@@ -2,6 +2,7 @@
 """Fitted densities beside NumPy and SciPy: what was fitted is the optimum of the likelihood written here, and scores follow from it."""
 
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -119,6 +120,16 @@ class Fitted(unittest.TestCase):
     def knots(self, model, fold):
         rows = self.fits[(self.fits["model"] == model) & (self.fits["fold"] == fold)]
         return rows, rows["log_density"].to_numpy()
+
+    def test_columns_of_exported_shapes_are_documented(self):
+        subprocess.run([PROGRAM, "export", self.folder / "c.yaml", "--data", self.folder / "data", "--cache", self.folder / "cache",
+                        "--quiet", "--format", "csv", "--to", self.folder / "shapes"], check=True)
+        text = (Path(__file__).parents[2] / "docs/data_dictionary.md").read_text(encoding="utf-8")
+        section = text[text.index("### Shapes: `--format csv`"):text.index("## Tables of a run")]
+        known = {"x", "y", "z", "nx", "ny", "nz", *re.findall(r"`(\w+)`", section)}
+        columns = pd.read_csv(self.folder / "shapes/m0.csv", comment="#").columns
+        self.assertIn("constant_map_constant", columns)
+        self.assertEqual([name for name in columns if name not in known and re.sub("_(MC|RS|constant)$", "_MODEL", name) not in known], [])
 
     def test_what_was_fitted_is_the_optimum_of_the_best_blur(self):
         self.assertEqual(set(self.fits["model"]), {"MC", "RS", "constant"})

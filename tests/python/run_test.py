@@ -585,6 +585,13 @@ class StaleMaps(Folders):
         self.assertIn(lines[0], repr(second))
         self.assertEqual(salbench.Results(self.folder / "out").models, {})
 
+    def test_a_report_is_written_by_the_package_that_the_caller_has(self):
+        results = self.run_with({"LS": {}, "RS": {}})
+        page = results.report(self.folder / "report")
+        self.assertEqual(page, self.folder / "report/index.html")
+        self.assertNotIn("<title>Unfinished", page.read_text())
+        self.assertEqual(salbench.Results(self.folder / "out").report(self.folder / "report"), page)
+
     def test_items_are_names_or_a_text_and_not_nothing(self):
         (self.meshes / "a, b.off").write_bytes((self.meshes / "1.off").read_bytes())
         for items, found in (["a, b"], {"a, b"}), (["a, b", "1"], {"a, b", "1"}), ([1, 2], {"1", "2"}), ("1-2", {"1", "2"}), ("1,2", {"1", "2"}):

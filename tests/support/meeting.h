@@ -11,7 +11,7 @@ namespace salbench {
 class Meeting {
  public:
   // The patience bounds a test that fails; one that passes does not use it up.
-  explicit Meeting(int expected, std::chrono::milliseconds patience = std::chrono::seconds(30))
+  explicit Meeting(int expected, std::chrono::milliseconds patience = std::chrono::minutes(5))
       : expected_(expected), patience_(patience) {}
 
   // Waits for the others. True where all were here at one time; false for everybody once somebody has waited

@@ -47,10 +47,11 @@ inline std::vector<std::string> processes_with(std::string_view text, std::strin
   return found;
 }
 
-// For ends that nobody waits for, such as those of a killed program's commands. False after half a minute.
+// For ends that nobody waits for, such as those of a killed program's commands. False after five minutes,
+// which is less than what tests start and leave behind lives by itself.
 template <class Condition>
 bool soon(const Condition& condition) {
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 30000; ++i) {
     if (condition()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
