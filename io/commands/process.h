@@ -7,11 +7,18 @@
 #include <memory>
 #include <string>
 
+#include "stages/core/errors.h"
+
 namespace salbench {
 
 // Starts the guard, a copy of this process that ends the commands of a program that was killed: for a moment
 // when the program is small, since the first command does it otherwise. Throws StorageError.
 void prepare_commands();
+
+// A command was not done within its timeout.
+struct TookTooLong : InputError {
+  using InputError::InputError;
+};
 
 // Runs `/bin/sh -c command` in the folder, in a session of its own without a terminal, with nothing to read
 // and its output kept from the terminal. When it returns or throws, no process of that session is left; the
