@@ -11,9 +11,11 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "cache/artefact_name.h"
 #include "cache/layout.h"
+#include "cache/nesting.h"
 #include "cache/verify.h"
 #include "io/file.h"
 #include "io/hdf5/hdf5_file.h"
@@ -54,6 +56,7 @@ struct FolderStore::Impl {
   std::map<std::string, std::bitset<kShards>, std::less<>> listed;
   std::mutex preparing;  // call_once would hang under ThreadSanitizer where preparing throws
   bool prepared = false;
+  pid_t thread = ::gettid();           // that wants what is computed
   std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 
   fs::path path(std::string_view stage, const ArtefactName& name) const {
@@ -230,6 +233,14 @@ void FolderStore::sync() {
 
 std::unique_ptr<Claim> FolderStore::claim(std::string_view work) { return claim_in(impl_->folder, work); }
 bool FolderStore::is_claimed(std::string_view work) const { return is_claimed_in(impl_->folder, work); }
+
+void FolderStore::before_waiting() const {
+  if (is_inside_function(impl_->folder, impl_->thread))
+    throw ConfigError(fmt::format(
+        "{}: a function that computes a map for a run has started this run over the same cache, which would "
+        "wait for ever for what the first one has begun: give it a cache of its own with {}",
+        impl_->folder.string(), as_option("cache")));
+}
 
 std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& key) const {
   const auto name = impl_->find(stage, key);

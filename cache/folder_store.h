@@ -42,6 +42,7 @@ class FolderStore final : public Store {
 
   std::unique_ptr<Claim> claim(std::string_view work) override;
   bool is_claimed(std::string_view work) const override;
+  void before_waiting() const override;
 
   // The stored bytes of an artefact, checked against their checksum; nothing in the same cases as load.
   std::optional<Bytes> image(std::string_view stage, const Digest& key);

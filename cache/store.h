@@ -59,6 +59,8 @@ class Store : public Index {
     static_cast<void>(work);
     return false;
   }
+  // Before what others hold is waited for. Throws ConfigError if it can never come.
+  virtual void before_waiting() const {}
 };
 
 }  // namespace salbench

@@ -7,6 +7,11 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "pipeline/commands/subcommand.h"
+#include "python/log.h"
+#include "stages/matching/matching.h"
 
 namespace salbench::python {
 namespace {
@@ -217,12 +222,15 @@ std::vector<bool> mask(const Argument& argument, std::size_t n) {
 std::optional<Histogram> histogram(const Argument& argument) {
   if (!argument.given()) return {};
   const auto bins = field(argument, kHistogramBins);
-  Histogram densities;
-  std::ranges::copy(bins.values, densities.begin());
-  if (!std::ranges::all_of(
-          densities, [](double bin) { return bin >= 0 && bin < std::numeric_limits<double>::infinity(); }))
-    argument.fail("must have finite densities >= 0");
-  return densities;
+  const GivenDensity given =
+      given_density(bins.values, [&](std::optional<std::size_t> bin, const std::string& what) {
+        argument.fail(bin ? fmt::format("holds {} in bin {}", what, *bin) : what);
+      });
+  if (!given.remark.empty()) {
+    const LogDelivery at_once;
+    spdlog::warn("{} {}", argument.name, given.remark);
+  }
+  return given.density;
 }
 
 double real_number(const Argument& argument) {
@@ -249,6 +257,10 @@ std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uin
     argument.fail(
         fmt::format("must be a whole number from {} to {}, not {}", low, high, std::string(py::str(number))));
   return value;
+}
+
+int thread_count(const Argument& argument) {
+  return static_cast<int>(whole_number(argument, 1, kMostThreads));
 }
 
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data) {

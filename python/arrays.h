@@ -71,11 +71,13 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
 // (n,) truth values.
 std::vector<bool> mask(const Argument& argument, std::size_t n);
-// (100,) densities over [0, 1], finite and >= 0. None: nothing.
+// (100,) densities over [0, 1], finite and >= 0; scaled with a warning where they sum to something else, as
+// in a file. None: nothing.
 std::optional<Histogram> histogram(const Argument& argument);
 double real_number(const Argument& argument);
 // A number by itself, of any integer type.
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high);
+int thread_count(const Argument& argument);  // 1 to kMostThreads
 
 // Memory that arrays show and keep alive.
 using Owner = std::shared_ptr<const void>;

@@ -2,9 +2,12 @@
 #include "python/caller.h"
 
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
 #include "io/commands/process.h"
 #include "python/log.h"
@@ -16,6 +19,26 @@ namespace {
 namespace py = pybind11;
 
 constexpr std::chrono::milliseconds kNowAndThen{100};
+
+// Ends a copy of this process that a function has forked and that has come back from it, by its end or by
+// sys.exit(): it has none of the threads of the run, and would wait for them.
+[[noreturn]] void end_copy(const std::exception_ptr& thrown) {
+  int status = EXIT_FAILURE;
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+    status = EXIT_SUCCESS;
+  } catch (const py::error_already_set& error) {
+    const py::object code =
+        error.matches(PyExc_SystemExit) ? py::object(error.value().attr("code")) : py::object(py::str());
+    if (code.is_none() || py::isinstance<py::int_>(code)) ::_exit(code.is_none() ? 0 : code.cast<int>());
+  } catch (...) {
+  }
+  std::fputs(
+      "salbench: a process that a function has forked came back from it, and was ended; "
+      "let it end with os._exit()\n",
+      stderr);
+  ::_exit(status);
+}
 
 }  // namespace
 
@@ -52,6 +75,7 @@ void Caller::end(Request& request) {
 }
 
 void Caller::run(const std::function<void()>& the_run, const std::function<void()>& now_and_then) {
+  const pid_t process = ::getpid();
   allow_commands();
   std::exception_ptr of_run, of_caller;
   std::thread thread([&] {
@@ -72,15 +96,22 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
   auto last = std::chrono::steady_clock::now();
   for (Request* request = nullptr; next(request);) {
     if (request != nullptr) {
+      std::exception_ptr thrown;
       try {
         if (stop_) throw Interrupted("the run was asked to stop");
         (*request->work)();
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+      if (::getpid() != process) end_copy(thrown);
+      request->thrown = thrown;
+      try {
+        if (thrown) std::rethrow_exception(thrown);
       } catch (const py::error_already_set&) {  // what a function raised was made another error by whoever
                                                 // asked for it
-        stop_with(std::current_exception());
+        stop_with(thrown);
         request->thrown = std::make_exception_ptr(Interrupted("the run was asked to stop"));
-      } catch (...) {
-        request->thrown = std::current_exception();
+      } catch (...) {  // is for whoever asked
       }
       end(*request);
     }

@@ -11,8 +11,6 @@
 
 namespace salbench::python {
 
-inline constexpr int kMostThreads = 1024;
-
 // This thread counts as at work. What lives as long as the process is destroyed at its end, whoever uses it,
 // and an interpreter that has ended ends threads that come back to it, by unwinding them (until Python 3.14):
 // through destructors, which would abort the process. So the end of the interpreter waits for all that are at

@@ -281,9 +281,9 @@ ShapeInForm usable(ShapeInForm shape, const std::optional<std::string>& view, co
   });
 }
 
-// A Form, or the bytes of one; None for bytes that no program of ours wrote.
+// A Form, or the bytes of one, whose file must be of the shape; None for bytes that no program of ours wrote.
 py::object finished(py::handle form, const std::optional<std::string>& view, const std::string& item,
-                    const std::string& file) {
+                    const std::string& file, const std::string& shape_name) {
   std::optional<ShapeInForm> given;
   std::string_view bytes;
   if (py::isinstance<py::bytes>(form))
@@ -291,6 +291,7 @@ py::object finished(py::handle form, const std::optional<std::string>& view, con
   else
     given = shape_from(form);
   const auto shape = computed(1, [&]() -> std::shared_ptr<const ShapeInForm> {
+    if (!shape_name.empty()) require_form_of(shape_name, bytes, file);
     if (!given) given = shape_in_form(bytes, file);
     std::string remark;
     return given ? std::make_shared<ShapeInForm>(usable(std::move(*given), view, item, file, remark))
@@ -347,7 +348,8 @@ void bind_datasets(py::module_& module) {
   module.def("read_index", &index_rows, py::arg("path"));
   module.def("index_text", &index_bytes, py::arg("rows"));
   module.def("shape_facts", &shape_facts, py::arg("form"), py::arg("item"), py::arg("file"));
-  module.def("finished", &finished, py::arg("form"), py::arg("view"), py::arg("item"), py::arg("file"));
+  module.def("finished", &finished, py::arg("form"), py::arg("view"), py::arg("item"), py::arg("file"),
+             py::arg("shape") = "");
 }
 
 }  // namespace salbench::python

@@ -66,7 +66,7 @@ py::array map_in_memory(const std::string& name, const std::string& function, py
   }
   if (!fpfh_of.is_none()) rules.give(Role::fpfh, held(descriptors({fpfh_of, "fpfh"}, n)));
   const RandomSource random{whole_number({seed, "seed"}, 0, UINT64_MAX), item};
-  const auto most = static_cast<int>(whole_number({threads, "threads"}, 1, kMostThreads));
+  const auto most = thread_count({threads, "threads"});
   const ValuePtr map = computed(most, [&] { return rules.value(Role::map, random); });
   return shown(map, FieldView(value_as<ScalarField>(*map)));
 }

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "io/refusal.h"
+#include "pipeline/commands/subcommand.h"
 #include "pipeline/config/section.h"
 #include "pipeline/package/package.h"
 #include "python/arrays.h"
@@ -36,6 +38,9 @@ void translate(std::exception_ptr thrown) {
     raise("InputError", error);
   } catch (const StorageError& error) {
     raise("StorageError", error);
+  } catch (const std::system_error& error) {
+    PyErr_SetString(py::module_::import("salbench._errors").attr("StorageError").ptr(),
+                    text_of(error).c_str());
   } catch (const std::logic_error& error) {
     PyErr_SetString(PyExc_RuntimeError, current_defect().c_str());
   }
@@ -81,6 +86,10 @@ PYBIND11_MODULE(_core, module) {
              [](py::handle value, const std::string& name, std::uint64_t low, std::uint64_t high) {
                return whole_number({value, name.c_str()}, low, high);
              });
+  module.def("thread_count", [](py::handle value, const std::string& name) {
+    return thread_count({value, name.c_str()});
+  });
+  module.attr("most_threads") = kMostThreads;
   options_are_arguments = true;
   use_own_package();
   keep_log();

@@ -15,6 +15,7 @@
 #include <pybind11/stl.h>
 
 #include "cache/digest.h"
+#include "cache/nesting.h"
 #include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/results/map_counts.h"
@@ -109,21 +110,23 @@ FileColumnPtr named_training(const FileColumnPtr& column) {
 
 // The name of a shape is part of what the function is given, and so of the key.
 Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& model,
-                                 Caller& caller) {
+                                 const std::string& cache, Caller& caller) {
   const auto reads = [&](std::string_view part) {
     return std::ranges::find(model.reads, part) != model.reads.end();
   };
   RuleHead head = stage_of(model.name, Role::map, model.version);
   head.limit = 1;
+  head.is_foreign = true;
   const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
   const FilesOf files{model.trained_keys.empty() ? shape.originals : named_training(shape.map_files)};
   return table.add(
       shape.level, head,
-      [&model, &caller, reads_faces = reads("faces"), reads_source = reads("source")](
+      [&model, &cache, &caller, reads_faces = reads("faces"), reads_source = reads("source")](
           Points points, const Normals* normals, Surface faces, const Descriptors* fpfh, Surface mapped_faces,
           const RandomSource& random, const Files& read, const NoOptions&) {
         ScalarField map;
         caller.carry_out([&] {
+          const auto inside = enter_function(cache);
           const py::object source =
               reads_source ? py::module_::import("os").attr("fsdecode")(
                                  py::bytes(std::filesystem::absolute(item_of(read.source).mesh).string()))
@@ -246,6 +249,7 @@ class Run {
     const Arguments arguments = arguments_from(settings);
     Config config = config_from(settings, arguments);
     for (const FunctionModel& model : models_) add(config, model);
+    cache_ = config.cache;
     for (const auto& [name, folder] : settings["maps"].cast<std::map<std::string, std::string>>())
       config.models.push_back(given_model(name, find_given_maps(folder, false)));
     const Selection selection = selection_from(settings, arguments);
@@ -256,8 +260,9 @@ class Run {
     session_.emplace(Setup(std::move(config), selection), std::move(counts), caller_.stop());
   }
 
-  void carry_out(int threads, const py::function& progress) {
-    caller_.run([&] { salbench::carry_out(*session_, threads); }, [&] { progress(*counts_->now()); });
+  void carry_out(py::handle threads, const py::function& progress) {
+    const int count = thread_count({threads, "threads"});
+    caller_.run([&] { salbench::carry_out(*session_, count); }, [&] { progress(*counts_->now()); });
   }
 
   std::string protocol() const { return protocol_text(session_->setup.config); }
@@ -342,9 +347,10 @@ class Run {
          .options = trained ? fmt::format("trained: {}\n", yaml_quoted(model.trained))
                             : fmt::format("function: {}\n", model.key),
          .annotated_options = {},
-         .add_map = [this, &model](
-                        RuleTable& table,
-                        const ShapeOutputs& shape) { return add_function(table, shape, model, caller_); },
+         .add_map =
+             [this, &model](RuleTable& table, const ShapeOutputs& shape) {
+               return add_function(table, shape, model, cache_, caller_);
+             },
          .given = trained ? training_files(model) : nullptr,
          .trained_on = model.trained_on,
          .reads_originals = std::ranges::find(model.reads, "source") != model.reads.end()});
@@ -353,6 +359,7 @@ class Run {
   std::deque<FunctionModel> models_;
   Caller caller_;
   Counts* counts_ = nullptr;
+  std::string cache_;
   std::optional<Session> session_;
 };
 

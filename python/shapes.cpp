@@ -25,9 +25,7 @@
 namespace salbench::python {
 namespace {
 
-int threads_from(py::handle threads) {
-  return static_cast<int>(whole_number({threads, "threads"}, 1, kMostThreads));
-}
+int threads_from(py::handle threads) { return thread_count({threads, "threads"}); }
 
 std::vector<Vec3> copy_of(const View<Vec3>& view) { return {view.values.begin(), view.values.end()}; }
 

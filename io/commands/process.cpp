@@ -232,7 +232,7 @@ CommandEnd try_command(const std::string& command, const fs::path& folder,
   const bool in_time = running.wait(deadline, true) == Event::ended;
   if (!in_time) running.terminate();
   stop_if_ended();
-  if (!in_time) throw InputError(too_late(timeout, running));
+  if (!in_time) throw TookTooLong(too_late(timeout, running));
   return {running.status(), running.failure(), running.printed()};
 }
 
@@ -297,7 +297,7 @@ bool ServingCommand::ask(const std::string& line, const std::string& answer,
   stop_if_ended();
   if (event == Event::late) {
     running_->end(false);
-    throw InputError(too_late(timeout, process));
+    throw TookTooLong(too_late(timeout, process));
   }
   running_->busy = false;
   if (event == Event::answered) return running_->has_answered = true;

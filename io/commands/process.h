@@ -20,6 +20,11 @@ struct EndedFromOutside : InputError {
 // when the program is small, since the first command does it otherwise. Throws StorageError.
 void prepare_commands();
 
+// A command was not done within its timeout.
+struct TookTooLong : InputError {
+  using InputError::InputError;
+};
+
 // Runs `/bin/sh -c command` in the folder, in a session of its own without a terminal, with nothing to read
 // and its output kept from the terminal. When it returns or throws, no process of that session is left; the
 // same holds when the program ends, however it does. Throws InputError if the command fails or takes longer

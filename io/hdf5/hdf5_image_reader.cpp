@@ -147,6 +147,15 @@ class Parser {
   explicit Parser(View file) : file_(file), objects_left_(file.size() / kObjectBytes) {}
 
   Hdf5Content content() {
+    const Object root = root_object();
+    Hdf5Content content{{}, root.attributes()};
+    read_links(root, "", 0, content.arrays);
+    return content;
+  }
+  Attributes attributes() { return root_object().attributes(); }
+
+ private:
+  Object root_object() {
     ByteReader superblock(file_);
     superblock.text(kSignature);
     superblock.octets({0, 0, 0, 0, 0, 8, 8, 0});
@@ -155,13 +164,9 @@ class Parser {
     superblock.skip(8);
     expect(superblock.number(8) == file_.size());
     superblock.skip(16);
-    const Object root = object_at(superblock.number(8));
-    Hdf5Content content{{}, root.attributes()};
-    read_links(root, "", 0, content.arrays);
-    return content;
+    return object_at(superblock.number(8));
   }
 
- private:
   Object object_at(std::uint64_t address) {
     expect(objects_left_-- > 0);
     ByteReader prefix(part(file_, address, 16));
@@ -332,6 +337,12 @@ class Parser {
 
 std::optional<Hdf5Content> parsed_image(View image) try {
   return Parser(image).content();
+} catch (const Foreign&) {
+  return {};
+}
+
+std::optional<Attributes> attributes_of_image(View image) try {
+  return Parser(image).attributes();
 } catch (const Foreign&) {
   return {};
 }

@@ -328,6 +328,17 @@ std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_vie
   return shape;
 }
 
+void require_form_of(std::string_view item, std::string_view image, std::string_view name) {
+  const auto attributes = hdf5::attributes_of_image(std::as_bytes(std::span(image)));
+  const AttributeValue* named = attributes ? find_attribute(*attributes, "item") : nullptr;
+  const auto* text = named == nullptr ? nullptr : std::get_if<std::string>(named);
+  if (text != nullptr && *text != item)
+    throw InputError(
+        fmt::format("{}: is of the item {}, and index.csv says that it is of {}: put the right file there, "
+                    "or import the set again",
+                    name, in_quotes(*text), in_quotes(std::string(item))));
+}
+
 Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts) {
   const Arrays arrays = arrays_in_form(image, name);
   const FormReader in{name, arrays};

@@ -59,6 +59,9 @@ ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 // arrays that are missing, of another type or size, or refer to points that there are not.
 std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name);
 
+// Throws InputError if the image says that it is of another item than this one.
+void require_form_of(std::string_view item, std::string_view image, std::string_view name);
+
 // Parts of it. Bytes that no program of ours wrote are ForeignForm.
 struct ForeignForm : InputError {
   using InputError::InputError;

@@ -33,7 +33,8 @@ std::vector<std::string> known_configurations(const fs::path& given) {
 
 Section configuration(const std::string& given) {
   std::error_code error;
-  if (fs::exists(given, error)) return Section::from_file(given);
+  // A folder of that name, such as that of its results, is not meant.
+  if (fs::exists(given, error) && !fs::is_directory(given, error)) return Section::from_file(given);
   for (const NamedYaml& configuration : configurations())
     if (given == configuration.name || given == std::string(configuration.name) + ".yaml")
       return Section::from_text(std::string(configuration.yaml), std::string(configuration.name) + ".yaml");

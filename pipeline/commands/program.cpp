@@ -14,7 +14,7 @@
 #include <spdlog/spdlog.h>
 
 #include "io/commands/process.h"
-#include "io/file.h"
+#include "io/refusal.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/package.h"
@@ -228,8 +228,11 @@ int run_program(int argc, const char* const* argv, std::span<const SubcommandRow
   } catch (const StorageError& error) {
     spdlog::error("{}", error.what());
     return kUnusableStorage;
-  } catch (const std::filesystem::filesystem_error& error) {
-    spdlog::error("{}: {}", error.path1().string(), system_reason(error.code().value()));
+  } catch (const std::system_error& error) {
+    spdlog::error("{}", text_of(error));
+    return kUnusableStorage;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("{}", current_defect());
     return kUnusableStorage;
   } catch (const ConfigError& error) {
     spdlog::error("{}", error.what());

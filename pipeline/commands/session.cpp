@@ -29,7 +29,7 @@ Inputs inputs_of(const Config& config, const Selection& selection) {
                         : simulated                                         ? Others::simulated
                                                                             : Others::measured;
   return read_inputs(find_dataset(config.data, config.dataset.layout, config.dataset.twins),
-                     simulated && selection.items.text == kScoredItems ? ItemChoice() : selection.items,
+                     simulated && selection.items.is_scored() ? ItemChoice() : selection.items,
                      selection.shard, config.dataset.split, others);
 }
 

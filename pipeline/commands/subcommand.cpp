@@ -47,7 +47,7 @@ Parameter output_parameter(Arguments& arguments) {
 
 Parameter threads_parameter(Arguments& arguments) {
   return {"--threads", &arguments.threads, "threads (default: all cores); results do not depend on it", false,
-          1024};
+          kMostThreads};
 }
 
 Parameters selecting_parameters(Arguments& arguments) {

@@ -17,8 +17,9 @@ enum ExitStatus {
   kAllDone = 0,
   kSomeFailed = 1,
   kUnusableArguments = 2,  // or configuration
-  kUnusableStorage = 3,    // cache, output folder or standard output
-  kDefect = 70,            // of the program, or memory ran out; as in sysexits.h
+  kUnusableStorage =
+      3,  // cache, output folder or standard output; or the system has no memory or thread to begin with
+  kDefect = 70,  // of the program, or memory ran out in a job; as in sysexits.h
   kInterrupted = 130,
 };
 
@@ -36,6 +37,8 @@ struct Arguments {
   int threads = 0;                   // 0: all cores
   bool quiet = false;                // no progress, no table
 };
+
+inline constexpr int kMostThreads = 1024;  // that anybody may ask for, here and in the package
 
 inline constexpr std::string_view kReferenceOfItems = "items";  // in place of a file
 

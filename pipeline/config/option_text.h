@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -54,12 +55,17 @@ inline constexpr bool kIsByName = false;
 template <class Enum>
 inline constexpr bool kIsByName<ByName<Enum>> = true;
 
+// `text`: what was written in its place.
 template <class Value>
-std::string expected_of() {
+std::string expected_of(std::string_view text = {}) {
   if constexpr (std::is_same_v<Value, bool>) return "true or false";
   if constexpr (std::is_floating_point_v<Value>) return "a finite number";
-  if constexpr (std::is_integral_v<Value>)
-    return std::is_signed_v<Value> ? "a whole number" : "a whole number >= 0";
+  if constexpr (std::is_integral_v<Value>) {
+    if (text.find_first_not_of("0123456789", text.starts_with('-') ? 1 : 0) != std::string_view::npos)
+      return std::is_signed_v<Value> ? "a whole number" : "a whole number >= 0";
+    using Limits = std::numeric_limits<Value>;
+    return fmt::format("a whole number from {} to {}", Limits::min(), Limits::max());
+  }
   if constexpr (std::is_enum_v<Value>) {
     std::string list;
     for (const std::string_view name : EnumNames<Value>::names)

@@ -44,7 +44,8 @@ class Section {
   void read_value(std::string_view key, Value& value) const {
     const auto written = text(key);
     if (!written) return;
-    if (!parse_option(*written, value)) fail(key, "is '" + *written + "', not " + expected_of<Value>());
+    if (!parse_option(*written, value))
+      fail(key, "is '" + *written + "', not " + expected_of<Value>(*written));
   }
   void read_value(std::string_view key, Words& value) const {
     if (has(key)) value = words(key);

@@ -36,8 +36,8 @@ std::string recomputed_fault(const Project& project, Resolver& resolver, const J
   const Digest content = content_digest(project.rule(job).arrays(*resolver.recompute(job)));
   if (content == resolver.plan()[job].content) return {};
   return fmt::format(
-      "computed again, its content is {}: the stage is not deterministic, or its version was not raised",
-      content.hex());
+      "computed again, its content is {}: the {}, or its version was not raised", content.hex(),
+      project.rule(job).is_foreign ? "model gives another map each time" : "stage is not deterministic");
 } catch (const InputError& error) {
   return fmt::format("cannot be computed again: {}", error.what());
 } catch (const StorageError&) {

@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 #include <tuple>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "io/refusal.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 
@@ -95,6 +97,8 @@ void Resolver::compute(const Job& job, std::vector<FileData> files) {
   } catch (const std::bad_alloc&) {
     const std::span<const File> read = project_.files(job);
     read.empty() ? fail(job, current_defect(), true) : fail(job, no_memory_text(read));
+  } catch (const std::system_error& error) {
+    throw StorageError(text_of(error));
   } catch (...) {
     fail(job, current_defect(), true);
   }
@@ -158,11 +162,20 @@ ValuePtr Resolver::restored(const Job& job) {
   if (ValuePtr value = held(job)) return value;
   plan_[job].reason = Reason::damaged;
   const Result result = run(job, files_as_known(job));
-  if (save(job, result) != plan_[job].content)
+  const Rule& rule = project_.rule(job);
+  // Another result is not stored: what was computed of the first one has its digest.
+  if (content_digest(rule.arrays(*result.value)) != plan_[job].content) {
+    if (rule.is_foreign)
+      throw InputError(fmt::format(
+          "the artefact of {} was damaged, and the model gives another map each time: fix its seeds, "
+          "and run it again",
+          rule.stage));
     throw std::logic_error(
         fmt::format("stage {} gave another result than before for the same inputs: it is not deterministic; "
                     "please report this",
-                    project_.rule(job).stage));
+                    rule.stage));
+  }
+  save(job, result);
   hold(job, result.value);  // for those that wait for the same one
   return result.value;
 }

@@ -74,6 +74,7 @@ struct RuleHead {
   std::function<bool(const std::any& source)> applies = {};  // to a family; empty: to every one
   std::size_t limit = 0;        // jobs at work at the same time, rules of one stage together; 0: no limit
   bool only_if_cached = false;  // taken from the cache where it is there, and never computed
+  bool is_foreign = false;      // computed by a program or a function of the user
 };
 
 struct Rule : RuleHead {

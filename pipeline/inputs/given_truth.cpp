@@ -34,14 +34,36 @@ File unusable(std::string place, std::string why) {
           .read = std::make_shared<const ReadFile>(std::move(fail))};
 }
 
+// Before the cache is asked for what was made of the same bytes, which may have been right elsewhere.
+std::shared_ptr<const ReadFile> reader_of_form(const DatasetItem& item) {
+  return std::make_shared<const ReadFile>([path = item.mesh, name = item.shape_name()]() -> FileData {
+    std::string bytes = read_file(path, kMaxItemBytes);
+    require_form_of(name, bytes, path);
+    return {file_digest(bytes), std::move(bytes)};
+  });
+}
+
 File nothing_to_read(std::string name, std::string place) {
   auto read = []() -> FileData { return {file_digest(""), std::string()}; };
   return {.name = std::move(name), .place = std::move(place), .read = std::make_shared<const ReadFile>(read)};
 }
 
+// Neither is known where people are not told apart.
+void require_people(const DatasetItem& item, std::string_view what, std::size_t found, std::size_t listed) {
+  if (found > 0 && listed > 0 && found != listed)
+    throw InputError(
+        fmt::format("{}: has {} {}, and index.csv says {}: put the right file there, or import the set again",
+                    item.mesh, found, what, listed));
+}
+
 GroundTruth read_truth(const Files& files, const Elements& points) {
   const DatasetItem& item = item_of(files.source);
-  if (item.indexed) return truth_in_form(files.data[0].text(), item.mesh, item.view);
+  if (item.indexed) {
+    GroundTruth truth = truth_in_form(files.data[0].text(), item.mesh, item.view);
+    require_people(item, "picks of participants", truth.picks.size(), item.indexed->participants);
+    require_people(item, "values of viewers", truth.viewers.size(), item.indexed->viewers);
+    return truth;
+  }
   GroundTruth truth;
   auto file = files.data.begin();
   if (!item.saliency.empty()) truth.saliency = parse_values((file++)->text(), item.saliency, points);
@@ -98,6 +120,7 @@ GroundTruth truth_of_faces(const DatasetItem& item, const ScalarField& values, S
 File mesh_file_of(const DatasetItem& item) {
   return {.name = "mesh file " + lower_case_extension(item.mesh),
           .place = item.mesh,
+          .read = item.indexed ? reader_of_form(item) : nullptr,
           .title = titled("mesh file", item.mesh)};
 }
 

@@ -18,6 +18,8 @@
 namespace salbench {
 namespace {
 
+constexpr std::string_view kOfAName = "./";  // before a name that is also a word, as of a file
+
 struct Range {
   int first = 0, last = 0;
 };
@@ -35,12 +37,14 @@ std::optional<Range> as_range(std::string_view text) {
 std::set<std::string> selected_names(const ItemChoice& choice, const std::set<std::string>& present,
                                      const std::set<std::string>& scored) {
   std::set<std::string> names;
-  for (const std::string& part : choice.parts) {
-    if (present.contains(part)) {
+  for (std::string part : choice.parts) {
+    const bool is_word = part == kScoredItems && !choice.are_names;
+    if (!choice.are_names && part.starts_with(kOfAName)) part.erase(0, kOfAName.size());
+    if (present.contains(part) && !is_word) {
       names.insert(part);
       continue;
     }
-    if (part == kScoredItems) {
+    if (is_word) {
       if (scored.empty()) throw ConfigError(as_option("items", choice.text) + ": no item has ground truth");
       names.insert(scored.begin(), scored.end());
       continue;
@@ -217,7 +221,9 @@ std::vector<std::string> split_list(const std::string& list) {
 ItemChoice::ItemChoice(const std::string& list) : text(list), parts(split_list(list)) {}
 
 ItemChoice::ItemChoice(std::vector<std::string> names)
-    : text(names.empty() ? "[]" : fmt::format("{}", fmt::join(names, ", "))), parts(std::move(names)) {}
+    : text(names.empty() ? "[]" : fmt::format("{}", fmt::join(names, ", "))),
+      parts(std::move(names)),
+      are_names(true) {}
 
 void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split) {
   std::set<std::string> present, scored;
@@ -240,7 +246,7 @@ void select_items(Dataset& dataset, const ItemChoice& choice, const std::string&
 Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optional<Shard>& shard,
                    const std::string& split, Others others) {
   std::vector<std::string> errors;
-  if (choice.all() || choice.text == kScoredItems) errors = errors_of_split(dataset, split);
+  if (choice.all() || choice.is_scored()) errors = errors_of_split(dataset, split);
   Dataset whole = dataset;
   select_items(dataset, choice, split);
   std::set<std::string> chosen;

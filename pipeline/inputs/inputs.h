@@ -55,7 +55,7 @@ inline const DatasetItem& item_of(const Units& units, Unit unit) {
 inline constexpr std::string_view kScoredItems = "scored";  // those with ground truth
 
 // Items as a user names them: a text such as "1-20,52,125" or kScoredItems (empty: all), or a list of names,
-// which may hold commas and blanks.
+// which may hold commas and blanks. In a text an item of that name is "./scored".
 struct ItemChoice {
   ItemChoice() = default;
   ItemChoice(const std::string& list);  // NOLINT(google-explicit-constructor): most are texts
@@ -63,9 +63,11 @@ struct ItemChoice {
   explicit ItemChoice(std::vector<std::string> names);
 
   bool all() const { return text.empty(); }
+  bool is_scored() const { return text == kScoredItems && !are_names; }
 
   std::string text = {};                // for messages
   std::vector<std::string> parts = {};  // names and ranges
+  bool are_names = false;               // and nothing else
 };
 
 bool is_in_split(std::string_view text, std::string_view split);  // of an item that may be in several

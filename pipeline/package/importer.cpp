@@ -101,6 +101,7 @@ ShapeInForm Importer::item(const Files& files) {
 std::vector<FileData> Importer::rewritten(const Files& files) {
   const std::string& path = item_of(files.source).mesh;
   std::string bytes = answer(fmt::format(R"({{"do": "rewrite", "path": {}}})", json_text(path)), path);
+  require_form_of(item_of(files.source).shape_name(), bytes, path);
   if (file_digest(read_file(path, kMaxItemBytes)) != files.data[0].digest)
     throw InputError(fmt::format("{}: changed while it was read; run it again", path));
   return {{files.data[0].digest, std::move(bytes)}};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The key of a map has the command line, its version, what it reads and the digests of the files it depends
 // on; not the timeout and the limits, which change no value. Paths of the files are those from where salbench
-// is started, like the folder of the data set, where the folder of the configuration has none; a link in the
-// command's own folder leads to each.
+// is started, like the folder of the data set, where the folder of the configuration has none; the command's
+// own folder has copies of them, and nothing of what lies beside them.
 #include "pipeline/rules/command_model.h"
 
 #include <algorithm>
@@ -82,13 +82,13 @@ void check_depends(const CommandOptions& options, const Section& written) {
                                           "the present one, or its whole path",
                                           file));
     for (const Placeholder& taken : kPlaceholders)
-      if (file == taken.file)
+      if (names_file({std::string(taken.file), "out.val.npy"}, file))
         written.fail("depends", fmt::format("names '{}', which salbench writes itself", file));
   }
   std::istringstream words(options.command);
   for (std::string word; words >> word;) {
     std::error_code ignored;
-    if (!contains(options.depends, word) && !fs::path(word).is_absolute() &&
+    if (!names_file(options.depends, word) && !fs::path(word).is_absolute() &&
         fs::is_regular_file(place_of_depended(word, written), ignored))
       written.fail("command",
                    fmt::format("names the file '{0}', which is not in the folder where the command runs: add "
@@ -113,6 +113,7 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
     return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
   };
   RuleHead head = stage_of(name, Role::map, options.version);
+  head.is_foreign = true;
   head.limit = static_cast<std::size_t>(options.at_once > 0 ? options.at_once : options.gpu);
   const OptionLines lines = {"models." + name, command_text(options, false),
                              fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),

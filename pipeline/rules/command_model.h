@@ -35,7 +35,7 @@ struct CommandOptions {
     visit("timeout", self.timeout, {"of one shape", "s", above(0)});
     visit("at_once", self.at_once, {"commands at work at the same time, 0: no limit", {}, at_least(0)});
     visit("gpu", self.gpu, {"GPUs: the same limit by another name", {}, at_least(0)});
-    visit("depends", self.depends, {"files whose content counts, linked into the command's folder"});
+    visit("depends", self.depends, {"files whose content counts, copied into the command's folder"});
     visit(
         "trained_on", self.trained_on,
         {"items and splits that the model was trained on: tables name those that are scored", "", {}, "[]"});

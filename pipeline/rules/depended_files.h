@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "cache/digest.h"
+#include "io/commands/scratch_folder.h"
 #include "io/file.h"
 #include "pipeline/config/section.h"
 
@@ -22,33 +24,47 @@ inline constexpr std::string_view kDependsOption = "depends on ";
 // one.
 std::filesystem::path place_of_depended(const std::string& name, const Section& written);
 
+// True if one of them is this name, however it is spelt: "./a.py" is "a.py".
+bool names_file(const Words& names, const std::string& name);
+
 class DependedFiles {
  public:
-  // Paths as above, or whole ones; `written` is the section whose key `depends` names them.
-  DependedFiles(Words names, Section written) : names_(std::move(names)), written_(std::move(written)) {}
+  // Paths as above, or whole ones; `written` is the section whose key `depends` names them. What is named
+  // twice counts once.
+  DependedFiles(const Words& names, Section written);
 
   // Lines of a key. Reads the files when first called. Throws ConfigError that names an unreadable one.
   const std::string& key_lines();
 
-  // Links in the folder, by the same names; none to a file that is named by its whole path. Throws
-  // StorageError.
-  void link_into(const std::filesystem::path& folder) const;
+  // Puts them into the folder, by the same names; none that is named by its whole path. They are copies, so
+  // that nothing beside the originals is found from there, and nothing is written into these. Throws
+  // StorageError, and InputError for one that has changed since it was planned.
+  void put_into(const std::filesystem::path& folder);
 
   // Throws InputError if one holds something else by now: a result could be of either.
   void check_unchanged();
 
+  // "; helper.py is not in the command's folder ...", if a text of a command that failed speaks of a file
+  // that lies beside one of them and is none of them; empty otherwise.
+  std::string left_out_of(std::string_view text) const;
+
  private:
   struct File {
+    std::string name;
     std::filesystem::path path;
     Digest digest;
     std::optional<FileIdentity> identity;  // before it was last found to hold that
+    std::filesystem::path copy = {};       // empty: none, the original is read
+    std::filesystem::file_time_type copied = {};
   };
+  void copy_all();
 
   Words names_;
   Section written_;
   std::mutex mutex_;
   std::vector<File> files_;
   std::string lines_;
+  std::unique_ptr<ScratchFolder> copies_;  // one of each for the whole run: weights may be gigabytes
 };
 
 }  // namespace salbench

@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kListFile = "/dev/stdin";
+constexpr int kMostLate = 3;  // shapes that are waited for, one timeout each, without any answer before
 
 Array rows_of(const char* name, std::span<const Vec3> rows, const char* description) {
   std::vector<double> values;
@@ -84,7 +85,7 @@ ShapeCommand::ShapeCommand(const std::string& name, std::string command,
   std::string line = command_;
   for (const std::string_view list : {kListOfMeshes, kListOfShapes}) replace_all(line, list, kListFile);
   servers_.emplace("models." + name, std::move(line),
-                   [files = depends_](const fs::path& folder) { files->link_into(folder); });
+                   [files = depends_](const fs::path& folder) { files->put_into(folder); });
 }
 
 ScalarField ShapeCommand::map(const ShapeParts& shape, std::size_t mapped_faces) {
@@ -92,7 +93,13 @@ ScalarField ShapeCommand::map(const ShapeParts& shape, std::size_t mapped_faces)
   const fs::path& folder = scratch.path();
   if (has("{mesh}") || has(kListOfMeshes)) write_mesh(folder / file_of("{mesh}"), shape);
   if (has("{shape}") || has(kListOfShapes)) write_hdf5(folder / file_of("{shape}"), shape);
-  const std::string end = servers_ ? ask(folder) : run(folder, shape);
+  const std::string end = [&] {
+    try {
+      return servers_ ? ask(folder) : run(folder, shape);
+    } catch (const InputError& error) {
+      throw InputError(error.what() + depends_->left_out_of(error.what()));
+    }
+  }();
   depends_->check_unchanged();
   const fs::path written = written_file(folder, end);
   return read_point_values(
@@ -102,7 +109,7 @@ ScalarField ShapeCommand::map(const ShapeParts& shape, std::size_t mapped_faces)
 
 // Returns what the command did, for a message.
 std::string ShapeCommand::run(const fs::path& folder, const ShapeParts& shape) {
-  depends_->link_into(folder);
+  depends_->put_into(folder);
   std::string command = command_;
   for (const Placeholder& placeholder : kPlaceholders)
     replace_all(command, placeholder.text, shell_quoted((folder / placeholder.file).string()));
@@ -119,7 +126,22 @@ std::string ShapeCommand::ask(const fs::path& folder) {
   if (shape.find_first_of("\t\r\n") != std::string::npos)
     throw StorageError(fmt::format(
         "{}: a tab or a line end in a path cannot be part of {{list}}; set TMPDIR to another", shape));
-  return fmt::format("answered ({})", servers_->ask(shape + "\t" + out, out, timeout_));
+  constexpr const char* kAdvice =
+      "does it print the second file of each line, as a line, and flush its standard output after it?";
+  if (late_ >= kMostLate)
+    throw InputError(
+        fmt::format("the command was not asked any more: it has answered none of {} shapes within its "
+                    "timeout of {} s; {}",
+                    late_.load(), timeout_.count(), kAdvice));
+  try {
+    const std::string said = servers_->ask(shape + "\t" + out, out, timeout_);
+    has_answered_ = true;
+    return fmt::format("answered ({})", said);
+  } catch (const TookTooLong& error) {
+    if (has_answered_) throw;
+    ++late_;
+    throw InputError(fmt::format("{}; {}", error.what(), kAdvice));
+  }
 }
 
 }  // namespace salbench

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -62,7 +63,9 @@ class ShapeCommand {
   std::chrono::duration<double> timeout_;
   std::shared_ptr<DependedFiles> depends_;
   std::optional<CommandServers> servers_;  // of a command that has a list
-  Importer importer_;                      // of HDF5 files that it writes
+  std::atomic<bool> has_answered_ = false;
+  std::atomic<int> late_ = 0;  // shapes without an answer, as long as there was none
+  Importer importer_;          // of HDF5 files that it writes
 };
 
 }  // namespace salbench

@@ -112,8 +112,8 @@ def report_(arguments: Sequence[str]) -> int:
     parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
     parser.add_argument("--no-viewer", dest="viewer", action="store_false",
                         help="pictures alone: neither coordinates nor ground truth of the shapes, for pages that go where the data may not")
-    parser.add_argument("--processes", metavar="N", type=int, default=len(os.sched_getaffinity(0)),
-                        help="that draw at the same time; the report does not depend on it (default: one per core)")
+    parser.add_count("--processes", "that draw at the same time; the report does not depend on it (default: one per core)",
+                     default=len(os.sched_getaffinity(0)))
     parser.add_report("no path; warnings and errors only")
     given = parser.parsed(arguments)
     with tempfile.TemporaryDirectory() as scratch:  # Matplotlib's font list: nothing is written outside the folder of the report

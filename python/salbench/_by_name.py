@@ -3,7 +3,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from salbench import _core
 
@@ -35,3 +35,10 @@ class ByName(Mapping[str, T]):
 
     def __repr__(self) -> str:
         return f"{self._what}: {', '.join(self._names)}"
+
+
+def names_of(items: Iterable[Any]) -> list[str]:
+    """Of a sequence of items, which may be numbers."""
+    if isinstance(items, bytes) or not hasattr(items, "__iter__"):
+        raise ValueError(f"items must be a text such as '1-20,52', or a sequence of names, not {items!r}")
+    return [str(name) for name in items]

@@ -38,6 +38,10 @@ class Parser(argparse.ArgumentParser):
         if quiet:
             self.add_argument("--quiet", action="store_true", help=quiet)
 
+    def add_count(self, name: str, text: str, default: int | None = None) -> None:
+        """An option for a number of threads or processes."""
+        self.add_argument(name, metavar="N", type=_count, default=default, help=text)
+
     def format_help(self) -> str:
         formatter = self._get_formatter()
         formatter.add_text(self.description)
@@ -60,6 +64,15 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
+
+
+def _count(text: str) -> int:
+    from salbench import _core
+
+    try:
+        return _core.thread_count(int(text), "N")
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {_core.most_threads}, not '{text}'") from None
 
 
 def report(given: argparse.Namespace, name: str, document: dict[str, Any], text: str) -> None:

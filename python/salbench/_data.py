@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from typing import SupportsIndex, overload
 
 from salbench import _core
+from salbench._by_name import names_of
 from salbench._shape import Shape
 from salbench.datasets import _workers, is_description, sets
 from salbench.datasets._files import extension, read_file
@@ -81,7 +82,7 @@ class Dataset:
             raise ValueError(f"twins must be one of {', '.join(sets.TWINS)}, not '{self._twins}'")
         self._found, listing = sets.listed(self._layout, self._root, self._twins)
         self._archive = self._found if self._layout == sets.AUTOMATIC else self._layout
-        chosen = items if items is None or isinstance(items, str) else [str(name) for name in items]
+        chosen = items if items is None or isinstance(items, str) else names_of(items)
         self._items = sets.chosen(listing, chosen, split)
         self._notes, self._splits = tuple(listing.notes), tuple(sorted({name for item in listing.items for name in item.split.split("+") if name}))
         self._numbers = {item.name: number for number, item in enumerate(self._items)}
@@ -181,9 +182,12 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
     path = sets.shape_file(item)
     names = os.fsencode(item.view) if item.truth else None, os.fsencode(item.name), os.fsencode(path)
     if "form" in item.how:
-        loaded = _core.finished(read_file(path), *names)
+        shape = os.fsencode(item.shape or item.name)
+        loaded = _core.finished(read_file(path), *names, shape)
         if loaded is None:  # another program's bytes
-            loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names)
+            loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)
+        if item.truth and loaded is not None:
+            sets.require_people(path, item, *map(len, loaded[4:]))
     elif any(extension(file.path) == ".mat" for file in item.files):
         loaded = _core.finished(_workers.asked({"do": "item", "layout": layout, "root": root, "item": item.to_json()}), *names)
     else:

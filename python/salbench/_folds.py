@@ -9,6 +9,7 @@ import dataclasses
 import hashlib
 import json
 import logging
+import numbers
 import os
 import pathlib
 import sys
@@ -19,7 +20,7 @@ from typing import Any, cast
 from salbench import _core
 from salbench._data import Dataset
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of
+from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of, version_of
 from salbench._shape import Shape
 from salbench._shapes import estimate_normals, fpfh, partial_mesh
 from salbench._types import ArrayLike
@@ -147,16 +148,17 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Plan:
         raise ValueError(f"by must be class, mesh or split, not {by!r}")
     if by == "class" and (without := [item.name for item in items if not item.category]):
         raise ValueError(f"{len(without)} of {len(items)} shapes have no class, such as {without[0]}: take by='mesh'")
+    seed = _core.whole_number(seed, "seed", 0, 2**64 - 1)
     classes: dict[str, str] = {}  # of each mesh; its views may not part
     for item in items:
         classes.setdefault(_mesh(item), item.category)
     groups = {item.name: classes[_mesh(item)] if by == "class" else _mesh(item) for item in items}
     order = sorted(set(groups.values()), key=lambda group: hashlib.sha256(f"{seed}/{group}".encode("utf-8", "surrogateescape")).digest())
-    if not 2 <= folds <= len(order):
+    if not isinstance(folds, numbers.Integral) or not 2 <= folds <= len(order):
         raise ValueError(f"folds must be 2 to {len(order)}, the number of {'classes' if by == 'class' else 'meshes'} with ground truth, "
                          f"not {folds}")
-    numbers = {group: place % folds for place, group in enumerate(order)}
-    fold_of = {name: numbers[group] for name, group in groups.items()}
+    number_of = {group: place % folds for place, group in enumerate(order)}
+    fold_of = {name: number_of[group] for name, group in groups.items()}
     how = f"cross-validated, {folds} folds by {by}" + (f", seed {seed}" if seed else "")
     return Plan(how, fold_of, [[name for name, own in fold_of.items() if own != fold] for fold in range(folds)])
 
@@ -231,6 +233,7 @@ class _Shapes:
 def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool) -> Learned:
     if "source" in fit.reads:
         raise ValueError(f"{name} reads source, which is not known of shapes that something is trained on")
+    version_of(name, fit)
     training = [[item for item in names if item in shapes.digests] for names in plan.training]
     start = f"{key_of(name, fit)}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
     keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items)]).encode()).hexdigest() for items in training]

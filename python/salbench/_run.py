@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from salbench import _core
+from salbench._by_name import names_of
 from salbench._results import Results
 from salbench._shape import Shape
 from salbench._types import ArrayLike
@@ -39,7 +40,7 @@ class Model:
     predict : callable
         Takes a `Shape`, returns one finite value per point, or per face where faces are scored.
     version : int, optional
-        Your promise that maps are the same as long as it is: only it and `depends` count then.
+        From 0 to 2**31 - 1. Your promise that maps are the same as long as it is: only it and `depends` count then.
     depends : sequence, optional
         What else counts: files (text or path, by content), and any other value, by content.
     reads : sequence of str
@@ -127,9 +128,10 @@ def run(
         Items of one split alone, such as "test"; "" for all, where the configuration names one.
     reference : path or (100,) array, optional
         Histogram that maps are matched to, in place of the mean over the data set: of another run
-        (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are run.
+        (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are run. One that does
+        not sum to 100, such as probabilities, is scaled with a warning.
     threads : int, optional
-        All cores by default.
+        1 to 1024. All cores by default.
     progress : bool
         Show a bar, where tqdm is installed, and print at the end how many maps of each model are new (`Results.models`).
 
@@ -174,7 +176,7 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
         "split": split,
         "reference": os.fspath(reference) if isinstance(reference, (str, os.PathLike)) else reference,
         "items": items if items is None else os.fsencode(items) if isinstance(items, str) else [
-            os.fsencode(str(name)) for name in items],
+            os.fsencode(name) for name in names_of(items)],
     }
     if items is not None and not settings["items"]:
         raise ValueError("items is empty: name some, or leave it out to run all")
@@ -184,9 +186,7 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
 def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
     """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
     stay beside the functions; maps: folders of maps, as `salbench run --maps` takes them, by the name of the model."""
-    threads = len(os.sched_getaffinity(0)) if threads is None else threads
-    if threads < 1:
-        raise ValueError(f"threads must be at least 1, not {threads}")
+    threads = min(len(os.sched_getaffinity(0)), _core.most_threads) if threads is None else _core.thread_count(threads, "threads")
     going = _core.Run(settings, [_row(name, given) for name, given in functions])
     with _Bar(progress) as bar:
         going.carry_out(threads, bar)
@@ -202,7 +202,7 @@ def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict |
 def configuration_path(given: str | os.PathLike[str] | None) -> str:
     """The path of a configuration, which may be the name of one that is installed."""
     name = "shrec07" if given is None else os.fspath(given)
-    if os.path.exists(name):
+    if os.path.exists(name) and not os.path.isdir(name):
         return name
     folder = pathlib.Path(__file__).parent / "configs"
     if (folder / f"{name}.yaml").is_file():
@@ -216,11 +216,15 @@ def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], in
     for part in reads:
         if part not in (*PARTS, "points"):
             raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
-    version = 1 if made.version is None else operator.index(made.version)
+    version = version_of(name, made)
     keys = {os.fsencode(item): key for item, key in made.keys.items()} if isinstance(made, Learned) else {}
     parts = [part for part in ("points", *PARTS) if part in reads]
     trained = made.trained if isinstance(made, Learned) else ""
     return name, made.predict, parts, version, key_of(name, made), keys, trained, list(made.trained_on)
+
+
+def version_of(name: str, made: Model) -> int:
+    return 1 if made.version is None else _core.whole_number(made.version, f"models: {name}: version", 0, 2**31 - 1)
 
 
 def key_of(name: str, made: Model) -> str:

@@ -56,7 +56,8 @@ def score(
     metrics : str or sequence of str
         Columns of the program's tables, or "all".
     reference : (100,) array, optional
-        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several.
+        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several. One that does not
+        sum to 100, such as probabilities, is scaled with a warning.
     seed : int or (int, str, str)
         Of the metrics that draw points; (seed, model, item) are the draws of a run's table.
 
@@ -96,11 +97,11 @@ def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float
     values : (n,) array
         A map; NaN counts as 0.
     reference : (100,) array
-        Densities over [0, 1], as `histogram` gives them.
+        Densities over [0, 1], as `histogram` gives them. One that does not sum to 100 is scaled with a warning.
 
     Returns
     -------
-    (n,) array in [0, 1]
+    (n,) array in [0, 1]; a constant map stays as it is
 
     References
     ----------

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from salbench.conclusions.units import Scores
 
 _TEXTS = ("item", "model", "dataset", "view", "class", "split")
-_MOST_THREADS = 1024
 
 
 class Conclusions(Tables):
@@ -139,7 +138,7 @@ def conclude(
         if name not in columns and not (name == "lcc" and "cc" in columns):
             _core.fail_unknown("column", name, list(columns))
     scores = _scores(_table_of(columns), chosen, higher, lower)
-    workers = _core.whole_number(threads, "threads", 1, _MOST_THREADS)
+    workers = _core.thread_count(threads, "threads")
     if str(unit) not in UNITS:
         raise ValueError(f"unit must be one of {', '.join(UNITS)}, not '{unit}'")
     study = Study(scores, str(unit), _core.whole_number(seed, "seed", 0, 2**64 - 1), threads=workers)

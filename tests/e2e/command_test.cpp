@@ -133,6 +133,84 @@ TEST(Command, IsNotRunAgainAndAChangedFileRerunsItAlone) {
   EXPECT_THAT(missing.err, AllOf(HasSubstr("models.MINE.depends"), HasSubstr("weights.txt")));
 }
 
+// A program and what it reads of its own folder, by a way that leads around links.
+struct Neighbour {
+  const char* name;
+  const char* program;  // a file, started with {mesh} and {out}
+  const char* text;
+  const char* neighbour;
+  const char *first, *second;  // its text, and another
+};
+
+void PrintTo(const Neighbour& param, std::ostream* out) { *out << param.name; }
+
+class NeighbourOfACommand : public testing::TestWithParam<Neighbour> {};
+
+TEST_P(NeighbourOfACommand, IsNotThereUnlessItIsNamedAndThenCounts) {
+  const Neighbour& it = GetParam();
+  const Workspace toy;
+  toy.write(it.program, it.text);
+  toy.write(it.neighbour, it.first);
+  const std::string interpreter = std::string(it.program).ends_with(".py") ? "/usr/bin/python3" : "sh";
+  const auto configure = [&](const std::string& depends) {
+    toy.configure(command_config(
+        fmt::format("command: \"{} {} {{mesh}} {{out}}\", depends: [{}]", interpreter, it.program, depends)));
+  };
+  configure(it.program);
+  const Outcome without = toy.salbench("run");
+  EXPECT_EQ(without.status, 1);
+  EXPECT_THAT(without.err, HasSubstr(fmt::format("{} is not in the command's folder", it.neighbour)));
+
+  configure(fmt::format("{0}, ./{0}, {1}", it.program, it.neighbour));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string scores = toy.results();
+  toy.write(it.neighbour, it.second);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_NE(toy.results(), scores);
+}
+constexpr const char* kByNumber = R"py(import re, sys
+n = int(re.search(rb"element vertex (\d+)", open(sys.argv[1], "rb").read()).group(1))
+open(sys.argv[2], "w").writelines(f"{i % k + i / n}\n" for i in range(n))
+)py";
+const std::string kImporting = std::string("from helper import k\n") + kByNumber;
+const std::string kReading =
+    std::string("import os\nk = int(open(os.path.dirname(os.path.realpath(__file__)) + '/k.txt').read())\n") +
+    kByNumber;
+INSTANTIATE_TEST_SUITE_P(
+    Command, NeighbourOfACommand,
+    testing::Values(Neighbour{"Imported", "predict.py", kImporting.c_str(), "helper.py", "k = 7", "k = 31"},
+                    Neighbour{"BelowAFolder", "model/predict.py", kImporting.c_str(), "model/helper.py",
+                              "k = 7", "k = 31"},
+                    Neighbour{"ByItsRealPath", "predict.py", kReading.c_str(), "k.txt", "7", "31"},
+                    Neighbour{
+                        "ByTheShell", "predict.sh",
+                        "set -e\nk=$(cat \"$(dirname \"$(readlink -f \"$0\")\")/k.txt\")\n"
+                        "n=$(grep -a -m1 'element vertex' $1 | cut -d' ' -f3)\n"
+                        "awk -v n=$n -v k=$k 'BEGIN {for (i = 0; i < n; ++i) print i % k + i / n}' > $2\n",
+                        "k.txt", "7", "31"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Command, ThatGivesAnotherMapEachTimeIsToldSoWhereOneWasDamaged) {
+  const Workspace toy(
+      command_config("command: \"n=$(grep -a -m1 'element vertex' {mesh} | cut -d' ' -f3); s=$(date +%N); "
+                     "awk -v n=$n -v s=$s 'BEGIN {srand(s); while (n-- > 0) print rand()}' > {out}\""));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  for (const fs::path& file : toy.artefacts("map.MINE")) {
+    std::string bytes = read_file(file);
+    bytes.back() ^= 1;
+    write_file(file, bytes);
+  }
+  fs::remove_all(toy.cache() / "matched.MINE");
+  const Outcome damaged = toy.salbench("run");
+  EXPECT_EQ(damaged.status, 1) << damaged.err;
+  EXPECT_THAT(damaged.err, HasSubstr("map.MINE was damaged, and the model gives another map each time"));
+  EXPECT_THAT(damaged.err, Not(HasSubstr("a defect of salbench")));
+  const Outcome again = toy.salbench("run");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0U);
+}
+
 TEST(Command, TheConfigurationOfARunIsReadBack) {
   const Workspace toy(command_config(R"(command: 'seq 162 > {out} # "{mesh}" \')"));
   const auto config = [&] { return run_process({SALBENCH_PROGRAM, "config", toy.config().string()}).out; };
@@ -287,6 +365,49 @@ INSTANTIATE_TEST_SUITE_P(
                     Hostile{"KillsItself", "sh -c 'sleep 1000' '{mark}' & kill -9 $$", "killed by signal 9"}),
     [](const auto& test) { return test.param.name; });
 
+// What prints no line that is an answer, and is thus waited for until its timeout.
+class SilentListCommand : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(SilentListCommand, IsWaitedForThreeTimesAndNotForEachShape) {
+  const Workspace toy;
+  for (const int item : {3, 4, 5})
+    write_toy_item(toy.data(), std::to_string(item), shapes::bumpy_sphere(2, 0.03 * item));
+  const fs::path script = toy.write(
+      "serve.sh", fmt::format("while read -r mesh out; do seq 162 > \"$out\"; {}; done", GetParam().second));
+  toy.configure(command_config(
+      fmt::format("timeout: 0.5, gpu: 1, command: \"{}\"",
+                  starts_counted(toy / "log", fmt::format("sh '{}' < {{list}}", script.string())))));
+  const Outcome run = toy.salbench("run", {"--threads", "1"});
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_EQ(lines_of(toy / "log"), 3U);
+  EXPECT_THAT(lines_with(run.err, "flush its standard output"), SizeIs(5)) << run.err;
+  EXPECT_THAT(lines_with(run.err, "was not asked any more: it has answered none of 3 shapes"), SizeIs(2));
+}
+INSTANTIATE_TEST_SUITE_P(Command, SilentListCommand,
+                         testing::Values(std::pair("ThatDoesNotFlush", ":"),
+                                         std::pair("ThatEndsNoLine", "printf %s \"$out\""),
+                                         std::pair("ThatPrintsAnotherName", "basename \"$out\"")),
+                         [](const auto& test) { return std::string(test.param.first); });
+
+// Some shapes take longer than others, and whoever has answered flushes.
+TEST(ListCommand, ThatHasAnsweredIsAskedForEachShape) {
+  const Workspace toy;
+  for (const int item : {3, 4, 5})
+    write_toy_item(toy.data(), std::to_string(item), shapes::bumpy_sphere(2, 0.03 * item));
+  const fs::path script = toy.write("serve.sh", fmt::format(R"sh(while read -r mesh out; do
+  test -e '{0}' && sleep 100
+  echo > '{0}'
+  seq "$(grep -a -m1 'element vertex' "$mesh" | cut -d' ' -f3)" > "$out"
+  echo "$out"
+done)sh",
+                                                            (toy / "answered").string()));
+  toy.configure(
+      command_config(fmt::format("timeout: 3, gpu: 1, command: \"sh '{}' < {{list}}\"", script.string())));
+  const Outcome run = toy.salbench("run", {"--threads", "1"});
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_THAT(lines_with(run.err, "longer than its timeout"), SizeIs(4)) << run.err;
+}
+
 // Each answer counts, and none of the shapes is to blame.
 TEST(ListCommand, ThatEndsBadlyBetweenShapesFailsNoneOfThem) {
   const Workspace toy;
@@ -336,6 +457,9 @@ TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
               HasSubstr("must not have {mesh}, {shape}, {out}, {source} or {item}"));
   EXPECT_THAT(refused("command: 'x {list}', reads: [fpfh]"), HasSubstr("must have {list.h5}"));
   EXPECT_THAT(refused("command: 'x {list} {list.h5}'"), HasSubstr("both {list} and {list.h5}"));
+  for (const char* taken : {"shape.ply", "./shape.ply", "out.val.npy"})
+    EXPECT_THAT(refused(fmt::format("command: 'x {{mesh}} {{out}}', depends: [{}]", taken)),
+                HasSubstr("which salbench writes itself"));
   EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known key"));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/rules/depended_files.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include <gmock/gmock.h>
@@ -14,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -43,8 +45,97 @@ TEST(DependedFiles, AreLookedUpBesideTheConfigurationFirst) {
   EXPECT_EQ(place_of_depended("weights", Section::from_text("", "config")), fs::current_path() / "weights");
   DependedFiles files{{"weights"}, written};
   EXPECT_THAT(files.key_lines(), HasSubstr("depends on weights: "));
-  files.link_into(folder.path() / "scratch");
+  files.put_into(folder.path() / "scratch");
   EXPECT_EQ(read_file(folder.path() / "scratch/weights"), "beside");
+}
+
+// Files a.py and sub/b.py beside a configuration.
+struct Named {
+  explicit Named(const Words& names)
+      : files{names, Section::from_file(folder.write("own.yaml", "key: 1").string())} {
+    folder.write("a.py", "a");
+    folder.write("sub/b.py", "b");
+  }
+  std::vector<fs::path> placed(const char* below) {
+    files.put_into(folder / below);
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / below))
+      if (!entry.is_directory()) found.push_back(entry.path().lexically_relative(folder / below));
+    std::ranges::sort(found);
+    return found;
+  }
+
+  TemporaryFolder folder;
+  DependedFiles files;
+};
+
+TEST(DependedFiles, HoweverOftenAndInWhateverWaysOneIsNamedItIsOne) {
+  const std::string once = Named({"a.py", "sub/b.py"}).files.key_lines();
+  for (const Words& names : {Words{"a.py", "sub/b.py", "./a.py"}, Words{"a.py", "a.py", "sub/b.py"},
+                             Words{"a.py", "sub/b.py", "sub//b.py", "./sub/./b.py"}}) {
+    Named named(names);
+    EXPECT_EQ(named.files.key_lines(), once);
+    EXPECT_THAT(named.placed("scratch"), ElementsAre("a.py", "sub/b.py"));
+  }
+  EXPECT_THAT(Named({"./a.py"}).files.key_lines(), HasSubstr("depends on ./a.py: ")) << "as it always was";
+}
+
+TEST(DependedFiles, AreCopiedOnceForAllShapesWithWhatTheSystemLetsDoWithThem) {
+  Named named({"a.py", "linked.py"});
+  fs::create_symlink("a.py", named.folder / "linked.py");
+  fs::permissions(named.folder / "a.py", fs::perms::owner_exec, fs::perm_options::add);
+  for (const char* below : {"first", "second"}) {
+    EXPECT_THAT(named.placed(below), ElementsAre("a.py", "linked.py"));
+    EXPECT_EQ(fs::canonical(named.folder / below / "linked.py").parent_path().filename(), below);
+  }
+  EXPECT_TRUE(fs::equivalent(named.folder / "first/a.py", named.folder / "second/a.py"));
+  EXPECT_FALSE(fs::equivalent(named.folder / "first/a.py", named.folder / "a.py"));
+  EXPECT_NE(fs::status(named.folder / "second/a.py").permissions() & fs::perms::owner_exec, fs::perms::none);
+}
+
+TEST(DependedFiles, WhatACommandWritesIntoACopyIsNoticedAndTheOriginalIsAsItWas) {
+  Named named({"a.py"});
+  named.placed("first");
+  EXPECT_NO_THROW(named.files.check_unchanged());
+  named.folder.write("first/a.py", "b");
+  const auto written = ThrowsMessage<InputError>(HasSubstr("a.py: the command has written into its copy"));
+  EXPECT_THAT([&] { named.files.check_unchanged(); }, written);
+  EXPECT_THAT([&] { named.placed("second"); }, written);
+  EXPECT_EQ(read_file(named.folder / "a.py"), "a");
+}
+
+TEST(DependedFiles, EditedAfterTheyWereCopiedCountAsTheyWerePlanned) {
+  Named named({"a.py"});
+  named.placed("first");
+  named.folder.write("a.py", "edited");
+  EXPECT_NO_THROW(named.files.check_unchanged());
+  named.placed("second");
+  EXPECT_EQ(read_file(named.folder / "second/a.py"), "a");
+}
+
+TEST(DependedFiles, EditedBetweenThePlanAndTheCopy) {
+  Named named({"a.py"});
+  named.files.key_lines();
+  named.folder.write("a.py", "edited");
+  EXPECT_THAT([&] { named.placed("first"); }, ThrowsMessage<InputError>(HasSubstr("a.py: changed since")));
+}
+
+TEST(DependedFiles, OneThatIsLeftOutIsNamedWhereAFailureSpeaksOfIt) {
+  Named named({"a.py", "sub/b.py"});
+  for (const char* name : {"helper.py", "weights", "sub/c.txt", "package/__init__.py"})
+    named.folder.write(name, "");
+  const auto left_out = [&](const char* text) { return named.files.left_out_of(text); };
+  EXPECT_EQ(left_out("ModuleNotFoundError: No module named 'helper'"),
+            "; helper.py is not in the command's folder: add it to depends");
+  EXPECT_EQ(left_out("No such file or directory: '/tmp/salbench-scratch-1/sub/c.txt'"),
+            "; sub/c.txt is not in the command's folder: add it to depends");
+  EXPECT_EQ(left_out("cat: weights: No such file"),
+            "; weights is not in the command's folder: add it to depends");
+  EXPECT_EQ(left_out("No module named 'package.parts'"),
+            "; package is not in the command's folder: add its files to depends");
+  for (const char* of_others :
+       {"No module named 'helpers'", "File \"a.py\", line 3", "my weights are wrong", ""})
+    EXPECT_EQ(left_out(of_others), "") << of_others;
 }
 
 TEST(DependedFiles, ChangedInPlaceWithTheTimeKept) {

@@ -25,6 +25,12 @@ def density_of_others(points, own, of_set):
     return density[np.minimum((distance / distance.max() * 100).astype(int), 99)]
 
 
+def reference_with(bin_, value):
+    reference = np.ones(100)
+    reference[bin_] = value
+    return reference
+
+
 def same(a, b):
     """Bit for bit, NaN and NaN alike."""
     return np.array_equal(np.float64(a).view(np.uint64), np.float64(b).view(np.uint64)) or (math.isnan(a) and math.isnan(b))
@@ -118,6 +124,26 @@ class Arguments(unittest.TestCase):
         self.assertEqual(salbench.metrics.auc_exact(self.map, None, self.picks, mask=mask),
                          salbench.metrics.auc_exact(whole[2:], None, np.array(self.picks) - 2))
 
+    def test_a_reference_stands_for_the_density_of_its_shape(self):
+        """As a column of a file does (tests/e2e/reference_test.cpp)."""
+        density = np.linspace(2, 0.02, 100) / np.linspace(2, 0.02, 100).sum() * 100
+        for factor in (0.01, 7.0, 1e-200):
+            with self.subTest(factor), self.assertLogs("salbench", "WARNING") as logged:
+                np.testing.assert_allclose(salbench.match_histogram(self.map, density * factor),
+                                           salbench.match_histogram(self.map, density), rtol=0, atol=1e-12)
+            self.assertRegex(logged.output[0], "reference sums to .*, densities over 100 bins to 100: it was scaled")
+        rounded = density * 1.0001  # of few digits
+        with self.assertNoLogs("salbench", "WARNING"):
+            self.assertFalse(np.array_equal(salbench.match_histogram(self.map, rounded), salbench.match_histogram(self.map, density)))
+        counts = np.arange(100)
+        with self.assertLogs("salbench", "WARNING"):
+            scores = salbench.score(self.map, self.truth, self.picks, reference=counts, metrics=["nss", "cc"])
+        self.assertEqual(scores, salbench.score(self.map, self.truth, self.picks, reference=counts / counts.sum() * 100, metrics=["nss", "cc"]))
+
+    def test_a_constant_map_stays_as_it_is(self):
+        for value in (0.0, 0.5, -7.0, 1e300):
+            np.testing.assert_array_equal(salbench.match_histogram(np.full(9, value), salbench.histogram(self.truth)), np.full(9, value))
+
     def test_what_cannot_be_used_is_named(self):
         for what, error, call in [
             (r"prediction must have shape \(n,\) or \(k, n\), not \(\)", ValueError, lambda: salbench.score(3.0)),
@@ -139,6 +165,11 @@ class Arguments(unittest.TestCase):
             (r"did you mean 'splits'\?", TypeError, lambda: salbench.score(self.map, split=3)),
             (r"splits must be at least 1", ValueError, lambda: salbench.score(self.map, splits=0)),
             (r"reference must have shape \(100,\)", ValueError, lambda: salbench.score(self.map, reference=[1, 2])),
+            (r"reference sums to 0: no density does", ValueError, lambda: salbench.score(self.map, reference=np.zeros(100))),
+            (r"reference holds -0.5, .* in bin 7", ValueError, lambda: salbench.score(self.map, reference=reference_with(7, -0.5))),
+            (r"reference holds nan, .* in bin 8", ValueError, lambda: salbench.match_histogram(self.map, reference_with(8, math.nan))),
+            (r"reference holds inf, .* in bin 99", ValueError, lambda: salbench.match_histogram(self.map, reference_with(99, math.inf))),
+            (r"reference sums to inf", ValueError, lambda: salbench.match_histogram(self.map, np.full(100, 1e307))),
             (r"areas must be finite", ValueError, lambda: salbench.score(self.map, areas=-self.map)),
             (r"negatives must be finite", ValueError, lambda: salbench.score(self.map, negatives=-self.map)),
             (r"negatives must have shape \(40,\), not \(39,\)", ValueError, lambda: salbench.score(self.map, negatives=self.map[1:])),

@@ -48,7 +48,7 @@ class Folders(unittest.TestCase):
 
     def run_with(self, models, **keywords):
         keywords = {"cache": self.folder / "cache", "out": self.folder / "out", "progress": False} | keywords
-        return salbench.run(CONFIG, data=self.meshes, models=models, **keywords)
+        return salbench.run(keywords.pop("config", CONFIG), data=self.meshes, models=models, **keywords)
 
 
 class Runs(Folders):
@@ -298,6 +298,127 @@ class Runs(Folders):
         with self.assertRaisesRegex(ValueError, "reference must have shape"):
             self.run_with({"LS": {}}, reference=[1, 2])
 
+    def test_an_array_is_a_reference_as_a_file_with_the_same_numbers_is(self):
+        density = np.linspace(2, 0.02, 100)
+        density *= 100 / density.sum()
+        scores = self.run_with({"LS": {}}, reference=density).scores
+        for factor in (0.01, 3.0):
+            file = self.folder / "reference.csv"
+            file.write_text("GS\n" + "".join(f"{value!r}\n" for value in (density * factor).tolist()))
+            for reference in (density * factor, file):
+                with self.subTest(reference), self.assertLogs("salbench", "WARNING") as logged:
+                    found = self.run_with({"LS": {}}, reference=reference).scores
+                    self.assertIn("it was scaled", "".join(logged.output))
+                    np.testing.assert_allclose(found.nss, scores.nss, rtol=0, atol=1e-9)
+        with self.assertRaisesRegex(ValueError, "reference sums to 0: no density does"):
+            self.run_with({"LS": {}}, reference=np.zeros(100))
+
+    def test_numbers_that_cannot_be_meant_are_refused_with_their_range(self):
+        def model(version):
+            return {"MINE": salbench.Model(np.copy, version=version)}
+
+        many = 10**7
+        for what, call in [
+            ("threads must be a whole number from 1 to 1024, not 0", lambda: self.run_with({"LS": {}}, threads=0)),
+            (f"threads must be a whole number from 1 to 1024, not {many}", lambda: self.run_with({"LS": {}}, threads=many)),
+            ("threads must be .* not -1", lambda: self.run_with({"LS": {}}, threads=-1)),
+            ("threads must be a whole number, not of type list", lambda: self.run_with({"LS": {}}, threads=[2])),
+            ("threads must be a whole number, not of type float", lambda: self.run_with({"LS": {}}, threads=2.0)),
+            ("version must be a whole number from 0 to 2147483647, not 2147483648", lambda: self.run_with(model(2**31))),
+            ("version must be .*, not -1", lambda: self.run_with(model(-1))),
+            ("version must be a whole number, not of type list", lambda: self.run_with(model([1, 2]))),
+            ("items must be a text .*, not 5", lambda: self.run_with({"LS": {}}, items=5)),
+            ("items must be a text .*, not 5", lambda: salbench.Dataset("folder", self.meshes, items=5)),
+            ("seed is .*-1.*, not a whole number >= 0|seed is .*-1.*, not a whole number from 0 to 18446744073709551615", lambda: self.run_with({"LS": {}}, config=CONFIG | {"seed": -1})),
+            ("splits must be one value", lambda: self.run_with({"LS": {}}, config=CONFIG | {"metrics": {"splits": [3, 4]}})),
+            ("splits is .*, not a whole number from -2147483648 to 2147483647", lambda: self.run_with({"LS": {}}, config=CONFIG | {"metrics": {"splits": 10**30}})),
+            ("version is .*, not a whole number from -2147483648 to 2147483647",
+             lambda: self.run_with({"MINE": {"command": "cp {mesh} {out}", "version": 2**40}})),
+        ]:
+            with self.subTest(what), self.assertRaisesRegex(ValueError, what):
+                call()
+
+    def test_a_function_that_runs_the_program_over_the_cache_of_its_own_run_is_told_so(self):
+        """In a process of its own, which would wait for ever."""
+        program = self.folder / "nested.py"
+        program.write_text(textwrap.dedent(f"""\
+            import multiprocessing, os, subprocess, sys
+            import salbench
+
+            def again(**others):
+                keywords = dict(cache=sys.argv[2], out={str(self.folder / "inner")!r}, progress=False) | others
+                return salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{"LS": {{}}}}, **keywords)
+
+            def in_a_copy():
+                try:
+                    again()
+                except ValueError as error:
+                    os.write(2, str(error).encode())
+                    os._exit(4)
+
+            def predict(shape):
+                if sys.argv[1] == "itself":
+                    again()
+                elif sys.argv[1] == "a program":
+                    ended = subprocess.run([sys.executable, __file__, "inner", sys.argv[2]], stderr=subprocess.PIPE, text=True)
+                    if ended.returncode:
+                        raise ValueError(ended.stderr)
+                elif sys.argv[1] == "a copy":
+                    child = multiprocessing.get_context("fork").Process(target=in_a_copy)
+                    child.start()
+                    child.join()
+                    if child.exitcode == 4:
+                        raise ValueError("a copy: " + "give it a cache of its own")
+                else:
+                    again(cache=sys.argv[2] + "2")
+                return shape.points[:, 0]
+
+            if sys.argv[1] == "inner":
+                again()
+            else:
+                results = salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{"MINE": salbench.Model(predict, version=1, cache=False)}},
+                                       cache=sys.argv[2], out={str(self.folder / "out")!r}, progress=False)
+                print(*(failure.cause for failure in results.failures), sep="\\n")
+            """))
+        for kind in ("itself", "a program", "a copy", "nothing of the kind"):
+            with self.subTest(kind):
+                ended = subprocess.run([sys.executable, program, kind, self.folder / kind], capture_output=True, text=True, timeout=300)
+                self.assertEqual(ended.returncode, 0, ended.stderr)
+                if kind == "nothing of the kind":
+                    self.assertEqual(ended.stdout.strip(), "")
+                else:
+                    self.assertIn("give it a cache of its own", ended.stdout, ended.stderr)
+
+    def test_a_process_that_a_function_forks_ends_where_it_would_go_on_with_the_run(self):
+        program = self.folder / "forking.py"
+        program.write_text(textwrap.dedent(f"""\
+            import os, sys
+            import salbench
+
+            def predict(shape):
+                child = os.fork()
+                if child == 0 and sys.argv[1] == "exits":
+                    sys.exit(3)
+                if child == 0 and sys.argv[1] == "raises":
+                    raise ValueError("in the child")
+                if child != 0:
+                    _, status = os.waitpid(child, 0)
+                    print("child", os.waitstatus_to_exitcode(status), flush=True)
+                return shape.points[:, 0]
+
+            results = salbench.run({CONFIG!r}, data={str(self.meshes)!r}, models={{"MINE": salbench.Model(predict, version=1, cache=False)}},
+                                   items="1", cache={str(self.folder / "cache")!r}, out={str(self.folder / "out")!r}, progress=False)
+            print("done", len(results.failures), flush=True)
+            """))
+        for kind, status in (("returns", 0), ("exits", 3), ("raises", 1)):
+            with self.subTest(kind):
+                ended = subprocess.run([sys.executable, "-W", "ignore", program, kind], capture_output=True, text=True, timeout=300)
+                self.assertEqual(ended.returncode, 0, ended.stderr)
+                lines = ended.stdout.splitlines()
+                self.assertEqual(lines[-1], "done 0")
+                self.assertEqual(set(lines[:-1]), {f"child {status}"})
+                self.assertEqual("let it end with os._exit()" in ended.stderr, kind != "exits")
+
     def test_items_with_ground_truth_and_splits_are_run_alone(self):
         data = self.folder / "split"
         for part, name in (("", ".off"), ("Distributions", ".val")):
@@ -362,7 +483,7 @@ class Runs(Folders):
     def test_what_cannot_be_run_is_said_at_once(self):
         for models, error, what in [
             ({"ls": {}}, ValueError, "ls"), ({"LS": {"foci": 1}}, ValueError, "foci_share"), ({"a/b": salbench.Model(len, version=1)}, ValueError, "a/b"),
-            ({"LS": {}, "MINE": salbench.Model(len, version=1.5)}, TypeError, "float"),
+            ({"LS": {}, "MINE": salbench.Model(len, version=1.5)}, ValueError, "version must be a whole number, not of type float"),
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 self.run_with(models)
@@ -372,8 +493,6 @@ class Runs(Folders):
             salbench.run(CONFIG, data="nowhere")
         with self.assertRaisesRegex(ValueError, "names no data set: give data='DIR'"):
             salbench.run(CONFIG)
-        with self.assertRaisesRegex(ValueError, "threads must be at least 1"):
-            self.run_with({"LS": {}}, threads=0)
         for wrong in ("weights.bin", pathlib.Path("weights.bin")):
             with self.assertRaisesRegex(ValueError, "depends must be a sequence"):
                 salbench.Model(len, depends=wrong)

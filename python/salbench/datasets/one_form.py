@@ -55,7 +55,10 @@ def read_foreign(path: str, data: bytes | None = None) -> Form:
     arrays |= {name: file.read(name) for name in (group + part for group in groups for part in _OF_TRUTH) if file.has(name)}
     if version == 1 and (split := file.attribute("polygons_split")):
         arrays["shape/polygons"] = np.array([split, file.attribute("polygons_concave") or 0], np.int64)
-    return form_of_fields(_core.form_of_arrays(arrays, os.fsencode(path)))
+    form = form_of_fields(_core.form_of_arrays(arrays, os.fsencode(path)))
+    if isinstance(item := file.attribute("item"), str):
+        form.about["item"] = item
+    return form
 
 
 def image(form: Form) -> bytes:

@@ -19,6 +19,7 @@ from salbench.datasets.records import Form, InputError, Item, Listing
 AUTOMATIC = "automatic"
 LAYOUTS = tuple(sorted({*ARCHIVES, *NATIVE}))
 ONE_FORM = "hdf5"
+_REMEDY = "put the right file there, or import the set again"
 
 _found = functools.lru_cache(maxsize=16)(find)
 
@@ -58,6 +59,11 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
         form.truths = tuple(truth for truth in form.truths if truth.view == item.view) if item.truth else ()
         if item.truth and not form.truths:
             raise InputError(f"{item.how['form']}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
+        shape = item.shape or item.name
+        if (named := form.about.get("item", shape)) != shape:
+            raise InputError(f"{item.how['form']}: is of the item '{named}', and index.csv says that it is of '{shape}': {_REMEDY}")
+        for truth in form.truths:
+            require_people(item.how["form"], item, len(truth.picks), 0 if truth.viewers is None else len(truth.viewers))
         return form
     if item.native is None:
         return read_archive(layout, root, item)
@@ -68,6 +74,13 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
         layout, licence = described.name, described.licence
     form.about = about(item, form, root, layout, licence)
     return form
+
+
+def require_people(file: str, item: Item, participants: int, viewers: int) -> None:
+    """Of the ground truth in a file of the one form, as the index has them."""
+    for what, found, listed in (("picks of participants", participants, item.participants), ("values of viewers", viewers, item.viewers)):
+        if found and listed and found != listed:  # neither is known where people are not told apart
+            raise InputError(f"{file}: has {found} {what}, and index.csv says {listed}: {_REMEDY}")
 
 
 def native_files(item: Item) -> tuple[bytes, list[bytes], list[bytes]]:

@@ -30,7 +30,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("--split", help="only this split of the data set, such as test; '': all, where CONFIG names one")
     parser.add_argument("--reference", metavar="FILE", help="match to this histogram (CSV with a column GS of 100 bins), not to the mean over the "
                         "data set; items: to the mean over the items with ground truth")
-    parser.add_argument("--threads", type=int, metavar="N", help="threads (default: all cores); results do not depend on it")
+    parser.add_count("--threads", "threads (default: all cores); results do not depend on it")
     parser.add_report("neither progress nor tables; warnings and errors only")
 
 
