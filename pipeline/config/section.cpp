@@ -43,6 +43,12 @@ namespace {
   throw SectionError(fmt::format("{}:{}", file, line), what);
 }
 
+// The system would take a path up to it, and read or write another file.
+bool has_nul(const YAML::Node& node) {
+  return node.IsScalar() && node.Scalar().find('\0') != std::string::npos;
+}
+constexpr const char* kHasNul = "has the character U+0000: no name and no path may have it";
+
 void check_mapping(const YAML::Node& node, const std::string& file, const std::string& path) {
   if (node.IsNull()) return;
   const std::string what = path.empty() ? "the file" : path;
@@ -54,6 +60,9 @@ void check_mapping(const YAML::Node& node, const std::string& file, const std::s
     const std::string& key = entry.first.Scalar();
     if (!seen.insert(key).second)
       fail_at(file, entry.first.Mark().line + 1, fmt::format("the key '{}' is given twice", key));
+    if (has_nul(entry.first) || has_nul(entry.second))
+      fail_at(file, entry.first.Mark().line + 1,
+              fmt::format("{}{}{} {}", path, path.empty() ? "" : ".", key, kHasNul));
   }
 }
 
@@ -170,6 +179,7 @@ Words Section::words(std::string_view key) const {
   Words words;
   for (const YAML::Node& word : node) {
     if (!word.IsScalar()) fail(key, "must be a list of names, such as [a, b]");
+    if (has_nul(word)) fail(key, kHasNul);
     words.push_back(word.Scalar());
   }
   return words;

@@ -115,6 +115,17 @@ TEST(Section, ErrorsStayOnOneLineWhateverTheyQuote) {
               HasSubstr("x.yaml:1: not valid YAML: unknown escape character: ?"));
 }
 
+// A path with it would be cut there: salbench would write elsewhere, or try for ever.
+TEST(Section, ANulCharacterIsRefusedWhereverItStands) {
+  constexpr const char* kHasNul = "has the character U+0000";
+  for (const char* yaml : {"cache: \"a\\0b\"\n", "models: {\"A\\0B\": }\n"})
+    EXPECT_THAT([&] { Section::from_text(yaml, "x.yaml").child("models"); },
+                testing::ThrowsMessage<ConfigError>(HasSubstr(kHasNul)))
+        << yaml;
+  EXPECT_THAT([] { Section::from_text("names: [a, \"b\\0c\"]\n", "x.yaml").words("names"); },
+              testing::ThrowsMessage<ConfigError>(HasSubstr(kHasNul)));
+}
+
 TEST(Section, AMissingFileIsAnError) { EXPECT_THROW(Section::from_file("/no/such/file.yaml"), ConfigError); }
 
 TEST(OptionsText, ReadsBackToTheBit) {
