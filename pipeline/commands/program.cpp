@@ -22,6 +22,7 @@
 #include "pipeline/commands/standard_streams.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/config/section.h"
+#include "pipeline/package/package.h"
 #include "pipeline/results/libraries.h"
 #include "stages/core/errors.h"
 #include "stages/models/chi2_kernel.h"
@@ -199,7 +200,7 @@ int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> 
     of_package += fmt::format("  {:<26}  {}\n", name, summary);
     examples += examples_of(std::string(name), false);
   }
-  app.footer(fmt::format("Subcommands of the Python package (python3-salbench):\n{}\nExamples:\n{}\n{}",
+  app.footer(fmt::format("Subcommands of the Python package ({}):\n{}\nExamples:\n{}\n{}", package_name(),
                          of_package, examples, kExitStatus));
   try {
     app.parse(static_cast<int>(words.size()), words.data());

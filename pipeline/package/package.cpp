@@ -58,12 +58,14 @@ std::string interpreter() {
 
 std::string remedy() {
   return fmt::format(
-      "install python3-salbench {}, or set SALBENCH_PYTHON to an interpreter that has it; without it, data "
-      "sets are those of the layouts schelling, folder and hdf5, and end with scores and their means",
-      SALBENCH_VERSION);
+      "install {} {}, or set SALBENCH_PYTHON to an interpreter that has it; without it, data sets are "
+      "those of the layouts schelling, folder and hdf5, and end with scores and their means",
+      package_name(), SALBENCH_VERSION);
 }
 
 }  // namespace
+
+std::string_view package_name() { return SALBENCH_PACKAGE; }
 
 void use_package(std::string interpreter, fs::path folder) {
   around_us() = {std::move(interpreter), std::move(folder)};

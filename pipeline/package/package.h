@@ -14,6 +14,9 @@ namespace salbench {
 // this version.
 inline constexpr int kNoPackage = 69;  // EX_UNAVAILABLE of sysexits.h
 
+// Its name for who installs it: as a package of Debian, or of a wheel as pip takes it.
+std::string_view package_name();
+
 // Words of a command that runs a subcommand of the package, with this exit status if there is none.
 std::vector<std::string> package_words(int status_if_lacking, const std::vector<std::string>& words);
 
