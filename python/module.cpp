@@ -14,6 +14,7 @@
 #include "pipeline/package/package.h"
 #include "python/arrays.h"
 #include "python/computing.h"
+#include "python/loaded.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
 
@@ -22,27 +23,35 @@ namespace {
 
 namespace py = pybind11;
 
-void raise(const char* type, const std::exception& error) {
-  PyErr_SetString(py::module_::import("salbench._errors").attr(type).ptr(), error.what());
+// Messages may have names of files, which may be no UTF-8.
+void raise(py::handle type, const std::string& message) {
+  PyErr_SetObject(type.ptr(), file_text(message).ptr());
 }
 
-// std::bad_alloc is a MemoryError, and what an array says is a ValueError: pybind11 has these.
+void raise(const char* type, const std::string& message) {
+  raise(py::module_::import("salbench._errors").attr(type), message);
+}
+
+// std::bad_alloc is a MemoryError: pybind11 has that.
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const InputError& error) {
-    raise("InputError", error);
+    raise("InputError", error.what());
   } catch (const UnknownNameError& error) {
-    PyErr_SetString(PyExc_KeyError, error.what());
+    raise(PyExc_KeyError, error.what());
   } catch (const ConfigError& error) {
-    raise("InputError", error);
+    raise("InputError", error.what());
   } catch (const StorageError& error) {
-    raise("StorageError", error);
+    raise("StorageError", error.what());
+  } catch (const py::key_error& error) {
+    raise(PyExc_KeyError, error.what());
+  } catch (const py::value_error& error) {
+    raise(PyExc_ValueError, error.what());
   } catch (const std::system_error& error) {
-    PyErr_SetString(py::module_::import("salbench._errors").attr("StorageError").ptr(),
-                    text_of(error).c_str());
+    raise("StorageError", text_of(error));
   } catch (const std::logic_error& error) {
-    PyErr_SetString(PyExc_RuntimeError, current_defect().c_str());
+    raise(PyExc_RuntimeError, current_defect());
   }
 }
 

@@ -23,6 +23,7 @@
 #include "python/arrays.h"
 #include "python/caller.h"
 #include "python/computing.h"
+#include "python/loaded.h"
 #include "python/log.h"
 #include "python/module.h"
 #include "python/run_values.h"
@@ -61,7 +62,8 @@ py::object shape_of(const std::string& id, Points points, const Normals* normals
   if (normals != nullptr) of_normals = copied<Vec3>(*normals);
   if (fpfh != nullptr) descriptors = read_only(moved(std::vector<float>(fpfh->values), {-1, kFpfhBins}));
   return py::module_::import("salbench._shape")
-      .attr("Shape")(id, copied<Vec3>(points), of_faces, of_normals, descriptors, py::arg("source") = source);
+      .attr("Shape")(file_text(id), copied<Vec3>(points), of_faces, of_normals, descriptors,
+                     py::arg("source") = source);
 }
 
 // One line, with the user's innermost line: "ValueError: bad (model.py, line 12)"; and the whole traceback.
@@ -128,9 +130,9 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
         caller.carry_out([&] {
           const auto inside = enter_function(cache);
           const py::object source =
-              reads_source ? py::module_::import("os").attr("fsdecode")(
-                                 py::bytes(std::filesystem::absolute(item_of(read.source).mesh).string()))
-                           : py::object(py::none());
+              reads_source
+                  ? py::object(file_text(std::filesystem::absolute(item_of(read.source).mesh).string()))
+                  : py::object(py::none());
           map = call(model, random.item,
                      shape_of(random.item, points, normals, reads_faces, faces, fpfh, source), points.size(),
                      mapped_faces.size());
@@ -280,7 +282,7 @@ class Run {
         if (has_role(rule, Role::map) && model.name == rule.subject)
           if (const auto trace = model.traces.find(project.name(failure.job)); trace != model.traces.end())
             cause += "\n" + trace->second;
-      rows.append(py::make_tuple(project.name(failure.job), rule.stage, cause));
+      rows.append(py::make_tuple(file_text(project.name(failure.job)), rule.stage, file_text(cause)));
     }
     return rows;
   }

@@ -94,6 +94,9 @@ void place(Config& config, const Arguments& arguments) {
     throw ConfigError(fmt::format("{}: names no data set: give {}, or a key 'data'",
                                   arguments.config.empty() ? "config" : arguments.config,
                                   as_option("data", "DIR")));
+  for (const std::string* folder : {&config.data, &config.cache, &config.output})
+    if (folder->find('\0') != std::string::npos)
+      throw ConfigError(fmt::format("{}...: the name of a folder holds a zero byte", folder->c_str()));
   if (config.cache.empty()) config.cache = "salbench-cache";
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
 }

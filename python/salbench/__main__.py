@@ -155,11 +155,14 @@ def _names(text: str) -> list[str]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Carries out a subcommand; returns its exit status."""
+    from salbench._command_line import Forgiving
     from salbench._errors import InputError, StorageError
 
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="surrogateescape")  # names of files may be no UTF-8
+    if isinstance(sys.stderr, TextIOWrapper):  # and not forgiving yet
+        sys.stderr = Forgiving(sys.stderr)  # type: ignore[assignment]
     name, *others = sys.argv[1:] if arguments is None else arguments or [""]
     subcommand = (SUBCOMMANDS | SERVED).get(name)
     if subcommand is None:

@@ -2,6 +2,7 @@
 """What the subcommands of the package have in common with those of the program: help, reports, exit statuses."""
 
 import argparse
+import contextlib
 import errno
 import json
 import os
@@ -118,6 +119,26 @@ def _cell(value: Any, decimals: int) -> str:
         return "-"
     vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals  # a value that rounds to 0 keeps its magnitude
     return f"{value:.1e}" if vanishes else f"{value:.{decimals}f}"
+
+
+class Forgiving:
+    """Standard error that may take no text, as on a full disk: messages that nobody gets cost no result."""
+
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        with contextlib.suppress(OSError):
+            self._stream.write(text)
+            self._stream.flush()
+        return len(text)
+
+    def flush(self) -> None:
+        with contextlib.suppress(OSError):
+            self._stream.flush()
 
 
 def warn(kind: str, line: str) -> None:

@@ -389,6 +389,22 @@ class Runs(Folders):
                 else:
                     self.assertIn("give it a cache of its own", ended.stdout, ended.stderr)
 
+    def test_names_that_are_no_utf8_go_through_functions_and_results(self):
+        os.rename(self.meshes / "1.off", os.fsencode(self.meshes) + b"/caf\xe9.off")
+
+        def predict(shape):
+            if shape.id == "2":
+                raise ValueError("two")
+            return shape.points[:, 0]
+
+        results = self.run_with({"MINE": salbench.Model(predict, version=1), "LS": {}})
+        name = os.fsdecode(b"caf\xe9")
+        self.assertEqual([failure.item for failure in results.failures], ["2"])
+        self.assertIn(name, set(results.scores.item))
+        self.assertEqual(results.score(results.maps("MINE")[name], name)["nss"], results.score(results.maps("MINE")[name], name, model="MINE")["nss"])
+        with self.assertRaisesRegex(KeyError, "no item in the run"):
+            results.score([0], name + "x")
+
     def test_a_process_that_a_function_forks_ends_where_it_would_go_on_with_the_run(self):
         program = self.folder / "forking.py"
         program.write_text(textwrap.dedent(f"""\
