@@ -346,7 +346,7 @@ class Runs(Folders):
         page = results._repr_html_()
         self.assertIn("artefacts computed", page)
         self.assertIn("<td>LS</td>", page)
-        for path in (self.folder / "out").glob("ranking.csv"):
+        for path in (self.folder / "out").glob("*.csv"):
             path.unlink()
         self.assertNotIn("<table", salbench.Results(self.folder / "out")._repr_html_())
 

@@ -62,7 +62,9 @@ class WrittenAgain(support.ReportTest):
 
     def test_a_call_that_was_ended_leaves_nothing_that_stays(self):
         with support.without_figures(), unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
-            self.assertEqual(support.make(self.rich, self.folder / "ended", "--compare", self.poor), (130, ""))
+            status, errors = support.make(self.rich, self.folder / "ended", "--compare", self.poor)
+        self.assertEqual(status, 130)
+        self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / 'ended'} --compare {self.poor}\n", errors)
         self.assertTrue((self.folder / "ended/comparison.html").exists())
         self.add_own("ended")
         self.made(self.poor, "ended")

@@ -2,6 +2,7 @@
 """A results folder as the program writes it: its tables, run.yaml, and what of them is missing."""
 
 import csv
+import io
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -16,6 +17,8 @@ import yaml
 from salbench import _tables
 from salbench.conclusions import conclude_if_missing, folders, text_columns
 from salbench._errors import InputError, StorageError
+from salbench._files import read_file, require_file
+from salbench._yaml import plain_text
 from salbench.conclusions.metrics import PAPERS, leading_metrics
 from salbench.pages.blocks import Missing
 from salbench.report import metrics
@@ -62,6 +65,7 @@ class Results:
         if not path.is_file():
             return Missing(f"{name} is not in the results folder: run salbench again, to its end.")
         try:
+            require_file(path)
             table, unusable = read_table(path)
         except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
             return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
@@ -177,8 +181,9 @@ def read_table(path: Path) -> tuple[Frame, int]:
 def read_record(path: Path) -> dict[str, Any]:
     """run.yaml with every scalar as text: a model named NO stays one. Empty if there is no such file or it is broken."""
     try:
-        record = yaml.load(path.read_text(encoding="utf-8", errors="replace"), Loader=BASE_LOADER)
-    except (OSError, yaml.YAMLError):
+        data = read_file(path, folders.MOST_RECORD).decode("utf-8", "replace").encode()
+        record = yaml.load(plain_text(data, str(path), folders.MOST_RECORD), Loader=BASE_LOADER)
+    except (InputError, yaml.YAMLError):
         return {}
     return record if isinstance(record, dict) else {}
 
@@ -200,13 +205,14 @@ def read_results(folder: Path) -> Results:
     return results
 
 
-def write_csv(table: Frame, path: Path) -> None:
+def csv_text(table: Frame) -> str:
     """Floats as the shortest text that reads back to the same bits."""
     def text(value: Any) -> Any:
         if isinstance(value, (float, numpy.floating)):
             return "" if value != value else repr(float(value))
         return value
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(table.columns)
-        writer.writerows([text(value) for value in row] for row in table.itertuples(index=False))
+    made = io.StringIO(newline="")
+    writer = csv.writer(made, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows([text(value) for value in row] for row in table.itertuples(index=False))
+    return made.getvalue()
