@@ -300,9 +300,10 @@ class Run {
                        : python::computed([&] { return point_count(*session_, item); });
     const auto map = field({prediction, "prediction"}, n);
     const Metrics metrics = chosen_metrics(session_->setup.config.metrics);
-    const Scores scores = in_range(metrics, python::computed([&] {
-      return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);
-    }));
+    const Scores scores =
+        in_range(metrics, python::computed([&] {
+                   return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);
+                 }));
     py::dict by_metric;
     for (std::size_t m = 0; m < metrics.size(); ++m)
       by_metric[py::str(metrics[m].name)] = py::float_(scores.values[m]);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scratch folders of the program (io/commands/scratch_folder.h), for what the package writes on the way.
-#include "io/commands/scratch_folder.h"
-
 #include <mutex>
 #include <optional>
 
+#include "io/commands/scratch_folder.h"
 #include "python/computing.h"
 #include "python/module.h"
 

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kConclusions = "conclusions.json";
-constexpr int kFormat = 1;  // of this file
+constexpr int kFormat = 1;              // of this file
 const std::string kDigest = "xxh128:";  // how it has those of tables
 constexpr std::chrono::hours kLongest(2);
 

@@ -41,10 +41,11 @@ void become_package(std::span<const char* const> words) {
   argv.push_back(nullptr);
   if (const std::string wrong = wrong_with_interpreter(); !wrong.empty()) throw ConfigError(wrong);
   std::signal(SIGXFSZ, SIG_DFL);  // what this program ignores is its own matter
-  // Until the package has handlers (raise_interrupts): Python would end in a traceback of whatever it imports.
+  // Until the package has handlers (raise_interrupts): Python would end in a traceback of whatever it
+  // imports.
   sigset_t interrupts, before;
   ::sigemptyset(&interrupts);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&interrupts, signal);
+  ::sigaddset(&interrupts, SIGINT);
   ::sigprocmask(SIG_BLOCK, &interrupts, &before);
   ::execvp(argv[0], argv.data());
   const int error = errno;

@@ -167,7 +167,8 @@ struct Declare {
  private:
   template <class Target>
   CLI::Option* declared(Target& target) const {
-    CLI::Option* option = app.add_option(parameter.name, target, parameter.help)->required(parameter.required);
+    CLI::Option* option =
+        app.add_option(parameter.name, target, parameter.help)->required(parameter.required);
     return parameter.is_path ? option->check(named) : option;
   }
   static std::string named(const std::string& path) {

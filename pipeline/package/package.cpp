@@ -100,7 +100,8 @@ std::vector<std::string> package_words(int status_if_lacking, const std::vector<
 std::string wrong_with_interpreter() {
   constexpr std::string_view kAnswer = "salbench 42\n";
   if (around_us() || interpreter() == SALBENCH_PYTHON) return {};
-  const std::string question = shell_quoted(interpreter()) + " -I -S -c 'print(\"salbench\", 6 * 7)' 2>/dev/null";
+  const std::string question =
+      shell_quoted(interpreter()) + " -I -S -c 'print(\"salbench\", 6 * 7)' 2>/dev/null";
   std::FILE* const asked = ::popen(question.c_str(), "r");
   if (asked == nullptr) return {};
   std::array<char, 64> answer{};

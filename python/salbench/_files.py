@@ -19,6 +19,7 @@ AnyPath = str | os.PathLike[str]
 MAX_ITEM_BYTES = 2 << 30
 _NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer is open at once
 _TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller"
+_NO_FILE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
 _UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.unfinished")
 
 ADVICE = {errno.EACCES: "; check its permissions", errno.EPERM: "; check its permissions", errno.EIO: "; the disk failed: check it and run again",
@@ -188,9 +189,8 @@ class OwnFolder:
 
     def remove(self, name: str) -> None:
         """A file, or a link; where there is none, nothing is to be done."""
-        with contextlib.suppress(FileNotFoundError, NotADirectoryError, IsADirectoryError):
-            with self._refused(name, "removed"), self._parent(name) as (at, last):
-                os.unlink(last, dir_fd=at)
+        with self._refused(name, "removed", _NO_FILE), self._parent(name) as (at, last):
+            os.unlink(last, dir_fd=at)
 
     def remove_empty(self, folder: str, with_files: bool = False) -> None:
         """Folders below this one that hold nothing, or with all that they hold."""
@@ -234,10 +234,9 @@ class OwnFolder:
             os.close(at)
 
     @contextlib.contextmanager
-    def _refused(self, name: str, verb: str) -> Iterator[None]:
+    def _refused(self, name: str, verb: str, unless: Sequence[int] = ()) -> Iterator[None]:
         try:
             yield
         except OSError as error:
-            if verb == "removed" and isinstance(error, (FileNotFoundError, NotADirectoryError, IsADirectoryError)):
-                raise
-            raise StorageError(f"{self.path}/{name}: cannot be {verb}: {error.strerror}; {self.advice}") from None
+            if error.errno not in unless:
+                raise StorageError(f"{self.path}/{name}: cannot be {verb}: {error.strerror}; {self.advice}") from None

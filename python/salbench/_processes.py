@@ -18,7 +18,7 @@ _SIGNALS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 
 def raise_interrupts(words: Sequence[str]) -> None:
     """A signal that asks for the end is a KeyboardInterrupt, unless whoever started this process has it ignored (nohup). Another one ends the
-    process at once: an exception in the middle of what another one ends would find locks half taken. The program blocks signals until then:
+    process at once: an exception in the middle of what another one ends would find locks half taken. The program blocks Ctrl-C until then:
     no import is interrupted. words: of the subcommand."""
     asked = False
 

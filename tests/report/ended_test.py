@@ -63,7 +63,7 @@ class Ended(support.ReportTest):
         call = Stopped("", *self.words("imports"), line=[os.environ["SALBENCH_PROGRAM"]], PYTHONPATH=str(self.folder))
         (self.folder / "sitecustomize.py").write_text(f"{call.here}\nhere()\n")
         with call:
-            call.signal(signal.SIGTERM)
+            call.signal(signal.SIGINT)
             call.go()
             status, errors = call.ended()
         self.assertEqual((status, errors.count("Traceback")), (130, 0), errors)
