@@ -128,11 +128,11 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
   for (std::size_t first = 0; first < predictions.size(); first += n) {
     const auto map = predictions.values.subspan(first, n);
     require_finite(map, "prediction");
-    all.push_back(metrics.score([&](std::span<const Metric> part, Matching matching) {
+    all.push_back(in_range(metrics.all(), metrics.score([&](std::span<const Metric> part, Matching matching) {
       const bool match = matching == Matching::histogram && reference;
       const ScalarField read = match ? matched(map, *reference) : unmatched(map, matching);
       return score(part, at_seen(read), truth.values, options, draws, measures);
-    }));
+    })));
   }
   return all;
 }

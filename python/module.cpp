@@ -109,6 +109,7 @@ PYBIND11_MODULE(_core, module) {
   bind_metrics(module);
   bind_models(module);
   bind_run(module);
+  bind_scratch(module);
   bind_shapes(module);
 }
 

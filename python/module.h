@@ -22,6 +22,7 @@ void bind_datasets(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
+void bind_scratch(pybind11::module_& module);
 void bind_shapes(pybind11::module_& module);
 
 }  // namespace salbench::python

@@ -306,11 +306,12 @@ class Run {
                        ? std::nullopt
                        : python::computed([&] { return point_count(*session_, item); });
     const auto map = field({prediction, "prediction"}, n);
-    const Scores scores = python::computed([&] {
-      return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);
-    });
-    py::dict by_metric;
     const Metrics metrics = chosen_metrics(session_->setup.config.metrics);
+    const Scores scores =
+        in_range(metrics, python::computed([&] {
+                   return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);
+                 }));
+    py::dict by_metric;
     for (std::size_t m = 0; m < metrics.size(); ++m)
       by_metric[py::str(metrics[m].name)] = py::float_(scores.values[m]);
     return by_metric;
@@ -383,6 +384,8 @@ void bind_run(py::module_& module) {
       .def("require_model", &Run::require_model)
       .def("score", &Run::score)
       .def("models", &Run::models)
+      .def("__reduce__",  // of another process there is none: pickled it is None
+           [](const Run&) { return py::make_tuple(py::type::of(py::none()), py::tuple()); })
       .def_property_readonly("output", &Run::output)
       .def_property_readonly("protocol", &Run::protocol)
       .def_property_readonly("computed", &Run::computed);

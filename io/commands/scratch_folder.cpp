@@ -26,7 +26,7 @@ constexpr std::string_view kPrefix = "salbench-scratch-";
 fs::path root() {
   std::error_code error;
   const fs::path given = fs::temp_directory_path(error);
-  return error ? fs::path("/tmp") : given;
+  return error ? fs::path("/tmp") : fs::absolute(given);  // commands run in other folders
 }
 
 // True for the names that ScratchFolder gives and, in practice, for no folder of the user.
@@ -67,7 +67,7 @@ ScratchFolder::ScratchFolder() {
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
-  fs::remove_all(path_, ignored);
+  if (::getpid() == owner_) fs::remove_all(path_, ignored);
 }
 
 void remove_abandoned_scratch() {

@@ -4,11 +4,13 @@
 
 #include <filesystem>
 
+#include <unistd.h>
+
 #include "io/descriptor.h"
 
 namespace salbench {
 
-// A new folder below TMPDIR, removed with all that is in it. Throws StorageError.
+// A new folder below TMPDIR, removed with all that is in it by the process that made it. Throws StorageError.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -21,6 +23,7 @@ class ScratchFolder {
  private:
   std::filesystem::path path_;
   Descriptor lock_{-1};  // on the folder; dies with the process
+  pid_t owner_ = ::getpid();
 };
 
 // Removes the folders below TMPDIR whose process is dead, of this user and on any file system that has locks.

@@ -23,7 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kConclusions = "conclusions.json";
-constexpr int kFormat = 1;  // of this file
+constexpr int kFormat = 1;              // of this file
+const std::string kDigest = "xxh128:";  // how it has those of tables
 constexpr std::chrono::hours kLongest(2);
 
 std::string digest_of(const RunState& run, const std::vector<TableFile>& files) {
@@ -39,17 +40,26 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
   return hasher.digest().hex();
 }
 
-// The document in the folder; null unless it is of this digest, and all its tables are there.
+// True if the table is what was there when the document was written.
+bool is_as_written(const fs::path& table, const Json& noted) {
+  return noted.is_string() && noted == kDigest + xxh128(read_file(table, kMaxItemBytes)).hex();
+}
+
+// The document in the folder; null unless it is of this digest, and all its tables are there and whole.
 Json conclusions_in(const fs::path& folder, const std::string& digest) try {
   if (!size_of_file(folder / kConclusions)) return {};
   Json document = Json::parse(read_file(folder / kConclusions), nullptr, false);
   if (!document.is_object() || document.value("format", 0) != kFormat ||
       !document.value("of", Json()).is_string() || document["of"] != digest)
     return {};
+  const Json files = document.value("files", Json::object());
   for (const Json& table : document.value("tables", Json::array()))
-    if (!table.is_string() || !size_of_file(folder / table.get<std::string>())) return {};
+    if (!is_as_written(folder / table.get<std::string>(), files.value(table.get<std::string>(), Json())))
+      return {};
   return document;
 } catch (const Json::exception&) {  // edited, or another's
+  return {};
+} catch (const InputError&) {  // a table that is gone, or no file
   return {};
 }
 
@@ -80,6 +90,7 @@ std::string write_scores(const fs::path& folder, const RunState& run, const std:
 Concluded conclude_results(const fs::path& folder, const std::string& digest) try {
   if (const Json document = conclusions_in(folder, digest); !document.is_null())
     return concluded_by(document);
+  if (const std::string wrong = wrong_with_interpreter(); !wrong.empty()) return {.missing = wrong};
   const CommandEnd end =
       try_command(package_command({"conclude", fs::absolute(folder).string(), "--of", digest, "--quiet"}),
                   fs::current_path(), kLongest);

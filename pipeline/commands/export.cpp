@@ -214,7 +214,7 @@ Subcommand export_subcommand(Arguments& arguments) {
           {{"--stage", &options->stages,
             "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
            {"--models", &arguments.models, "only these, such as LS,PS"},
-           {"--to", &arguments.to, "the HDF5 file, or the folder of the shapes or maps", true},
+           of_path({"--to", &arguments.to, "the HDF5 file, or the folder of the shapes or maps", true}),
            {"--format", &options->format,
             "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value "
             "per line, after histogram matching with --stage matched"},

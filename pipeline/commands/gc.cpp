@@ -92,9 +92,10 @@ Subcommand gc_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
   return {"gc", "remove from a cache what no run of these configurations needs",
           maintaining_parameters(
-              arguments, {{"CONFIG", &options->configs, "every configuration whose artefacts are kept", true},
-                          {"--dry-run", &options->dry_run, "only say what would be removed"},
-                          format_parameter(format)}),
+              arguments,
+              {of_path({"CONFIG", &options->configs, "every configuration whose artefacts are kept", true}),
+               {"--dry-run", &options->dry_run, "only say what would be removed"},
+               format_parameter(format)}),
           [&arguments, options, format](const std::atomic<bool>&) {
             return run_gc(arguments, *options, format_of(format));
           }};

@@ -39,9 +39,18 @@ void become_package(std::span<const char* const> words) {
   std::vector<char*> argv;
   for (std::string& word : line) argv.push_back(word.data());
   argv.push_back(nullptr);
+  if (const std::string wrong = wrong_with_interpreter(); !wrong.empty()) throw ConfigError(wrong);
   std::signal(SIGXFSZ, SIG_DFL);  // what this program ignores is its own matter
+  // Until the package has handlers (raise_interrupts): Python would end in a traceback of whatever it
+  // imports.
+  sigset_t interrupts, before;
+  ::sigemptyset(&interrupts);
+  ::sigaddset(&interrupts, SIGINT);
+  ::sigprocmask(SIG_BLOCK, &interrupts, &before);
   ::execvp(argv[0], argv.data());
-  throw ConfigError(no_interpreter(system_reason(errno)));
+  const int error = errno;
+  ::sigprocmask(SIG_SETMASK, &before, nullptr);
+  throw ConfigError(no_interpreter(system_reason(error)));
 }
 
 }  // namespace salbench

@@ -168,7 +168,12 @@ struct Declare {
  private:
   template <class Target>
   CLI::Option* declared(Target& target) const {
-    return app.add_option(parameter.name, target, parameter.help)->required(parameter.required);
+    CLI::Option* option =
+        app.add_option(parameter.name, target, parameter.help)->required(parameter.required);
+    return parameter.is_path ? option->check(named) : option;
+  }
+  static std::string named(const std::string& path) {
+    return path.empty() ? "is empty: name a file or a folder" : std::string();
   }
 };
 

@@ -17,9 +17,14 @@ Parameters joined(Parameters parameters, const Parameters& further) {
 
 }  // namespace
 
+Parameter of_path(Parameter parameter) {
+  parameter.is_path = true;
+  return parameter;
+}
+
 Parameter config_parameter(Arguments& arguments) {
-  return {"CONFIG", &arguments.config,
-          "configuration file (YAML), or the name of an installed one, such as shrec07", true};
+  return of_path({"CONFIG", &arguments.config,
+                  "configuration file (YAML), or the name of an installed one, such as shrec07", true});
 }
 
 Parameter shard_parameter(Arguments& arguments) {
@@ -28,21 +33,21 @@ Parameter shard_parameter(Arguments& arguments) {
 }
 
 Parameter data_parameter(Arguments& arguments) {
-  return {"--data", &arguments.data, "folder of the data set"};
+  return of_path({"--data", &arguments.data, "folder of the data set"});
 }
 
 namespace {
 
 Parameter cache_parameter(Arguments& arguments) {
-  return {"--cache", &arguments.cache,
-          "folder of the artefacts (default: cache in CONFIG, or salbench-cache)"};
+  return of_path(
+      {"--cache", &arguments.cache, "folder of the artefacts (default: cache in CONFIG, or salbench-cache)"});
 }
 
 }  // namespace
 
 Parameter output_parameter(Arguments& arguments) {
-  return {"--out", &arguments.output,
-          "folder of the results (default: output in CONFIG, or salbench-out/NAME)"};
+  return of_path({"--out", &arguments.output,
+                  "folder of the results (default: output in CONFIG, or salbench-out/NAME)"});
 }
 
 Parameter threads_parameter(Arguments& arguments) {
@@ -51,13 +56,15 @@ Parameter threads_parameter(Arguments& arguments) {
 }
 
 Parameters selecting_parameters(Arguments& arguments) {
-  return {{"--items", &arguments.items,
-           "only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth"},
-          {"--split", &arguments.split,
-           "only this split of the data set, such as test; '': all, where CONFIG names one"},
+  return {
+      {"--items", &arguments.items,
+       "only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth"},
+      {"--split", &arguments.split,
+       "only this split of the data set, such as test; '': all, where CONFIG names one"},
+      of_path(
           {"--reference", &arguments.reference,
            "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the data set; "
-           "items: to the mean over --items"}};
+           "items: to the mean over --items"})};
 }
 
 Parameters planning_parameters(Arguments& arguments, const Parameters& further) {

@@ -49,6 +49,7 @@ struct Parameter {
   bool required = false;
   int max = std::numeric_limits<int>::max();  // of a number, which is at least 1
   std::string needs = {};                     // name of another one without which this one would do nothing
+  bool is_path = false;                       // an empty text is refused: it would be the present folder
 };
 using Parameters = std::vector<Parameter>;
 
@@ -61,6 +62,8 @@ struct Subcommand {
 
 // A row of the table of subcommands. `arguments` is filled before `run` is called, and outlives it.
 using SubcommandRow = Subcommand (*)(Arguments& arguments);
+
+Parameter of_path(Parameter parameter);  // the same for a file or a folder
 
 // Parameters that several subcommands share.
 Parameter config_parameter(Arguments& arguments);

@@ -129,7 +129,7 @@ Subcommand verify_subcommand(Arguments& arguments) {
   const auto options = std::make_shared<VerifyOptions>();
   const FormatWord format = default_format();
   Parameters parameters = maintaining_parameters(
-      arguments, {{"CONFIG", &options->configs, "configuration files, or none with --cache"},
+      arguments, {of_path({"CONFIG", &options->configs, "configuration files, or none with --cache"}),
                   {"--deep", &options->deep, "also compute a sample of the cached jobs again, and compare"},
                   {"--sample", &options->sample, "how many (default: 20)"},
                   format_parameter(format)});

@@ -182,6 +182,8 @@ DatasetItem item_from(const Json& row) {
 
 // What the package prints. Its messages are for the user.
 std::string list_printed_by_package(const fs::path& root, const std::string& layout, Twins twins) {
+  if (const std::string wrong = wrong_with_interpreter(); !wrong.empty())
+    throw ConfigError(fmt::format("the layout '{}' needs Python: {}", layout, wrong));
   const ScratchFolder scratch;
   const fs::path out = scratch.path() / "list", errors = scratch.path() / "errors";
   const CommandEnd end = try_command(fmt::format("{} > {} 2> {}",

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/package/package.h"
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 #include "io/commands/process.h"
 
@@ -84,6 +87,8 @@ fs::path package_folder() {
 std::vector<std::string> package_words(int status_if_lacking, const std::vector<std::string>& words) {
   std::vector<std::string> line = {interpreter(),
                                    "-P",
+                                   "-X",
+                                   "utf8",  // names and texts are read and written as the program does
                                    "-c",
                                    kStart,
                                    SALBENCH_VERSION,
@@ -92,6 +97,20 @@ std::vector<std::string> package_words(int status_if_lacking, const std::vector<
                                    remedy()};
   line.insert(line.end(), words.begin(), words.end());
   return line;
+}
+
+std::string wrong_with_interpreter() {
+  constexpr std::string_view kAnswer = "salbench 42\n";
+  if (around_us() || interpreter() == SALBENCH_PYTHON) return {};
+  const std::string question =
+      shell_quoted(interpreter()) + " -I -S -c 'print(\"salbench\", 6 * 7)' 2>/dev/null";
+  std::FILE* const asked = ::popen(question.c_str(), "r");
+  if (asked == nullptr) return {};
+  std::array<char, 64> answer{};
+  const std::size_t size = std::fread(answer.data(), 1, answer.size(), asked);
+  const int status = ::pclose(asked);
+  const bool is_left = WIFEXITED(status) && !no_interpreter(WEXITSTATUS(status)).empty();
+  return is_left || std::string_view(answer.data(), size) == kAnswer ? "" : no_interpreter("is no Python");
 }
 
 std::string package_command(const std::vector<std::string>& words) {

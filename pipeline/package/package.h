@@ -28,6 +28,11 @@ std::string package_command(const std::vector<std::string>& words);
 std::string no_interpreter(int status);
 std::string no_interpreter(std::string_view reason);
 
+// What is wrong with SALBENCH_PYTHON if it names a program that does not answer as Python does, which could
+// end with status 0 and have done nothing; empty otherwise. One that cannot be started is left to who starts
+// it.
+std::string wrong_with_interpreter();
+
 // Folder to look for the package in: beside the program, in the tree that it was built or installed in; empty
 // where the interpreter finds it by itself.
 std::filesystem::path package_folder();

@@ -99,7 +99,7 @@ Table people_table(const std::vector<MeshCurve>& curves, const Metrics& metrics)
   for (const Metric& metric : metrics) table.columns.push_back(metric.name);
   for (const MeshCurve& mesh : curves)
     for (std::size_t i = 0; i < mesh.curve.size(); ++i) {
-      const std::vector<double>& values = mesh.curve[i].values;
+      const std::vector<double> values = in_range(metrics, mesh.curve[i]).values;
       table.rows.push_back(
           cells(mesh.item, mesh.category, i + 1, std::vector<Cell>(values.begin(), values.end())));
     }

@@ -44,6 +44,8 @@ std::vector<ResultRow> collect(const RunState& run, const Taken& taken_rows) {
     if (has_role(rules[r], taken_rows.role) && (rules[r].subject == kConstantMap) == taken_rows.of_constant)
       scored.push_back({rules[r].inputs[0], run.resolver.value_so_far({r, Unit{}})});
 
+  Metrics metrics = chosen_metrics(run.config.metrics);
+  if (taken_rows.of_constant) std::erase_if(metrics, [](const Metric& of) { return !of.constant_varies; });
   std::vector<ResultRow> rows;
   for (const Unit unit : run.shapes())
     for (auto& [rule, table, shapes] : scored) {
@@ -53,7 +55,7 @@ std::vector<ResultRow> collect(const RunState& run, const Taken& taken_rows) {
       const std::size_t row = shapes++ * taken_rows.rows_per_shape + taken_rows.row;
       rows.push_back({std::string(shapes_name(unit.level)), item.shape_name(), item.category,
                       view_of(run.units(), unit), rules[rule].subject,
-                      value_as<ScoreTable>(*table).rows.at(row), job, item.split});
+                      in_range(metrics, value_as<ScoreTable>(*table).rows.at(row)), job, item.split});
     }
   return rows;
 }

@@ -27,6 +27,8 @@ namespace {
 constexpr std::array<std::string_view, 3> kTaken = {"GS", "Avg", kConstantMap};
 constexpr std::size_t kLongestName = 40;
 
+char lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 ModelRow human_row(std::string_view name, std::int32_t version) {
   return {name, [=](const Section& written, Protocol protocol) {
             auto options = preset<HsOptions>(protocol);
@@ -84,10 +86,11 @@ std::string wrong_with_model_name(std::string_view name) {
   };
   if (name.empty() || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), plain))
     return fmt::format("must be 1 to {} letters, digits, '-' and '_'", kLongestName);
-  const auto rows = model_rows();
-  if (std::find(kTaken.begin(), kTaken.end(), name) != kTaken.end() ||
-      std::any_of(rows.begin(), rows.end(), [&](const ModelRow& row) { return row.name == name; }))
-    return "is the name of something else in the tables; choose another";
+  const auto is_this = [&](std::string_view taken) {
+    return std::ranges::equal(taken, name, {}, lower_case, lower_case);
+  };
+  if (std::ranges::any_of(kTaken, is_this) || std::ranges::any_of(model_rows(), is_this, &ModelRow::name))
+    return "is the name of something else in the tables, whatever its capitals; choose another";
   return {};
 }
 

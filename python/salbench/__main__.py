@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The subcommands of this side: `salbench NAME`, which the program hands over, is `python3 -P -m salbench NAME`."""
 
+import errno
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
 from typing import Any
 
-UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 2, 3, 70, 130
+UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 2, 3, 70
+_OF_THE_SYSTEM = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
 
 
 def conclude(arguments: Sequence[str]) -> int:
@@ -78,29 +80,20 @@ def leaderboard(arguments: Sequence[str]) -> int:
 
 
 def _over_data(name: str, parser: Any, arguments: Sequence[str]) -> int:
-    """A command that runs jobs: a second call goes on where it was ended."""
-    import shlex
-    import signal
-
+    """A command that runs jobs."""
     from salbench.leaderboard import commands
 
     commands.add_arguments(parser)
     given = parser.parsed(arguments)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        return (commands.submit if name == "submit" else commands.leaderboard)(given)
-    except KeyboardInterrupt:
-        line = shlex.join(["salbench", name, *arguments])
-        print(f"\ninterrupted; everything finished so far is kept. To go on:\n  {line}", file=sys.stderr)
-        return INTERRUPTED
+    return (commands.submit if name == "submit" else commands.leaderboard)(given)
 
 
 def report_(arguments: Sequence[str]) -> int:
     """Pages of a run that open from disk: who leads and how sure, figures, maps on the shapes."""
     import os
-    import tempfile
     from pathlib import Path
 
+    from salbench import _core
     from salbench._command_line import ALL_DONE, Parser, report
 
     parser = Parser("report", report_.__doc__ or "", "OUT")
@@ -116,11 +109,11 @@ def report_(arguments: Sequence[str]) -> int:
                      default=len(os.sched_getaffinity(0)))
     parser.add_report("no path; warnings and errors only")
     given = parser.parsed(arguments)
-    with tempfile.TemporaryDirectory() as scratch:  # Matplotlib's font list: nothing is written outside the folder of the report
-        os.environ["MPLCONFIGDIR"] = scratch
+    with _core.ScratchFolder() as scratch:  # also for Matplotlib's font list: nothing is written outside the folder of the report
+        os.environ |= {"MPLCONFIGDIR": scratch, "MPLBACKEND": "Agg"}
         from salbench.report.write import write_report
 
-        page = write_report(Path(given.results), to=Path(given.to) if given.to else None, exports=given.export,
+        page = write_report(Path(given.results), Path(scratch), to=Path(given.to) if given.to else None, exports=given.export,
                             compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
                             processes=given.processes, viewer=given.viewer)
     report(given, "report", {"page": str(page)}, f"{page}\n")
@@ -156,14 +149,25 @@ def _names(text: str) -> list[str]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Carries out a subcommand; returns its exit status."""
     from salbench._command_line import Forgiving
-    from salbench._errors import InputError, StorageError
+    from salbench._processes import raise_interrupts, say_interrupted
 
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="surrogateescape")  # names of files may be no UTF-8
+            stream.reconfigure(encoding="utf-8", errors="surrogateescape")  # as the program writes; names of files may be no UTF-8
     if isinstance(sys.stderr, TextIOWrapper):  # and not forgiving yet
         sys.stderr = Forgiving(sys.stderr)  # type: ignore[assignment]
-    name, *others = sys.argv[1:] if arguments is None else arguments or [""]
+    name, *others = sys.argv[1:] or [""] if arguments is None else arguments or [""]
+    try:
+        if arguments is None and name in SUBCOMMANDS:
+            raise_interrupts([name, *others])
+        return _carry_out(name, others)
+    except KeyboardInterrupt:
+        return say_interrupted([name, *others])
+
+
+def _carry_out(name: str, others: Sequence[str]) -> int:
+    from salbench._errors import InputError, StorageError
+
     subcommand = (SUBCOMMANDS | SERVED).get(name)
     if subcommand is None:
         return _fail(UNUSABLE_ARGUMENTS, f"there is no subcommand '{name}' in the package; there are {', '.join(SUBCOMMANDS)}")
@@ -174,9 +178,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except StorageError as error:
         return _fail(UNUSABLE_STORAGE, str(error))
     except OSError as error:
+        if error.filename is None or error.errno in _OF_THE_SYSTEM:
+            return _fail(UNUSABLE_STORAGE, ": ".join(filter(None, (error.filename and str(error.filename), error.strerror or str(error)))))
         return _fail(UNUSABLE_ARGUMENTS, f"{error.filename}: cannot be read: {error.strerror}")
-    except KeyboardInterrupt:
-        return INTERRUPTED
     except ModuleNotFoundError:
         raise  # the program says what to install
     except MemoryError:

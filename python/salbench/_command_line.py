@@ -13,8 +13,10 @@ from typing import Any, NoReturn
 
 from salbench._errors import InputError, StorageError
 
-ALL_DONE, SOME_FAILED, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT, INTERRUPTED = 0, 1, 2, 3, 70, 130
+ALL_DONE, SOME_FAILED, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 0, 1, 2, 3, 70
 SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
+
+_PATHS = ("CONFIG", "DIR", "FILE", "FILE.h5", "FOLDER", "MINE", "OUT", "OUT2", "OUT|SCORES.csv")  # an empty one would be the present folder
 
 _EXAMPLES = {  # as `salbench --help` has them
     "conclude": "results.csv --unit class --out tables",
@@ -61,6 +63,11 @@ class Parser(argparse.ArgumentParser):
         given = self.parse_args(arguments)
         if given.format not in ("text", "json"):
             raise InputError(f"--format {given.format}: must be text or json")
+        for action in self._actions:
+            values = getattr(given, action.dest, None)
+            if action.metavar in _PATHS and "" in (values if isinstance(values, list) else [values]):
+                name = action.option_strings[-1] if action.option_strings else action.metavar
+                raise InputError(f"{name}: is empty: name a file or a folder")
         return given
 
     def error(self, message: str) -> NoReturn:

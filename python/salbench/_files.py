@@ -1,21 +1,242 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that are there whole or not at all."""
+"""Files. Those of strangers are regular and of a bounded size. Those of our own folders are there whole or not at all, and no link in such a
+folder leads anywhere."""
 
 import contextlib
+import errno
+import fcntl
 import os
+import re
+import stat
+import sys
+from collections.abc import Iterator, Sequence
+from typing import BinaryIO, NoReturn
+
+from salbench._errors import InputError, StorageError
+
+AnyPath = str | os.PathLike[str]
+
+MAX_ITEM_BYTES = 2 << 30
+_NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer is open at once
+_TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller"
+_NO_FILE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
+_UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.unfinished")
+
+ADVICE = {errno.EACCES: "; check its permissions", errno.EPERM: "; check its permissions", errno.EIO: "; the disk failed: check it and run again",
+          errno.EMFILE: "; raise the limit (ulimit -n)", errno.ENOMEM: "; close other programs"}
 
 
-def replace_file(path: str | os.PathLike[str], data: bytes, *, to_disk: bool = False) -> None:
-    """In one step. to_disk: its bytes are on the disk when it gets its name. Throws OSError."""
-    temporary = os.path.join(os.path.dirname(path), f".{os.urandom(8).hex()}.unfinished")
+def fail(path: AnyPath, verb: str, error: OSError) -> NoReturn:
+    code = error.errno or 0
+    raise InputError(f"{os.fspath(path)}: cannot be {verb}: {os.strerror(code)}{ADVICE.get(code, '')}") from None
+
+
+def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_LARGE) -> bytes:
+    """The bytes of a regular file. Its size is judged before memory is taken, and a pipe is not waited for. Throws InputError. too_large:
+    what to do about one that is."""
+    with _regular(path, most, too_large) as file:
+        try:
+            return file.read(os.fstat(file.fileno()).st_size)
+        except MemoryError:
+            raise InputError(f"{os.fspath(path)}: no memory for its bytes; leave it out, or work on fewer items at a time") from None
+
+
+def require_file(path: AnyPath, most: int = MAX_ITEM_BYTES) -> None:
+    """Throws InputError for what `read_file` would not read: of a file that a library opens."""
+    with _regular(path, most, _TOO_LARGE):
+        pass
+
+
+@contextlib.contextmanager
+def _regular(path: AnyPath, most: int, too_large: str) -> Iterator[BinaryIO]:
+    name = os.fspath(path)
     try:
-        with open(temporary, "xb") as file:
+        with open(os.open(path, os.O_RDONLY | _NEVER_WAIT), "rb") as file:
+            status = os.fstat(file.fileno())
+            if stat.S_ISDIR(status.st_mode):
+                raise InputError(f"{name}: is a folder, where a file is expected")
+            if not stat.S_ISREG(status.st_mode):
+                raise InputError(f"{name}: is not a regular file")
+            if status.st_size > most:
+                raise InputError(f"{name}: {status.st_size} bytes: at most {most} can be read; {too_large}")
+            yield file
+    except IsADirectoryError:
+        raise InputError(f"{name}: is a folder, where a file is expected") from None
+    except OSError as error:
+        fail(path, "read", error)
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{name}: cannot be read: it is no name of a file") from None
+
+
+def replace_file(path: AnyPath, data: bytes) -> None:
+    """In one step, and on the disk when it is there. Throws OSError."""
+    folder, name = os.path.split(os.fspath(path))
+    at = os.open(folder or ".", os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        _replace(at, name, data, to_disk=True)
+    finally:
+        os.close(at)
+
+
+def _replace(at: int, name: str, data: bytes, to_disk: bool) -> None:
+    unfinished = f".{os.urandom(8).hex()}.unfinished"
+    try:
+        with open(os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666, dir_fd=at), "wb") as file:
             file.write(data)
             if to_disk:
                 file.flush()
                 os.fsync(file.fileno())
-        os.replace(temporary, path)
+        os.replace(unfinished, name, src_dir_fd=at, dst_dir_fd=at)
     except BaseException:
         with contextlib.suppress(OSError):
-            os.unlink(temporary)
+            os.unlink(unfinished, dir_fd=at)
         raise
+    if to_disk:
+        with contextlib.suppress(OSError):  # not every file system can, and the file is whole without
+            os.fsync(at)
+
+
+class OwnFolder:
+    """A folder that a command writes to, made if it is missing. One call at a time has it, and others wait: what the one before was ended in
+    is removed then, here and below the folders `below`. Names are paths within it; a link on the way is an InputError, and one in place of a
+    file is replaced or removed itself. All that the system refuses is a StorageError. advice: "choose another with --to".
+    """
+
+    def __init__(self, path: AnyPath, advice: str, *, below: Sequence[str] = (), follow: bool = True, to_disk: bool = True) -> None:
+        self.path, self.advice, self._to_disk = os.fspath(path), advice, to_disk
+        if not follow and os.path.islink(self.path):
+            raise InputError(f"{self.path}: is a link; name the folder itself, or {advice}")
+        try:
+            os.makedirs(self.path, exist_ok=True)
+            self._at = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if follow else os.O_NOFOLLOW))
+        except OSError as error:
+            raise StorageError(f"{self.path}: the folder cannot be created: {error.strerror}; {advice}") from None
+        try:
+            if self._locked():
+                self._remove_unfinished(below)
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> "OwnFolder":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Others may have it now, whichever children still hold a copy of the descriptor."""
+        with contextlib.suppress(OSError):
+            fcntl.flock(self._at, fcntl.LOCK_UN)
+        os.close(self._at)
+
+    def _locked(self) -> bool:
+        """False on a file system without locks, where nothing is found abandoned."""
+        try:
+            fcntl.flock(self._at, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print(f"warning: {self.path}: another call writes to this folder; waiting for its end", file=sys.stderr, flush=True)
+            fcntl.flock(self._at, fcntl.LOCK_EX)
+        except OSError:
+            return False
+        return True
+
+    def _remove_unfinished(self, below: Sequence[str]) -> None:
+        def remove(names: Sequence[str], at: int) -> None:
+            for name in filter(_UNFINISHED.fullmatch, names):
+                with contextlib.suppress(OSError):
+                    os.unlink(name, dir_fd=at)
+
+        remove(os.listdir(self._at), self._at)
+        for folder in below:
+            with contextlib.suppress(OSError):  # there is none
+                for _, _, names, at in os.fwalk(folder, dir_fd=self._at):  # follows no link
+                    remove(names, at)
+
+    def require_folder(self, name: str) -> None:
+        """Makes it if it is missing."""
+        with self._refused(name, "written"), self._parent(f"{name}/", make=True):
+            pass
+
+    def is_link(self, name: str) -> bool:
+        try:
+            return stat.S_ISLNK(os.stat(name, dir_fd=self._at, follow_symlinks=False).st_mode)
+        except OSError:
+            return False
+
+    def write(self, name: str, data: bytes) -> None:
+        """The file is there whole or not at all."""
+        with self._refused(name, "written"), self._parent(name, make=True) as (at, last):
+            _replace(at, last, data, self._to_disk)
+
+    def append(self, name: str, data: bytes) -> None:
+        """To a file that `write` has made."""
+        with self._refused(name, "written"), self._parent(name) as (at, last):
+            with open(os.open(last, os.O_WRONLY | os.O_APPEND | os.O_NOFOLLOW | _NEVER_WAIT, dir_fd=at), "wb") as file:
+                file.write(data)
+
+    def read(self, name: str, most: int = MAX_ITEM_BYTES) -> bytes | None:
+        """None where there is no regular file of at most so many bytes."""
+        with self._opened(name) as file:
+            return None if file is None or os.fstat(file.fileno()).st_size > most else file.read(most)
+
+    def head(self, name: str) -> bytes:
+        """The first bytes of a regular file; none where there is none."""
+        with self._opened(name) as file:
+            return b"" if file is None else file.read(1 << 12)
+
+    def remove(self, name: str) -> None:
+        """A file, or a link; where there is none, nothing is to be done."""
+        with self._refused(name, "removed", _NO_FILE), self._parent(name) as (at, last):
+            os.unlink(last, dir_fd=at)
+
+    def remove_empty(self, folder: str, with_files: bool = False) -> None:
+        """Folders below this one that hold nothing, or with all that they hold."""
+        with contextlib.suppress(OSError):
+            for _, folders, files, at in os.fwalk(folder, topdown=False, dir_fd=self._at):
+                for name in files if with_files else ():
+                    os.unlink(name, dir_fd=at)
+                for name in folders:
+                    with contextlib.suppress(OSError):  # it holds something, or is a link
+                        os.rmdir(name, dir_fd=at)
+
+    @contextlib.contextmanager
+    def _opened(self, name: str) -> Iterator[BinaryIO | None]:
+        with contextlib.ExitStack() as stack:
+            file = None
+            with contextlib.suppress(OSError):
+                at, last = stack.enter_context(self._parent(name))
+                file = stack.enter_context(open(os.open(last, os.O_RDONLY | os.O_NOFOLLOW | _NEVER_WAIT, dir_fd=at), "rb"))
+            yield file if file is not None and stat.S_ISREG(os.fstat(file.fileno()).st_mode) else None
+
+    @contextlib.contextmanager
+    def _parent(self, name: str, make: bool = False) -> Iterator[tuple[int, str]]:
+        """The descriptor of the folder that a file is in, and its name there."""
+        *folders, last = name.split("/")
+        at = os.dup(self._at)
+        try:
+            for depth, folder in enumerate(folders, 1):
+                if make:
+                    with contextlib.suppress(FileExistsError):
+                        os.mkdir(folder, dir_fd=at)
+                try:
+                    below = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC, dir_fd=at)
+                except NotADirectoryError:
+                    if self.is_link("/".join(folders[:depth])):
+                        raise InputError(f"{self.path}/{'/'.join(folders[:depth])}: is a link, and is not followed; remove it, or {self.advice}") from None
+                    raise
+                os.close(at)
+                at = below
+            yield at, last
+        finally:
+            os.close(at)
+
+    @contextlib.contextmanager
+    def _refused(self, name: str, verb: str, unless: Sequence[int] = ()) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            if error.errno not in unless:
+                raise StorageError(f"{self.path}/{name}: cannot be {verb}: {error.strerror}; {self.advice}") from None

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from salbench._by_name import ByName
+from salbench._errors import InputError
+from salbench._files import replace_file
 from salbench._tables import Tables, read
 from salbench._types import ArrayLike, NDArray
 
@@ -74,7 +76,10 @@ class Results(Tables):
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
+        if not os.fspath(folder):
+            raise ValueError("folder is empty: name the one that a run has written")
         self.folder = pathlib.Path(folder)
+        self._concluded = False
         if not (self.folder / "run.yaml").is_file():
             raise FileNotFoundError(f"{self.folder}: holds no results: no run has written a run.yaml there")
         self._run = run
@@ -86,20 +91,23 @@ class Results(Tables):
             for name, computed, read, first, last in (run.models() if run else ())}
 
     def _table(self, name: str) -> "pandas.DataFrame":
-        path = self.folder / f"{name}.csv"
-        if not path.is_file():
-            self._conclude()
-        return read(path)
+        self._conclude()
+        return self._read(name)
+
+    def _read(self, name: str) -> "pandas.DataFrame":
+        return read(self.folder / f"{name}.csv")
 
     def _conclude(self) -> None:
         from salbench import conclusions
 
-        conclusions.conclude_if_missing(self.folder)
+        if not self._concluded:
+            conclusions.conclude_if_missing(self.folder)
+            self._concluded = True
 
     @cached_property
     def scores(self) -> "pandas.DataFrame":
         """A row per shape and model (results.csv)."""
-        return self._table("results")
+        return self._read("results")
 
     @cached_property
     def trained(self) -> dict[str, str]:
@@ -112,7 +120,7 @@ class Results(Tables):
     def reference(self) -> Reference:
         """The histograms that maps were matched to, by data set: (100,) arrays (column GS of mean_histograms_*.csv)."""
         names = [name for name in dict.fromkeys(self.scores.dataset) if (self.folder / f"mean_histograms_{name}.csv").is_file()]
-        tables = {name: self._table(f"mean_histograms_{name}") for name in names}
+        tables = {name: self._read(f"mean_histograms_{name}") for name in names}
         return Reference({name: table.GS.to_numpy(np.float64) for name, table in tables.items() if "GS" in table})
 
     def maps(self, model: str) -> Mapping[str, NDArray[np.float64]]:
@@ -169,15 +177,17 @@ class Results(Tables):
             `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data` says by default how it was
             trained, and `test_overlap` that it has seen none of the shapes that it is scored on.
         """
+        if not os.fspath(folder):
+            raise ValueError("folder is empty: name one")
         maps = self.maps(model)
         how = self.trained.get(model)
         learned = {"training_data": f"this data set, {how}", "test_overlap": "none"} if how else {}
         to = pathlib.Path(folder)
         to.mkdir(parents=True, exist_ok=True)
         for item, values in maps.items():
-            (to / f"{item}.val").write_text("".join(f"{float(value)!r}\n" for value in values))
+            replace_file(to / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
         lines = [f"{key}: {json.dumps(value)}\n" for key, value in {"name": model, **learned, **card}.items()]
-        (to / "card.yaml").write_text("".join(lines))
+        replace_file(to / "card.yaml", "".join(lines).encode())
         return to
 
     def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
@@ -187,12 +197,16 @@ class Results(Tables):
         subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, _PACKAGE, *arguments], check=True)
         return pathlib.Path(folder) / "index.html"
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What another process reads from the folder; the run itself, and so its maps, are of this one."""
+        return {**self.__dict__, "folder": self.folder.absolute()}
+
     def _repr_html_(self) -> str:
         head = f"<pre>{html.escape(repr(self))}</pre>"
         columns = ["dataset", "metric", "model", "mean", "rank", "group"]
         try:
             return head + str(self.ranking[columns].to_html(index=False, max_rows=60))
-        except (ImportError, FileNotFoundError):  # without pandas; after a run that was interrupted early
+        except (ImportError, OSError, InputError):  # without pandas; after a run that was interrupted early
             return head
 
     def __repr__(self) -> str:

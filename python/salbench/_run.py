@@ -157,8 +157,15 @@ def run(
 def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
                 reference: Any) -> tuple[dict[str, Any], list[tuple[str, Predict | Model]]]:
     """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
+    for name, path in (("config", config), ("data", data), ("cache", cache), ("out", out), ("reference", reference)):
+        if isinstance(path, (str, os.PathLike)) and not os.fspath(path):
+            raise ValueError(f"{name} is empty: name a file or a folder, or leave it out")
+    if config is not None and not isinstance(config, (str, os.PathLike, Mapping)):
+        raise ValueError(f"config must be a file, a name or a dict, not {config!r:.100}")
     if data is not None and not os.path.isdir(data):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(data))
+    if models is not None and not isinstance(models, Mapping):
+        raise ValueError(f"models must be a dict by name, such as {_models_of(models)}, not {models!r:.100}")
     functions = [] if models is None else [
         (name, given) for name, given in models.items() if callable(given) or isinstance(given, Model)]
     others = None if models is None else {
@@ -181,6 +188,13 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
     if items is not None and not settings["items"]:
         raise ValueError("items is empty: name some, or leave it out to run all")
     return settings, functions
+
+
+def _models_of(given: Any) -> str:
+    """What somebody meant who gave names, or one function, in place of a dict."""
+    names = [given] if isinstance(given, str) or not isinstance(given, Iterable) else list(given)
+    entries = [f"{getattr(name, '__name__', name)!r}: {'{}' if isinstance(name, str) else 'function'}" for name in names[:3]]
+    return "{" + (", ".join(entries) or "'LS': {}") + "}"
 
 
 def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
@@ -260,7 +274,7 @@ def _raised(error: BaseException, trace: Any) -> tuple[str, str]:
     except Exception:  # of its own __str__
         text = type(error).__name__
     lines = " ".join(text.split()) + place, "".join(traceback.format_exception(type(error), error, trace)).rstrip()
-    line, whole = (one.encode("utf-8", "backslashreplace").decode() for one in lines)
+    line, whole = (one.encode("utf-8", "backslashreplace").decode().replace("\0", "\\0") for one in lines)
     return line, whole
 
 

@@ -20,10 +20,22 @@ inline std::string as_option(const std::string& name, const std::string& value =
   return value.empty() ? "`" + name + "`" : name + "='" + value + "'";
 }
 
+// Its message is whole for whoever reads what(), which a zero byte ends: what a file, a command or a function
+// said may have one.
+struct Error : std::runtime_error {
+  explicit Error(std::string message) : std::runtime_error(without_zeros(std::move(message))) {}
+
+ private:
+  static std::string without_zeros(std::string text) {
+    for (std::size_t at = 0; (at = text.find('\0', at)) != std::string::npos;) text.replace(at, 1, "\\0");
+    return text;
+  }
+};
+
 // An item's data cannot be used: the message names file and line, or the item, and what to do.
 // The item (or one stage of it) fails; the others go on.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct InputError : Error {
+  using Error::Error;
 };
 
 // A shape, or values on it, cannot be used as a whole: the message names no file. Stages, which know none,
@@ -39,8 +51,8 @@ struct FileError : InputError {
 };
 
 // Arguments or configuration cannot be used (exit status 2).
-struct ConfigError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct ConfigError : Error {
+  using Error::Error;
 };
 
 // A name, such as that of an item or a split, is not among those that there are.
@@ -65,13 +77,13 @@ struct OptionError : ConfigError {
 };
 
 // The cache or output folder cannot be used (exit status 3).
-struct StorageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct StorageError : Error {
+  using Error::Error;
 };
 
 // The program was asked to end while a command was at work: nothing is known about the command.
-struct Interrupted : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct Interrupted : Error {
+  using Error::Error;
 };
 
 // The message for any other exception (exit status 70). Call it inside a catch block.

@@ -221,6 +221,13 @@ Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOpti
   return score(chosen_metrics(options), map, truth, options, rng, areas);
 }
 
+Scores in_range(std::span<const Metric> metrics, Scores scores) {
+  CHECK_EQ(scores.values.size(), metrics.size());
+  for (std::size_t m = 0; m < metrics.size(); ++m)  // NaN stays
+    scores.values[m] = std::clamp(scores.values[m], metrics[m].range.low, metrics[m].range.high);
+  return scores;
+}
+
 std::optional<double> score_of_constant(const Metric& metric, const MetricsOptions& options) {
   if (metric.constant_varies) return {};
   const GroundTruth truth{{0, 0.5, 1}, {{1}}};  // of any shape: three points

@@ -174,6 +174,10 @@ Scores score(std::span<const Metric> metrics, const ScalarField& map, const Grou
 Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
              std::span<const double> areas = {});
 
+// Rounding can put a value beyond what it can be, such as a correlation of 1 + 2e-16. Stored scores keep it;
+// what is shown does not.
+Scores in_range(std::span<const Metric> metrics, Scores scores);
+
 // Score of a constant map; nothing where it differs from shape to shape.
 std::optional<double> score_of_constant(const Metric& metric, const MetricsOptions& options);
 

@@ -3,9 +3,11 @@
 
 import ast
 import contextlib
+import hashlib
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -17,10 +19,11 @@ import numpy as np
 import pandas
 from support import row, scores_of
 
-from salbench import __main__, conclusions
+from salbench import Results, __main__, conclusions
 from salbench.conclusions import Table, folders, tables
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
+from tests.support.stopped import Stopped
 
 PACKAGE = Path(conclusions.__file__).parent
 SIMULATED = "SIMULATED participants: made up"
@@ -123,6 +126,139 @@ class ConcludeTest(FolderTest):
             subprocess.run([sys.executable, "-B", "-c", script, threads, self.folder, self.folder / threads], check=True, env=os.environ | limits)
             made.append(self.files(self.folder / threads))
         self.assertEqual(*made)
+
+
+# What may become of a table: how, of its path.
+DAMAGE = {
+    "cut short": lambda path: path.write_bytes(path.read_bytes()[:100]),
+    "emptied": lambda path: path.write_bytes(b""),
+    "another digit": lambda path: path.write_bytes(path.read_bytes()[:-2] + b"~\n"),
+    "a line more": lambda path: path.write_bytes(path.read_bytes() + b"x\n"),
+    "gone": lambda path: path.unlink(),
+    "a pipe": lambda path: (path.unlink(), os.mkfifo(path)),
+    "a link to zeros": lambda path: (path.unlink(), path.symlink_to("/dev/zero")),
+}
+
+
+class WrittenAgainTest(FolderTest):
+    def setUp(self):
+        super().setUp()
+        self.write_run()
+        self.call("conclude", self.folder, "--quiet")
+        self.whole = self.files()
+
+    def test_a_table_that_is_not_what_was_written_is(self):
+        for name in ("ranking.csv", "summary.csv", "chance.csv"):
+            for what, damage in DAMAGE.items():
+                with self.subTest(name, what=what):
+                    damage(self.folder / name)
+                    self.assertFalse(folders.is_whole(self.folder))
+                    self.assertEqual(len(Results(self.folder).ranking), self.whole["ranking.csv"].count(b"\n") - 1)
+                    self.assertEqual(self.files(), self.whole)
+
+    def test_what_is_whole_is_left_alone(self):
+        before = {path: path.stat().st_mtime_ns for path in self.folder.iterdir()}
+        conclusions.conclude_if_missing(self.folder)
+        self.assertEqual({path: path.stat().st_mtime_ns for path in self.folder.iterdir()}, before)
+
+    def test_a_document_that_cannot_be_used_counts_as_none(self):
+        document = self.document()
+        for text in ("[" * 100_000, "{}", "[]", "3", "null", '{"tables": 3}', json.dumps({**document, "files": {"summary.csv": 3}}),
+                     json.dumps({**document, "files": {"summary.csv": "xxh128:0"}}), json.dumps({**document, "tables": ["../x.csv"]}),
+                     json.dumps({**document, "tables": [["x"]]}), json.dumps({**document, "tables": [3]}), "\ud800"):
+            with self.subTest(text[:30]):
+                (self.folder / "conclusions.json").write_bytes(text.encode("utf-8", "surrogatepass"))
+                self.assertFalse(folders.is_whole(self.folder))
+                self.assertIsInstance(folders.changed(self.folder), list)
+
+    def test_digests_of_version_1_0(self):
+        document = self.document()
+        document["files"] = {name: hashlib.blake2b(self.whole[name], digest_size=16).hexdigest() for name in document["files"]}
+        (self.folder / "conclusions.json").write_text(json.dumps(document))
+        self.assertTrue(folders.is_whole(self.folder))
+        (self.folder / "people.csv").write_text("changed")
+        self.assertEqual(folders.changed(self.folder), ["people.csv"])
+
+
+class EndedTest(FolderTest):
+    WRITING = "from salbench.conclusions import folders\nfolders.write_document = before(folders.write_document)"
+
+    def setUp(self):
+        super().setUp()
+        self.write_run()
+        self.call("conclude", self.folder, "--quiet")
+        self.whole = self.files()
+
+    def test_by_signals_and_force(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
+            with self.subTest(number), Stopped(self.WRITING, "conclude", self.folder, "--quiet") as call:
+                call.signal(number)
+                status, errors = call.ended()
+                self.assertEqual((status, errors.count("\n")), (-number, 0) if number == signal.SIGKILL else (130, 3), errors)
+                self.assertNotIn("conclusions.json", self.files())
+                conclusions.conclude_if_missing(self.folder)
+                self.assertEqual(self.files(), self.whole)
+
+    def test_a_second_call_waits_for_the_first(self):
+        with Stopped(self.WRITING, "conclude", self.folder, "--quiet") as first:
+            line = [sys.executable, "-P", "-m", "salbench", "conclude", self.folder, "--quiet"]
+            second = subprocess.Popen(line, stderr=subprocess.PIPE, text=True)
+            self.assertIn("waiting for its end", second.stderr.readline())
+            first.go()
+            self.assertEqual(first.ended(), (0, ""))
+            self.assertEqual((second.communicate()[1], second.returncode), ("", 0))
+        self.assertEqual(self.files(), self.whole)
+
+    def test_a_half_that_an_ended_call_left_is_removed(self):
+        (self.folder / ".0123456789abcdef.unfinished").write_text("half")
+        self.call("conclude", self.folder, "--quiet")
+        self.assertEqual(self.files(), self.whole)
+
+
+# What a run's folder of a stranger may hold: what stands in run.yaml, and what is said.
+RECORDS = {
+    "brackets": ("[" * 100_000, "run.yaml:1: is nested too deeply"),
+    "mappings": ("{a: " * 100_000, "is nested too deeply"),
+    "dashes": ("- " * 100_000, "is nested too deeply"),
+    "aliases": ("a: &a [x, x]\nb: &b [*a, *a]\nc: [*b, *b]\n", "run.yaml:2: an alias"),
+    "a tag": ("a: !!python/object/apply:os.system [ls]\n", "the tag "),
+    "a number without end": (f"a: {'9' * 10_000}\n", "run.yaml: "),
+    "a day that there is not": ("a: 2026-02-30\n", "run.yaml: "),
+    "no UTF-8": ("\udcff", "is not UTF-8"),
+}
+
+
+class StrangersTest(FolderTest):
+    def test_records(self):
+        self.write_run()
+        for name, (text, said) in RECORDS.items():
+            (self.folder / "run.yaml").write_bytes(text.encode("utf-8", "surrogateescape"))
+            with self.subTest(name):
+                status, out, errors = self.call("conclude", self.folder)
+                self.assertEqual((status, out, errors.count("\n")), (2, "", 1), errors)
+                self.assertIn(said, errors)
+
+    def test_files_that_are_none(self):
+        for name in ("results.csv", "people.csv", "constant.csv"):
+            for what, make in (("a pipe", os.mkfifo), ("zeros", lambda path: path.symlink_to("/dev/zero"))):
+                self.write_run()
+                (self.folder / name).unlink()
+                make(self.folder / name)
+                with self.subTest(name, what=what):
+                    self.assertEqual(self.call("conclude", self.folder, "--quiet")[0], 2 if name == "results.csv" else 0)
+                (self.folder / name).unlink()
+
+    def test_empty_paths(self):
+        self.write_run()
+        here = self.folder / "here"
+        here.mkdir()
+        with contextlib.chdir(here):
+            for words in ((self.folder, "--out", ""), ("",), (self.folder, "--statements", ""), (self.folder / "results.csv", "--classes", "")):
+                with self.subTest(words):
+                    status, out, errors = self.call("conclude", *words)
+                    self.assertEqual((status, out), (2, ""))
+                    self.assertRegex(errors, r"^error: .*: is empty: name a file or a folder\n$")
+            self.assertEqual(os.listdir(), [])
 
 
 class FailureTest(FolderTest):

@@ -134,6 +134,48 @@ class Importing(WithArchive):
         with self.assertRaisesRegex(InputError, "holds something else: "):
             self.imported()
 
+    def test_the_data_set_itself_is_not_written_to(self):
+        self.clouds()
+        before = {path: path.read_bytes() for path in self.root.rglob("*.*")}
+        self.to.symlink_to(self.root)
+        for to in (self.root, self.root / ".", self.root / "Gaze", self.root / "Gaze/..", self.to, self.to / "Gaze"):
+            with self.subTest(to), self.assertRaisesRegex(InputError, "is a folder of the data set itself; choose another"):
+                importing.import_set("sal3d", str(self.root), str(to))
+        self.to.unlink()
+        self.to.mkdir()
+        (self.to / "items").symlink_to(self.root / "Gaze")
+        with self.assertRaisesRegex(InputError, "is a folder of the data set itself"):
+            self.imported()
+        self.assertEqual({path: path.read_bytes() for path in self.root.rglob("*.*")}, before)
+        self.assertEqual(self.files(), {})
+
+    def test_no_link_is_followed(self):
+        self.clouds()
+        self.imported()
+        whole = {name: data for name, (_, data) in self.files().items()}
+        theirs = self.root.parent / "theirs"
+        theirs.mkdir()
+        (theirs / "cat.h5").write_text("years\nof work\n")
+        for name in ("items/cat.h5", "index.csv"):
+            for what, make in (("a link", lambda path: path.symlink_to(theirs / "cat.h5")), ("zeros", lambda path: path.symlink_to("/dev/zero")),
+                               ("a pipe", os.mkfifo)):
+                (self.to / name).unlink()
+                make(self.to / name)
+                with self.subTest(name, what=what):
+                    if name == "index.csv":  # whose set it is cannot be told
+                        with self.assertRaisesRegex(InputError, "holds something else"):
+                            self.imported()
+                        (self.to / name).unlink()
+                        (self.to / name).write_bytes(whole[name])
+                    self.imported()
+                    self.assertEqual({name: data for name, (_, data) in self.files().items()}, whole)
+        (self.root / "Gaze/cat.txt").unlink()
+        (self.to / "items").rename(self.to / "before")
+        (self.to / "items").symlink_to(theirs)
+        with self.assertRaisesRegex(InputError, "items: is a link, and is not followed"):
+            self.imported()
+        self.assertEqual([path.name for path in theirs.iterdir()], ["cat.h5"])
+
     def test_one_file_that_kills_its_worker_harms_no_other(self):
         self.clouds()
         with mock.patch("salbench.datasets._workers._START", "import os; from salbench.datasets import sets\nread = sets.read\n"
@@ -224,6 +266,9 @@ class Command(Importing):
                 (("sal3d", "--data", self.root), 2, "--to"), (("sal3d", "--data", self.root, "--to", self.to, "--format", "xml"), 2, "must be text or json"),
                 (("sal3d", "--data", self.root / "none", "--to", self.to), 2, "none"),
                 (("sal3d", "--data", self.root, "--to", self.to, "--items", "coww"), 2, "error: --items coww: the data set has no item 'coww'; did you"),
+                (("sal3d", "--data", self.root, "--to", ""), 2, "error: --to: is empty: name a file or a folder"),
+                (("sal3d", "--data", "", "--to", self.to), 2, "error: --data: is empty: name a file or a folder"),
+                (("sal3d", "--data", self.root, "--to", self.root), 2, "is a folder of the data set itself"),
                 (("sal3d", "--data", self.root, "--to", self.root / "splits.csv"), 3, "choose another with --to")):
             with self.subTest(expected):
                 found, out, err = self.ended(*arguments)

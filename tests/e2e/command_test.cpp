@@ -279,6 +279,21 @@ TEST(Command, ScratchThatNobodyCouldRemoveIsRemovedByALaterRun) {
   EXPECT_TRUE(fs::is_empty(toy / "tmp"));
 }
 
+TEST(Command, RunsInAScratchFolderBelowARelativeTmpdir) {
+  const Workspace toy(command_config(fmt::format("command: \"{}\"", kCount)));
+  const Outcome expected = toy.salbench("run");
+  ASSERT_EQ(expected.status, 0) << expected.err;
+  const std::string results = toy.results();
+  toy.forget_everything();
+  fs::create_directories(toy / "here/tmp");
+  std::vector<std::string> command = toy.command("run");
+  command.insert(command.begin(), {"/usr/bin/env", "--chdir=" + (toy / "here").string(), "TMPDIR=tmp"});
+  const Outcome run = run_process(command);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(toy.results(), results);
+  EXPECT_TRUE(fs::is_empty(toy / "here/tmp"));
+}
+
 // --- a command that is kept at work ------------------------------------------------------------------------
 
 // A command that counts its starts, and is then this one.

@@ -3,10 +3,12 @@
 #include "pipeline/commands/conclude.h"
 
 #include <csignal>
+#include <map>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "io/file.h"
 #include "io/table.h"
@@ -38,9 +40,11 @@ std::vector<std::string> with_python(const std::string& python, std::vector<std:
   return command;
 }
 
-// A shell script in place of an interpreter: "$@" are the subcommand and its arguments.
+// A shell script in place of an interpreter, which answers as one does: "$@" are the subcommand and its
+// arguments.
 std::string stand_in(const Workspace& toy, const std::string& script) {
-  const fs::path file = toy.write("python.sh", "#!/bin/sh\nshift 7\n" + script);
+  const fs::path file =
+      toy.write("python.sh", "#!/bin/sh\n[ \"$1\" = -I ] && echo salbench 42 && exit\nshift 9\n" + script);
   fs::permissions(file, fs::perms::owner_all);
   return file.string();
 }
@@ -106,6 +110,33 @@ TEST(Conclude, ATableThatIsGoneIsWrittenAgain) {
   fs::remove(toy.out() / "summary.csv");
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.summary(), summary);
+}
+
+TEST(Conclude, ATableThatIsNotWhatWasWrittenIsWrittenAgain) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const auto conclusions = [&] {
+    std::map<std::string, std::string> texts;
+    for (const std::string& name : conclusions_of(toy)) texts[name] = read_file(toy.out() / name);
+    return texts;
+  };
+  const auto written = conclusions();
+  for (const char* table : {"ranking.csv", "summary.csv", "chance.csv"}) {
+    const std::string& text = written.at(table);
+    for (const std::string& damaged :
+         {text.substr(0, 100), std::string(), text + "x\n", text.substr(0, text.size() - 2) + "~\n"}) {
+      toy.write("out" / fs::path(table), damaged);
+      ASSERT_EQ(toy.salbench("run").status, 0);
+      EXPECT_EQ(conclusions(), written) << table;
+    }
+    fs::remove(toy.out() / table);
+    ASSERT_EQ(::mkfifo((toy.out() / table).c_str(), 0600), 0);
+    ASSERT_EQ(toy.salbench("run").status, 0);
+    EXPECT_EQ(conclusions(), written) << table;
+  }
+  toy.write("out/conclusions.json", std::string(100'000, '['));
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(conclusions(), written);
 }
 
 TEST(Conclude, TablesThatAreStaleGoBeforeNewScoresAreWritten) {
@@ -228,6 +259,20 @@ TEST(AHandedSubcommand, GetsItsWordsAndItsEndIsThatOfTheProgram) {
   const Outcome help = run_process({SALBENCH_PROGRAM, "conclude", "--help"});
   EXPECT_EQ(help.status, 0) << help.err;
   EXPECT_THAT(help.out, AllOf(HasSubstr("\nUsage: salbench conclude "), HasSubstr("\n  --unit ")));
+}
+
+TEST(AHandedSubcommand, IsRefusedWhereTheInterpreterIsNone) {
+  const Workspace toy;
+  for (const char* none : {"/bin/true", "/bin/cat", "/bin/false", "/usr/bin/yes", "/usr/bin/env"}) {
+    const Outcome handed = run_process(with_python(none, {SALBENCH_PROGRAM, "report", toy.out()}));
+    EXPECT_EQ(handed.status, 2) << none;
+    EXPECT_THAT(handed.err,
+                AllOf(HasSubstr(std::string(none) + ": is no Python"), HasSubstr("SALBENCH_PYTHON")));
+    EXPECT_THAT(lines_with(handed.err, ""), SizeIs(1)) << handed.err;
+  }
+  const Outcome run = run_process(with_python("/bin/true", toy.command("run")));
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.err, HasSubstr("warning: no conclusions: /bin/true: is no Python; install"));
 }
 
 TEST(AHandedSubcommand, IsAmongTheNamesThatAreSuggested) {

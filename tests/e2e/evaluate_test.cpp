@@ -228,7 +228,8 @@ TEST(Evaluate, NamesAndFoldersThatWillNotDo) {
     EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
     return run.err;
   };
-  for (const char* taken : {"PS", "HS", "LS", "GS", "Avg", "constant"})
+  for (const char* taken :
+       {"PS", "HS", "LS", "GS", "Avg", "constant", "hs", "Rs", "ls", "gs", "AVG", "CONSTANT", "lVj"})
     EXPECT_THAT(complaint("own", taken), AllOf(HasSubstr("--name"), HasSubstr(taken)));
   for (const char* bad : {"", "a b", "../x", "ä"}) EXPECT_THAT(complaint("own", bad), HasSubstr("letters"));
   EXPECT_THAT(complaint("empty", "OWN"), AllOf(HasSubstr("--maps"), HasSubstr("1.val")));

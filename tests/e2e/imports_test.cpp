@@ -145,6 +145,15 @@ TEST_F(Imports, WithoutPythonAreRefusedInOneLineThatNamesThePackage) {
   EXPECT_EQ(run_process(words).status, 0);
 }
 
+TEST_F(Imports, WithAnInterpreterThatIsNoneAreRefusedInOneLine) {
+  for (const char* none : {"/bin/true", "/bin/cat", "/bin/echo"}) {
+    const Outcome ended = run_with(none, "run");
+    EXPECT_EQ(ended.status, 2) << none;
+    EXPECT_THAT(lines_with(ended.err, ""), SizeIs(1)) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr(std::string("needs Python: ") + none + ": is no Python; install"));
+  }
+}
+
 TEST_F(Imports, AreVerifiedAndExportedAsOtherStages) {
   ASSERT_EQ(toy_.salbench("run").status, 0);
   EXPECT_EQ(toy_.salbench("verify", {"--deep"}).status, 0);

@@ -2,6 +2,7 @@
 // Options over the program's own table: each that a subcommand takes does something there.
 #include <map>
 #include <optional>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -127,6 +128,28 @@ TEST_F(Options, ThatDoNothingWithoutAnotherAreRefusedWithoutIt) {
       EXPECT_THAT(outcome.err, HasSubstr(parameter.name + " requires " + parameter.needs)) << found.back();
     }
   EXPECT_THAT(found, testing::IsSupersetOf({"verify --sample", "run --matched", "run --maps"}));
+}
+
+// It would be the present folder, or as good as no option at all.
+TEST_F(Options, AnEmptyPathIsRefused) {
+  std::set<std::string> found;
+  for (const Subcommand& subcommand : subcommands())
+    for (const Parameter& parameter : subcommand.parameters) {
+      if (!parameter.is_path) continue;
+      found.insert(parameter.name);
+      const bool is_config = parameter.name == "CONFIG";
+      const std::vector<std::string> further =
+          is_config ? std::vector<std::string>{""} : std::vector<std::string>{parameter.name, ""};
+      std::vector<std::string> words = {program_.string(), subcommand.name};
+      if (!is_config) words.push_back(toy_.config().string());
+      words.insert(words.end(), further.begin(), further.end());
+      const Outcome outcome = run_process(words);
+      EXPECT_EQ(outcome.status, 2) << subcommand.name << ' ' << parameter.name;
+      EXPECT_THAT(outcome.err, HasSubstr("is empty: name a file or a folder"))
+          << subcommand.name << parameter.name;
+    }
+  EXPECT_THAT(found, testing::UnorderedElementsAre("CONFIG", "--data", "--cache", "--out", "--to", "--maps",
+                                                   "--reference"));
 }
 
 TEST_F(Options, AnEmptySplitTakesAllItemsWhateverTheConfigurationTakes) {

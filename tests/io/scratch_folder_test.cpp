@@ -47,6 +47,28 @@ TEST_F(ScratchFolderTest, IsRemovedWithAllThatIsInIt) {
   EXPECT_TRUE(fs::exists(outside));
 }
 
+TEST_F(ScratchFolderTest, OfARelativeRootHasAWholePath) {
+  const fs::path before = fs::current_path();
+  fs::create_directories(root_ / "tmp");
+  fs::current_path(root_.path());
+  use("tmp");
+  const ScratchFolder folder;
+  fs::current_path(before);
+  EXPECT_TRUE(folder.path().is_absolute());
+  EXPECT_TRUE(fs::is_directory(folder.path()));
+}
+
+TEST_F(ScratchFolderTest, IsLeftByACopyOfTheProcess) {
+  const ScratchFolder folder;
+  const pid_t process = ::fork();
+  if (process == 0) {
+    folder.~ScratchFolder();
+    ::_exit(0);
+  }
+  ::waitpid(process, nullptr, 0);
+  EXPECT_TRUE(fs::is_directory(folder.path()));
+}
+
 TEST_F(ScratchFolderTest, ThatCannotBeMadeIsNamed) {
   use(root_.write("file", ""));  // the system's own is used in its place
   { const ScratchFolder folder; }

@@ -111,6 +111,13 @@ def with_field(key, value):
     return with_card("\n".join([*lines, f"{key}: {value}"]) + "\n")
 
 
+def with_manifest(key, value):
+    """The sound manifest with another value, as it stands in the file."""
+    name = "submission.yaml"
+    lines = [line for line in sound()[name].decode().splitlines() if not line.startswith(f"{key}:")]
+    return changed(name, content="\n".join([*lines, f"{key}: {value}"]).encode() + b"\n")
+
+
 def npy(header, body=b"", version=(1, 0)):
     text = header.encode() + b"\n"
     return b"\x93NUMPY" + bytes(version) + struct.pack("<H" if version == (1, 0) else "<I", len(text)) + text + body

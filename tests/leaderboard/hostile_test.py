@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from archives import (
-    CARD, EVIL, EXPECTED, ODD, Record, added, changed, npy, npy_of, npy_with, records_of, saved, sound, with_card, with_field, with_map, zip_of_records,
+    CARD, EVIL, EXPECTED, ODD, Record, added, changed, npy, npy_of, npy_with, records_of, saved, sound, with_card, with_field, with_manifest, with_map,
+    zip_of_records,
 )
 
-from salbench.leaderboard import submission
+from salbench.leaderboard import submission, texts
 from salbench.leaderboard.archive import Refused, zip_of
 
 GIGABYTE = 1 << 30
@@ -128,7 +129,7 @@ ARCHIVES = {
     "no number": (lambda: with_map(npy_of(np.full(5, np.nan))), "value 0 (0-based) is nan, expected a finite number"),
     "infinity": (lambda: with_map(npy_of(np.array([0, np.inf, 0, 0, 0]))), "value 1 (0-based) is inf"),
     # card
-    "aliases that multiply": (lambda: with_card(ALIASES), "card.yaml:1: an alias"),
+    "aliases that multiply": (lambda: with_card(ALIASES), "card.yaml:2: an alias"),
     "an alias of itself": (lambda: with_card("name: &a [*a]\n"), "an alias"),
     "a tag of Python": (lambda: with_field("url", "!!python/object/apply:os.system [touch /tmp/salbench-was-here]"), "the tag "),
     "a tag of its own": (lambda: with_field("url", "!x y"), "the tag "),
@@ -147,10 +148,24 @@ ARCHIVES = {
     "a name of a path": (lambda: with_field("name", "../index"), "must be 1 to "),
     "a name of right-to-left": (lambda: with_field("name", "\N{RIGHT-TO-LEFT OVERRIDE}A"), "must be 1 to "),
     "a name of 300 characters": (lambda: with_field("name", "x" * 300), "must be 1 to "),
-    "the name of people": (lambda: with_field("name", "HS"), "is the name of something else"),
+    **{f"the name of the program's {name}": (lambda name=name: with_field("name", name), "is the name of something else")
+       for name in ("HS", "hs", "Rs", "RS", "ls", "CONSTANT", "Constant", "gs", "AVG")},
     "keys missing": (lambda: with_card("name: A\ncitation: x\nlicence: ~\n"), "lacks licence, training_data, test_overlap"),
     "an unknown key": (lambda: with_card(CARD + "licens: x\n"), "did you mean 'licence'?"),
-    "a date of words": (lambda: with_field("date", "soon"), 'date is "soon"'),
+    **{f"the date {date}": (lambda date=date: with_field("date", date), f'date is "{shown}"')
+       for date, shown in (("soon", "soon"), ("2026-02-30", "2026-02-30"), ("2026-13-01", "2026-13-01"), ("0000-01-01", "0000-01-01"),
+                           ("2026-1-1", "2026-1-1"), ("20260101", "20260101"), ("\N{FULLWIDTH DIGIT TWO}026-01-01", "?026-01-01"))},
+    **{f"no line in {key}, {value[:12]}": (lambda key=key, value=value: with_field(key, value), "card.yaml:" + (f" {key} has a" if "ud" not in value else ""))
+       for key in ("name", "citation", "licence", "training_data", "date", "url", "test_overlap")
+       for value in (r'"\ud800"', r'"a\u2028b"', r'"\x85"', r'"a\tb"', r'"\udfff x"')},
+    **{f"no line in {key}, {value[:12]}": (lambda key=key, value=value: with_manifest(key, value), "submission.yaml:" + (f" {key} " if "ud" not in value else ""))
+       for key in ("program", "commit", "protocol", "data", "format", "maps", "stages")
+       for value in (r'"\ud800"', r'["\ud800"]', r'"a\u2029b"', "x" * 3000, '"a\\nb"')},
+    **{f"the program {text}": (lambda text=text: with_manifest("program", f"'{text}'"), 'program is "')
+       for text in ("salbench", "1.0.0 <script>", "checked and found best", "1.0", "1.0.0-" + "x" * 30)},
+    "two documents": (lambda: with_card(CARD + "---\na: b\n"), "card.yaml: "),
+    "an anchor twice": (lambda: with_card("name: &a A\ncitation: &a B\n"), "card.yaml: "),
+    "a key that is a list": (lambda: with_card("? [a, b]\n: c\n"), "is not a known key"),
     "an overlap of words": (lambda: with_field("test_overlap", "13 of 19 items"), "write none, or a list of the items"),
     "an overlap of others": (lambda: with_field("test_overlap", "[1, 77]"), 'test_overlap has "77", but there is no such item'),
 }
@@ -179,6 +194,14 @@ class Hostile(unittest.TestCase):
                 self.assertLess(time.monotonic() - begun, 60)
         self.assertFalse(Path("/tmp/salbench-was-here").exists())
 
+    def test_a_text_is_a_line(self):
+        for text in ("", "a", "x" * 2000, "\N{RIGHT-TO-LEFT OVERRIDE}a", "\N{GRINNING FACE}" * 500, "<b>"):
+            self.assertEqual(texts.line(text, "it"), text)
+        for text in ("\ud800", "a\udfff", "\udc80", "a\nb", "\r", "\0", "\x1b[31m", "\x7f", "\x85", "\u2028", "\u2029", "x" * 2001, "\N{GRINNING FACE}" * 501,
+                     ["a"], None, 3):
+            with self.subTest(repr(text)[:20]), self.assertRaisesRegex(Refused, "^it (has|is) a? ?"):
+                texts.line(text, "it")
+
     def test_what_is_odd_and_sound(self):
         for name, data in {
             "packed": zip_of_records([Record(name, content, deflated=True) for name, content in sound().items()]),
@@ -189,6 +212,8 @@ class Hostile(unittest.TestCase):
             "an address of a script": with_field("url", "javascript:alert(1)"),
             "a formula": with_field("citation", "'=HYPERLINK(\"http://evil\")'"),
             "HTML": with_field("licence", "'<script>alert(1)</script>'"),
+            "a version": with_manifest("program", "1.0.0"),
+            "a later version": with_manifest("program", "12.30.4-rc.1"),
             "an overlap": with_field("test_overlap", f"[1, {ODD}]"),
         }.items():
             with self.subTest(name):
@@ -223,6 +248,12 @@ class Hostile(unittest.TestCase):
         self.addCleanup(setattr, submission, "_START", start)
         for program, said in {"import os; os.abort()": "ended by a limit or a fault",
                               "print('{}'[:1])": "sent nothing",
+                              "print('[' * 100_000)": "sent nothing",
+                              "print('{\"maps\": 3}')": "sent nothing",
+                              "print('\"refused\"')": "sent nothing",
+                              "print('{\"refused\": \"\\\\ud800\"}')": "has a surrogate",
+                              "print('{\"refused\": \"two\\\\nlines\"}')": "has a control character",
+                              "print('{\"maps\": [], \"card.yaml\": 1}')": "were not sent whole",
                               "x = bytearray(1 << 40)": "ended by a limit or a fault"}.items():
             submission._START = program
             with self.subTest(program), self.assertRaises(Refused) as refused:

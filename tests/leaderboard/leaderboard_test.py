@@ -274,5 +274,78 @@ class Board(unittest.TestCase):
         self.assertEqual((self.toy.submissions / "M.zip").read_bytes(), data)
 
 
+    def test_a_submission_takes_the_place_of_nothing_else(self):
+        mine = self.toy.maps("M", 1)
+        before = everything(mine)
+        (self.toy.submissions / "notes.txt").write_text("notes")
+        (self.toy.submissions / "empty.zip").write_text("")
+        os.mkfifo(self.toy.submissions / "pipe")
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.toy.submissions)
+        for to, status, said in ((mine / "1.val", 2, "is there, and no submission; choose another"), (mine / "card.yaml", 2, "no submission"),
+                                 ("notes.txt", 2, "no submission"), ("pipe", 2, "no submission"), ("/dev/zero", 2, "no submission"),
+                                 (mine, 2, "is a folder; name the file to write"), (".", 2, "is a folder"), ("/", 2, "is a folder"), ("..", 2, "is a folder"),
+                                 ("", 2, "--to: is empty: name a file or a folder"), ("notes.txt/x.zip", 3, "Not a directory; choose another with --to"),
+                                 ("/proc/x.zip", 3, "cannot be written"), ("empty.zip", 0, ""), ("G0.zip", 0, ""), ("below/M.zip", 0, "")):
+            with self.subTest(to=str(to)):
+                done = self.toy.salbench("submit", mine, "--to", to, "-c", self.toy.config)
+                self.assertEqual(done.returncode, status, done.stderr)
+                self.assertIn(said, done.stderr)
+                self.assertNotIn("defect", done.stderr)
+        self.assertEqual(everything(mine), before)
+        self.assertEqual([name for name in everything(self.toy.submissions) if "unfinished" in name], [])
+
+    def test_cards_that_are_no_files(self):
+        mine = self.toy.maps("M", 1)
+        card_file = mine / "card.yaml"
+        for what, make in (("a pipe", os.mkfifo), ("zeros", lambda path: path.symlink_to("/dev/zero")), ("a folder", os.mkdir),
+                           ("much", lambda path: path.write_text("x" * 70_000)), ("brackets", lambda path: path.write_text("[" * 60_000)),
+                           ("nothing", lambda path: None)):
+            card_file.unlink() if not card_file.is_dir() else card_file.rmdir()
+            make(card_file)
+            with self.subTest(what):
+                done = self.toy.salbench("submit", mine, "--to", self.toy.folder / "M.zip", "-c", self.toy.config)
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+                self.assertIn("card.yaml", done.stderr)
+            card_file.touch() if what == "nothing" else None
+        shutil.rmtree(mine)
+
+    def test_paths_that_will_not_do(self):
+        for words, said in ((("--to", ""), "--to: is empty"), (("--to", self.toy.submissions), "is the folder of the submissions"), (("--cache", ""), "--cache"),
+                            (("-c", ""), "--config: is empty"), (("--reference", ""), "--reference"), (("--data", ""), "--data: is empty")):
+            shutil.rmtree(self.toy.submissions)
+            self.toy.submissions.mkdir()
+            done = self.toy.rank("--models", "RS", *words)
+            self.assertEqual((done.returncode, everything(self.toy.submissions)), (2, {}), done.stderr)
+            self.assertIn(said, done.stderr)
+
+    def test_whatever_the_locale(self):
+        """Names of files and of the people of a card are no letters of it."""
+        self.toy.with_card("\N{SNOWMAN} \N{LATIN SMALL LETTER L WITH STROKE}.zip", card("OTHER", citation="Jos\u00e9 \N{SNOWMAN}"))
+        self.rank()
+        site = everything(self.toy.site)
+        printed = []
+        for environment in ({"LC_ALL": "C"}, {"LC_ALL": "C.UTF-8"}, {"PYTHONIOENCODING": "latin-1"}, {"PYTHONIOENCODING": "ascii"}, {"PYTHONUTF8": "0", "LC_ALL": "POSIX"},
+                            *latin_1(self.toy.folder / "locales")):
+            for words in (("--format", "json"), ()):
+                done = self.toy.salbench("leaderboard", self.toy.submissions, "--to", self.toy.site, "-c", self.toy.config, *words,
+                                         env=os.environ | environment, encoding="utf-8")
+                self.assertEqual(done.returncode, 0, (environment, done.stderr))
+                printed.append(done.stdout)
+        self.assertIn("\N{SNOWMAN}", printed[0])
+        self.assertEqual(printed, printed[:2] * (len(printed) // 2))
+        self.assertEqual(everything(self.toy.site), site)
+
+
+def latin_1(folder):
+    """The environment of a locale whose letters are those of Latin-1; none where the system cannot make it."""
+    folder.mkdir()
+    try:
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "ISO-8859-1", folder / "de_DE.ISO-8859-1"], check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        return []
+    return [{"LOCPATH": str(folder), "LC_ALL": "de_DE.ISO-8859-1"}]
+
+
 if __name__ == "__main__":
     unittest.main()

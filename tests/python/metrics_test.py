@@ -11,6 +11,7 @@ import numpy as np
 
 import salbench
 import toy
+from salbench import _core
 
 NAMES = [row.name for row in salbench.metrics.table()]
 FITTED = [name for name in NAMES if name.endswith("_fitted")]
@@ -81,6 +82,17 @@ class Tables(unittest.TestCase):
 
     def picks(self, truth):
         return np.split(truth["picks"][:], truth["pick_offsets"][1:-1]) if "picks" in truth else None
+
+    def test_no_score_is_beyond_its_range(self):
+        """Rounding could put those of a map that is the ground truth itself there."""
+        rng, ranges = np.random.default_rng(3), {row[0]: row[5:7] for row in _core.metric_rows()}
+        for n in (3, 10, 100):
+            for _ in range(100):
+                truth = rng.random(n)
+                for sign in (1, -1):
+                    found = salbench.score(sign * truth, truth, metrics=["cc", "lcc", "spearman", "cosine", "sim"])
+                    for name, value in found.items():
+                        self.assertTrue(ranges[name][0] <= value <= ranges[name][1] or value != value, (name, value))
 
     def test_toy_meshes_and_their_scans(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -3,12 +3,15 @@
 
 import collections.abc
 import contextlib
+import copy
 import datetime
 import functools
 import inspect
 import io
 import os
 import pathlib
+import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -110,6 +113,35 @@ class Runs(Folders):
             self.assertTrue(item.endswith("_3"))
             self.assertRegex(cause, r"MINE\(\) raised ValueError: no eyes \(.*module_\d+\.py, line 4\)")
         self.assertEqual(len(results.scores), 24)
+
+    def test_a_failure_is_whole_whatever_its_text_repeats(self):
+        for raised in ("ValueError('a\\0b')", "KeyError('a\\0', 'b')", "type('A', (Exception,), {'__str__': lambda _: 'a\\0\\0\\nb'})()"):
+            text = f"def predict(shape):\n    raise {raised}\n"
+            results = self.run_with({"MINE": function(text, self.folder)}, items="1")
+            (failure,) = [row for row in results.failures if row.stage == "map.MINE" and row.item == "1"]
+            with self.subTest(raised):
+                self.assertRegex(failure.cause.splitlines()[0], r"raised \w+: .*a.*\\(0|x00).*b.*\(.*, line 2\)$")
+                self.assertNotIn("\0", failure.cause)
+                self.assertIn("Traceback", failure.cause)
+                self.assertRegex((self.folder / "out/run.yaml").read_text(), r"cause: .*a.*0.*b.*line 2\)")
+
+    def test_results_are_pickled_with_all_that_is_in_their_folder(self):
+        os.chdir(self.folder)
+        self.addCleanup(os.chdir, pathlib.Path(__file__).parent)
+        results = self.run_with({"LS": {}}, out="out")
+        scores, ranking = results.scores, results.ranking
+        for copied in (pickle.loads(pickle.dumps(results)), copy.deepcopy(results), pickle.loads(pickle.dumps(salbench.Results("out")))):
+            os.chdir("/")
+            self.assertTrue(copied.ranking.equals(ranking))
+            self.assertTrue(copied.scores.equals(scores))
+            self.assertEqual(copied.failures, results.failures)
+            for work in (lambda: copied.maps("LS"), lambda: copied.score([1], "1")):
+                with self.assertRaisesRegex(ValueError, "is of results that run\\(\\) returned"):
+                    work()
+            os.chdir(self.folder)
+        self.assertEqual(pickle.loads(pickle.dumps(results)).computed, results.computed)
+        self.assertEqual(copy.copy(results).maps("LS").keys(), results.maps("LS").keys())
+        self.assertEqual(list(pickle.loads(pickle.dumps(results.reference))), list(results.reference))
 
     def test_a_failure_has_the_whole_traceback_of_the_function(self):
         text = """
@@ -483,7 +515,7 @@ class Runs(Folders):
         page = results._repr_html_()
         self.assertIn("artefacts computed", page)
         self.assertIn("<td>LS</td>", page)
-        for path in (self.folder / "out").glob("ranking.csv"):
+        for path in (self.folder / "out").glob("*.csv"):
             path.unlink()
         self.assertNotIn("<table", salbench.Results(self.folder / "out")._repr_html_())
 
@@ -503,6 +535,22 @@ class Runs(Folders):
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 self.run_with(models)
+        for models, what in ((["LS"], "models must be a dict by name, such as {'LS': {}}, not ['LS']"), ("LS", "such as {'LS': {}}, not 'LS'"),
+                             (("LS", "CS"), "such as {'LS': {}, 'CS': {}}, not"), ({"LS"}, "such as {'LS': {}}, not"), (len, "such as {'len': function}, not"),
+                             ([len], "such as {'len': function}, not"), ([], "such as {'LS': {}}, not"), (3, "models must be a dict"),
+                             (salbench.Model(len), "models must be a dict")):
+            with self.subTest(models), self.assertRaisesRegex(ValueError, re.escape(what)):
+                self.run_with(models)
+        for name in ("hs", "Rs", "CONSTANT", "gs", "avg", "lS"):
+            with self.subTest(name), self.assertRaisesRegex(ValueError, f"'{name}' is the name of something else"):
+                self.run_with({name: salbench.Model(len, version=1)})
+        for name in ("config", "data", "cache", "out", "reference"):
+            with self.subTest(name), self.assertRaisesRegex(ValueError, f"{name} is empty: name a file or a folder"):
+                salbench.run(**{"config": CONFIG, "data": self.meshes, "out": self.folder / "out", name: ""})
+        with self.assertRaisesRegex(ValueError, "config must be a file, a name or a dict, not \\['shrec07'\\]"):
+            salbench.run(["shrec07"], data=self.meshes)
+        with self.assertRaisesRegex(ValueError, "folder is empty"):
+            salbench.Results("")
         with self.assertRaisesRegex(FileNotFoundError, "shrec7"):
             salbench.run("shrec7", data=self.meshes)
         with self.assertRaisesRegex(FileNotFoundError, "nowhere"):

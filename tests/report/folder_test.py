@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A report that is written again leaves nothing of the one before, and nothing of the user's is removed."""
 
+import contextlib
+import errno
+import io
+import os
 import shutil
+import subprocess
+import sys
 import unittest
 import unittest.mock
 
 import fixture
 import support
+from salbench import __main__
 from salbench.report.folder import LIST
+from salbench.report.kept import LEDGER
 
 ITEMS = fixture.eight_meshes()[:3]
 OWN = {"notes.html": "my own notes", "data/notes.txt": "more", "figures/mine/plot.svg": "<svg/>", "thesis.tex": "years of work"}
@@ -62,7 +70,9 @@ class WrittenAgain(support.ReportTest):
 
     def test_a_call_that_was_ended_leaves_nothing_that_stays(self):
         with support.without_figures(), unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
-            self.assertEqual(support.make(self.rich, self.folder / "ended", "--compare", self.poor), (130, ""))
+            status, errors = support.make(self.rich, self.folder / "ended", "--compare", self.poor)
+        self.assertEqual(status, 130)
+        self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / 'ended'} --compare {self.poor}\n", errors)
         self.assertTrue((self.folder / "ended/comparison.html").exists())
         self.add_own("ended")
         self.made(self.poor, "ended")
@@ -84,6 +94,137 @@ class WrittenAgain(support.ReportTest):
         self.made(self.poor, "spoilt")
         self.assertEqual(precious.read_text(), "years of work")
         self.assertEqual(sorted(files_of(self.folder / "spoilt")), sorted(self.fresh))
+
+
+# Names in the folder of a report that a stranger may have made links, and pipes.
+FOLDERS = ("figures", "data", "shapes", "pictures", "static", "pictures/3")
+FILES = (LIST, LEDGER, "run.html", "static/report.css", "shapes/3.html", "pictures/3/mesh-LS-before.webp")
+
+
+class OfAStranger(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.out = cls.folder / "out"
+        fixture.write_results(cls.out, ITEMS[2:], ("LS",), results=fixture.results_table(ITEMS[2:], ("LS",), views=1))
+        fixture.write_export(cls.out / "shapes.h5", ITEMS[2:], ("LS",), views=1, size=32)
+        with support.without_figures():
+            assert support.make(cls.out, cls.folder / "fresh") == (0, "")
+        cls.fresh = files_of(cls.folder / "fresh")
+
+    def setUp(self):
+        self.theirs = self.folder / "theirs"
+        self.theirs.mkdir()
+        for name in ("years", "mesh-LS-before.webp", "3.html"):
+            (self.theirs / name).write_text("of work")
+        self.to = self.out / "report"
+        shutil.copytree(self.folder / "fresh", self.to)
+
+    def tearDown(self):
+        self.assertEqual(files_of(self.theirs), dict.fromkeys(("years", "mesh-LS-before.webp", "3.html"), b"of work"), "nothing was written or removed")
+        shutil.rmtree(self.theirs)
+        self.to.unlink() if self.to.is_symlink() else shutil.rmtree(self.to)
+
+    def made(self, *arguments):
+        with support.without_figures(), contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as errors:
+            return __main__.main(["report", str(self.out), *map(str, arguments)]), errors.getvalue()
+
+    def test_a_link_in_place_of_a_folder_is_named(self):
+        for name in FOLDERS:
+            path = self.to / name
+            path.rename(self.to / "before")
+            path.symlink_to(self.theirs)
+            with self.subTest(name):
+                status, errors = self.made()
+                self.assertEqual((status, errors.count("\n")), (2, 1), errors)
+                self.assertIn(f"{path}: is a link, and is not followed; remove it, or choose another folder with --to", errors)
+            path.unlink()
+            (self.to / "before").rename(path)
+        (self.to / LIST).write_text("".join(f"pictures/link/{name}\n" for name in os.listdir(self.theirs)))
+        (self.to / "pictures/link").symlink_to(self.theirs)
+        self.assertEqual(self.made()[0], 2)
+
+    def test_a_report_that_is_a_link(self):
+        shutil.rmtree(self.to)
+        self.to.symlink_to(self.folder / "elsewhere")
+        for there in (False, True):
+            status, errors = self.made()
+            self.assertEqual(status, 2)
+            self.assertIn(f"{self.to}: is a link", errors)
+            (self.folder / "elsewhere").mkdir(exist_ok=True)
+        self.assertEqual(self.made("--to", self.to), (0, ""), "whoever runs it has named it")
+        self.assertEqual(files_of(self.folder / "elsewhere"), self.fresh)
+
+    def test_what_stands_in_place_of_a_file_is_replaced(self):
+        for what, make in (("a link", lambda path: path.symlink_to(self.theirs / "years")), ("zeros", lambda path: path.symlink_to("/dev/zero")),
+                           ("a pipe", os.mkfifo), ("a link to itself", lambda path: path.symlink_to(path.name))):
+            with self.subTest(what):
+                (self.to / "index.html").unlink()
+                make(self.to / "index.html")
+                self.assertIn("holds something else than a report", self.made()[1])
+                (self.to / "index.html").unlink()
+                (self.to / "index.html").write_bytes(self.fresh["index.html"])
+                for name in FILES:
+                    (self.to / name).unlink()
+                    make(self.to / name)
+                self.assertEqual(self.made(), (0, ""))
+                self.assertEqual(files_of(self.to), self.fresh)
+
+    def test_results_that_are_none(self):
+        for names in (("results.csv",), ("summary.csv",), ("run.yaml", "conclusions.json", "shapes.h5", "leaders.csv")):
+            for what, make in (("zeros", lambda path: path.symlink_to("/dev/zero")), ("a pipe", os.mkfifo)):
+                odd = shutil.copytree(self.out, self.folder / "odd", ignore=shutil.ignore_patterns("report"))
+                for name in names:
+                    (odd / name).unlink()
+                    make(odd / name)
+                with self.subTest(names, what=what), support.without_figures():
+                    self.assertEqual(support.make(odd, self.folder / "of-odd"), (0, ""))
+                shutil.rmtree(odd)
+
+    def test_texts_that_are_bombs(self):
+        """Each ends a parser that recurses."""
+        brackets = "[" * 100_000
+        odd = shutil.copytree(self.out, self.folder / "bombs")
+        for ledger, listed, record, document in ((brackets, "/\n../x\n\0\n", brackets, brackets), (f'["key", "", {brackets}', brackets, "- " * 100_000, "[]"),
+                                                 ("3\n", "", "metrics: &a {x: *a}\n", '{"files": 3}')):
+            for name, text in ((LEDGER, ledger), (LIST, listed), ("../run.yaml", record), ("../conclusions.json", document)):
+                (odd / "report" / name).write_text(text)
+            with self.subTest(record[:10]), support.without_figures():
+                self.assertEqual(support.make(odd, odd / "report"), (0, ""))
+
+    def test_trouble_of_the_system_is_no_defect(self):
+        """A disk without room, and what may not be written."""
+        for number, said in ((errno.ENOSPC, "No space left on device"), (errno.EACCES, "Permission denied"), (errno.EROFS, "Read-only file system")):
+            for function in ("os.replace", "os.makedirs", "os.open", "os.mkdir"):
+                def refused(*arguments, work=getattr(os, function.partition(".")[2]), **options):
+                    if number and ("unfinished" in str(arguments[0]) or function != "os.open"):
+                        raise OSError(number, os.strerror(number), arguments[0])
+                    return work(*arguments, **options)
+                with self.subTest(function, number=number), unittest.mock.patch(f"salbench._files.{function}", refused):
+                    status, errors = self.made("--to", self.folder / "full")
+                    shutil.rmtree(self.folder / "full", ignore_errors=True)
+                    if function != "os.mkdir" or status:
+                        self.assertEqual((status, errors.count("\n")), (3, 1), errors)
+                        self.assertIn(said, errors)
+                        self.assertIn("choose another folder with --to", errors)
+
+    def test_whatever_the_user_has_set_for_matplotlib(self):
+        code = "import sys; from salbench.__main__ import main; sys.exit(main())"
+        line = [sys.executable, "-P", "-B", "-c", code, "report", self.out, "--to"]
+        texts = []
+        for number, environment in enumerate(({}, {"MPLBACKEND": "none of them"}, {"MPLBACKEND": "TkAgg", "DISPLAY": ":77"}, {"MATPLOTLIBRC": str(self.folder)})):
+            (self.folder / "matplotlibrc").write_text("font.size: 30\nsavefig.facecolor: red\nfont.family: none of them\n")
+            done = subprocess.run([*line, self.folder / f"set{number}"], capture_output=True, text=True, env=os.environ | environment, cwd=self.folder)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), environment)
+            texts.append(files_of(self.folder / f"set{number}"))
+        for found in texts[1:]:
+            self.assertEqual(found, texts[0])
+        (self.folder / "matplotlibrc").unlink()
+
+    def test_empty_paths(self):
+        for words in (("--to", ""), ("--export", ""), ("--compare", "")):
+            status, errors = self.made(*words)
+            self.assertEqual((status, errors), (2, f"error: {words[0]}: is empty: name a file or a folder\n"))
 
 
 if __name__ == "__main__":

@@ -104,22 +104,22 @@ def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
 def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> Concluded:
     """Writes every table, and last the document that says so. of: digest of what the scores were made of, for who asks again."""
     folder = source.tables if out is None else Path(out)
-    folders.make(folder)
-    folders.remove(folder / folders.CONCLUDED)
     study = source.study
-    names = folders.write_tables(folder, tables_of(study), source.remarks)
-    overview, found = means.overview(study), leaders.find_leaders(study)
-    text = _text(overview, source, found)
-    concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
-    folders.write_document(folder, {
-        "format": 1, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
-        "leaders": concluded.leaders, "text": concluded.text, "tables": names})
+    with folders.own(folder) as own:
+        own.remove(folders.CONCLUDED)
+        names = folders.write_tables(own, tables_of(study), source.remarks)
+        overview, found = means.overview(study), leaders.find_leaders(study)
+        text = _text(overview, source, found)
+        concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
+        folders.write_document(own, {
+            "format": 1, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
+            "leaders": concluded.leaders, "text": concluded.text, "tables": names})
     return concluded
 
 
 def conclude_if_missing(folder: Path) -> None:
-    """Of a run: it may have written its scores alone, and removes conclusions from others."""
-    if not (folder / folders.CONCLUDED).is_file():
+    """Of a run: it may have written its scores alone, and removes conclusions from others. A table that is not what was written is."""
+    if not folders.is_whole(folder):
         conclude(source_of(str(folder)))
 
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The folders that conclusions read and write: of a run, or of tables of anybody's scores."""
 
+import contextlib
 import hashlib
 import json
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,8 +12,10 @@ from typing import Any
 
 import pandas
 
+from salbench import _core
 from salbench._errors import StorageError as StorageError
-from salbench._files import replace_file
+from salbench._files import OwnFolder, read_file, require_file
+from salbench._yaml import plain_text
 from salbench.conclusions import record, tables
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.metrics import Metric, of_program
@@ -20,6 +24,8 @@ from salbench.conclusions.study import DEFAULT_SEED, Study
 
 CONCLUDED = "conclusions.json"
 SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
+MOST_RECORD = 1 << 26  # bytes of run.yaml, which names each failure
+ADVICE = "choose another with --out"
 
 
 class Unreadable(InputError):
@@ -48,10 +54,15 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
         raise InputError(f"{folder / 'run.yaml'}: metrics.{unknown[0]} does not say which scores are better: higher or lower")
     metrics = [known.get(name) or Metric(name, of["better"] == "higher") for name, of in of_run["metrics"].items()]
     own_unit = configuration.get("statistics", {}).get("unit") or "mesh"
-    results = read_results(folder / "results.csv", metrics)
+
+    def read_table_of(name: str, read: Any) -> Any:
+        require_file(folder / name)
+        return read(folder / name, metrics)
 
     def if_there(name: str, read: Any) -> Any:
-        return read(folder / name, metrics) if (folder / name).is_file() else None
+        return read_table_of(name, read) if (folder / name).is_file() else None
+
+    results = read_table_of("results.csv", read_results)
 
     constant = if_there("constant.csv", read_results)
     study = Study(results.scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), if_there("people.csv", read_people),
@@ -65,9 +76,13 @@ def read_record(path: Path) -> dict[str, Any]:
     """run.yaml, as record.py checks it. Throws InputError, Unreadable for what is no YAML."""
     import yaml
 
+    data = read_file(path, MOST_RECORD, "let `salbench run` write it again").decode("utf-8", "replace").encode()
     try:
-        found = yaml.load(path.read_text(encoding="utf-8", errors="replace"), getattr(yaml, "CBaseLoader", yaml.BaseLoader))
-        return record.checked(found)
+        text = plain_text(data, str(path), MOST_RECORD)
+    except InputError as error:
+        raise Unreadable(str(error)) from None
+    try:
+        return record.checked(yaml.load(text, getattr(yaml, "CBaseLoader", yaml.BaseLoader)))
     except yaml.YAMLError as error:
         raise Unreadable(f"{path}: {' '.join(str(error).split())}") from None
     except InputError as error:
@@ -86,55 +101,56 @@ def read_table(path: Path, unit: str | None = None, classes: str | None = None, 
     return Source(Study(found.scores, unit or "mesh"), Path("salbench-out") / path.stem, notes=found.notes)
 
 
-def write_tables(folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:
+def own(folder: Path) -> OwnFolder:
+    """The folder that tables are written to."""
+    return OwnFolder(folder, ADVICE)
+
+
+def write_tables(folder: OwnFolder, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:
     """A file per table, and none where there is no such table: one of an earlier run would pass for it. Returns the names of files."""
     names = []
     for name, frame in made:
         if frame is None:
-            remove(folder / f"{name}.csv")
+            folder.remove(f"{name}.csv")
             continue
-        write(folder / f"{name}.csv", tables.csv(frame, remarks))
+        write(folder, f"{name}.csv", tables.csv(frame, remarks))
         names.append(f"{name}.csv")
     return names
 
 
-def write_document(folder: Path, document: dict[str, Any]) -> None:
+def write(folder: OwnFolder, name: str, text: str) -> None:
+    folder.write(name, text.encode("utf-8", "surrogateescape"))
+
+
+def write_document(folder: OwnFolder, document: dict[str, Any]) -> None:
     """Last of all: who finds it finds all tables that it names, and what they were when it was written."""
-    files = digests(folder, (*SCORES, *document["tables"]))
-    write(folder / CONCLUDED, json.dumps({**document, "files": files}, ensure_ascii=False) + "\n")
+    files = {name: _digest(data) for name in (*SCORES, *document["tables"]) if (data := folder.read(name)) is not None}
+    write(folder, CONCLUDED, json.dumps({**document, "files": files}, ensure_ascii=False) + "\n")
 
 
-def digests(folder: Path, names: Iterable[str]) -> dict[str, str]:
-    """Of the files that are there."""
-    return {name: hashlib.blake2b((folder / name).read_bytes(), digest_size=16).hexdigest() for name in names if (folder / name).is_file()}
+def _digest(data: bytes, as_of: str = "xxh128:") -> str:
+    """As the program compares it (pipeline/commands/conclude.cpp). as_of: a digest that was noted; that of version 1.0 was another."""
+    return "xxh128:" + _core.xxh128(data) if as_of.startswith("xxh128:") else hashlib.blake2b(data, digest_size=16).hexdigest()
+
+
+def _is_as_noted(folder: Path, name: str, digest: str) -> bool:
+    return name == os.path.basename(name) and _digest(read_file(folder / name), digest) == digest
+
+
+_UNUSABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError)  # of a document: there is none, or it is not of this version
 
 
 def changed(folder: Path) -> list[str]:
-    """Scores and tables that somebody has changed since conclusions were drawn."""
-    try:
-        noted = json.loads((folder / CONCLUDED).read_text(encoding="utf-8"))["files"]
-        return [name for name, digest in digests(folder, noted).items() if digest != noted[name]]
-    except (OSError, ValueError, KeyError, TypeError):  # none were, or not by this version
-        return []
+    """Scores and tables that are there and not what they were when conclusions were drawn."""
+    with contextlib.suppress(*_UNUSABLE):
+        noted = json.loads(read_file(folder / CONCLUDED, MOST_RECORD))["files"]
+        return [name for name, digest in noted.items() if (folder / name).is_file() and not _is_as_noted(folder, name, digest)]
+    return []
 
 
-def make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise StorageError(f"{folder}: the folder cannot be created: {error.strerror}; choose another with --out") from None
-
-
-def remove(path: Path) -> None:
-    try:
-        path.unlink(missing_ok=True)
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be removed: {error.strerror}; choose another folder with --out") from None
-
-
-def write(path: Path, text: str) -> None:
-    """A file is there whole or not at all."""
-    try:
-        replace_file(path, text.encode("utf-8", "surrogateescape"))
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be written: {error.strerror}; choose another folder with --out") from None
+def is_whole(folder: Path) -> bool:
+    """True if all tables are there, as they were written."""
+    with contextlib.suppress(*_UNUSABLE):
+        document = json.loads(read_file(folder / CONCLUDED, MOST_RECORD))
+        return all(_is_as_noted(folder, name, document["files"][name]) for name in document["tables"])
+    return False

@@ -9,17 +9,17 @@ import json
 import os
 import signal
 import subprocess
-import sys
-import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from salbench import _core
+from salbench._processes import PYTHON, interrupts_held
 from salbench.datasets import _limits
 from salbench.datasets.records import InputError
 from salbench.datasets.worker import ERROR
 
-_START = "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.datasets.worker import main; sys.exit(main())"
+_START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
 # Of a person, a scheduler, or a system without memory; a library that crashes raises others.
 _FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -30,7 +30,8 @@ class Worker:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._scratch: _core.ScratchFolder | None = None
+        self._folder = ""
 
     def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
         """What it made, and what is wrong with the input: lines."""
@@ -43,8 +44,8 @@ class Worker:
         """Likewise; the status with which it ended in place of an answer."""
         if self._process is None:
             self._start()
-        assert self._process is not None and self._process.stdin and self._process.stdout and self._folder
-        out = os.path.join(self._folder.name, "out")
+        assert self._process is not None and self._process.stdin and self._process.stdout
+        out = os.path.join(self._folder, "out")
         try:
             self._process.stdin.write(f"{json.dumps(request)}\t{out}\n".encode())
             self._process.stdin.flush()
@@ -61,14 +62,18 @@ class Worker:
         if self._process is not None:
             self._process.kill()
             self._end()
-        if self._folder is not None:
-            self._folder.cleanup()
+        if self._scratch is not None:
+            self._scratch.__exit__()
+            self._scratch = None
 
     def _start(self) -> None:
-        self._folder = self._folder or tempfile.TemporaryDirectory(prefix="salbench-")
+        if self._scratch is None:
+            self._scratch = _core.ScratchFolder()
+            self._folder = self._scratch.__enter__()
         # One thread: items are what is shared out, and stacks of more count as memory.
-        self._process = subprocess.Popen([sys.executable, "-P", "-c", _START, _PACKAGE], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        with interrupts_held():
+            self._process = subprocess.Popen([*PYTHON, "-c", _START, _PACKAGE, str(os.getpid())], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                             env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
 
     def _end(self) -> int:
         """Waits for it: its status, minus the signal that ended it."""
@@ -117,13 +122,14 @@ def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | Non
     """Asks as many workers at once as there are processors. `done` is called with the number of the request and its answer, by one thread at
     a time. False after Ctrl-C, which lets the requests at work end; a second one is a KeyboardInterrupt."""
     numbers = iter(range(len(requests)))
-    lock, stop = threading.Lock(), threading.Event()
+    lock, stopped = threading.Lock(), False
     failures: list[BaseException] = []
 
-    def work(ended: threading.Event) -> None:
+    def work(at_work: int) -> None:
+        nonlocal stopped
         worker = Worker()
         try:
-            while not stop.is_set():
+            while not stopped:
                 with lock:
                     number = next(numbers, None)
                 if number is None:
@@ -133,25 +139,26 @@ def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | Non
                     done(number, made, problems)
         except BaseException as error:  # of `done`, such as a full disk
             failures.append(error)
-            stop.set()
+            stopped = True
         finally:
             worker.close()
-            ended.set()
+            os.close(at_work)
 
     count = min(processes or len(os.sched_getaffinity(0)), len(requests))
-    ends = [threading.Event() for _ in range(count)]  # Thread.join() takes a thread for ended once Ctrl-C interrupts it
-    for ended in ends:
-        threading.Thread(target=work, args=(ended,), daemon=True).start()
-    interrupted = False
-    for ended in ends:
-        while not ended.is_set():
-            try:
-                ended.wait()
-            except KeyboardInterrupt:
-                if interrupted:
-                    raise
-                interrupted = True
-                stop.set()
+    # A pipe whose writing ends the threads have. Ctrl-C leaves it whole; it breaks locks of threading, and join() of them.
+    all_ended, at_work = os.pipe()
+    for _ in range(count):
+        threading.Thread(target=work, args=(os.dup(at_work),), daemon=True).start()
+    os.close(at_work)
+    interrupted, waits = False, True
+    while waits:
+        try:
+            waits = os.read(all_ended, 1) != b""
+        except KeyboardInterrupt:
+            if interrupted:
+                raise
+            interrupted = stopped = True
+    os.close(all_ended)
     if failures:
         raise failures[0]
     return not interrupted

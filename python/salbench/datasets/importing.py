@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -13,7 +12,9 @@ from typing import Any
 
 from salbench import _command_line as command_line
 from salbench import _core
-from salbench._errors import InputError, StorageError
+from salbench._errors import InputError
+from salbench._files import OwnFolder
+from salbench._processes import INTERRUPTED, resume_line
 from salbench.datasets import described, one_form, sets
 from salbench.datasets._workers import ask_all
 from salbench.datasets.records import Item, Listing
@@ -51,13 +52,22 @@ def import_set(layout: str, root: str, to: str, items: str = "", split: str = ""
         raise InputError(f"import: {layout} is the one form already")
     root = os.path.normpath(root)
     layout_name, listing = sets.listed(layout, root)
-    archive = layout if layout != sets.AUTOMATIC else layout_name
+    theirs = {os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in listing.files()))}
+    if theirs & {os.path.realpath(to), os.path.realpath(os.path.join(to, "items"))}:
+        raise InputError(f"--to {to}: is a folder of the data set itself; choose another")
+    selected = _selected(listing, items, split)
+    with one_form.own(to) as own:
+        return _import(layout if layout != sets.AUTOMATIC else layout_name, root, own, layout_name, listing, selected, done)
+
+
+def _import(archive: str, root: str, to: OwnFolder, layout_name: str, listing: Listing, selected: list[Item],
+            done: Callable[[int, int], None] | None) -> Import:
     places = {item.name: number for number, item in enumerate(listing.items)}
-    before = _rows_before(to, root, layout_name, places)
+    before = _rows_before(to.path, root, layout_name, places)
     shapes: dict[str, list[Item]] = {}
-    for item in _selected(listing, items, split):
+    for item in selected:
         shapes.setdefault(item.shape or item.name, []).append(item)
-    _make_folder(os.path.join(to, "items"))
+    to.require_folder("items")
 
     found = [Imported(name) for name in shapes]
     answered = [False] * len(found)
@@ -74,27 +84,20 @@ def import_set(layout: str, root: str, to: str, items: str = "", split: str = ""
     found = [shape for shape, known in zip(found, answered) if known]
     renewed = {shape.name for shape in found}
     rows = [row for row in before if row[0] not in renewed and _name(row) in places] + [row for shape in found for row in shape.rows]
-    try:
-        removed = one_form.put_index(to, sorted(rows, key=lambda row: places[_name(row)]), [row for row in before if row[0] not in renewed])
-    except OSError as error:
-        raise StorageError(f"{error.filename}: cannot be written: {error.strerror}") from None
+    removed = one_form.put_index(to, sorted(rows, key=lambda row: places[_name(row)]), [row for row in before if row[0] not in renewed])
     return Import(layout_name, found, listing.notes, removed, complete)
 
 
-def _take(shape: Imported, views: list[Item], made: bytes | None, problems: list[str], to: str, source: str) -> None:
+def _take(shape: Imported, views: list[Item], made: bytes | None, problems: list[str], to: OwnFolder, source: str) -> None:
     """Puts what a worker made of a shape into the set."""
     failed = dict(line.partition("\t")[::2] for line in problems if "\t" in line)
     shape.problem = next(iter(failed.values()), "") or (problems[0] if problems else "")
-    path = one_form.file_of(to, shape.name)
-    try:
-        if made is None:
-            shape.problem = shape.problem or "a worker ended without an answer; run it again"
-            if os.path.exists(path):
-                os.unlink(path)
-            return
-        shape.outcome = "written" if one_form.put(path, made) else "unchanged"
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be written: {error.strerror}") from None
+    name = one_form.name_of(shape.name)
+    if made is None:
+        shape.problem = shape.problem or "a worker ended without an answer; run it again"
+        to.remove(name)
+        return
+    shape.outcome = "written" if one_form.put(to, name, made) else "unchanged"
     shape.rows = [(shape.name, view.view, view.category, view.split, view.kind or described.kind_of(sets.shape_file(view)), view.truth,
                    view.participants, view.viewers, source) for view in views if view.name not in failed]
 
@@ -131,13 +134,6 @@ def _selected(listing: Listing, items: str, split: str) -> list[Item]:
     return [item for item in listing.items if (item.shape or item.name) in shapes]
 
 
-def _make_folder(folder: str) -> None:
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise StorageError(f"{folder}: cannot be made: {error.strerror}; choose another with --to") from None
-
-
 class _Progress:
     """On standard error: a line that is written over on a terminal, else one every ten seconds."""
 
@@ -172,8 +168,8 @@ def command(arguments: Sequence[str], summary: str) -> int:
         if shape.problem:
             command_line.warn("error", f"{shape.name}: {shape.problem}")
     if not done.complete:
-        print(f"\ninterrupted; {len(done.shapes)} shapes are done; to go on:\n  {shlex.join(['salbench', 'import', *arguments])}", file=sys.stderr)
-        return command_line.INTERRUPTED
+        print(f"\ninterrupted; {len(done.shapes)} shapes are done; to go on:\n{resume_line(['import', *arguments])}", file=sys.stderr)
+        return INTERRUPTED
     command_line.report(given, "import", _document(done), _text(done, given.to))
     return command_line.SOME_FAILED if done.problems else command_line.ALL_DONE
 

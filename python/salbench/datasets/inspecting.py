@@ -82,12 +82,7 @@ def _odd_sizes(items: list[Facts]) -> list[str]:
 
 def _unused(root: str, listing: Listing) -> list[str]:
     """Files below the folder that belong to no item, in natural order. Links to folders are not followed."""
-    used = set(listing.read)
-    for item in listing.items:
-        used |= {file.path for file in item.files} | ({item.how["form"]} if "form" in item.how else set())
-        if item.native is not None:
-            used |= {item.native.mesh, *item.native.saliency, *item.native.picks}
-    used = {os.path.normpath(path) for path in used}
+    used = {os.path.normpath(path) for path in listing.files()}
     found = []
     for folder, folders, names in os.walk(root):
         folders[:] = [name for name in folders if not name.startswith(".")]

@@ -7,7 +7,6 @@ Files that anybody else wrote are read by h5py and checked.
 
 from __future__ import annotations
 
-import contextlib
 import os
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -15,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench._files import replace_file
+from salbench._files import OwnFolder
 from salbench.datasets._files import read_file
 from salbench.datasets.records import Form, InputError, Truth
 
@@ -29,8 +28,9 @@ _OF_SHAPE = ("points", "faces", "normals", "viewpoint", "left_out", "polygons")
 _OF_TRUTH = ("saliency", "viewers", "picks", "picks_of", "faces")
 
 
-def file_of(folder: str, shape: str) -> str:
-    return os.path.join(folder, "items", f"{shape}.h5")
+def name_of(shape: str) -> str:
+    """Of its file in the folder."""
+    return f"items/{shape}.h5"
 
 
 def read(path: str) -> Form:
@@ -66,12 +66,16 @@ def image(form: Form) -> bytes:
     return _core.one_form_image(form)
 
 
-def put(path: str, data: bytes) -> bool:
+def own(folder: str) -> OwnFolder:
+    """The folder of a set, to be written."""
+    return OwnFolder(folder, "choose another with --to", below=["items"])
+
+
+def put(folder: OwnFolder, name: str, data: bytes) -> bool:
     """Replaces the file in one step, unless it holds these bytes; true if it did not."""
-    with contextlib.suppress(OSError), open(path, "rb") as file:
-        if file.read() == data:
-            return False
-    replace_file(path, data, to_disk=True)
+    if folder.read(name, len(data)) == data:
+        return False
+    folder.write(name, data)
     return True
 
 
@@ -81,13 +85,12 @@ def read_index(folder: str) -> list[Row]:
     return _core.read_index(os.fsencode(path)) if os.path.exists(path) else []
 
 
-def put_index(folder: str, rows: list[Row], before: list[Row]) -> int:
+def put_index(folder: OwnFolder, rows: list[Row], before: list[Row]) -> int:
     """Writes the index, and removes files of shapes that only the one before it has. How many these are."""
-    put(os.path.join(folder, INDEX), _core.index_text(rows))
+    put(folder, INDEX, _core.index_text(rows))
     gone = {row[0] for row in before} - {row[0] for row in rows}
     for shape in gone:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(file_of(folder, shape))
+        folder.remove(name_of(shape))
     return len(gone)
 
 
@@ -123,11 +126,18 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
     >>> folder.cleanup()
     """
     folder = os.fspath(folder)
-    before = read_index(folder)
+    if not folder:
+        raise InputError("folder is empty: name one")
+    with own(folder) as opened:
+        _write(opened, shapes, source)
+
+
+def _write(folder: OwnFolder, shapes: Iterable[Any], source: str) -> None:
+    before = read_index(folder.path)
     for row in before:
         if row[-1] != source:
-            raise InputError(f"{folder}: holds another set, of source {row[-1]}; choose another folder")
-    os.makedirs(os.path.join(folder, "items"), exist_ok=True)
+            raise InputError(f"{folder.path}: holds another set, of source {row[-1]}; choose another folder")
+    folder.require_folder("items")
     rows: dict[str, Row] = {}
     for number, shape in enumerate(shapes):
         name = str(getattr(shape, "id", "")) or f"shape {number}"
@@ -141,7 +151,7 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
             _core.shape_facts(form, os.fsencode(name), os.fsencode(name))
         except (TypeError, ValueError) as error:
             raise InputError(f"shape {name!r}: {error}") from None
-        put(file_of(folder, name), data)
+        put(folder, name_of(name), data)
         rows[name] = row_of(name, form)
     put_index(folder, list(rows.values()), before)
 

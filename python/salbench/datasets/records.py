@@ -93,6 +93,15 @@ class Listing:
     positives: str = "picks"
     remark: str = ""  # what every table has to say of the ground truth; one of the notes
 
+    def files(self) -> set[str]:
+        """Every file that the items and the listing are read from."""
+        used = set(self.read)
+        for item in self.items:
+            used |= {file.path for file in item.files} | ({item.how["form"]} if "form" in item.how else set())
+            if item.native is not None:
+                used |= {item.native.mesh, *item.native.saliency, *item.native.picks}
+        return used
+
 
 @dataclass
 class AsRead:

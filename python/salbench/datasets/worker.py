@@ -17,12 +17,12 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, BinaryIO
 
+from salbench._processes import end_with_parent, leave_interrupts_to_parent
 from salbench.datasets import _limits
 from salbench.datasets.records import InputError, Item
 
@@ -135,9 +135,10 @@ def answer(text: bytes, out: bytes) -> None:
                 file.write(data)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Serves until standard input ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this one ends it
+def main(parent: int | None = None) -> int:
+    """Serves until standard input, or the parent, ends."""
+    leave_interrupts_to_parent()
+    end_with_parent(parent)
     _limits.no_core()
     _log_to_stderr()
     said = os.fdopen(os.dup(1), "wb")

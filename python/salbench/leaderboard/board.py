@@ -6,7 +6,6 @@ Models are compared on the items that none of them was trained on. A model that 
 
 import csv
 import os
-import shutil
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
@@ -24,7 +23,7 @@ from salbench.conclusions.study import Study
 from salbench.leaderboard import submission
 from salbench.leaderboard.archive import Refused
 from salbench.leaderboard.submission import Expected, Submission
-from salbench.leaderboard.texts import Card
+from salbench.leaderboard.texts import Card, shown
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 OTHER_SCORES = "the scores that it came with are others than those computed here"
@@ -40,6 +39,11 @@ class Entry:
     program: str = ""
     refused: str = "was not checked"  # why; empty: it was not
     remark: str = ""
+
+    @property
+    def name(self) -> str:
+        """Of the file, as a line."""
+        return shown(self.file.name)
 
     @property
     def status(self) -> str:
@@ -96,17 +100,26 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
 
     taken = {name.lower(): "a model of the configuration" for name in models}
     passed = []
-    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as workers:
-        for entry, read in zip(entries, workers.map(check, range(len(entries)))):
-            if isinstance(read, str):
-                entry.refused = read
-                continue
-            entry.card, entry.program, entry.refused = read.card, read.program, ""
-            if (holder := taken.setdefault(read.card.name.lower(), entry.file.name)) != entry.file.name:
-                entry.refused = f"the name {read.card.name} is taken by {holder}, or differs from it in capitals alone"
-                continue
-            passed.append(read)
+    for entry, read in zip(entries, _all_of(check, len(entries), threads)):
+        if isinstance(read, str):
+            entry.refused = read
+            continue
+        entry.card, entry.program, entry.refused = read.card, read.program, ""
+        if (holder := taken.setdefault(read.card.name.lower(), entry.name)) != entry.name:
+            entry.refused = f"the name {read.card.name} is taken by {holder}, or differs from it in capitals alone"
+            continue
+        passed.append(read)
     return passed
+
+
+def _all_of(check: Callable[[int], Submission | str], n: int, threads: int | None) -> list[Submission | str]:
+    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as workers:
+        try:
+            return list(workers.map(check, range(n)))
+        except BaseException:  # Ctrl-C: threads wait for processes that read
+            workers.shutdown(wait=False, cancel_futures=True)
+            submission.end_all()
+            raise
 
 
 def model_of(submitted: Submission) -> tuple[str, Model]:
@@ -213,7 +226,7 @@ def plain(cell: str) -> str:
 
 
 def submissions(entries: list[Entry]) -> list[dict[str, str]]:
-    return [{"file": entry.file.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused, "remark": entry.remark,
+    return [{"file": entry.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused, "remark": entry.remark,
              "date": entry.card.date, "citation": entry.card.citation, "licence": entry.card.licence, "training_data": entry.card.training_data,
              "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.program} for entry in entries]
 
@@ -236,7 +249,7 @@ def history(board: Board, ranking: pandas.DataFrame) -> pandas.DataFrame:
                 continue
             is_best = best != best or (value > best if higher[of[-1]] else value < best)
             best = value if is_best else best
-            parts.append({"split": "", **dict(zip(label, of)), "date": entry.card.date, "file": plain(entry.file.name), "model": entry.card.name,
+            parts.append({"split": "", **dict(zip(label, of)), "date": entry.card.date, "file": plain(entry.name), "model": entry.card.name,
                           "mean": value, "best": "yes" if is_best else "no"})
     return tables.framed(_HISTORY, parts, board.study.in_splits)
 
@@ -273,11 +286,11 @@ OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean
 
 def write_tables(board: Board, results: Any, folder: Path) -> None:
     """The scores as the run wrote them, and all that follows from them."""
-    folder.mkdir(parents=True)
-    for name in OF_THE_RUN:
-        if (results.folder / name).is_file():
-            shutil.copyfile(results.folder / name, folder / name)
     unmarked = ("submissions", "about", "metrics", "history")
-    for name, frame in board.tables.items():
-        folders.write(folder / f"{name}.csv", tables.csv(frame, () if name in unmarked else board.remarks))
-    folders.write(folder / "protocol.yaml", board.protocol)
+    with folders.own(folder) as own:
+        for name in OF_THE_RUN:
+            if (results.folder / name).is_file():
+                own.write(name, (results.folder / name).read_bytes())
+        for name, frame in board.tables.items():
+            folders.write(own, f"{name}.csv", tables.csv(frame, () if name in unmarked else board.remarks))
+        folders.write(own, "protocol.yaml", board.protocol)

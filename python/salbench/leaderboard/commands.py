@@ -3,9 +3,7 @@
 
 import argparse
 import logging
-import os
 import sys
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -13,6 +11,7 @@ from typing import Any
 from salbench import _core, _run
 from salbench._command_line import ALL_DONE, SOME_FAILED, Parser, report
 from salbench._errors import InputError, StorageError
+from salbench._files import read_file, replace_file
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
 from salbench.leaderboard import board, folder, site, submission, texts
@@ -24,7 +23,7 @@ CONFIG = "shrec07_meshes"
 
 def add_arguments(parser: Parser) -> None:
     """Those that both have: of a run over what has ground truth whose configuration need not be named."""
-    parser.add_argument("-c", "--config", default=CONFIG, help=f"configuration, or the name of an installed one (default: {CONFIG})")
+    parser.add_argument("-c", "--config", metavar="CONFIG", default=CONFIG, help=f"configuration, or the name of an installed one (default: {CONFIG})")
     parser.add_argument("--data", metavar="DIR", help="folder of the data set")
     parser.add_argument("--cache", metavar="DIR", help="folder of the artefacts (default: cache in CONFIG, or salbench-cache)")
     parser.add_argument("--split", help="only this split of the data set, such as test; '': all, where CONFIG names one")
@@ -90,12 +89,13 @@ def _failed(results: Results) -> int:
 def submit(given: argparse.Namespace) -> int:
     """given: MINE and --to beside the arguments of both."""
     card_file = Path(given.mine, "card.yaml")
-    card_text = card_file.read_bytes()
+    card_text = read_file(card_file, texts.LONGEST_TEXT, "shorten it")
+    _require_free(Path(given.to))
     try:
         card = texts.read_card(card_text, str(card_file))
     except Refused as reason:
         raise InputError(str(reason)) from None
-    with tempfile.TemporaryDirectory(prefix="salbench-") as name:
+    with _core.ScratchFolder() as name:
         session = _Session(given, Path(name))
         results = session.run(maps={card.name: given.mine})
         status = _failed(results)
@@ -116,17 +116,33 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
     manifest = Manifest(program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
                         configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
                         stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items()])
+    made = scratch / "made.zip"
+    data = submission.archive_of(card, manifest, expected.protocol, scores, maps)
+    try:
+        made.write_bytes(data)
+        submission.read(made, expected, scratch / "maps")
+    except OSError as error:
+        raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
+    except Refused as reason:
+        raise InputError(f"{to}: would be refused, and was not written: {reason}") from None
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = to.with_name(to.name + ".unfinished")
-        unfinished.write_bytes(submission.archive_of(card, manifest, expected.protocol, scores, maps))
-        submission.read(unfinished, expected, scratch / "maps")
-        os.replace(unfinished, to)
+        replace_file(to, data)
     except OSError as error:
         raise StorageError(f"{to}: cannot be written: {error.strerror}; choose another with --to") from None
-    except Refused as reason:
-        unfinished.unlink()
-        raise InputError(f"{to}: would be refused, and was not written: {reason}") from None
+
+
+def _require_free(to: Path) -> None:
+    """Throws InputError for what is there and no archive: a map, say, or a folder."""
+    if to.is_dir():
+        raise InputError(f"--to {to}: is a folder; name the file to write, such as mine.zip")
+    if to.exists() and not (to.is_file() and _head(to) in (b"PK", b"")):
+        raise InputError(f"--to {to}: is there, and no submission; choose another")
+
+
+def _head(path: Path) -> bytes:
+    with open(path, "rb") as file:
+        return file.read(2)
 
 
 def leaderboard(given: argparse.Namespace) -> int:
@@ -134,7 +150,9 @@ def leaderboard(given: argparse.Namespace) -> int:
     entries = board.archives_in(given.folder, may_be_none=bool(given.models))
     to = Path(given.to)
     folder.require_own(to)
-    with tempfile.TemporaryDirectory(prefix="salbench-") as name:
+    if to.exists() and to.samefile(given.folder):
+        raise InputError(f"--to {to}: is the folder of the submissions; choose another")
+    with _core.ScratchFolder() as name:
         scratch = Path(name)
         session = _Session(given, scratch)
         kept = given.models or ""
@@ -156,5 +174,5 @@ def leaderboard(given: argparse.Namespace) -> int:
 
 def _text(made: board.Board, given: argparse.Namespace) -> str:
     lines = [tables.aligned(means.overview(made.study)), *tables.of_truth(made.remarks), *made.sentences]
-    lines += [f"refused: {entry.file.name}: {entry.refused}" for entry in made.of_status("refused")]
+    lines += [f"refused: {entry.name}: {entry.refused}" for entry in made.of_status("refused")]
     return "\n".join([*lines, f"the leaderboard is {Path(given.to, 'index.html')}\n"])

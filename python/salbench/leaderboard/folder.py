@@ -2,14 +2,11 @@
 """The folder of a site. A site is made elsewhere and put there file by file, each whole or not at all; who was ended on the way leaves what the
 next call brings to an end, and two calls wait for each other."""
 
-import fcntl
-import os
-import shutil
 from pathlib import Path
 
-from salbench.conclusions import TABLES
 from salbench._errors import InputError
-from salbench._errors import StorageError
+from salbench._files import OwnFolder
+from salbench.conclusions import TABLES
 from salbench.pages.rendering import is_ours
 
 OURS = "data/submissions.csv"  # written first: a folder that has it is the site of a leaderboard
@@ -33,38 +30,23 @@ def require_own(site: Path) -> None:
 
 def publish(made: Path, site: Path) -> None:
     """Brings the site to what was made: files that are the same stay untouched, index.html is written last, then stale files go."""
-    try:
-        site.mkdir(parents=True, exist_ok=True)
-        lock = os.open(site, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            require_own(site)
-            files = sorted(str(path.relative_to(made)) for path in made.rglob("*") if path.is_file())
-            for name in sorted(files, key=lambda name: (name != OURS, name == "index.html", name)):
-                _put(made / name, site / name)
-            for path in [*site.glob("*"), *(path for name in FOLDERS for path in (site / name).glob("*"))]:
-                if str(path.relative_to(site)) not in files and _is_stale(path):
-                    path.unlink()
-        finally:
-            os.close(lock)
-    except OSError as error:
-        raise StorageError(f"{error.filename or site}: cannot be written: {error.strerror}; choose another folder with --to") from None
+    with OwnFolder(site, "choose another folder with --to", below=FOLDERS, follow=False) as own:
+        require_own(site)
+        files = sorted(str(path.relative_to(made)) for path in made.rglob("*") if path.is_file())
+        for name in sorted(files, key=lambda name: (name != OURS, name == "index.html", name)):
+            data = (made / name).read_bytes()
+            if own.read(name, len(data)) != data:
+                own.write(name, data)
+        for path in [*site.glob("*"), *(path for name in FOLDERS for path in (site / name).glob("*"))]:
+            name = str(path.relative_to(site))
+            if name not in files and _is_stale(path, own.head(name)):
+                own.remove(name)
 
 
-def _put(source: Path, target: Path) -> None:
-    if not target.is_symlink() and target.is_file() and target.read_bytes() == source.read_bytes():
-        return
-    target.parent.mkdir(exist_ok=True)
-    unfinished = target.with_name(target.name + _UNFINISHED)
-    unfinished.unlink(missing_ok=True)
-    shutil.copyfile(source, unfinished)
-    os.replace(unfinished, target)
-
-
-def _is_stale(path: Path) -> bool:
-    """True for what an earlier call wrote, or was ended in."""
+def _is_stale(path: Path, head: bytes) -> bool:
+    """True for what an earlier call wrote, or one of version 1.0 was ended in. head: its first bytes, if it is a file."""
     if path.name.endswith(_UNFINISHED):
         return True
     if path.parent.name == "data":
         return path.name in (*_OLDER, *(f"{table.name}.csv" for table in TABLES)) or path.name.startswith("mean_histograms_")
-    return path.suffix == ".html" and path.is_file() and is_ours(path)
+    return path.suffix == ".html" and is_ours(head)

@@ -173,15 +173,15 @@ def history(board: Board) -> list[Any]:
 
 
 def submissions(board: Board, entries: list[Entry]) -> list[Any]:
-    rows = [[Cell(entry.file.name), Cell(entry.card.name) if entry.refused else named(board, entry.card.name), Cell(entry.status),
+    rows = [[Cell(entry.name), Cell(entry.card.name) if entry.refused else named(board, entry.card.name), Cell(entry.status),
              Cell(entry.refused or entry.remark)] for entry in entries]
     return [Table("submissions", "Submissions, and why some were refused.", ["File", "Model", "Status", "Reason or remark"], rows, [False] * 4)]
 
 
 def card_rows(entry: Entry) -> dict[str, str]:
     card = entry.card
-    rows = {"File": entry.file.name, "Date": card.date, "Citation": card.citation, "Licence": card.licence, "Training data": card.training_data,
-            "Overlap with the test items": card.overlap, "Page": card.url, "Checked before by salbench": entry.program, "Remark": entry.remark}
+    rows = {"File": entry.name, "Date": card.date, "Citation": card.citation, "Licence": card.licence, "Training data": card.training_data,
+            "Overlap with the test items": card.overlap, "Page": card.url, "Written by, as it says": f"salbench {entry.program}" if entry.program else "", "Remark": entry.remark}
     return {label: text for label, text in rows.items() if text}
 
 

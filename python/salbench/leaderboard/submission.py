@@ -10,7 +10,6 @@ import itertools
 import json
 import os
 import resource
-import stat
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -22,7 +21,9 @@ import numpy as np
 
 from salbench import _core
 from salbench._errors import InputError
+from salbench._files import read_file
 from salbench._npy import header_of
+from salbench._processes import PYTHON, end_with_parent, interrupts_held, leave_interrupts_to_parent
 from salbench._types import NDArray
 from salbench.leaderboard import texts
 from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
@@ -31,7 +32,9 @@ from salbench.leaderboard.texts import Card, Manifest
 _SECONDS = 120  # of processor time, and five times that by the clock
 _MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumPy, and the program's libraries
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
+_LONGEST_HEAD = 1 << 26  # what the process sends before the maps
 _NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
+_SENT = ("submission.yaml", "card.yaml", "results.csv")  # by the process that reads
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import worker; worker()"
 
 
@@ -103,15 +106,14 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
     name = "configuration.yaml"
     if _core.digest(configuration) != manifest.configuration:
         raise Refused(f"{name} is not what submission.yaml has the digest of")
-    texts.require_plain(configuration, name)
-    text = configuration.decode("utf-8")
+    text = texts.require_plain(configuration, name)
     if text != expected.protocol:  # another version of the program may write further options, at their defaults
         if "models" in {line.partition(":")[0] for line in text.splitlines()}:
             raise Refused(f"{name} has models, expected the protocol alone")
         try:
             text = _core.protocol(text, name)
-        except ValueError as error:
-            raise Refused(str(error)) from None
+        except ValueError as error:  # which may repeat what stands there
+            raise Refused(" ".join(texts.shown(str(error)).split())[:300]) from None
     for mine, other in itertools.zip_longest(expected.protocol.splitlines(), text.splitlines(), fillvalue=""):
         if mine != other:
             raise Refused(f"another protocol: it has {quoted(other)}, the leaderboard {quoted(mine)}")
@@ -148,20 +150,11 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
     return card, manifest, files, found
 
 
-def _bytes_of(path: str, most: int) -> bytes:
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
-    with open(descriptor, "rb") as file:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise Refused("not a regular file")
-        data = file.read(most + 1)
-    if len(data) > most:
-        raise Refused(f"has more than {most} bytes, the most that can be read")
-    return data
-
-
 def worker() -> None:
     """Reads what to do from standard input; writes a line of JSON and the values of the maps."""
     given = json.load(sys.stdin)
+    end_with_parent(given["parent"])
+    leave_interrupts_to_parent()
     expected = Expected(**given["expected"])
     memory = 2 * expected.most_bytes + _MEMORY
     for limit, most in ((resource.RLIMIT_CPU, _SECONDS), (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, 2 * expected.most_bytes),
@@ -169,13 +162,13 @@ def worker() -> None:
         resource.setrlimit(limit, (most, most))
     maps: dict[str, NDArray[np.float64]] = {}
     try:
-        _, manifest, files, maps = _checked(_bytes_of(given["path"], expected.most_bytes + _OVERHEAD), expected)
-        head = {"card": files["card.yaml"].decode(), "program": manifest.program, "maps": list(maps),
-                "results": files["results.csv"].decode("utf-8", "surrogateescape")}
+        data = read_file(given["path"], expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
+        _, _, files, maps = _checked(data, expected)
+        head = {name: files[name].decode("utf-8", "surrogateescape") for name in _SENT} | {"maps": list(maps)}
     except Refused as reason:
         head = {"refused": str(reason)}
-    except OSError as error:
-        head = {"refused": f"cannot be read: {error.strerror}"}
+    except InputError as error:  # the file, whose name the table has
+        head = {"refused": str(error).removeprefix(f"{given['path']}: ")}
     except MemoryError:
         head = {"refused": f"needs more than the {memory} bytes of memory that a submission has"}
     line = json.dumps(head).encode()
@@ -187,34 +180,51 @@ def worker() -> None:
 # --- asked for -----------------------------------------------------------------------------------------------------------------------------------
 
 
+_at_work: set[subprocess.Popen[bytes]] = set()
+
+
+def end_all() -> None:
+    """Ends the processes that read; what they were asked is refused."""
+    for process in [*_at_work]:
+        process.kill()
+
+
 def read(path: Path, expected: Expected, scratch: Path) -> Submission:
     """Reads an archive from anybody and checks all of it but its scores; scratch is a file to be written. Throws Refused."""
-    given = json.dumps({"path": str(path), "expected": asdict(expected)})
+    given = json.dumps({"path": str(path), "expected": asdict(expected), "parent": os.getpid()}).encode()
     with open(scratch, "wb") as out:
+        with interrupts_held():
+            process = subprocess.Popen([*PYTHON, "-B", "-c", _START, str(Path(__file__).parents[2])], stdin=subprocess.PIPE, stdout=out,
+                                       stderr=subprocess.DEVNULL)
+        _at_work.add(process)
         try:
-            ended = subprocess.run([sys.executable, "-P", "-B", "-c", _START, str(Path(__file__).parents[2])], input=given.encode(), stdout=out,
-                                   stderr=subprocess.DEVNULL, timeout=5 * _SECONDS, check=False).returncode
+            process.communicate(given, timeout=5 * _SECONDS)
         except subprocess.TimeoutExpired:
-            ended = 1
+            pass
+        finally:
+            process.kill()
+            process.wait()
+            _at_work.discard(process)
     with open(scratch, "rb") as file:
-        line = file.readline()
+        head = file.readline(_LONGEST_HEAD)
         begin = file.tell()
+    ended = ", and was ended by a limit or a fault" if process.returncode else ""
     try:
-        head: dict[str, Any] = json.loads(line)
-    except ValueError:
-        raise Refused(f"damaged: the process that reads it sent nothing{', and was ended by a limit or a fault' if ended else ''}") from None
-    if "refused" in head:
-        raise Refused(str(head["refused"]))
-    return _received(head, scratch, begin, expected)
+        said = json.loads(head)
+        if "refused" in said:
+            raise Refused(texts.line(said["refused"], "damaged: what the process that reads it says"))
+        return _received(said, scratch, begin, expected)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise Refused(f"damaged: the process that reads it sent nothing that can be used{ended}") from None
 
 
-def _received(head: dict[str, Any], scratch: Path, begin: int, expected: Expected) -> Submission:
+def _received(said: dict[str, Any], scratch: Path, begin: int, expected: Expected) -> Submission:
     """An archive may have taken the process over: what it sent is looked at once more."""
-    items, n = head["maps"], sum(expected.points.values())
+    items, n = said["maps"], sum(expected.points.values())
     if sorted(items) != sorted(expected.points) or scratch.stat().st_size != begin + 8 * n:
         raise Refused("damaged: its maps were not sent whole")
     values = np.memmap(scratch, np.float64, "r", begin)
     ends = np.cumsum([0, *(expected.points[item] for item in items)])
     maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
-    card = texts.read_card(head["card"].encode(), "card.yaml")
-    return Submission(card, str(head["program"]), str(head["results"]), _core.digest(values.tobytes()), maps)
+    card, manifest = texts.read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
+    return Submission(card, manifest.program, str(said["results.csv"]), _core.digest(values.tobytes()), maps)

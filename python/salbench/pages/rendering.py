@@ -30,9 +30,6 @@ def environment(package: Path, titles: Mapping[str, str]) -> Environment:
     return made
 
 
-def is_ours(page: Path) -> bool:
-    """True if it is a page that was made here."""
-    try:
-        return MARK in page.read_text(encoding="utf-8", errors="replace")[:600]
-    except FileNotFoundError:
-        return False
+def is_ours(head: bytes) -> bool:
+    """True if a page that begins so was made here."""
+    return MARK.encode() in head[:600]

@@ -5,9 +5,8 @@ from collections.abc import Mapping, Sequence
 
 from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, mean_cell
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
-from salbench.report import statistics
-from salbench.report.latex import write_compact
-from salbench.report.results import Frame, Results, Row, write_csv
+from salbench.report import latex, statistics
+from salbench.report.results import Frame, Results, Row, csv_text
 from salbench.report.units import counted
 from salbench.report.workshop import Workshop
 
@@ -43,8 +42,8 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     found = [results.metric(metric) for metric in metrics]
     identifier = f"compact-{dataset}"
     over = counted_of(results, dataset, parts)
-    write_csv(results.table("compact.csv").query("dataset == @dataset"), shop.file(f"data/{identifier}.csv"))
-    write_compact(shop.file(f"data/{identifier}.tex"), models, found, by_cell, failed, spoken(dataset), over, results.simulated)
+    shop.write(f"data/{identifier}.csv", csv_text(results.table("compact.csv").query("dataset == @dataset")))
+    shop.write(f"data/{identifier}.tex", latex.compact(models, found, by_cell, failed, spoken(dataset), over, results.simulated))
     made = Table(identifier, CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)), ["Model", *(of.label for of in found)], rows,
                  [False] + [True] * len(metrics), files=[("LaTeX", f"data/{identifier}.tex"), ("CSV", f"data/{identifier}.csv")],
                  better=[""] + ["lower" if of.lower else "higher" for of in found])

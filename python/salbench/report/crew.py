@@ -2,12 +2,14 @@
 """Work on several processes, with results in the order of the tasks, whichever process did them."""
 
 import multiprocessing
+import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-from salbench._errors import InputError
+from salbench._errors import InputError, StorageError
+from salbench._processes import end_with_parent, interrupts_held, leave_interrupts_to_parent
 
 # (function, tasks): processes are forked when they are known, so that nothing is sent to them
 _work: tuple[Callable[[Any], Any], Sequence[tuple[str, Any]]] | None = None
@@ -19,8 +21,15 @@ def _do(at: int) -> Any:
     name, task = tasks[at]
     try:
         return function(task)
+    except (InputError, StorageError):
+        raise
     except Exception as error:
         raise RuntimeError(f"drawing {name}: {type(error).__name__}: {error}") from error
+
+
+def _begin(parent: int) -> None:
+    end_with_parent(parent)
+    leave_interrupts_to_parent()
 
 
 def each(function: Callable[[Any], Any], tasks: Sequence[tuple[str, Any]], processes: int) -> Iterator[Any]:
@@ -30,14 +39,19 @@ def each(function: Callable[[Any], Any], tasks: Sequence[tuple[str, Any]], proce
     if min(processes, len(tasks)) < 2:
         yield from map(_do, range(len(tasks)))
         return
-    pool = ProcessPoolExecutor(min(processes, len(tasks)), multiprocessing.get_context("fork"))
+    pool = ProcessPoolExecutor(min(processes, len(tasks)), multiprocessing.get_context("fork"), _begin, (os.getpid(),))
     try:
-        futures = [pool.submit(_do, at) for at in range(len(tasks))]
+        with interrupts_held():
+            futures = [pool.submit(_do, at) for at in range(len(tasks))]
         for (name, _), future in zip(tasks, futures):
             try:
                 yield future.result()
             except BrokenProcessPool:
                 raise InputError(f"a process that drew {name} or what follows it was ended from outside; is there too little memory? "
                                "The next call goes on from here: --processes 1 takes the least.") from None
+    except BaseException:  # nobody waits for the other drawings
+        for process in multiprocessing.active_children():
+            process.kill()
+        raise
     finally:
         pool.shutdown(cancel_futures=True)

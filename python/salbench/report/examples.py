@@ -156,7 +156,7 @@ Printed = tuple[str, bytes, list[tuple[str, bool]]]  # of a tile: title, picture
 
 def printed(shop: Workshop, name: str, gallery: Gallery) -> Gallery:
     """The gallery, with the same pictures as one figure for print."""
-    rows: list[list[Printed]] = [[(tile.title, (shop.folder.path / tile.picture).read_bytes() if tile.picture else b"", tile.pieces)
+    rows: list[list[Printed]] = [[(tile.title, shop.folder.read(tile.picture) or b"" if tile.picture else b"", tile.pieces)
                                   for tile in tiles] for _, tiles in gallery.rows]
     size = 1.7 * max(map(len, rows)) + 0.9, 2.3 * len(rows) + 0.2
     shop.draw(name, Drawing(draw_gallery, (rows, palette(), size), size, layout=None))

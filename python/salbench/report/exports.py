@@ -11,6 +11,7 @@ import numpy
 from numpy.typing import NDArray
 
 from salbench._errors import InputError
+from salbench._files import require_file
 from salbench.conclusions.units import Floats
 from salbench.pages.viewer_parts import unit_range
 from salbench.report.names import natural, shape_name
@@ -192,6 +193,8 @@ class Shapes:
             self._open(Path(path))
 
     def _open(self, path: Path) -> None:
+        if path.exists():
+            require_file(path, most=1 << 62)  # the library would wait for a pipe
         try:
             file = h5py.File(path, "r")
             layout = text(file.attrs.get("layout", ""))

@@ -2,52 +2,70 @@
 """The folder that a report stands in: what an earlier call wrote there goes, but for drawings that still show the same
 (kept.py); everything else is left alone."""
 
-import shutil
+import os
 from pathlib import Path
 from typing import Any
 
 from salbench._errors import InputError
+from salbench._files import OwnFolder
 from salbench.pages.rendering import MARK, is_ours
-from salbench.report.kept import LEDGER, Kept, Set, within, write
+from salbench.report.kept import LEDGER, Kept, Set, within
 
 FOLDERS = ("figures", "data", "shapes", "pictures", "static")
 LIST = "files.txt"  # of the files of the report, one per line
+ADVICE = "choose another folder with --to"
 
 
 class Folder:
-    """Opens the folder of a report, or makes one. InputError if it holds something else than a report. `finish` ends the call."""
+    """Opens the folder of a report, or makes one; one call at a time has it. InputError if it holds something else than a report, or a
+    link where a folder of the report is expected. `finish` ends the call. named: whoever calls has named this very folder, which may be a
+    link then."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, named: bool = True) -> None:
         self.path = path
         self.names: set[str] = set()
+        if path.exists() and not path.is_dir():
+            raise InputError(f"{path}: not a folder; {ADVICE}")
+        self._own = OwnFolder(path, ADVICE, below=FOLDERS, follow=named, to_disk=False)
         try:
-            if path.exists() and not path.is_dir():
-                raise InputError(f"{path}: not a folder; choose another with --to")
-            if path.is_dir() and any(path.iterdir()):
-                if not is_ours(path / "index.html"):
-                    raise InputError(f"{path}: holds something else than a report; choose another folder with --to")
-                if not (path / LIST).is_file():
-                    remove_older(path)
-            for folder in FOLDERS:
-                (path / folder).mkdir(parents=True, exist_ok=True)
-            self.kept = Kept(path)
-            listed = set(read_list(path))
-            remove(path, listed - self.kept.names)
-            write(path / LIST, "".join(f"{name}\n" for name in sorted((listed & self.kept.names) | {LEDGER})).encode())
-            self.file("index.html").write_text(f'<meta name="generator" content="{MARK}"><title>Unfinished</title>')
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written: {error.strerror}; choose another folder with --to") from None
+            self._begin()
+        except BaseException:
+            self._own.close()
+            raise
 
-    def file(self, name: str) -> Path:
-        """The path of a file of the report, "data/means.csv", to be written now. It is on the list before it is there, so that
-        the next call knows what a call that was ended left behind."""
+    def _begin(self) -> None:
+        is_new = not os.listdir(self.path)
+        if not is_new and not is_ours(self._own.head("index.html")):
+            raise InputError(f"{self.path}: holds something else than a report; {ADVICE}")
+        for folder in FOLDERS:
+            self._own.require_folder(folder)
+        self.names.add("index.html")  # first of all: who finds it knows whose folder this is
+        self._own.write("index.html", f'<meta name="generator" content="{MARK}"><title>Unfinished</title>'.encode())
+        listed = self._listed()
+        if listed is None and not is_new:
+            self._remove_older()
+        self.kept = Kept(self._own)
+        before = listed or set()
+        self._remove(before - self.kept.names)
+        self._write_list((before & self.kept.names) | {LEDGER, "index.html"})
+
+    def __enter__(self) -> "Folder":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._own.close()
+
+    def write(self, name: str, data: str | bytes) -> None:
+        """A file of the report, "data/means.csv". It is on the list before it is there, so that the next call knows what a call that was
+        ended left behind."""
         if name not in self.names:
             self.names.add(name)
-            with open(self.path / LIST, "a", encoding="utf-8") as names:
-                names.write(f"{name}\n")
-        path = self.path / name
-        path.parent.mkdir(exist_ok=True)
-        return path
+            self._own.append(LIST, f"{name}\n".encode())
+        self._own.write(name, data if isinstance(data, bytes) else data.encode("utf-8"))
+
+    def read(self, name: str) -> bytes | None:
+        """A file of the report; None if it is not there."""
+        return self._own.read(name)
 
     def find(self, key: str) -> Set | None:
         """The set of files with this key that an earlier call left whole, now part of this report; or None."""
@@ -62,38 +80,34 @@ class Folder:
         return self.kept.add(key, names, facts)
 
     def finish(self) -> None:
-        """Removes what is not part of the report any more, and halves that an ended call left of what is."""
+        """Removes what is not part of the report any more."""
         self.names.add(LEDGER)
-        for name in self.names:
-            (self.path / f"{name}.part").unlink(missing_ok=True)
         self.kept.finish()
-        remove(self.path, (set(read_list(self.path)) | self.kept.names) - self.names)
-        write(self.path / LIST, "".join(f"{name}\n" for name in sorted(self.names)).encode())
+        self._remove(((self._listed() or set()) | self.kept.names) - self.names)
+        for name in self.names:
+            self._own.remove(f"{name}.part")  # of version 1.0, ended in the middle of it
+        self._write_list(self.names)
 
+    def _listed(self) -> set[str] | None:
+        """None if there is no list."""
+        data = self._own.read(LIST)
+        return None if data is None else {name for name in data.decode("utf-8", "replace").splitlines() if within(name)}
 
-def read_list(path: Path) -> list[str]:
-    try:
-        return [name for name in (path / LIST).read_text(encoding="utf-8", errors="replace").splitlines() if within(name)]
-    except FileNotFoundError:
-        return []
+    def _write_list(self, names: set[str]) -> None:
+        self._own.write(LIST, "".join(f"{name}\n" for name in sorted(names)).encode())
 
+    def _remove(self, names: set[str]) -> None:
+        """Removes files of the report, but for index.html and the ledger, and folders that are then empty."""
+        for name in names - {"index.html", LEDGER}:
+            self._own.remove(name)
+            self._own.remove(f"{name}.part")
+        for folder in FOLDERS:
+            self._own.remove_empty(folder)
 
-def remove(path: Path, names: set[str]) -> None:
-    """Removes files of the report, but for index.html and the ledger, and folders that are then empty."""
-    for name in names:
-        if name not in ("index.html", LEDGER):
-            for file in (path / name, path / f"{name}.part"):
-                if file.is_file():
-                    file.unlink()
-    for folder in sorted((entry for name in FOLDERS for entry in (path / name).glob("**/")), reverse=True):
-        if folder not in [path / name for name in FOLDERS] and not any(folder.iterdir()):
-            folder.rmdir()
-
-
-def remove_older(path: Path) -> None:
-    """An older version wrote the report, without a list: all of these folders was its own."""
-    for folder in FOLDERS:
-        shutil.rmtree(path / folder, ignore_errors=True)
-    for page in path.glob("*.html"):
-        if page.name != "index.html" and is_ours(page):
-            page.unlink()
+    def _remove_older(self) -> None:
+        """An older version wrote the report, without a list: all of these folders was its own."""
+        for folder in FOLDERS:
+            self._own.remove_empty(folder, with_files=True)
+        for page in self.path.glob("*.html"):
+            if page.name != "index.html" and is_ours(self._own.head(page.name)):
+                self._own.remove(page.name)

@@ -38,7 +38,7 @@ def write_page(shop: Workshop, pages: Pages) -> None:
     if painters:
         data = page_data(shop, painters)
         text = json.dumps(data, separators=(",", ":"), ensure_ascii=True)
-        shop.file("data/gallery.js").write_text(f"salbench.gallery = {text};\n", encoding="utf-8")
+        shop.write("data/gallery.js", f"salbench.gallery = {text};\n")
         tiles = [(shape, shop.page_of(shape["item"])) for shape in data["shapes"]]
         classes = sorted({shape["class"] for shape in data["shapes"]})
         pages.write("gallery.html", "gallery.html", title="Gallery", data=data, tiles=tiles, classes=classes, worst=worst(shop))

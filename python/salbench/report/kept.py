@@ -4,12 +4,13 @@ all of its files are there and have the digest that was noted after they were wr
 
 import hashlib
 import json
-import os
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from types import ModuleType
 from typing import Any
+
+from salbench._files import OwnFolder
 
 Facts = dict[str, Any]  # what else pages need to know of a set
 LEDGER = "kept.txt"  # a line of JSON per set: key, digest, names of its files, what else pages need to know of it
@@ -45,32 +46,20 @@ class Set:
         return json.dumps([self.key, self.digest, self.names, self.facts], sort_keys=True) + "\n"
 
 
-def write(path: Path, data: bytes) -> None:
-    """Bytes as a file that is there whole or not at all."""
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(data)
-    os.replace(part, path)
-
-
 def within(name: str) -> bool:
-    """True of a path that does not lead out of the folder."""
-    path = PurePosixPath(name)
-    return not path.is_absolute() and ".." not in path.parts and "\0" not in name
+    """True of a path of a file in the folder."""
+    return name == str(PurePosixPath(name)) and name not in ("", ".") and not name.startswith("/") and ".." not in name.split("/") and "\0" not in name
 
 
-def read_ledger(path: Path) -> dict[str, Set]:
+def read_ledger(data: bytes) -> dict[str, Set]:
     """key -> Set of the lines that can be read: the last one of a call that was ended may be cut short."""
     found: dict[str, Set] = {}
-    try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except FileNotFoundError:
-        return found
-    for line in lines:
+    for line in data.decode("utf-8", "replace").splitlines():
         try:
             one = Set(*json.loads(line))
             if isinstance(one.key, str) and all(within(name) for name in one.names):
                 found[one.key] = one
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, RecursionError):
             continue
     return found
 
@@ -78,9 +67,12 @@ def read_ledger(path: Path) -> dict[str, Set]:
 class Kept:
     """The sets of one folder: those of before, found by key, and those of this call."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: OwnFolder) -> None:
         self.folder = folder
-        self.before = read_ledger(folder / LEDGER)
+        data = folder.read(LEDGER)
+        self.before = read_ledger(data or b"")
+        if data is None:
+            folder.write(LEDGER, b"")
         self.used: dict[str, Set] = {}
 
     @property
@@ -100,20 +92,19 @@ class Kept:
         """Notes files that were written now; the set as a later call will read it."""
         one = Set(key, self._digest(names), list(names), facts)
         self.used[key] = one
-        with open(self.folder / LEDGER, "a", encoding="utf-8") as file:
-            file.write(one.line())
+        self.folder.append(LEDGER, one.line().encode())
         return Set(*json.loads(one.line()))
 
     def finish(self) -> None:
         """Only the sets of this call are on the ledger, in an order that does not depend on when they were drawn."""
-        write(self.folder / LEDGER, "".join(sorted(one.line() for one in self.used.values())).encode())
+        self.folder.write(LEDGER, "".join(sorted(one.line() for one in self.used.values())).encode())
 
     def _digest(self, names: Iterable[str]) -> str:
         """Empty if one of them cannot be read."""
         parts: list[str | bytes] = []
         for name in names:
-            try:
-                parts += [name, (self.folder / name).read_bytes()]
-            except OSError:
+            data = self.folder.read(name)
+            if data is None:
                 return ""
+            parts += [name, data]
         return digest(*parts)

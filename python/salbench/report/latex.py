@@ -2,7 +2,6 @@
 """Tables as LaTeX files for \\input, with the package booktabs."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment
@@ -61,22 +60,22 @@ def number(row: Row | None, bold: bool) -> str:
     return rf"$\mathbf{{{value}}}$" if bold else f"${value}$"
 
 
-def write_per_class(path: Path, classes: Sequence[str], models: Sequence[str], by_cell: Mapping[tuple[str, str], Row], best: Mapping[str, set[str]],
-                    metric: Metric, dataset: str, simulated: bool) -> None:
+def per_class(classes: Sequence[str], models: Sequence[str], by_cell: Mapping[tuple[str, str], Row], best: Mapping[str, set[str]],
+                    metric: Metric, dataset: str, simulated: bool) -> str:
     """by_cell: (class, model or "Avg") -> a row with mean and ci95. best: class -> its best models."""
     rows = []
     for name in classes:
         cells = [number(by_cell.get((name, model)), model in best[name]) for model in models]
         rows.append((name, cells + [number(by_cell.get((name, "Avg")), False)]))
-    write(path, _TEMPLATE, rows=rows, models=models, label=escape(metric.label), dataset=dataset, simulated=simulated)
+    return render(_TEMPLATE, rows=rows, models=models, label=escape(metric.label), dataset=dataset, simulated=simulated)
 
 
-def write_compact(path: Path, models: Sequence[str], metrics: Sequence[Metric], by_cell: Mapping[tuple[str, str], Row], failed: Mapping[str, int],
-                  dataset: str, over: str, simulated: bool) -> None:
+def compact(models: Sequence[str], metrics: Sequence[Metric], by_cell: Mapping[tuple[str, str], Row], failed: Mapping[str, int],
+                  dataset: str, over: str, simulated: bool) -> str:
     """by_cell: (model, metric) -> a row of compact.csv. failed: model -> number of shapes without a score."""
     rows = [(model, [compact_number(by_cell.get((model, metric.name))) for metric in metrics]) for model in models]
     heads = [(metric.label, "downarrow" if metric.lower else "uparrow") for metric in metrics]
-    write(path, _COMPACT, rows=rows, heads=heads, failed=failed, dataset=dataset, over=over, simulated=simulated)
+    return render(_COMPACT, rows=rows, heads=heads, failed=failed, dataset=dataset, over=over, simulated=simulated)
 
 
 def compact_number(row: Row | None) -> str:
@@ -94,7 +93,7 @@ def spread(row: Row, digits: int) -> str:
     return rf"\,({row['low']:.{digits}f},\,{row['high']:.{digits}f})" if row["low"] == row["low"] else ""
 
 
-def write(path: Path, template: str, **values: Any) -> None:
+def render(template: str, **values: Any) -> str:
     environment = Environment(trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True, autoescape=False)
     environment.filters["tex"] = escape
-    path.write_text(environment.from_string(template).render(**values), encoding="utf-8")
+    return environment.from_string(template).render(**values)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pages from templates."""
 
-import shutil
 from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -21,12 +21,14 @@ def copy_static(folder: Folder, viewer: bool) -> None:
     """Style, scripts, colour bars; for the viewer three.js, where it is installed."""
     for place in (rendering.HERE, HERE):
         for file in sorted((place / "static").iterdir()):
-            shutil.copyfile(file, folder.file(f"static/{file.name}"))
-    colour_bar().save(folder.file("static/colourbar.png"))
-    colour_bar("diverging").save(folder.file("static/colourbar-difference.png"))
+            folder.write(f"static/{file.name}", file.read_bytes())
+    for name, bar in (("colourbar", colour_bar()), ("colourbar-difference", colour_bar("diverging"))):
+        made = BytesIO()
+        bar.save(made, "PNG")
+        folder.write(f"static/{name}.png", made.getvalue())
     with suppress(FileNotFoundError):
         for file in three_js() if viewer else ():
-            shutil.copyfile(file, folder.file(f"static/{file.name}"))
+            folder.write(f"static/{file.name}", file.read_bytes())
 
 
 class Pages:
@@ -43,7 +45,7 @@ class Pages:
         root = "../" * path.count("/")
         text = self.templates.get_template(template).render(
             path=path, root=root, banners=banners(self.shop.results), **self.common, **values)
-        self.shop.file(path).write_text(text, encoding="utf-8")
+        self.shop.write(path, text)
 
 
 def titles(results: Results, models: list[str]) -> dict[str, str]:

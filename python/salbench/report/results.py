@@ -2,6 +2,7 @@
 """A results folder as the program writes it: its tables, run.yaml, and what of them is missing."""
 
 import csv
+import io
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ import pandas
 from salbench import _tables
 from salbench.conclusions import conclude_if_missing, folders, type_of
 from salbench._errors import InputError, StorageError
+from salbench._files import require_file
 from salbench.conclusions.metrics import PAPERS, leading_metrics
 from salbench.conclusions.units import TEXTS
 from salbench.pages.blocks import Missing
@@ -61,6 +63,7 @@ class Results:
         if not path.is_file():
             return Missing(f"{name} is not in the results folder: run salbench again, to its end.")
         try:
+            require_file(path)
             table, unusable = read_table(path)
         except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
             return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
@@ -186,13 +189,14 @@ def read_results(folder: Path) -> Results:
     return results
 
 
-def write_csv(table: Frame, path: Path) -> None:
+def csv_text(table: Frame) -> str:
     """Floats as the shortest text that reads back to the same bits."""
     def text(value: Any) -> Any:
         if isinstance(value, (float, numpy.floating)):
             return "" if value != value else repr(float(value))
         return value
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(table.columns)
-        writer.writerows([text(value) for value in row] for row in table.itertuples(index=False))
+    made = io.StringIO(newline="")
+    writer = csv.writer(made, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows([text(value) for value in row] for row in table.itertuples(index=False))
+    return made.getvalue()

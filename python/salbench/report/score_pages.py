@@ -52,7 +52,7 @@ def write_scripts(shop: Workshop, script: str, table: dict[str, Any]) -> None:
     """The leading metrics stand in the script itself, each other one in its own, which the page loads when it is chosen."""
     def write(path: str, name: str, value: Any) -> None:
         text = json.dumps(value, separators=(",", ":"), ensure_ascii=True)
-        shop.file(path).write_text(f"{name} = {text};\n", encoding="utf-8")
+        shop.write(path, f"{name} = {text};\n")
     later = [metric for metric in table["scores"] if metric not in shop.results.leading]
     table["files"] = {metric: f"{script.removesuffix('.js')}-{shop.metric_files[metric]}.js" for metric in later}
     for metric, path in table["files"].items():

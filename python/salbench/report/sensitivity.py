@@ -13,7 +13,7 @@ from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, ce
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import statistics
 from salbench.report.metrics import Metric, family_label, family_of
-from salbench.report.results import Results, write_csv
+from salbench.report.results import Results, csv_text
 from salbench.report.units import HEAD, count_cell
 from salbench.report.workshop import Workshop
 
@@ -149,8 +149,8 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
                          rank, known))
         lines.append(line)
     name = f"sensitivity-{dataset}"
-    write_csv(pandas.DataFrame(data, columns=["family", "metric", "run", "n", "n_shapes", "kendall_tau", "ci95_low", "ci95_high",
-                                              "model", "mean", "rank", "rank_of_reference"]), shop.file(f"data/{name}.csv"))
+    columns = ["family", "metric", "run", "n", "n_shapes", "kendall_tau", "ci95_low", "ci95_high", "model", "mean", "rank", "rank_of_reference"]
+    shop.write(f"data/{name}.csv", csv_text(pandas.DataFrame(data, columns=columns)))
     return [Note(sentence(dataset, rows)),
             Table(name, CAPTION.format(DATASETS[dataset]), ["Family", "Convention", HEAD, "Tau", *models], lines,
                   [False, False, True, True] + [True] * len(models), filters=[0], files=[("numbers (CSV)", f"data/{name}.csv")])]

@@ -108,7 +108,7 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
     names, painted = [], []
 
     def write(name: str, data: bytes) -> None:
-        kept.write(folder.file(name), data)
+        folder.write(name, data)
         names.append(name)
     canvas = canvas_of(picture, faces)
     for (what, when), values in {**maps, **(differences(maps) if not shape.view else {})}.items():

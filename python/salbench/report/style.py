@@ -41,6 +41,7 @@ def apply() -> None:
     import matplotlib.backends.backend_svg
     import matplotlib.figure  # noqa: F401
 
+    matplotlib.rcdefaults()  # whatever a matplotlibrc of the user's says
     matplotlib.use("Agg")
     matplotlib.rcParams.update(_SETTINGS)
 

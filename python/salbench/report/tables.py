@@ -6,8 +6,7 @@ from typing import Any
 
 from salbench.pages.blocks import Block, Cell, Fold, Missing, Note, Table, cell, first_of, interval, p_value, spread
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
-from salbench.report import paper, statistics, units
-from salbench.report.latex import write_per_class
+from salbench.report import latex, paper, statistics, units
 from salbench.report.metrics import Metric
 from salbench.report.results import Frame, Row, flatten
 from salbench.report.units import count_cell
@@ -99,7 +98,7 @@ def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
         rows.append(cells)
     label = of.label
     identifier = f"classes-{dataset}-{shop.metric_files[metric]}"
-    write_per_class(shop.file(f"data/{identifier}.tex"), order, models, by_cell, best, of, dataset, shop.results.simulated)
+    shop.write(f"data/{identifier}.tex", latex.per_class(order, models, by_cell, best, of, dataset, shop.results.simulated))
     files = [("LaTeX (booktabs)", f"data/{identifier}.tex")]
     remark = "; below: the paper's value and the difference" if known else ""
     return Table(identifier, CLASSES.format(label, spoken(dataset), remark), ["Class", units.HEAD, f"Avg-{label}", *models], rows,

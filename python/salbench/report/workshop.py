@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every element is built from and writes to: results, exports, the paper's figures, and the folder of the report."""
 
-import os
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -15,7 +14,7 @@ from salbench.report.drawing import Drawing
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.kept import Facts
-from salbench.report.results import Frame, Results, write_csv
+from salbench.report.results import Frame, Results, csv_text
 
 if TYPE_CHECKING:
     from salbench.report.gallery import Painter
@@ -29,6 +28,7 @@ class Workshop:
     results: Results
     folder: Folder
     shapes: Shapes
+    scratch: Path                           # folder that figures are drawn in
     protocols: dict[str, dict[str, Any]] = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
     items: dict[str, str] = field(default_factory=dict)  # item -> class of every shape that has a page
     examples: tuple[str, ...] = ()          # meshes that the user wants to see
@@ -51,7 +51,7 @@ class Workshop:
     def plot(self, name: str, drawing: Drawing, data: Frame, alt: str, caption: str) -> Plot:
         """A figure as SVG and PDF with the plotted numbers beside it."""
         self.draw(name, drawing)
-        write_csv(data, self.file(f"data/{name}.csv"))
+        self.write(f"data/{name}.csv", csv_text(data))
         return Plot(name, alt, round(drawing.size[0] * 96), caption)
 
     def draw(self, name: str, drawing: Drawing) -> None:
@@ -70,16 +70,16 @@ class Workshop:
 
     def _save(self, task: tuple[str, Drawing, str]) -> list[str]:
         name, drawing, _ = task
-        written = [f"figures/{name}.svg", f"figures/{name}.pdf"]
-        parts = [path.with_name(f"{path.name}.part") for path in map(self.file, written)]
-        style.save(drawing.real(), *parts)
-        for part in parts:
-            os.replace(part, part.with_suffix(""))
-        return written
+        drawn = [self.scratch / f"{name}.svg", self.scratch / f"{name}.pdf"]
+        style.save(drawing.real(), *drawn)
+        for path in drawn:
+            self.write(f"figures/{path.name}", path.read_bytes())
+            path.unlink()
+        return [f"figures/{path.name}" for path in drawn]
 
-    def file(self, name: str) -> Path:
-        """The path of a file of the report, to be written now."""
-        return self.folder.file(name)
+    def write(self, name: str, data: str | bytes) -> None:
+        """A file of the report."""
+        self.folder.write(name, data)
 
     def page_of(self, item: str) -> str:
         """The path of the page of an item within the report; empty if it has none."""

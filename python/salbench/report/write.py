@@ -13,21 +13,26 @@ from salbench.report.elements import numbered, pages_of, sections
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.pages import Pages, copy_static
-from salbench.report.results import read_results
+from salbench.report.results import Results, read_results
 from salbench.report.workshop import Workshop
 
 
-def write_report(out: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (), compare: Path | None = None,
+def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (), compare: Path | None = None,
                  examples: Sequence[str] = (), processes: int = 1, viewer: bool = True) -> Path:
-    """The path of index.html. InputError if there is nothing to report of, or nowhere to write. exports: OUT/shapes.h5, where there is
-    one, unless some are named. viewer: of shapes, which writes their coordinates and values."""
+    """The path of index.html. InputError if there is nothing to report of, StorageError if there is nowhere to write. scratch: an empty
+    folder. exports: OUT/shapes.h5, where there is one, unless some are named. viewer: of shapes, which writes their coordinates and values."""
     results = read_results(out)
     other = read_results(compare) if compare else None
     default = out / "shapes.h5"
     shapes = Shapes(exports or ([default] if default.is_file() else []))
-    folder = Folder(to or out / "report")
+    with Folder(to or out / "report", named=to is not None) as folder:
+        return _write(results, folder, shapes, scratch, other, examples, processes, viewer)
+
+
+def _write(results: Results, folder: Folder, shapes: Shapes, scratch: Path, other: Results | None, examples: Sequence[str], processes: int,
+           viewer: bool) -> Path:
     copy_static(folder, viewer)
-    shop = Workshop(results, folder, shapes, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
+    shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
                     processes=processes, viewer=viewer)
     shop.drawn = shape_files.draw_all(shop)
     metrics = bool(metric_page.others(shop))

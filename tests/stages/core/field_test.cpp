@@ -15,6 +15,15 @@
 namespace salbench {
 namespace {
 
+TEST(Errors, AreWholeWhateverTheyRepeat) {
+  const std::string said("a\0b\0", 4);
+  EXPECT_STREQ(InputError(said).what(), "a\\0b\\0");
+  EXPECT_STREQ(FileError(said, said).what(), "a\\0b\\0: a\\0b\\0");
+  EXPECT_STREQ(ConfigError(said).what(), "a\\0b\\0");
+  EXPECT_STREQ(StorageError(said).what(), "a\\0b\\0");
+  EXPECT_STREQ(OptionError("key", said).what(), "key a\\0b\\0");
+}
+
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;

@@ -148,6 +148,17 @@ TEST(Cc, IsThePearsonCorrelation) {
   EXPECT_TRUE(std::isnan(cc({}, {})));
 }
 
+TEST(InRange, IsEveryScoreThatIsShown) {
+  const auto with = [](double value) {
+    return in_range(chosen_metrics({.names = {"nss", "cc", "lcc"}}), {{value, value, value}});
+  };
+  const double above = std::nextafter(1.0, 2.0);
+  EXPECT_EQ(with(above).values, (std::vector<double>{above, 1, 1}));
+  EXPECT_EQ(with(-above).values, (std::vector<double>{-above, -1, 0}));
+  EXPECT_EQ(with(0.25).values, std::vector<double>(3, 0.25));
+  EXPECT_TRUE(std::ranges::all_of(with(std::nan("")).values, [](double value) { return std::isnan(value); }));
+}
+
 TEST(Score, CountsAPointOnceWhoeverPickedIt) {
   const ScalarField map = {0, 0, 0, 4, 1};
   const GroundTruth often{{0, 0, 0, 1, 0}, {{3}, {3, 0}, {3, 3}}};

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How processes of the package end by signals, and with their parent. Subcommands: ended_test.py of each part."""
+
+import os
+import signal
+import subprocess
+import sys
+import unittest
+
+WAITING = """
+import os, sys
+from salbench._processes import raise_interrupts, say_interrupted
+words = ["report", "a b"]
+try:
+    raise_interrupts(words)
+    print("ready", flush=True)
+    sys.stdin.read()
+except KeyboardInterrupt:
+    print("asked", flush=True)
+    {then}
+"""
+PARENT = """
+import os, subprocess, sys, threading
+from salbench._processes import PYTHON
+child = '''
+import signal, sys
+from salbench._processes import end_with_parent
+end_with_parent(int(sys.argv[1]) if len(sys.argv) > 1 else None)
+print("ready", flush=True)
+signal.pause()
+'''
+def start():
+    subprocess.Popen([*PYTHON, "-c", child, *map(str, [os.getpid()] if len(sys.argv) > 1 else [])])
+thread = threading.Thread(target=start)  # a thread that ends is no parent that does
+thread.start()
+thread.join()
+sys.stdin.read()
+"""
+
+
+class Processes(unittest.TestCase):
+    def started(self, code, *arguments, before=None):
+        process = subprocess.Popen([sys.executable, "-P", "-c", code, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True, preexec_fn=before)
+        self.addCleanup(process.communicate)
+        return process
+
+    def test_a_signal_is_an_interrupt_and_a_second_one_the_end(self):
+        for first in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            for second in (signal.SIGINT, signal.SIGTERM):
+                with self.subTest(first=first, second=second):
+                    process = self.started(WAITING.format(then="sys.stdin.read()"))
+                    for said, number in (("ready\n", first), ("asked\n", second)):
+                        self.assertEqual(process.stdout.readline(), said)
+                        process.send_signal(number)
+                    _, errors = process.communicate()
+                    self.assertEqual((process.returncode, errors),
+                                     (130, "\ninterrupted; everything finished so far is kept. To go on:\n  salbench report 'a b'\n"))
+
+    def test_a_terminal_that_goes_says_so_twice(self):
+        process = self.started(WAITING.format(then="sys.stdin.read(); sys.exit(say_interrupted(words))"))
+        for said in ("ready\n", "asked\n"):
+            self.assertEqual(process.stdout.readline(), said)
+            process.send_signal(signal.SIGHUP)
+        self.assertEqual((process.communicate()[1].count("\n"), process.returncode), (3, 130))
+
+    def test_what_is_ignored_stays_so(self):
+        process = self.started(WAITING.format(then="pass"), before=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.assertEqual(process.stdout.readline(), "ready\n")
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual((process.communicate()[0], process.returncode), ("", 0))
+
+    def test_what_is_blocked_until_then_comes_then(self):
+        process = self.started("import sys; sys.stdout.write('up\\n'); sys.stdout.flush(); sys.stdin.readline()\n" + WAITING.format(then="pass"),
+                               before=lambda: signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM}))
+        self.assertEqual(process.stdout.readline(), "up\n")
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual((process.communicate("go\n")[0], process.returncode), ("asked\n", 0))
+
+    def test_a_child_ends_with_its_parent(self):
+        for arguments in ((), ("named",)):
+            for number in (signal.SIGKILL, signal.SIGTERM):
+                with self.subTest(arguments, number=number):
+                    parent = self.started(PARENT, *arguments)
+                    self.assertEqual(parent.stdout.readline(), "ready\n")
+                    parent.send_signal(number)
+                    self.assertEqual(parent.communicate()[0], "", "which the child has open, too")
+
+    def test_a_child_whose_parent_is_gone_ends_at_once(self):
+        code = "from salbench._processes import end_with_parent\nend_with_parent(1 << 22)\nprint('alive')"
+        self.assertEqual(subprocess.run([sys.executable, "-P", "-c", code], capture_output=True).stdout, b"")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Subcommands of the package that stop where they are at work, in whichever of their processes, until a test says go or ends them."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PATIENCE = 100  # s, of a test that fails
+
+HERE = """
+def here(*_, **__):
+    # Tells that this was reached, and waits for the word to go, which is for all who come after it, too.
+    import os
+    with open({at_work!r}, "wb") as told:
+        told.write(b"x")
+    try:
+        with open({go!r}, "rb") as go:
+            go.read()
+    except FileNotFoundError:
+        pass
+
+def before(work):
+    def call(*arguments, **options):
+        here()
+        return work(*arguments, **options)
+    return call
+"""
+MAIN = "import sys\nfrom salbench.__main__ import main\nsys.exit(main())\n"
+
+
+class Stopped:
+    """`patch`: code that makes something call `here`, or `before(something)`. {HERE} in it is the text of these functions, for code that
+    another process runs. Scratch folders are made below `self.scratch`."""
+
+    def __init__(self, patch, *words, line=None, **environment):
+        self._holder = tempfile.TemporaryDirectory()
+        folder = Path(self._holder.name)
+        self.scratch = folder / "scratch"
+        self.scratch.mkdir()
+        pipes = {"at_work": str(folder / "at_work"), "go": str(folder / "go")}
+        for pipe in pipes.values():
+            os.mkfifo(pipe)
+        self._go = pipes["go"]
+        self._at_work = os.open(pipes["at_work"], os.O_RDWR)
+        self.here = HERE.format(**pipes)
+        line = line or [sys.executable, "-P", "-B", "-c", f"HERE = {self.here!r}\n{self.here}\n{patch}\n{MAIN}"]
+        self.process = subprocess.Popen([*line, *map(str, words)], env=os.environ | {"TMPDIR": str(self.scratch)} | environment,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+
+    def __enter__(self):
+        """At work."""
+        end = os.pidfd_open(self.process.pid)
+        try:
+            reached, _, _ = select.select([self._at_work, end], [], [], PATIENCE)
+        finally:
+            os.close(end)
+        if self._at_work not in reached:
+            self.process.kill()
+            raise AssertionError(f"it was never at work: {self.process.communicate()}")
+        return self
+
+    def go(self):
+        with open(self._go, "wb"):
+            os.unlink(self._go)
+
+    def signal(self, number, to_all=False):
+        (os.killpg if to_all else os.kill)(self.process.pid, number)
+
+    def ended(self):
+        """Status, and what it wrote to the error stream: once no process is left that has it open."""
+        _, errors = self.process.communicate(timeout=PATIENCE)
+        return self.process.returncode, errors
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.communicate()
+        os.close(self._at_work)
+        self._holder.cleanup()
+
+    def scratch_left(self):
+        return sorted(os.listdir(self.scratch))
