@@ -115,7 +115,7 @@ class Splits(WithArchive):
                          'ROOT/splits.csv: there is no column "item"; there are "name", "part"')
 
     def test_the_first_lines_of_a_list_are_one_split(self):
-        self.write({"paths.txt": "rgb/dog.obj\nD:\\data\\ant.obj,maps/ant.csv\n\nbee\nrgb/eel.obj\nrgb/cat.obj\n"})
+        self.write({"paths.txt": "rgb/dog.obj\nD:\\data\\ant.obj,maps/ant.csv\n\nbee\n\"rgb, old/eel.obj\",maps/eel.csv\nrgb/cat.obj\n"})
         for shares, last_in_train in [("{train: 80%, test: 0.2}", 4), ("{train: 0.5, test: 0.5}", 2), ("{train: 1}", 5)]:
             order = ("dog", "ant", "bee", "eel", "cat")
             self.assertEqual(self.splits(f"splits: {{list: paths.txt, shares: {shares}}}\n"),

@@ -19,7 +19,7 @@ from salbench.datasets.records import InputError, Item, Listing, Native, Source
 if TYPE_CHECKING:
     from salbench.datasets.records import Form
 
-VERSION = 1  # of what `read` makes of an item: another form for the same files is another version
+VERSION = 2  # of what `read` makes of an item: another form for the same files is another version
 HEADER_BYTES = 1 << 16
 
 _FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ \t])", re.MULTILINE)
