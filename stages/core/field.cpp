@@ -30,11 +30,12 @@ void require_finite(std::span<const double> field, const char* what, bool may_be
                        std::to_string(i) + " (0-based), expected a finite number");
 }
 
-double scale_against_overflow(std::span<const double> field) {
-  constexpr int kLargestExponent = 480;
+double scale_to_ordinary(std::span<const double> field) {
+  constexpr int kLeastExponent = -256, kLargestExponent = 480;
   const double largest = field.empty() ? 0 : as_array(field).abs().maxCoeff<Eigen::PropagateNumbers>();
-  if (!std::isfinite(largest) || largest <= std::ldexp(1, kLargestExponent)) return 1;
-  return std::ldexp(1, kLargestExponent - std::ilogb(largest));
+  if (!std::isfinite(largest) || largest == 0) return 1;
+  if (largest > std::ldexp(1, kLargestExponent)) return std::ldexp(1, kLargestExponent - std::ilogb(largest));
+  return std::ldexp(1, std::max(kLeastExponent - std::ilogb(largest), 0));
 }
 
 namespace {
@@ -42,7 +43,7 @@ namespace {
 // min_max_normalised where the range overflows.
 ScalarField of_huge_values(std::span<const double> field, ScalarField without_nan) {
   require_finite(field, "the map", true);
-  const double scale = scale_against_overflow(without_nan);
+  const double scale = scale_to_ordinary(without_nan);
   for (double& value : without_nan) value *= scale;
   return min_max_normalised(without_nan);
 }

@@ -15,9 +15,9 @@ namespace salbench {
 void require_finite(std::span<const double> field, const char* what, bool may_be_nan = false);
 
 // The power of two by which a field is multiplied so that sums over a shape of its values, of their
-// differences and of squares of these cannot overflow: 1 unless a magnitude exceeds 2^480 (3e144). NaN does
-// not count.
-double scale_against_overflow(std::span<const double> field);
+// differences and of squares of these neither overflow nor lose digits below the smallest double: 1 if the
+// largest magnitude is between 2^-256 (9e-78) and 2^480 (3e144), or 0. NaN does not count.
+double scale_to_ordinary(std::span<const double> field);
 
 // Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. Throws InputError for an infinite
 // value. [tasse2016]

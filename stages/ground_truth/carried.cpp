@@ -23,7 +23,7 @@ ScalarField vertex_values_of_faces(Points vertices, Surface faces, std::span<con
   if (values.size() != faces.size())
     throw ShapeError("there are " + std::to_string(values.size()) + " values for " +
                      std::to_string(faces.size()) + " faces");
-  const double scale = scale_against_overflow(values);
+  const double scale = scale_to_ordinary(values);
   ScalarField sums(vertices.size()), areas(vertices.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const auto corner = [&](std::size_t i) { return vertices[static_cast<std::size_t>(faces[f][i])]; };

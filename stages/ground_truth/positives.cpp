@@ -41,7 +41,7 @@ std::vector<std::int32_t> points_on_top(std::span<const double> density, double 
 std::vector<std::int32_t> points_above_mean(std::span<const double> density) {
   const std::vector<double> values = seen_values(density);
   if (values.empty()) return {};
-  const double scale = scale_against_overflow(values), minimum = values.back();
+  const double scale = scale_to_ordinary(values), minimum = values.back();
   const double sum = std::accumulate(values.begin(), values.end(), 0.0,
                                      [&](double so_far, double value) { return so_far + value * scale; });
   const double mean = sum / static_cast<double>(values.size());

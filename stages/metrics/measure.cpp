@@ -17,8 +17,8 @@ Measure vertex_measure(std::size_t n) { return {std::vector<double>(n, 1.0), sta
 Measure area_measure(std::span<const double> areas) {
   Measure measure{{areas.begin(), areas.end()}};
   const auto sum = [&] { return std::accumulate(measure.weight.begin(), measure.weight.end(), 0.0); };
-  constexpr int kOrdinary = 160;  // exponents
-  if (std::isinf(sum()))          // that of 2^31 finite areas is finite then
+  constexpr int kOrdinary = 40;  // exponents
+  if (std::isinf(sum()))         // that of 2^31 finite areas is finite then
     for (double& weight : measure.weight) weight *= 0x1p-40;
   if (!std::isfinite(sum()))
     throw ShapeError("the area around a point is infinite: the coordinates are too large");

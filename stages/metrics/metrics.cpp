@@ -127,7 +127,7 @@ std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
 ScalarField unmatched(std::span<const double> map, Matching reading) {
   if (reading == Matching::none || reading == Matching::histogram) return min_max_normalised(map);
   require_finite(map, "the map", true);
-  const double scale = scale_against_overflow(map);
+  const double scale = scale_to_ordinary(map);
   ScalarField values;
   for (const double value : map) values.push_back(std::isnan(value) ? 0 : value * scale);
   const double least = values.empty() ? 0 : *std::ranges::min_element(values);
@@ -192,7 +192,7 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
   require_finite(truth.saliency, "the ground truth");
   if (is_constant(map) && !map.empty() && map[0] != kMiddle)
     return score(metrics, ScalarField(map.size(), kMiddle), truth, options, draws, measures);
-  if (const double scale = scale_against_overflow(truth.saliency); scale != 1)
+  if (const double scale = scale_to_ordinary(truth.saliency); scale != 1)
     return score(metrics, map, scaled(truth, scale), options, draws, measures);
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
   const Comparison comparison({map, saliency, truth.saliency, measures, options.floor}, draws);

@@ -75,7 +75,8 @@ class ThresholdTable {
 class EvenThresholds {
  public:
   EvenThresholds(std::vector<double> thresholds, double largest)
-      : per_unit_(static_cast<double>(thresholds.size() - 1) / largest), thresholds_(std::move(thresholds)) {
+      : per_unit_(std::min(static_cast<double>(thresholds.size() - 1) / largest, kFinite)),
+        thresholds_(std::move(thresholds)) {
     thresholds_.push_back(std::numeric_limits<double>::infinity());
   }
 
@@ -97,6 +98,8 @@ class EvenThresholds {
   LookUp look_up() const { return {thresholds_.data(), per_unit_, thresholds_.size() - 1}; }
 
  private:
+  static constexpr double kFinite = std::numeric_limits<double>::max();  // of a subnormal `largest`
+
   double per_unit_;
   std::vector<double> thresholds_;
 };

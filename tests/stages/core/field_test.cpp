@@ -82,13 +82,21 @@ TEST(RequireFinite, NamesTheFirstValueThatIsNot) {
       ThrowsMessage<InputError>("the map is inf at point 2 (0-based), expected a finite number"));
 }
 
-TEST(ScaleAgainstOverflow, IsAPowerOfTwoForHugeFieldsAlone) {
+TEST(ScaleToOrdinary, IsAPowerOfTwoForHugeAndTinyFieldsAlone) {
   for (const std::vector<double>& ordinary :
-       {std::vector<double>{}, {0, -0.0}, {5e-324}, {-3e144, 1}, {std::nan("")}, {kInfinity}})
-    EXPECT_EQ(scale_against_overflow(ordinary), 1);
+       {std::vector<double>{}, {0, -0.0}, {5e-324, 1e-77}, {-3e144, 1}, {std::nan("")}, {kInfinity}})
+    EXPECT_EQ(scale_to_ordinary(ordinary), 1);
+  for (const double tiny : {8e-78, 1e-170, 2.3e-308, 1e-310, 5e-324})
+    for (const double sign : {1.0, -1.0}) {
+      const double scale = scale_to_ordinary(std::vector<double>{0, std::nan(""), sign * tiny, tiny / 2});
+      int exponent = 0;
+      EXPECT_EQ(std::frexp(scale, &exponent), 0.5);
+      EXPECT_LT(tiny * scale, 0x1p-255);
+      EXPECT_GE(tiny * scale, 0x1p-256);
+    }
   for (const double huge : {4e144, 1e200, 1.7e308, std::numeric_limits<double>::max()})
     for (const double sign : {1.0, -1.0}) {
-      const double scale = scale_against_overflow(std::vector<double>{1, std::nan(""), sign * huge, -1e144});
+      const double scale = scale_to_ordinary(std::vector<double>{1, std::nan(""), sign * huge, -1e144});
       int exponent = 0;
       EXPECT_EQ(std::frexp(scale, &exponent), 0.5);
       EXPECT_LT(huge * scale, 0x1p481);

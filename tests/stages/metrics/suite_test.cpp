@@ -2,6 +2,7 @@
 // The metrics beside the paper's: known answers, degenerate input, and that none depends on its company.
 // Random cases against other implementations are in metrics_reference.py.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
+#include "stages/matching/matching.h"
 #include "tests/stages/metrics/complete.h"
 
 namespace salbench {
@@ -112,6 +114,74 @@ Field random_field() {
 
 void multiply(ScalarField& field, int power) {
   for (double& value : field) value = std::ldexp(value, power);
+}
+
+// Values of these have something added, in their own unit.
+bool adds_to_values(const std::string& name) {
+  return name.starts_with("kl_smoothed") || name.starts_with("kl_pysaliency");
+}
+
+bool of_unit(Matching reading) { return reading == Matching::raw || reading == Matching::shifted; }
+
+// Of few digits: none is lost down to the smallest double.
+TEST(Suite, OfAMapAnyMultipleCountsHoweverItIsRead) {
+  Field field = random_field();
+  for (double& value : field.map) value = std::round(value * 64) / 64;
+  const GroundTruth truth{field.saliency, {field.picks}};
+  const ScalarField areas(field.map.size(), 0.5);
+  Histogram reference{};
+  for (std::size_t k = 0; k < kHistogramBins; ++k)
+    reference[k] = static_cast<double>(kHistogramBins - k) / 50.5;
+  for (const Matching reading : {Matching::none, Matching::histogram, Matching::raw, Matching::shifted}) {
+    const auto of_multiple = [&](int power, double offset) {
+      ScalarField map = field.map;
+      for (double& value : map) value = std::ldexp(value + offset, power);
+      return values_of(metric_table(),
+                       reading == Matching::histogram ? matched(map, reference) : unmatched(map, reading),
+                       truth, areas);
+    };
+    const std::vector<double> offsets =
+        reading == Matching::raw ? std::vector<double>{0, 0.25} : std::vector<double>{0, 0.25, -0.5};
+    for (const double offset : offsets) {
+      const Values expected = of_multiple(0, offset);
+      for (const int power :
+           {-1068, -1030, -1000, -700, -565, -300, -257, -256, -60, 1, 300, 479, 481, 900, 1022})
+        for (const auto& [name, value] : of_multiple(power, offset)) {
+          EXPECT_TRUE(std::isfinite(value)) << name << " at 2^" << power;
+          if (of_unit(reading) && adds_to_values(name)) continue;
+          EXPECT_EQ(value, expected.at(name))
+              << name << " at 2^" << power << ", read as " << name_of(reading);
+        }
+    }
+  }
+}
+
+TEST(Suite, OfAGroundTruthOrNegativesAnySmallMultipleCounts) {
+  const Field field = random_field();
+  ScalarField few_digits = field.saliency;
+  for (double& value : few_digits) value = std::round(value * 64) / 64;
+  const auto of_multiples = [&](int of_truth, int of_negatives, int of_areas) {
+    GroundTruth truth{few_digits, {field.picks}};
+    multiply(truth.saliency, of_truth);
+    ScalarField areas(few_digits.size(), 0.5);
+    multiply(areas, of_areas);
+    Measures measures = complete_measures(few_digits.size(), areas, few_digits);
+    multiply(measures.negatives, of_negatives);
+    Draws draws(Rng(1, "scores", "x"));
+    return score(metric_table(), field.map, truth, {}, draws, measures).values;
+  };
+  const std::vector<double> expected = of_multiples(0, 0, 0);
+  for (const int power : {-1068, -1030, -700, -257, -256, 300, 900, 1022})
+    for (const auto& [of_truth, of_negatives, of_areas] :
+         {std::array{power, 0, 0}, {0, power, 0}, {power, 0, -1000}, {power, 0, 150}, {0, power, -150}}) {
+      const std::vector<double> values = of_multiples(of_truth, of_negatives, of_areas);
+      for (std::size_t m = 0; m < values.size(); ++m) {
+        const std::string& name = metric_table()[m].name;
+        EXPECT_TRUE(std::isfinite(values[m])) << name << " at 2^" << power;
+        if (of_truth != 0 && adds_to_values(name)) continue;
+        EXPECT_EQ(values[m], expected[m]) << name << " at 2^" << power;
+      }
+    }
 }
 
 // 1e-12 is added to values for kl_smoothed, which vanishes beside all of these.
