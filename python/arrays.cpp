@@ -13,6 +13,8 @@
 #include "python/log.h"
 #include "stages/matching/matching.h"
 
+#include "stages/core/mesh_ops.h"
+
 namespace salbench::python {
 namespace {
 
@@ -136,7 +138,9 @@ View<double> rows(const Argument& argument, std::initializer_list<Argument> othe
   return view_of(numbers(argument, array));
 }
 
-View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
+namespace {
+
+View<Vec3> vectors(const Argument& argument, std::optional<std::size_t> n) {
   if (!argument.given()) return {};
   const py::array array = as_array(argument);
   expect(argument, array, array.ndim() == 2 && array.shape(1) == 3 && has_length(array, 0, n),
@@ -151,9 +155,18 @@ View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
   return {std::move(values), view};
 }
 
+}  // namespace
+
+View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
+  View<Vec3> points = vectors(argument, n);
+  if (points.size() > 0 && !coincide(points) && !wrong_with_extent(points).empty())
+    argument.fail("must not be so near each other that squares of distances vanish: scale the coordinates");
+  return points;
+}
+
 View<Vec3> normals(const Argument& argument, std::size_t n) {
   constexpr double kRounding = 1e-5;  // of a length, in any type but half precision
-  View<Vec3> normals = points(argument, n);
+  View<Vec3> normals = vectors(argument, n);
   for (std::size_t i = 0; i < normals.size(); ++i)
     if (const double length = normals.values[i].norm(); !(std::abs(length - 1) <= kRounding))
       argument.fail(fmt::format("must have unit length, not {} in row {}", length, i));
@@ -189,6 +202,13 @@ Faces faces(const Argument& argument, std::size_t n) {
   Faces result(corners.size() / 3);
   for (std::size_t i = 0; i < result.size(); ++i)
     result[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+  return result;
+}
+
+Faces faces(const Argument& argument, std::span<const Vec3> points) {
+  Faces result = faces(argument, points.size());
+  if (areas_overflow(points, result))
+    throw py::value_error(fmt::format("points and {}: {}", argument.name, kAreasOverflow));
   return result;
 }
 

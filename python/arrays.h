@@ -55,7 +55,7 @@ View<double> field(const Argument& argument, std::optional<std::size_t> n = {});
 // (k, n), or (n,) as one row. `values` has the k * n numbers. A matrix whose columns are as long as the first
 // of `others` that is given, or one column by itself, is not read as maps of other shapes.
 View<double> rows(const Argument& argument, std::initializer_list<Argument> others);
-// (n, 3), finite, and so are their squares. None: of no point.
+// (n, 3), finite, and so are their squares; those of distances do not vanish. None: of no point.
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n = {});
 // The same, of unit length.
 View<Vec3> normals(const Argument& argument, std::size_t n);
@@ -65,6 +65,8 @@ Descriptors descriptors(const Argument& argument, std::size_t n);
 Vec3 place(const Argument& argument);
 // (m, 3) numbers of points, 0 to n - 1. None: of no face.
 Faces faces(const Argument& argument, std::size_t n);
+// The same of points that are given; their areas can be computed.
+Faces faces(const Argument& argument, std::span<const Vec3> points);
 // (k,) numbers of points, 0 to n - 1. None: of no point.
 std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
 // The same as a sequence with one array for each participant; a single array is one participant's.

@@ -107,7 +107,7 @@ Measures measures_from(std::span<const Metric> metrics, std::size_t n, const Sha
       n, shape.areas.values,
       any_of_positions(metrics) && !points.empty() ? distances_from_centroid(points) : ScalarField{});
   measures.negatives.assign(shape.negatives.values.begin(), shape.negatives.values.end());
-  if (!points.empty() && !shape.faces.empty())
+  if (!points.empty() && !shape.faces.empty() && std::ranges::any_of(metrics, &Metric::reads_surface))
     measures.surface = std::make_shared<const SurfaceGraph>(surface_graph(points, shape.faces));
   return measures;
 }
@@ -161,8 +161,10 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
   if (n == 0) throw py::value_error("prediction must have at least one point");
   const Truth truth = truth_from({ground_truth, "ground_truth"}, {picked, "picks"}, {masked, "mask"}, n);
   const Argument places{points_of, "points"};
-  const ShapeArrays shape{weights({areas, "areas"}, n), weights({negatives, "negatives"}, n),
-                          places.given() ? points(places, n) : View<Vec3>{}, faces({faces_of, "faces"}, n)};
+  const View<Vec3> place_of = places.given() ? points(places, n) : View<Vec3>{};
+  const Argument corners{faces_of, "faces"};
+  const ShapeArrays shape{weights({areas, "areas"}, n), weights({negatives, "negatives"}, n), place_of,
+                          places.given() ? faces(corners, place_of) : faces(corners, n)};
   const auto densities = histogram({reference, "reference"});
   const Stream stream = stream_from(seed);
   const std::vector<Scores> all =

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/inputs/loading.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -12,6 +15,7 @@
 #include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/inputs.h"
 #include "stages/core/mesh_check.h"
+#include "stages/core/mesh_ops.h"
 #include "stages/core/scale.h"
 
 namespace salbench {
@@ -23,9 +27,31 @@ std::string polygons_text(const PolygonCounts& polygons) {
                      polygons.concave);
 }
 
-void make(const Remark& remark, const std::string& name, const std::string& polygons,
-          const std::string& scale) {
-  remark.text = polygons + (polygons.empty() || scale.empty() ? "" : "; ") + scale;
+// Vertices that no face uses are points like the others, and count in the extent.
+std::string isolated_text(const CheckedMesh& checked) {
+  if (checked.report.isolated_vertices == 0) return {};
+  const std::vector<Vec3>& all = checked.mesh.vertices;
+  std::vector<bool> used(all.size());
+  for (const Triangle& face : checked.mesh.faces)
+    for (const std::int32_t i : face) used[index(i)] = true;
+  std::string text =
+      fmt::format("{} isolated vertices kept: no face uses them, the first is vertex {} (0-based)",
+                  checked.report.isolated_vertices, std::ranges::find(used, false) - used.begin());
+  std::vector<Vec3> of_faces;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (used[i]) of_faces.push_back(all[i]);
+  constexpr double kMuch = 1.01;
+  const double with = bounding_radius(all), without = bounding_radius(of_faces);
+  if (with > kMuch * without)
+    text += fmt::format("; R is {:.3g} with them and {:.3g} without, and maps depend on it: remove them",
+                        with, without);
+  return text;
+}
+
+void make(const Remark& remark, const std::string& name, std::initializer_list<std::string> parts) {
+  remark.text.clear();
+  for (const std::string& part : parts)
+    if (!part.empty()) remark.text += (remark.text.empty() ? "" : "; ") + part;
   if (!remark.text.empty()) spdlog::warn("{}: {}", name, remark.text);
 }
 
@@ -57,7 +83,7 @@ Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::stri
                  const Remark& remark) {
   CheckedMesh checked = check_mesh(std::move(as_written));
   for (const std::string& warning : warnings(checked.report)) spdlog::warn("{}: {}", item, warning);
-  make(remark, item, polygons_text(polygons), odd_scale(checked.mesh.vertices));
+  make(remark, item, {polygons_text(polygons), isolated_text(checked), odd_scale(checked.mesh.vertices)});
   return std::move(checked.mesh);
 }
 
@@ -67,7 +93,7 @@ PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Re
                  as_written.size_in_file());
   CheckedCloud checked = check_cloud(std::move(as_written));
   for (const std::string& warning : checked.warnings) spdlog::warn("{}: {}", item, warning);
-  make(remark, item, {}, odd_scale(checked.cloud.points));
+  make(remark, item, {odd_scale(checked.cloud.points)});
   return std::move(checked.cloud);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of rows that read the shape of an item from its file. They throw InputError, warn of what they
-// leave out, and make a remark on polygons that were split and on an odd scale.
+// leave out, and make a remark on polygons that were split, vertices that no face uses, and an odd scale.
 #pragma once
 
 #include <string>

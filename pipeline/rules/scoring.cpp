@@ -101,7 +101,7 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
   if (!MetricsByMatching(config.metrics).any(Matching::fitted)) return {};
   const auto fitting = section("fitting", config.fitting);
   const Output<DensityCounts> counts = table.add(
-      shape.level, stage_of(model, Role::density_counts, 1),
+      shape.level, stage_of(model, Role::density_counts, 2),
       [faces = shape.on_faces](FieldView values, Points points, Surface surface, const GroundTruth& truth,
                                const Files& group, const FittingOptions& options,
                                const RandomSource& random) {
@@ -119,7 +119,7 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
       },
       counts, fitting);
   return table.add(
-      shape.level, stage_of(model, Role::fitted, 1),
+      shape.level, stage_of(model, Role::fitted, 2),
       [faces = shape.on_faces](FieldView values, Points points, Surface surface, const DensityCounts& own,
                                const DensityFits& all) {
         const Elements elements(faces, points, surface);

@@ -179,8 +179,8 @@ CheckedMesh check_mesh(Mesh mesh) {
   report.degenerate_faces += static_cast<std::int64_t>(
       std::erase_if(mesh.faces, [&](const Triangle& face) { return has_no_area(mesh, face); }));
   if (mesh.faces.empty()) throw ShapeError("all faces are degenerate: each repeats a vertex or has no area");
-  if (!std::isnormal(surface_area(mesh)))
-    throw ShapeError("the surface area overflows or underflows: scale the coordinates");
+  if (areas_overflow(mesh.vertices, mesh.faces) || !std::isnormal(surface_area(mesh)))
+    throw ShapeError(kAreasOverflow);
   count_parts(mesh, report);
   return {std::move(mesh), report};
 }
@@ -192,7 +192,6 @@ std::vector<std::string> warnings(const MeshReport& report) {
   };
   warn_about(report.degenerate_faces, "degenerate faces (repeated vertex or no area) dropped");
   warn_about(report.duplicate_faces, "duplicate faces dropped");
-  warn_about(report.isolated_vertices, "isolated vertices kept: no face uses them");
   warn_about(report.components > 1 ? report.components : 0, "connected components: the surface is in pieces");
   warn_about(report.boundary_edges, "boundary edges: the surface is not closed");
   warn_about(report.nonmanifold_edges, "edges in more than two faces: the surface is not a manifold");

@@ -32,7 +32,7 @@ struct CheckedMesh {
 // overflow or underflow.
 CheckedMesh check_mesh(Mesh mesh);
 
-// One line per kind of defect; empty for a clean mesh.
+// One line per kind of defect, but for isolated vertices; empty for a clean mesh.
 std::vector<std::string> warnings(const MeshReport& report);
 
 }  // namespace salbench

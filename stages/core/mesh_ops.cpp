@@ -96,6 +96,15 @@ ScalarField barycentric_areas(Points points, Surface surface) {
   return areas;
 }
 
+bool areas_overflow(Points points, Surface surface) {
+  constexpr double kSmallestFace = 1e-15;  // of the squared extent
+  Eigen::AlignedBox3d box;
+  for (const Triangle& face : surface)
+    for (const std::int32_t i : face) box.extend(at(points, i));
+  const double extent = box.isEmpty() ? 0 : box.diagonal().stableNorm(), area = extent * extent;
+  return extent > 0 && !(std::isfinite(area * area) && std::isnormal(std::pow(kSmallestFace * area, 2)));
+}
+
 Vec3 area_centroid(const Mesh& mesh) {
   Vec3 sum = Vec3::Zero();
   double weights = 0;

@@ -43,6 +43,12 @@ double surface_area(const Mesh& mesh);
 // faces.
 ScalarField barycentric_areas(Points points, Surface surface);
 
+// True if squares of areas overflow or underflow, those of faces much smaller than the surface included. The
+// sentence says so.
+bool areas_overflow(Points points, Surface surface);
+inline constexpr const char* kAreasOverflow =
+    "the surface area overflows or underflows: scale the coordinates";
+
 Vec3 area_centroid(const Mesh& mesh);  // area-weighted mean of the face centres; the surface area is > 0
 
 // Neighbours along edges in compressed rows: those of point i, sorted and distinct, are

@@ -245,13 +245,14 @@ struct KdTree::Impl {
       });
   }
 
-  std::array<std::size_t, 2> count_pairs_within(double small, double large) const {
+  std::optional<std::array<std::size_t, 2>> count_pairs_within(double small, double large,
+                                                               std::size_t most) const {
     const std::array limits = {small * small, large * large};
     std::array<std::atomic<std::size_t>, 2> pairs = {0, 0};
     parallel_ranges(leaves.size(), kLeafGrain, [&](std::size_t first, std::size_t last) {
-      std::array<std::size_t, 2> some = {0, 0};
       std::vector<Range> near;
-      for (std::size_t own = first; own < last; ++own)
+      for (std::size_t own = first; own < last && pairs[1] <= most; ++own) {
+        std::array<std::size_t, 2> some = {0, 0};
         for_each_with_later(leaves[own], limits[1], near,
                             [&](std::size_t i, const std::vector<Range>& later) {
                               for (const Range& range : later) {
@@ -261,9 +262,11 @@ struct KdTree::Impl {
                                     some[r] += there.distance_squared[j] <= limits[r];
                               }
                             });
-      for (std::size_t r = 0; r < 2; ++r) pairs[r] += some[r];
+        for (std::size_t r = 0; r < 2; ++r) pairs[r] += some[r];
+      }
     });
-    return {pairs[0], pairs[1]};
+    if (pairs[1] > most) return {};
+    return {{pairs[0], pairs[1]}};
   }
 
   Vec3 point(std::size_t place) const { return {x[place], y[place], z[place]}; }
@@ -340,8 +343,9 @@ void KdTree::pairs_within(double radius, const VisitPairs& visit) const {
   impl_->pairs_within(radius, visit);
 }
 
-std::array<std::size_t, 2> KdTree::count_pairs_within(double small, double large) const {
-  return impl_->count_pairs_within(small, large);
+std::optional<std::array<std::size_t, 2>> KdTree::count_pairs_within(double small, double large,
+                                                                     std::size_t most) const {
+  return impl_->count_pairs_within(small, large, most);
 }
 
 // Points beside each other in the tree's order are near each other in space.

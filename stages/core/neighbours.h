@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,8 +70,10 @@ class KdTree {
   // points within the radius around i that come later in an order of the tree: each pair comes once.
   using VisitPairs = std::function<void(std::int32_t i, std::span<const Neighbour> found)>;
   void pairs_within(double radius, const VisitPairs& visit) const;
-  // How many pairs there are, for two radii in one search; small <= large.
-  std::array<std::size_t, 2> count_pairs_within(double small, double large) const;
+  // How many pairs there are, for two radii in one search; small <= large. Nothing if more than `most` are
+  // within the large one, which is noticed after about so many.
+  std::optional<std::array<std::size_t, 2>> count_pairs_within(double small, double large,
+                                                               std::size_t most) const;
 
   std::size_t size() const;                 // points that can be found
   bool contains(std::int32_t point) const;  // True if the point can be found. O(log n).

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <string>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
+#include "stages/core/support.h"
 
 namespace salbench {
 namespace {
@@ -34,6 +36,14 @@ std::vector<std::int32_t> picked_vertices(Picks picks, std::size_t n_vertices) {
   return picked;
 }
 
+// How many vertices picks may reach on average: 1000 or, if that is more, fifty times as many as even
+// vertices have in a disc of that radius, in square roots of the surface area. Where the surface has a few
+// huge faces, all others are in reach, and time and memory are those of all picks times all vertices.
+double most_reached(std::size_t n_vertices, double reach) {
+  constexpr double kMany = 1000, kUneven = 50;
+  return std::max(kMany, kUneven * std::numbers::pi * reach * reach * static_cast<double>(n_vertices));
+}
+
 }  // namespace
 
 PickSmoother::PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions& options)
@@ -51,9 +61,15 @@ PickSmoother::PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions
   const double sigma = options.sigma * std::sqrt(surface_area(mesh));
   const Adjacency adjacency = edge_adjacency(n_vertices_, mesh.faces);
   EdgeDistances distances(mesh.vertices, adjacency);
+  const double reach = options.cut * sigma, most = most_reached(n_vertices_, options.cut * options.sigma);
+  double all = 0;
   for (const std::int32_t vertex : picked) {
     auto& gaussian = gaussians_.emplace_back();
-    for (const auto& [reached, distance] : distances.from(vertex, options.cut * sigma)) {
+    const std::span<const ReachedPoint> near = distances.from(vertex, reach);
+    all += static_cast<double>(near.size());
+    if (all > most * static_cast<double>(picked.size()))
+      fail_with_many_neighbours(mesh.vertices, reach, most);
+    for (const auto& [reached, distance] : near) {
       // If the mesh has no surface, sigma is 0 and only distance 0 is in reach.
       const double deviations = distance == 0 ? 0 : distance / sigma;
       gaussian.push_back({reached, std::exp(-deviations * deviations / 2)});

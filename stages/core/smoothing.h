@@ -31,7 +31,8 @@ using Picks = std::span<const std::vector<std::int32_t>>;  // the vertices picke
 // count_k how many of them picked vertex k. [chen2012]
 //
 // n, one value per vertex; does not depend on the order of participants or picks. Throws InputError for a
-// pick outside the mesh, and if the result is divided by the number of participants and there are none.
+// pick outside the mesh, if the result is divided by the number of participants and there are none, and where
+// faces beside which the others are nothing make picks reach too many vertices.
 ScalarField smoothed_picks(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
 
 // The same for any group of the participants, bit for bit. Each pick's Gaussian is computed once and kept, so

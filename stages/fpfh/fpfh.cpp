@@ -13,7 +13,9 @@ Support support_of(std::span<const Vec3> points, const KdTree& tree, const FpfhO
   if (options.neighbourhood == FpfhNeighbourhood::nearest) return {options.neighbours, 0};
   if (options.grow)
     return {0, grown_support_radius(points, tree, options.radius, options.grown_neighbours).radius};
-  return {0, options.radius * bounding_radius(points)};
+  const double radius = options.radius * bounding_radius(points);
+  require_few_neighbours(points, tree, radius);
+  return {0, radius};
 }
 
 }  // namespace

@@ -54,8 +54,8 @@ struct ScanFpfhOptions : FpfhOptions {
 };
 
 // n x 33; points and normals n x 3, normals of unit length. The support that was used is stored with the
-// histograms. Throws InputError for a shape without points or with a coordinate that is not finite.
-// [rusu2009] [tasse2016]
+// histograms. Throws InputError for a shape without points or with a coordinate that is not finite, and as
+// require_few_neighbours does of a radius. [rusu2009] [tasse2016]
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const FpfhOptions& options);
 
 }  // namespace salbench

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "stages/core/check.h"
+#include "stages/core/support.h"
 
 namespace salbench {
 namespace {
@@ -41,12 +42,17 @@ std::vector<std::int32_t> local_maxima(std::span<const double> map, const Surfac
   std::vector<std::int32_t> maxima = plateau_tops(map, graph.edges);
   if (options.radius > 0) {
     EdgeDistances distances(graph.points, graph.edges);
+    const double reach = options.radius * graph.radius,
+                 most = most_mean_neighbours(map.size(), options.radius, 1);
+    double all = 0, most_of_all = most * static_cast<double>(maxima.size());
     std::erase_if(maxima, [&](std::int32_t i) {
-      return std::ranges::any_of(
-          distances.from(i, options.radius * graph.radius), [&](const ReachedPoint& reached) {
-            const double value = map[index(reached.index)];
-            return value > map[index(i)] || (value == map[index(i)] && reached.index < i);
-          });
+      const std::span<const ReachedPoint> near = distances.from(i, reach);
+      all += static_cast<double>(near.size());
+      if (all > most_of_all) fail_with_many_neighbours(graph.points, reach, most);
+      return std::ranges::any_of(near, [&](const ReachedPoint& reached) {
+        const double value = map[index(reached.index)];
+        return value > map[index(i)] || (value == map[index(i)] && reached.index < i);
+      });
     });
   }
   double sum = 0;

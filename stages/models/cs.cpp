@@ -266,6 +266,7 @@ KdTree sampled_tree(Points points, std::size_t count) {
 // Support radius of the points that the tree finds; the factor is of the R of all.
 SupportRadius support_of(Points points, const KdTree& tree, double factor) {
   if (tree.size() == points.size()) return grown_support_radius(points, tree, factor);
+  require_few_neighbours(points, tree, factor * bounding_radius(points));
   std::vector<Vec3> sample;
   for (const std::int32_t i : tree.even_sample(tree.size()))
     sample.push_back(points[static_cast<std::size_t>(i)]);

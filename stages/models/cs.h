@@ -44,7 +44,7 @@ struct CsOptions {
 // In [0, 1]. Computes descriptors of its own. If there are no more points than clusters aimed at, each point
 // is a cluster. The map is constant if all points coincide, and if neither descriptors nor distribution tell
 // the clusters apart. Time and memory O(n) beyond the sample. Throws InputError for a shape without points or
-// with a coordinate or normal that is not finite. [tasse2015] [tasse2016]
+// with a coordinate or normal that is not finite, and as grown_support_radius does. [tasse2015] [tasse2016]
 ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& options);
 
 }  // namespace salbench

@@ -14,6 +14,7 @@
 #include "stages/core/check.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/parallel.h"
+#include "stages/core/support.h"
 #include "stages/models/coarse.h"
 #include "stages/models/interpolated.h"
 
@@ -103,6 +104,7 @@ ScalarField lce_saliency(Points points, Surface surface, const LceOptions& optio
   const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
   std::vector<double> radii = {options.radius * std::sqrt(surface_area(mesh))};
   while (radii.size() < index(options.levels)) radii.push_back(radii.back() / 2);
+  require_few_neighbours(mesh.vertices, KdTree(mesh.vertices), radii.front());
   const ScalarField curvature = mean_curvature(mesh.vertices, mesh.faces, options.curvature);
   ScalarField entropy = local_entropy(mesh, binned(curvature, options.bins), areas, radii);
   for (std::size_t i = 0; i < entropy.size(); ++i)

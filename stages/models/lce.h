@@ -41,8 +41,9 @@ ScalarField local_entropy(const Mesh& mesh, std::span<const std::int32_t> bin, s
 // In [0, log2 bins], of signed mean curvature. Does not depend on place, orientation and size of the shape. A
 // point without faces takes the value of the nearest one that has any; all values are 0 for a shape without
 // faces or of constant curvature. Beyond `faces`, time is that of the simplification. Throws InputError for a
-// shape without points or extent, for a coordinate that is not finite, or whose square overflows, and for a
-// face whose point does not exist. [limper2016]
+// shape without points or extent, for a coordinate that is not finite, or whose square overflows, for a
+// face whose point does not exist, and as require_few_neighbours does of the widest neighbourhood.
+// [limper2016]
 ScalarField lce_saliency(Points points, Surface surface, const LceOptions& options);
 
 }  // namespace salbench

@@ -15,6 +15,7 @@
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
+#include "stages/core/support.h"
 #include "stages/models/chi2_sums.h"
 
 namespace salbench {
@@ -84,6 +85,7 @@ Descriptors mixed_descriptors(Points points, const Normals& normals, const Descr
                               const std::vector<std::int32_t>& sample, const LsOptions& options) {
   const Support support{0, options.high_radius * bounding_radius(points)};
   const KdTree around = sample.empty() ? KdTree(points) : KdTree(points, sample);
+  require_few_neighbours(points, around, support.radius);
   const Descriptors high = fpfh(points, normals, around, support, options.high_weighting, distinct);
   Descriptors mixed = low_level;
   for (std::size_t h = 0; h < distinct.size(); ++h) {

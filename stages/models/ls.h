@@ -54,7 +54,8 @@ struct LsOptions {
 // high level are computed here from points and normals. Time and memory O(n) beyond the sample; terms of the
 // sums in single precision. If the selected share is less than two points, each point is compared with itself
 // alone, and all values are 0. Throws InputError for a shape without points, without extent, or with a
-// coordinate, normal or descriptor that is not finite. [shtrom2013] [tasse2016]
+// coordinate, normal or descriptor that is not finite, and as require_few_neighbours does of the high radius.
+// [shtrom2013] [tasse2016]
 ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors& fpfh,
                         const LsOptions& options);
 

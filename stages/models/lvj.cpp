@@ -12,6 +12,7 @@
 #include "stages/core/field.h"
 #include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
+#include "stages/core/support.h"
 #include "stages/models/coarse.h"
 
 namespace salbench {
@@ -76,6 +77,7 @@ std::array<ScalarField, kLvjScales.size()> centre_surround(std::span<const Vec3>
   for (ScalarField& contrast : contrasts) contrast.resize(points.size());
   const KdTree tree(points);
   const double reach = kReach * kWidths.front() * epsilon;
+  require_few_neighbours(points, tree, reach);
   parallel_ranges(points.size(), kGaussianGrain, [&](std::size_t first, std::size_t last) {
     std::vector<Neighbour> around;
     for (std::size_t i = first; i < last; ++i) {

@@ -45,7 +45,8 @@ double suppression(std::span<const double> normalised, const Adjacency& adjacenc
 // shape; on its orientation as far as the bounding box does. A scale without contrast adds 0, so that all
 // values are 0 for a shape of constant curvature or without faces. Beyond `faces`, time is that of the
 // simplification. Throws InputError for a shape without points or extent, for a coordinate that is not
-// finite, or whose square overflows, and for a face whose point does not exist. [lee2005]
+// finite, or whose square overflows, for a face whose point does not exist, and as require_few_neighbours
+// does of the widest Gaussian. [lee2005]
 ScalarField lvj_saliency(Points points, Surface surface, const LvjOptions& options);
 
 }  // namespace salbench

@@ -16,6 +16,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/core/neighbours.h"
+#include "stages/core/support.h"
 #include "stages/models/interpolated.h"
 #include "stages/models/simplified.h"
 #include "stages/models/spectrum.h"
@@ -238,6 +239,8 @@ ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options
   if (!std::isfinite(radius)) throw ShapeError("coordinates too large: their squares overflow");
   if (radius == 0) return no_answer;
   const std::vector<Vec3> places = normalised(points, radius);
+  if (options.scales == MsScales::paper)
+    require_few_neighbours(places, KdTree(places), kSmoothingReach * std::sqrt(kScales) * options.epsilon);
   const Part part = largest_component(places, surface);
   const ScalarField saliency = component_saliency(part.mesh, options);
   return saliency.empty() ? no_answer : on_all_points(places, part, saliency);

@@ -68,7 +68,7 @@ void check(const MsOptions& options);  // throws OptionError
 // - an eigensolve fails, as it does if all vertices of the component coincide;
 // - no value is positive before the logarithm is taken, as if no smoothing of MsScales::paper moves a vertex.
 // Throws InputError for a face whose point does not exist, and for coordinates that are not finite or whose
-// squares overflow. [song2014] [tasse2016]
+// squares overflow, and as require_few_neighbours does of the widest Gaussian. [song2014] [tasse2016]
 ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options);
 
 }  // namespace salbench

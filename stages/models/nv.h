@@ -23,7 +23,8 @@ struct NvOptions {
 // more asked than its likeness. A point without neighbours has 0.
 //
 // Does not depend on place, orientation and size. O(n log n) while neighbours are few. Throws InputError for
-// a shape without points or extent, for a coordinate that is not finite, or whose square overflows.
+// a shape without points or extent, for a coordinate that is not finite, or whose square overflows, and as
+// grown_support_radius does.
 ScalarField nv_saliency(Points points, const Normals& normals, const NvOptions& options);
 
 }  // namespace salbench

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "io/shapes/mesh_file.h"
@@ -10,6 +11,7 @@
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "stages/surface/surface.h"
+#include "tests/support/shapes.h"
 #include "tests/support/subdivided.h"
 
 namespace salbench {
@@ -22,6 +24,16 @@ std::size_t vertices_of(const std::filesystem::path& file) {
   std::size_t vertices = 0;
   stream >> word >> vertices;
   return vertices;
+}
+
+Mesh mesh_of(const Source& source) {
+  if (!source.file.empty()) return subdivided(read_mesh(source.file), source.subdivisions);
+  Mesh sphere = shapes::sphere(5);
+  if (source.stray > 0) {
+    sphere.faces.push_back({0, 1, static_cast<std::int32_t>(sphere.vertices.size())});
+    sphere.vertices.emplace_back(source.stray, 0, 0);
+  }
+  return sphere;
 }
 
 }  // namespace
@@ -52,12 +64,13 @@ Source mesh_of_size(const MeshesBySize& meshes, std::size_t vertices) {
 }
 
 Shape& shape_of(const Source& source) {
-  using Key = std::pair<std::filesystem::path, unsigned int>;
+  using Key = std::tuple<std::filesystem::path, unsigned int, double>;
   static std::map<Key, Shape> made;
-  const Key key(source.file, source.subdivisions);
+  const Key key(source.file, source.subdivisions, source.stray);
   if (const auto found = made.find(key); found != made.end()) return found->second;
-  if (source.subdivisions > 0) std::erase_if(made, [](const auto& entry) { return entry.first.second > 0; });
-  return made.emplace(key, Shape(subdivided(read_mesh(source.file), source.subdivisions))).first->second;
+  if (source.subdivisions > 0)
+    std::erase_if(made, [](const auto& entry) { return std::get<1>(entry.first) > 0; });
+  return made.emplace(key, Shape(mesh_of(source))).first->second;
 }
 
 }  // namespace salbench

@@ -27,9 +27,10 @@ struct Shape {
 };
 
 struct Source {
-  std::string name;  // "20:15500": the file and its number of vertices
-  std::filesystem::path file;
+  std::string name;                 // "20:15500": the file and its number of vertices
+  std::filesystem::path file = {};  // none: a sphere of 10,242 vertices
   unsigned int subdivisions = 0;
+  double stray = 0;  // distance of a corner of one more face, in radii of the sphere
 };
 
 using MeshesBySize = std::map<std::size_t, std::filesystem::path>;  // number of vertices -> file

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stages on real meshes of four sizes, on one scan of each, and on a subdivided mesh of up to a million
-// vertices:
+// The stages on a sphere, and on one with a stray point at 10,000 radii; on real meshes of four sizes, on one
+// scan of each, and on a subdivided mesh of up to a million vertices:
 //
 //   SALBENCH_DATA=DATA build/release/bench_shapes [--threads=N] [--benchmark_filter=LS]
 //
-// One thread unless told. Times are those of the process: with N threads, "Time" is what falls and "CPU" what
-// stays.
+// One thread unless told; what is refused, and why, stands behind its time. Times are those of the process:
+// with N threads, "Time" is what falls and "CPU" what stays.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -16,6 +16,7 @@
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
+#include "stages/core/errors.h"
 #include "stages/fpfh/fpfh.h"
 #include "stages/models/cs.h"
 #include "stages/models/lce.h"
@@ -23,6 +24,7 @@
 #include "stages/models/lvj.h"
 #include "stages/models/mc.h"
 #include "stages/models/ms.h"
+#include "stages/models/nv.h"
 #include "stages/models/ps.h"
 #include "stages/models/vis.h"
 #include "stages/normals/normals.h"
@@ -41,7 +43,11 @@ void add(const std::string& stage, const std::string& shape, const Source& sourc
                                [=](benchmark::State& state) {
                                  Shape& on = shape_of(source);
                                  if (of_scan) on.add_scan();
-                                 for (auto _ : state) benchmark::DoNotOptimize(run(on));
+                                 for (auto _ : state) try {
+                                     benchmark::DoNotOptimize(run(on));
+                                   } catch (const InputError& refused) {
+                                     state.SetLabel(refused.what());
+                                   }
                                  state.counters["points"] = static_cast<double>(
                                      of_scan ? on.scan->points.size() : on.mesh.vertices.size());
                                })
@@ -69,6 +75,8 @@ void add_of_mesh(const std::string& name, const Source& source) {
       [](const Shape& s) { return lce_saliency(s.mesh.vertices, s.mesh.faces, LceOptions{}); });
   add("VIS", name, source,
       [](const Shape& s) { return vis_saliency(s.mesh.vertices, s.normals, s.mesh.faces, VisOptions{}); });
+  add("NV", name, source,
+      [](const Shape& s) { return nv_saliency(s.mesh.vertices, s.normals, NvOptions{}); });
 }
 
 // All scans of the mesh, with the scene that they share.
@@ -116,7 +124,12 @@ void add_of_scan(const std::string& name, const Source& source) {
       true);
 }
 
-void register_all(const std::filesystem::path& data) {
+void register_spheres() {
+  add_of_mesh("sphere", {.name = "sphere"});
+  add_of_mesh("sphere_with_stray", {.name = "sphere_with_stray", .stray = 1e4});
+}
+
+void register_real(const std::filesystem::path& data) {
   const MeshesBySize meshes = meshes_by_size(data);
   for (const std::size_t n : {2'000, 5'000, 10'000, 27'000}) {
     const Source source = mesh_of_size(meshes, n);
@@ -148,11 +161,10 @@ int main(int argc, char** argv) {
                                   std::max<std::size_t>(threads, 1));
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const auto data = salbench::real_data();
-  if (!data) {
-    std::fprintf(stderr, "bench_shapes: %s\n", salbench::kNoRealData);
-    return 2;
-  }
-  salbench::register_all(*data);
+  salbench::register_spheres();
+  if (const auto data = salbench::real_data())
+    salbench::register_real(*data);
+  else
+    std::fprintf(stderr, "bench_shapes: spheres alone: %s\n", salbench::kNoRealData);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -3,7 +3,10 @@
 
 import math
 import pathlib
+import subprocess
+import sys
 import tempfile
+import textwrap
 import unittest
 
 import h5py
@@ -192,6 +195,21 @@ class Arguments(unittest.TestCase):
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 call()
+
+    def test_no_surface_is_built_that_no_metric_reads(self):
+        """Its graph takes more memory than all else here: the most that a process has had tells whether it was there."""
+        script = r"""
+            import re, sys, numpy, salbench
+            side = 500
+            points = numpy.stack([*numpy.mgrid[:side, :side], numpy.zeros((side, side))], -1).reshape(-1, 3).astype(float)
+            corner = numpy.arange(side * side).reshape(side, side)[:-1, :-1].ravel()
+            faces = numpy.vstack([numpy.stack([corner, corner + side, corner + 1], 1), numpy.stack([corner + side, corner + side + 1, corner + 1], 1)])
+            salbench.score(points[:, 0], points[:, 1], [3], points=points, faces=faces, metrics=[sys.argv[1]])
+            print(re.search(r"VmHWM:\s*(\d+)", open("/proc/self/status").read())[1])
+            """
+        most = {metric: int(subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script), metric], capture_output=True, text=True,
+                                           check=True).stdout) for metric in ("mae", "fne")}
+        self.assertGreater(most["fne"], most["mae"] + 10_000)  # KiB
 
 
 if __name__ == "__main__":

@@ -108,7 +108,7 @@ TEST(MeshCheck, CountsComponentsWithoutIsolatedVertices) {
   const MeshReport report = check_mesh(mesh).report;
   EXPECT_EQ(report.components, 2);
   EXPECT_EQ(report.isolated_vertices, 1);
-  EXPECT_THAT(warnings(report), ElementsAre(HasSubstr("1 isolated"), HasSubstr("2 connected components")));
+  EXPECT_THAT(warnings(report), ElementsAre(HasSubstr("2 connected components")));
 }
 
 TEST(MeshCheck, CountsEdgesOfThreeFacesAndFacesTurnedOver) {
@@ -142,7 +142,7 @@ TEST(MeshCheck, RefusesMeshesThatNothingCanBeComputedFrom) {
     mesh.vertices[2].y() = bad;
     refusal(mesh, "vertex 2 (0-based) has a coordinate that is not finite");
   }
-  for (const double scale : {1e-170, 1e300}) {
+  for (const double scale : {1e-170, 1e-150, 1e-80, 1e78, 1e150, 1e300}) {
     Mesh mesh = good;
     for (Vec3& vertex : mesh.vertices) vertex *= scale;
     refusal(mesh, "scale the coordinates");

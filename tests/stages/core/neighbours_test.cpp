@@ -131,8 +131,12 @@ TEST(KdTree, PairsWithinARadiusComeOnceEach) {
       std::sort(pairs.begin(), pairs.end());
       std::sort(expected.begin(), expected.end());
       EXPECT_EQ(pairs, expected) << cloud.size() << " points, radius " << radius;
-      EXPECT_EQ(KdTree(cloud).count_pairs_within(radius / 3, radius)[1], expected.size());
-      EXPECT_EQ(KdTree(cloud).count_pairs_within(radius, 3 * radius)[0], expected.size());
+      const std::size_t all = cloud.size() * cloud.size();
+      EXPECT_EQ(KdTree(cloud).count_pairs_within(radius / 3, radius, expected.size()).value()[1],
+                expected.size());
+      EXPECT_EQ(KdTree(cloud).count_pairs_within(radius, 3 * radius, all).value()[0], expected.size());
+      const std::size_t fewer = expected.size() - std::min<std::size_t>(expected.size(), 1);
+      EXPECT_EQ(KdTree(cloud).count_pairs_within(radius / 3, radius, fewer).has_value(), expected.empty());
       std::sort(visited.begin(), visited.end());
       for (std::size_t i = 0; i < visited.size(); ++i) EXPECT_EQ(visited[i], static_cast<std::int32_t>(i));
       EXPECT_EQ(visited.size(), cloud.size());

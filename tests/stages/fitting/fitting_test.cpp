@@ -156,6 +156,34 @@ TEST(Fitting, BlursAMapThatIsTooFine) {
   for (const DensityFit& fit : fit_densities(set.counts, 5)) EXPECT_GT(fit.blur, 0);
 }
 
+TEST(Fitting, BlursAsFarHoweverManyPointsHaveNoEdges) {
+  DensityFit fit{.shapes = 1, .blur = 0.08};
+  std::iota(fit.value.begin(), fit.value.end(), 0.0);
+  ScalarField map = noise("map");
+  const ScalarField expected = fitted_density(map, kGrid.vertices, kEdges, fit);
+  Mesh mesh = kGrid;  // and three times its points again: centroid and R stay
+  for (std::size_t i = 0; i < 3 * kGrid.vertices.size(); ++i) {
+    mesh.vertices.push_back(kGrid.vertices[i % kGrid.vertices.size()]);
+    map.push_back(0.5);
+  }
+  const ScalarField density =
+      fitted_density(map, mesh.vertices, edge_adjacency(mesh.vertices.size(), mesh.faces), fit);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(density[i], expected[i], 1e-9) << i;
+}
+
+// Edges a millionth as long as the shape is wide: a step for each would be 1e9 of them.
+TEST(Fitting, EndsWhereAFewFacesAreTiny) {
+  std::vector<Vec3> points = shapes::random_cloud(3000, 4);
+  for (std::size_t i = 0; i < 30; ++i) points[i] = points[0] + 1e-6 * points[i];
+  Faces faces;
+  for (std::int32_t i = 0; i + 2 < 30; i += 3) faces.push_back({i, i + 1, i + 2});
+  const Adjacency edges = edge_adjacency(points.size(), faces);
+  ScalarField map;
+  for (const Vec3& p : points) map.push_back(p.x());
+  const DensityCounts counts = density_counts(map, points, edges, {{}, {{7}}}, 0);
+  EXPECT_NEAR(std::reduce(counts.points.begin(), counts.points.end()), kBlurWidths.size(), 1e-5);
+}
+
 TEST(Fitting, LeavesOutTheShapesOfTheFoldItself) {
   Set set = set_of([](const ScalarField& map) { return applied(map, [](double v) { return std::exp(v); }); });
   const DensityFits before = fit_densities(set.counts, 5);

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
@@ -25,11 +27,13 @@ TEST(MeanNeighbourCounts, EqualBruteForce) {
   const auto cloud = shapes::random_cloud(300, 11);
   const double small = 0.04;
   for (const double radius : {0.04, 0.05, 0.2, 2.0}) {
-    const auto [within_small, within] = mean_neighbour_counts(cloud, KdTree(cloud), small, radius);
+    const double exact = brute_force_mean(cloud, radius);
+    const auto [within_small, within] = mean_neighbour_counts(KdTree(cloud), small, radius, exact).value();
     EXPECT_DOUBLE_EQ(within_small, brute_force_mean(cloud, small));
-    EXPECT_DOUBLE_EQ(within, brute_force_mean(cloud, radius));
+    EXPECT_DOUBLE_EQ(within, exact);
+    EXPECT_FALSE(mean_neighbour_counts(KdTree(cloud), small, radius, exact - 0.01));
   }
-  EXPECT_EQ(mean_neighbour_counts(cloud, KdTree(cloud), 0, 0)[1], 0);
+  EXPECT_EQ(mean_neighbour_counts(KdTree(cloud), 0, 0, 0).value()[1], 0);
 }
 
 TEST(MedianSpacing, IsTheDistanceToTheNearestOther) {
@@ -84,6 +88,83 @@ TEST(GrownSupportRadius, GrowsFromWhateverIsAboveZero) {
     }
     for (Vec3& point : cloud) point /= size;
   }
+}
+
+// A shape, and what is said of it in place of its radius; nothing where it has one.
+struct Crowd {
+  std::string name;
+  std::vector<Vec3> points;
+  std::string said;
+};
+
+std::vector<Vec3> moved(std::vector<Vec3> points, const Vec3& by, double scale = 1) {
+  for (Vec3& p : points) p = scale * p + by;
+  return points;
+}
+
+std::vector<Vec3> joined(std::vector<Vec3> points, const std::vector<Vec3>& more) {
+  points.insert(points.end(), more.begin(), more.end());
+  return points;
+}
+
+std::vector<Crowd> crowds() {
+  const std::vector<Vec3> sphere = shapes::sphere(4).vertices;  // 2562
+  std::vector<Vec3> line;
+  for (int i = 0; i < 100000; ++i) line.emplace_back(i, 0, 0);
+  std::vector<Vec3> clusters;
+  for (int k = 0; k < 8; ++k) clusters = joined(clusters, moved(sphere, 1e4 * Vec3(k % 2, k / 2 % 2, k / 4)));
+  const auto strays = [&](double distance, int count) {
+    std::vector<Vec3> far;
+    for (int k = 0; k < count; ++k) far.emplace_back(distance, k, 0);
+    return joined(sphere, far);
+  };
+  return {
+      {"a sphere", sphere, ""},
+      {"a straight line", line, ""},
+      {"one stray, not far", strays(20, 1), ""},
+      {"one stray", strays(1e4, 1),
+       "within 0.02 R of a point are more than 1000 others on average: 1 of the 2563 points makes up 99.99 "
+       "% of the extent: remove points so far from the rest"},
+      {"one stray, farther away than the digits of a double reach", strays(1e20, 1),
+       "1 of the 2563 points makes up 100 % of the extent"},
+      {"a few strays", strays(-1e3, 12), "12 of the 2574 points make up 99.9 % of the extent"},
+      {"two spheres far apart", joined(sphere, moved(sphere, Vec3(1e4, 0, 0))),
+       "the points crowd in few places: thin them out there"},
+      {"eight of them", clusters, "the points crowd in few places: thin them out there"},
+      {"many points in one place", joined(sphere, std::vector<Vec3>(2562, Vec3::Zero())),
+       "2562 of the 5124 points are in one place: remove all but one of them"},
+      {"a dense part among points far apart",
+       joined(shapes::random_cloud(3000, 3), moved(sphere, Vec3(0.5, 0.5, 0.5), 1e-3)),
+       "the points crowd in few places: thin them out there"}};
+}
+
+TEST(GrownSupportRadius, RefusesACrowdAndSaysWhy) {
+  for (const auto& [name, points, said] : crowds()) {
+    std::string found;
+    try {
+      EXPECT_GE(grown_support_radius(points, 0.02).neighbours, kMinMeanNeighbours) << name;
+    } catch (const InputError& error) {
+      found = error.what();
+    }
+    EXPECT_EQ(found.empty(), said.empty()) << name << ": " << found;
+    EXPECT_THAT(found, testing::HasSubstr(said)) << name;
+    // A twin: all pairs.
+    if (points.size() > 30000) continue;
+    const double radius = 0.02 * bounding_radius(points);
+    const double most = most_mean_neighbours(points.size(), 0.02, 1);
+    EXPECT_EQ(brute_force_mean(points, radius) > most, !said.empty()) << name;
+    EXPECT_EQ(mean_neighbour_counts(KdTree(points), radius, radius, most).has_value(), said.empty()) << name;
+  }
+}
+
+TEST(RequireFewNeighbours, LetsShapesPassThatFillTheirExtent) {
+  EXPECT_EQ(most_mean_neighbours(10000, 0.02, 1), 1000);
+  EXPECT_EQ(most_mean_neighbours(100000, 0.02, 1), 2500);
+  EXPECT_EQ(most_mean_neighbours(100000, 1, 10), 50000);
+  const std::vector<Vec3> sphere = shapes::sphere(4).vertices;
+  const KdTree tree(sphere);
+  for (const double radius : {0.0, 0.1, 0.9, 2.0, 1e9})
+    EXPECT_NO_THROW(require_few_neighbours(sphere, tree, radius));
 }
 
 TEST(GrownSupportRadius, OfCoincidentPointsIsZero) {

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shapes of an extent that says nothing about them, or that no double can square.
+
+Neighbourhoods as wide as a part of R are refused where they hold too many points, by a twin in NumPy that looks at all pairs, and the message
+says which points make up the extent. Coordinates of any size give the result of size 1, or are refused as what they are.
+"""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+import salbench
+
+N = 2400  # points of most shapes
+
+
+def sphere(n=N):
+    """Even points on the unit sphere."""
+    i = np.arange(n) + 0.5
+    z, angle = 1 - 2 * i / n, np.pi * (1 + 5**0.5) * i
+    flat = np.sqrt(1 - z * z)
+    return np.stack([flat * np.cos(angle), flat * np.sin(angle), z], 1)
+
+
+def strays(distances):
+    """A sphere, and points so far along an axis."""
+    return np.vstack([sphere(), np.outer(distances, [1, 0, 0])])
+
+
+def line(n=N):
+    return np.stack([np.linspace(0, 1, n), np.zeros(n), np.zeros(n)], 1)
+
+
+RANDOM = np.random.default_rng(62)
+FAR = "makes? up (9|100).* % of the extent: remove points so far from the rest"
+CROWD = "the points crowd in few places"
+PLACE = "points are in one place"
+# name: points, and what is said where they are refused
+SHAPES = {
+    "a sphere": (sphere(), None),
+    "a ball": (RANDOM.normal(size=(N, 3)), None),
+    "a line": (line(), None),
+    "a thin plate": (RANDOM.uniform(size=(N, 3)) * [1, 1, 1e-6], None),
+    "a stray at 5 radii": (strays([5]), FAR),
+    "at 20": (strays([20]), FAR),
+    "at 40": (strays([40]), FAR),
+    "at 100": (strays([100]), FAR),
+    "at 1e4": (strays([1e4]), FAR),
+    "at 1e12": (strays([1e12]), FAR),
+    "strays on both sides": (strays([1e4, -1e4]), FAR),
+    "ever farther": (strays(10.0 ** np.arange(1, 9)), FAR),
+    "100 of them": (strays(1e3 + np.arange(100)), FAR),
+    "two spheres": (np.vstack([sphere(), sphere() + 1e4]), CROWD),
+    "ten spheres": (np.vstack([sphere(300) + 1e3 * RANDOM.normal(size=3) for _ in range(10)]), CROWD),
+    "half in one place": (np.vstack([sphere(), np.zeros((N, 3))]), PLACE),
+    "a dense part": (np.vstack([RANDOM.normal(size=(N, 3)), 1e-3 * sphere(3 * N // 2)]), CROWD),
+    "a cube's corners": (np.repeat(np.array(np.meshgrid(*[[0.0, 1]] * 3)).reshape(3, -1).T, 500, axis=0), CROWD),
+}
+# The first radius of each, in R.
+RADII = {
+    "NV": (0.02, salbench.models.nv),
+    "CS": (0.02, salbench.models.cs),
+    "LS": (0.1, salbench.models.ls),
+    "descriptors": (0.01, lambda points: salbench.fpfh(points, up(points), scan=True)),
+    "of one radius": (0.05, lambda points: salbench.fpfh(points, up(points), neighbourhood="radius", radius=0.05, grow=False)),
+}
+
+
+def up(points):
+    return np.tile([0.0, 0, 1], (len(points), 1))
+
+
+def means_of_others(points, radii):
+    """How many others are within each radius, mean over the points."""
+    blocks = [((points[i:i + 64, None] - points) ** 2).sum(-1) for i in range(0, len(points), 64)]
+    return [sum(int((block <= radius**2).sum()) for block in blocks) / len(points) - 1 for radius in radii]
+
+
+def extent(points):
+    return np.linalg.norm(points - points.mean(0), axis=1).max()
+
+
+def surface(points):
+    """Faces of points on a sphere, counter-clockwise from outside."""
+    faces = ConvexHull(points).simplices.copy()
+    corners = points[faces]
+    inwards = (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) * corners.mean(1)).sum(1) < 0
+    faces[inwards] = faces[inwards][:, ::-1]
+    return faces
+
+
+class Strays(unittest.TestCase):
+    def test_what_is_refused_is_what_a_twin_in_numpy_says(self):
+        refused = {name: 0 for name in RADII}
+        for shape, (points, said) in SHAPES.items():
+            means = means_of_others(points, [radius * extent(points) for radius, _ in RADII.values()])
+            for mean, (name, (radius, call)) in zip(means, RADII.items()):
+                with self.subTest(f"{name} of {shape}"):
+                    many = mean > max(1000, len(points) * max(1.25 * radius, 50 * radius**2))
+                    refused[name] += many
+                    if many:
+                        self.assertRaisesRegex(ValueError, f"within .* R of a point are more than .*{said}", call, points)
+                    else:
+                        self.assertEqual(len(call(points)), len(points))
+        self.assertGreater(min(refused.values()), 5)
+
+    def test_a_mesh_with_a_stray_corner(self):
+        points = strays([1e6])
+        faces = np.vstack([surface(sphere()), [[0, 1, N]]])
+        sound = np.vstack([sphere(), [[0, 0, 1.1]]])
+        calls = {
+            "LVJ": salbench.models.lvj,
+            "LCE": salbench.models.lce,
+            "MS": lambda points, faces: salbench.models.ms(points, faces, scales="paper"),
+            "normals": lambda points, faces: salbench.estimate_normals(points, faces, method="pca"),
+            "ground truth": lambda points, faces: salbench.smooth_picks(points, faces, [[5, 6], [7]]),
+            "interest points": lambda points, faces: salbench.score(points[:, 2], picks=[3], points=points, faces=faces, metrics="fne",
+                                                                    peak_radius=0.1),
+        }
+        for name, call in calls.items():
+            with self.subTest(name):
+                call(sound, faces)
+                self.assertRaisesRegex(ValueError, f"1 of the {N + 1} points makes up 99.9999 % of the extent", call, points, faces)
+
+
+POINTS = sphere(300) * [1, 0.8, 0.6]
+FACES = surface(sphere(300))
+UP = up(POINTS)
+VALUES = POINTS[:, 2]
+OF_POINTS = {
+    "normals of points": lambda points: salbench.estimate_normals(points),
+    "descriptors": lambda points: salbench.fpfh(points, UP),
+    "descriptors of scans": lambda points: salbench.fpfh(points, UP, scan=True),
+    "partial mesh": lambda points: salbench.partial_mesh(points, UP),
+    "centre bias": lambda points: list(salbench.score(VALUES, VALUES, [3], points=points, metrics=["ig_centre"]).values()),
+    **{f"{row.name} of points": getattr(salbench.models, row.name.lower()) for row in salbench.models.table()},
+}
+OF_MESHES = {
+    "normals": lambda points: salbench.estimate_normals(points, FACES),
+    "normals of planes": lambda points: salbench.estimate_normals(points, FACES, method="pca"),
+    "number of points in a scan": lambda points: len(salbench.simulate_scan(points, FACES, 3).points),
+    "faces of a simplified mesh": lambda points: salbench.simplify(points, FACES, 100)[1],
+    "shares of the area": lambda points: salbench.vertex_areas(points, FACES) / salbench.vertex_areas(points, FACES).sum(),
+    "spectrum": lambda points: salbench.spectrum(points, FACES, 5).values,
+    "smoothed picks": lambda points: salbench.smooth_picks(points, FACES, [3]),
+    "values of faces": lambda points: salbench.vertex_values_of_faces(points, FACES, np.arange(1.0 * len(FACES))),
+    "picture": lambda points: salbench.picture(points, FACES, size=24).shade,
+    "interest points": lambda points: list(salbench.score(VALUES, picks=[3], points=points, faces=FACES, metrics=["fne", "fpe"]).values()),
+    "a file": lambda points: read(points) / np.abs(points).max(),
+    **{row.name: lambda points, of=getattr(salbench.models, row.name.lower()): of(points, FACES) for row in salbench.models.table()},
+}
+POWERS = (-1000, -565, -500, -330, -240, -200, 200, 260, 330, 500, 530, 1000)  # of two
+# Squares of distances, and of areas, are to be doubles.
+SAID = "squares of distances vanish: scale the coordinates|squares are finite too|area overflows or underflows: scale the coordinates|scale the mesh"
+
+
+def read(points):
+    with tempfile.TemporaryDirectory() as folder:
+        lines = [f"OFF {len(points)} {len(FACES)} 0", *(" ".join(map(repr, point)) for point in points.tolist()),
+                 *(f"3 {a} {b} {c}" for a, b, c in FACES)]
+        Path(folder, "mesh.off").write_text("\n".join(lines) + "\n")
+        return salbench.Dataset("folder", folder)[0].points
+
+
+class Sizes(unittest.TestCase):
+    def check(self, calls, refused):
+        for name, call in calls.items():
+            usual = np.asarray(call(POINTS))
+            for power in POWERS:
+                with self.subTest(f"{name} x 2^{power}"):
+                    if power in refused:
+                        self.assertRaisesRegex(ValueError, SAID, call, POINTS * 2.0**power)
+                    else:
+                        np.testing.assert_allclose(np.asarray(call(POINTS * 2.0**power)), usual, rtol=1e-7, atol=1e-7)
+
+    def test_of_points_squares_decide(self):
+        self.check(OF_POINTS, (-1000, -565, 530, 1000))
+
+    def test_of_meshes_areas_do(self):
+        self.check(OF_MESHES, (-1000, -565, -500, -330, -240, 260, 330, 500, 530, 1000))
+
+    def test_faces_without_an_area_are_another_matter(self):
+        for size in (1, 1e-60, 1e60):
+            points = size * np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]])
+            self.assertRaisesRegex(ValueError, "no face has an area", salbench.estimate_normals, points, [[0, 1, 2]])
+
+
+if __name__ == "__main__":
+    unittest.main()
