@@ -285,7 +285,7 @@ class Board(unittest.TestCase):
         for to, status, said in ((mine / "1.val", 2, "is there, and no submission; choose another"), (mine / "card.yaml", 2, "no submission"),
                                  ("notes.txt", 2, "no submission"), ("pipe", 2, "no submission"), ("/dev/zero", 2, "no submission"),
                                  (mine, 2, "is a folder; name the file to write"), (".", 2, "is a folder"), ("/", 2, "is a folder"), ("..", 2, "is a folder"),
-                                 ("", 2, "--to: is empty: name a file or a folder"), ("notes.txt/x.zip", 3, "Not a directory; choose another with --to"),
+                                 ("", 2, "--to: is empty: name a file or a folder"), ("notes.txt/x.zip", 3, "cannot be written: File exists; choose another with --to"),
                                  ("/proc/x.zip", 3, "cannot be written"), ("empty.zip", 0, ""), ("G0.zip", 0, ""), ("below/M.zip", 0, "")):
             with self.subTest(to=str(to)):
                 done = self.toy.salbench("submit", mine, "--to", to, "-c", self.toy.config)
@@ -315,7 +315,8 @@ class Board(unittest.TestCase):
                             (("-c", ""), "--config: is empty"), (("--reference", ""), "--reference"), (("--data", ""), "--data: is empty")):
             shutil.rmtree(self.toy.submissions)
             self.toy.submissions.mkdir()
-            done = self.toy.rank("--models", "RS", *words)
+            line = [toy.PROGRAM, "leaderboard", self.toy.submissions, "--to", self.toy.site, "-c", self.toy.config, "--data", self.toy.data, "--models", "RS"]
+            done = subprocess.run([*line, *words], capture_output=True, text=True)
             self.assertEqual((done.returncode, everything(self.toy.submissions)), (2, {}), done.stderr)
             self.assertIn(said, done.stderr)
 
