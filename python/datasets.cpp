@@ -346,6 +346,10 @@ void bind_datasets(py::module_& module) {
   module.def("form_of_arrays", &form_of_arrays, py::arg("arrays"), py::arg("name"));
   module.def("values_image", &values_image, py::arg("values"));
   module.def("read_index", &index_rows, py::arg("path"));
+  module.def(
+      "index_remark",
+      [](const std::string& path) { return file_text(computed([&] { return index_remark(path); })); },
+      py::arg("path"));
   module.def("index_text", &index_bytes, py::arg("rows"));
   module.def("shape_facts", &shape_facts, py::arg("form"), py::arg("item"), py::arg("file"));
   module.def("finished", &finished, py::arg("form"), py::arg("view"), py::arg("item"), py::arg("file"),

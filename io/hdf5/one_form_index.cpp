@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/hdf5/one_form_index.h"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -74,8 +75,10 @@ std::string index_text(const std::vector<IndexRow>& rows) {
   return to_csv(table);
 }
 
-std::vector<IndexRow> read_index(const fs::path& file) {
-  IndexReader in{read_csv(file)};
+namespace {
+
+std::vector<IndexRow> rows_of(Table table) {
+  IndexReader in{std::move(table)};
   std::vector<IndexRow> rows;
   std::set<std::string> names;
   for (; in.row < in.table.rows.size(); ++in.row) {
@@ -95,10 +98,33 @@ std::vector<IndexRow> read_index(const fs::path& file) {
   return rows;
 }
 
+// "# TRUTH: ..." above the names of the columns. It goes into tables, so it is a line of text and no more.
+std::string remark_of(const Table& table) {
+  constexpr std::string_view kTruth = " TRUTH: ";
+  constexpr std::size_t kLongest = 400;
+  for (const std::string& line : table.remarks) {
+    if (!line.starts_with(kTruth)) continue;
+    if (line.size() > kLongest || std::ranges::any_of(line, [](unsigned char c) { return c < ' '; }))
+      throw InputError(fmt::format("{}: the remark {} is no line of at most {} characters: shorten it",
+                                   table.name, in_quotes(line), kLongest));
+    return line.substr(1);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<IndexRow> read_index(const fs::path& file) { return rows_of(read_csv(file)); }
+
+std::string index_remark(const fs::path& file) { return remark_of(read_csv(file)); }
+
 Dataset indexed_dataset(const fs::path& root) {
   const fs::path file = root / kIndexFile;
+  Table table = read_csv(file);
   Dataset dataset{.layout = std::string(kOneForm), .items = {}, .notes = {}, .splits_where = file};
-  for (const IndexRow& row : read_index(file))
+  dataset.remark = remark_of(table);
+  if (!dataset.remark.empty()) dataset.notes.push_back(dataset.remark);
+  for (const IndexRow& row : rows_of(std::move(table)))
     dataset.items.push_back({.name = row.name(),
                              .category = row.category,
                              .mesh = root / file_of_shape(row.shape),

@@ -224,7 +224,7 @@ RECORDS = {
     "a tag": ("a: !!python/object/apply:os.system [ls]\n", "the tag "),
     "a number without end": (f"a: {'9' * 10_000}\n", "run.yaml: "),
     "a day that there is not": ("a: 2026-02-30\n", "run.yaml: "),
-    "no UTF-8": ("\udcff", "is not UTF-8"),
+    "no UTF-8": ("\udcff", "run.yaml: is no record of a finished run"),  # names in a record may be none
 }
 
 

@@ -255,8 +255,10 @@ class Command(Importing):
         self.assertEqual((status, document["command"], document["layout"], document["n_problems"]), (1, "import", "sal3d", 1))
         self.assertEqual([(shape["name"], shape["outcome"]) for shape in document["shapes"]],
                          [("cat", "unchanged"), ("cow", "failed"), ("dog", "unchanged")])
-        self.assertEqual(err.count("\n"), 1)
-        self.assertIn("error: cow: ", err)
+        note, error = err.splitlines()
+        self.assertTrue(note.startswith("warning: TRUTH: raw gaze densities; "), note)
+        self.assertTrue(error.startswith("error: cow: "), error)
+        self.assertEqual((self.to / "index.csv").read_text().splitlines()[0], "# " + note.removeprefix("warning: "))
 
     def test_unusable_arguments_and_folders(self):
         self.clouds()

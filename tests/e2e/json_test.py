@@ -248,6 +248,7 @@ class JsonTest(unittest.TestCase):
         archive.write_text("no archive")
         document = self.summary("leaderboard", *site, status=1)
         self.assertEqual([row["status"] for row in document["submissions"]], ["refused"])
+        archive.unlink()  # what is no submission is not written over
         (data / "7.off").unlink()
         self.assertEqual(self.summary("submit", *submit)["to"], str(archive))
         document = self.summary("leaderboard", *site)

@@ -19,7 +19,8 @@ def items(layout: Layout, root: str) -> Listing:
     index = os.path.join(root, layout.index)
     if not exists(index):
         raise InputError(f"{index}: cannot be read: there is no such file")
-    listing = Listing([], read=[index], splits_where=index, licence=layout.licence)
+    remark = _core.index_remark(os.fsencode(index))
+    listing = Listing([], [remark] if remark else [], [index], index, licence=layout.licence, remark=remark)
     for shape, view, category, split, kind, truth, participants, viewers, _ in _core.read_index(os.fsencode(index)):
         path = os.path.join(root, "items", f"{shape}.h5")
         seen = f", view {view}" if view else ""

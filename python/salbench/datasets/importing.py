@@ -84,7 +84,8 @@ def _import(archive: str, root: str, to: OwnFolder, layout_name: str, listing: L
     found = [shape for shape, known in zip(found, answered) if known]
     renewed = {shape.name for shape in found}
     rows = [row for row in before if row[0] not in renewed and _name(row) in places] + [row for shape in found for row in shape.rows]
-    removed = one_form.put_index(to, sorted(rows, key=lambda row: places[_name(row)]), [row for row in before if row[0] not in renewed])
+    removed = one_form.put_index(to, sorted(rows, key=lambda row: places[_name(row)]), [row for row in before if row[0] not in renewed],
+                                 listing.remark)
     return Import(layout_name, found, listing.notes, removed, complete)
 
 

@@ -85,9 +85,9 @@ def read_index(folder: str) -> list[Row]:
     return _core.read_index(os.fsencode(path)) if os.path.exists(path) else []
 
 
-def put_index(folder: OwnFolder, rows: list[Row], before: list[Row]) -> int:
-    """Writes the index, and removes files of shapes that only the one before it has. How many these are."""
-    put(folder, INDEX, _core.index_text(rows))
+def put_index(folder: OwnFolder, rows: list[Row], before: list[Row], remark: str = "") -> int:
+    """Writes the index, and removes files of shapes that only the one before it has. How many these are. remark: of the ground truth."""
+    put(folder, INDEX, (f"# {remark}\n".encode() if remark else b"") + _core.index_text(rows))
     gone = {row[0] for row in before} - {row[0] for row in rows}
     for shape in gone:
         folder.remove(name_of(shape))
