@@ -100,14 +100,14 @@ std::vector<IndexRow> rows_of(Table table) {
 
 // "# TRUTH: ..." above the names of the columns. It goes into tables, so it is a line of text and no more.
 std::string remark_of(const Table& table) {
-  constexpr std::string_view kTruth = " TRUTH: ";
+  constexpr std::string_view kTruth = "TRUTH: ";
   constexpr std::size_t kLongest = 400;
   for (const std::string& line : table.remarks) {
     if (!line.starts_with(kTruth)) continue;
     if (line.size() > kLongest || std::ranges::any_of(line, [](unsigned char c) { return c < ' '; }))
       throw InputError(fmt::format("{}: the remark {} is no line of at most {} characters: shorten it",
                                    table.name, in_quotes(line), kLongest));
-    return line.substr(1);
+    return line;
   }
   return {};
 }
