@@ -8,6 +8,7 @@ import tempfile
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 import toy
 from toy import card, everything
@@ -319,6 +320,24 @@ class Board(unittest.TestCase):
             done = subprocess.run([*line, *words], capture_output=True, text=True)
             self.assertEqual((done.returncode, everything(self.toy.submissions)), (2, {}), done.stderr)
             self.assertIn(said, done.stderr)
+
+    def test_names_of_files_that_are_no_lines(self):
+        for name in (b"a\xff.zip", b"a\xfe.zip", b"a\nb\x1b[31m.zip"):
+            (self.toy.submissions / os.fsdecode(name)).write_bytes(b"no archive")
+        for words in ((), ("--format", "json")):
+            done = self.toy.rank(*words)
+            self.assertEqual((done.returncode, "Traceback" in done.stderr, "\x1b" in done.stdout), (1, False, False), done.stderr)
+        mark = "\N{REPLACEMENT CHARACTER}"
+        self.assertEqual(sorted(self.toy.verdicts()), ["G0.zip", f"a{mark}.zip", f"a{mark}b{mark}[31m.zip"])
+        self.assertIn(f"a{mark}.zip", self.toy.page())
+
+    def test_a_name_is_taken_by_the_first_file_whatever_both_are_called(self):
+        entries = [board.Entry(Path(os.fsdecode(name))) for name in (b"a\xfe.zip", b"a\xff.zip")]
+        read = [SimpleNamespace(card=Card(name=name), program="") for name in ("MINE", "mine")]
+        with mock.patch("salbench.leaderboard.submission.read", lambda file, *_: read[[entry.file for entry in entries].index(file)]):
+            passed = board.check_all(entries, None, Path(), ["HEIGHT"], 1)
+        self.assertEqual((passed, entries[0].refused), (read[:1], ""))
+        self.assertIn("the name mine is taken by a\N{REPLACEMENT CHARACTER}.zip", entries[1].refused)
 
     def test_whatever_the_locale(self):
         """Names of files and of the people of a card are no letters of it."""

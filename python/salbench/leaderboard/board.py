@@ -105,9 +105,10 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
             entry.refused = read
             continue
         entry.card, entry.program, entry.refused = read.card, read.program, ""
-        if (holder := taken.setdefault(read.card.name.lower(), entry.name)) != entry.name:
-            entry.refused = f"the name {read.card.name} is taken by {holder}, or differs from it in capitals alone"
+        if (name := read.card.name.lower()) in taken:
+            entry.refused = f"the name {read.card.name} is taken by {taken[name]}, or differs from it in capitals alone"
             continue
+        taken[name] = entry.name
         passed.append(read)
     return passed
 
