@@ -5,6 +5,7 @@ import contextlib
 import errno
 import io
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -207,6 +208,17 @@ class OfAStranger(support.ReportTest):
                         self.assertEqual((status, errors.count("\n")), (3, 1), errors)
                         self.assertIn(said, errors)
                         self.assertIn("choose another folder with --to", errors)
+
+    def test_a_limit_on_the_size_of_files(self):
+        """As a full disk: of the folder, or of the scratch folder."""
+        for most in (100, 3_000, 20_000):
+            line = [sys.executable, "-P", "-B", "-m", "salbench", "report", self.out, "--to", self.folder / "limited"]
+            done = subprocess.run(line, capture_output=True, text=True,
+                                  preexec_fn=lambda most=most: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+            with self.subTest(most):
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (3, 1), done.stderr)
+                self.assertIn("cannot be written: File too large; ", done.stderr)
+            shutil.rmtree(self.folder / "limited")
 
     def test_whatever_the_user_has_set_for_matplotlib(self):
         code = "import sys; from salbench.__main__ import main; sys.exit(main())"

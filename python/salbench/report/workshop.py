@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from salbench._errors import StorageError
 from salbench.pages.blocks import Plot
 from salbench.report import crew, kept, names, statistics, style
 from salbench.report.drawing import Drawing
@@ -71,9 +72,13 @@ class Workshop:
     def _save(self, task: tuple[str, Drawing, str]) -> list[str]:
         name, drawing, _ = task
         drawn = [self.scratch / f"{name}.svg", self.scratch / f"{name}.pdf"]
-        style.save(drawing.real(), *drawn)
-        for path in drawn:
-            self.write(f"figures/{path.name}", path.read_bytes())
+        try:
+            style.save(drawing.real(), *drawn)
+            made = [path.read_bytes() for path in drawn]
+        except OSError as error:
+            raise StorageError(f"{self.scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
+        for path, data in zip(drawn, made):
+            self.write(f"figures/{path.name}", data)
             path.unlink()
         return [f"figures/{path.name}" for path in drawn]
 
