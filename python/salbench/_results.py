@@ -16,7 +16,7 @@ import numpy as np
 
 from salbench._by_name import ByName
 from salbench._errors import InputError
-from salbench._files import replace_file
+from salbench._files import replace_file, require_file
 from salbench._tables import Tables, read
 from salbench._types import ArrayLike, NDArray
 
@@ -95,7 +95,10 @@ class Results(Tables):
         return self._read(name)
 
     def _read(self, name: str) -> "pandas.DataFrame":
-        return read(self.folder / f"{name}.csv")
+        path = self.folder / f"{name}.csv"
+        if path.exists():
+            require_file(path)
+        return read(path)
 
     def _conclude(self) -> None:
         from salbench import conclusions
