@@ -124,6 +124,14 @@ class Strays(unittest.TestCase):
             with self.subTest(name):
                 call(sound, faces)
                 self.assertRaisesRegex(ValueError, f"1 of the {N + 1} points makes up 99.9999 % of the extent", call, points, faces)
+        with self.subTest("MS, and a vertex of no face"):
+            self.assertRaisesRegex(ValueError, "99.9999 %", calls["MS"], points, surface(sphere()))
+
+    def test_a_sample_without_the_stray(self):
+        for model in (salbench.models.cs, salbench.models.ls):
+            with self.subTest(model.__name__):
+                self.assertEqual(len(model(sphere(), sample=2000)), N)
+                self.assertRaisesRegex(ValueError, f"1 of the {N + 1} points makes up 99.99 % of the extent", model, strays([1e4]), sample=2000)
 
 
 POINTS = sphere(300) * [1, 0.8, 0.6]
