@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the standard library throws where the system refuses something.
+// Messages for what the system refuses: a file, or a thread.
 #pragma once
 
 #include <string>

@@ -19,7 +19,7 @@ std::optional<Bytes> written_image(const Hdf5Content& content);
 // for all others, damaged ones included.
 std::optional<Hdf5Content> parsed_image(std::span<const std::byte> image);
 
-// Of the file as a whole, without a look at its arrays.
+// Attributes of the file itself; its arrays are not read.
 std::optional<Attributes> attributes_of_image(std::span<const std::byte> image);
 
 // The same by the library, which knows the whole format. Both throw std::runtime_error.

@@ -34,8 +34,8 @@ std::string index_text(const std::vector<IndexRow>& rows);
 // listed twice.
 std::vector<IndexRow> read_index(const std::filesystem::path& file);
 
-// What every table has to say of the ground truth: a line "# TRUTH: ..." of the index, after its '#'; "":
-// nothing.
+// The remark on the ground truth that every table repeats: the index's line "# TRUTH: ..." after its '#'.
+// Empty if there is none.
 std::string index_remark(const std::filesystem::path& file);
 
 // The data set of a folder with an index. Throws InputError.

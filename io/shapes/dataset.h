@@ -76,7 +76,7 @@ struct Dataset {
   std::string splits_where = {};   // of the description, or the index
   std::string no_splits = {};      // why no item is in a split; empty: some are, or none are described
   std::vector<SplitEntry> unknown = {};
-  std::string remark = {};  // what every table has to say of the ground truth
+  std::string remark = {};  // on the ground truth, repeated in every table; empty: none
   DataImporter importer = {};
 };
 

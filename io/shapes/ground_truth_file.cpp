@@ -10,7 +10,7 @@
 namespace salbench {
 namespace {
 
-// Of a column. A damaged number, such as "12#3" or "0,5", is none.
+// True of a word that can name a column; false of a number, damaged ones such as "12#3" and "0,5" included.
 bool is_name(std::string_view word) {
   constexpr std::string_view kInNumbers = "+-.,#0123456789";
   double value = 0;  // "nan" and "inf" are numbers, too

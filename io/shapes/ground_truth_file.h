@@ -18,7 +18,7 @@ struct Elements {
   static constexpr std::size_t kUnknown = std::numeric_limits<std::size_t>::max();
   std::size_t n = kUnknown;
   std::string_view shape = "mesh", one = "vertex", plural = "vertices";
-  // What else there are so many of, and what to do then: the end of a message about a wrong number of values.
+  // End of the message about a wrong number of values: which other elements are that many, and what to do.
   std::function<std::string(std::size_t count)> others = {};
 };
 

@@ -54,7 +54,7 @@ std::int64_t read_count(TextScanner& in, std::string_view plural) {
   return count;
 }
 
-// Which nobody keeps right; it may be missing, or stand alone on the next line.
+// The number of edges is often wrong; it may be missing, or stand alone on the next line.
 void skip_number_of_edges(TextScanner& in) {
   TextScanner next = in;
   const bool on_next_line = next.peek_word().empty() && next.next_filled_line();
@@ -83,8 +83,8 @@ void read_face(TextScanner& in, std::int64_t n_vertices, std::vector<std::int32_
   }
 }
 
-// Further columns: colours, normals or texture coordinates, which no file announces reliably. Only a line's
-// end tells where they stop, so that a record with some begins a line.
+// Columns behind the coordinates or corners: colours, normals, texture coordinates. No file announces them
+// reliably, and only the line's end tells where they stop, so a record with some begins a line.
 enum class FurtherColumns { skipped, none };
 
 Mesh read_body(TextScanner in, const Counts& announced, FurtherColumns columns, PolygonCounts& counts) {
@@ -121,7 +121,8 @@ Mesh read_body(TextScanner in, const Counts& announced, FurtherColumns columns, 
 
 }  // namespace
 
-// Where lines do not fit the counts, several records may share one.
+// Tries a record per line first; if that does not fit the counts, several records per line, without further
+// columns.
 Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* counts) {
   TextScanner in(text, name, '#');
   const Counts announced = read_counts(in);

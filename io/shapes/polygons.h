@@ -24,8 +24,8 @@ struct PolygonCounts {
   std::vector<SplitPolygon> polygons = {};  // in the order of the file; empty where no file was parsed
 };
 
-// Of a mesh as its file was parsed: how many faces the file has, and which of them, from 0, each triangle is
-// part of.
+// Number of faces in the file of a mesh that was parsed, and for each of its triangles the 0-based face that
+// it is part of.
 std::size_t faces_in_file(const PolygonCounts& counts, std::size_t n_triangles);
 std::vector<std::int32_t> faces_of_triangles(const PolygonCounts& counts, std::size_t n_triangles);
 

@@ -165,8 +165,7 @@ Subcommand run_subcommand(Arguments& arguments) {
           {"--maps", &own->maps,
            "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its "
            "scan 3; one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, "
-           "if "
-           "--items does not name others"}),
+           "if --items does not name others"}),
       {"--name", &own->name, "what to call them in the tables"},
       {"--matched", &own->matched, "their values are histogram-matched already"},
       format_parameter(word)};

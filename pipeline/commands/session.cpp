@@ -94,6 +94,7 @@ void place(Config& config, const Arguments& arguments) {
     throw ConfigError(fmt::format("{}: names no data set: give {}, or a key 'data'",
                                   arguments.config.empty() ? "config" : arguments.config,
                                   as_option("data", "DIR")));
+  // From Python; a configuration's are refused where it is read.
   for (const std::string* folder : {&config.data, &config.cache, &config.output})
     if (folder->find('\0') != std::string::npos)
       throw ConfigError(fmt::format("{}...: the name of a folder holds a zero byte", folder->c_str()));

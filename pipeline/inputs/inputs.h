@@ -34,7 +34,7 @@ struct Inputs {
   FileColumnPtr truth_files = {};        // [family]: none where nothing is known about the shape
   DataImporter importer = {};
   std::optional<Shard> shard = {};  // the units are this share of the data set
-  std::string remark = {};          // what every table has to say of the ground truth
+  std::string remark = {};          // on the ground truth, repeated in every table; empty: none
 
   // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;

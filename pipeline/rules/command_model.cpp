@@ -46,7 +46,6 @@ void check_reads(const CommandOptions& options, const Section& written) {
 
 void check_command(const CommandOptions& options, const Section& written) {
   const auto has = [&](std::string_view text) { return options.command.find(text) != std::string::npos; };
-  if (options.command.find('\0') != std::string::npos) written.fail("command", "holds a zero byte");
   const bool list = has(kListOfMeshes), list_of_hdf5 = has(kListOfShapes);
   const bool fpfh = contains(options.reads, "fpfh");
   if (list || list_of_hdf5) {

@@ -73,7 +73,7 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
 
 
 def read_record(path: Path) -> dict[str, Any]:
-    """run.yaml, as record.py checks it. Throws InputError, Unreadable for what is no YAML."""
+    """run.yaml, as record.py checks it. Throws InputError; Unreadable for what is not plain YAML."""
     import yaml
 
     data = read_file(path, MOST_RECORD, "let `salbench run` write it again").decode("utf-8", "replace").encode()

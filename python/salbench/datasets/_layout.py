@@ -128,7 +128,7 @@ class Layout:
     index: str = ""  # file below the folder that lists items in the one form; no places then
     licence: str = ""  # on what terms the authors give the data, as far as is known
     aliases: tuple[tuple[str, str], ...] = ()  # name of an item in files of viewers, and its name elsewhere
-    remark: str = ""  # what every table has to say of the ground truth
+    remark: str = ""  # on the ground truth, repeated in every table
     remark_unlisted: str = ""  # likewise, where lists of neighbours would lie but do not
 
     def where(self, written: str) -> str:

@@ -6,8 +6,8 @@
     {participant}  digits
     {view}, {viewer}  any characters of one name
 
-A name that begins with a dot is hidden and fits no pattern. Extensions may be in upper or lower case. Paths are relative, with '/' between names. A pattern is matched name by name
-from the root, each name by backtracking over its few pieces.
+A name that begins with a dot is hidden and fits no pattern. Extensions may be in upper or lower case. Paths are relative, with '/' between
+names. A pattern is matched name by name from the root, each name by backtracking over its few pieces.
 """
 
 from __future__ import annotations

@@ -91,7 +91,7 @@ class Listing:
     unit_where: str = ""
     licence: str = ""
     positives: str = "picks"
-    remark: str = ""  # what every table has to say of the ground truth; one of the notes
+    remark: str = ""  # on the ground truth, repeated in every table; one of the notes
 
     def files(self) -> set[str]:
         """Every file that the items and the listing are read from."""
