@@ -171,6 +171,13 @@ std::string read_file(const fs::path& path, std::uint64_t most) {
   return bytes;
 }
 
+std::string read_head(const fs::path& path, std::size_t bytes) {
+  const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
+  std::string head(std::min(bytes, check_regular(file.get(), path)), '\0');
+  if (const int error = read_all(file.get(), head); error != 0) fail_input(path, error);
+  return head;
+}
+
 std::optional<Bytes> read_bytes(const fs::path& path) {
   // ESTALE on a network file system means that the file was replaced: a second attempt opens the new one.
   for (bool first = true;; first = false) {

@@ -31,6 +31,9 @@ inline constexpr std::uint64_t kMaxItemBytes = std::uint64_t{1} << 31U;
 std::string read_file(const std::filesystem::path& path,
                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
+// The first bytes of such a file, or as many as it has.
+std::string read_head(const std::filesystem::path& path, std::size_t bytes);
+
 // "9000000000 bytes: at most 2147483648 can be read"
 std::string too_many_bytes(std::uint64_t bytes, std::uint64_t most);
 

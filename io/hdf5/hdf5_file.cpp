@@ -128,6 +128,8 @@ Handle opened_set(hid_t file, const std::string& name) {
 
 }  // namespace
 
+bool is_hdf5(const std::filesystem::path& file) { return read_head(file, kSignature.size()) == kSignature; }
+
 Bytes hdf5::image_by_library(const Hdf5Content& content) {
   std::vector<std::optional<PackedChunks>> chunks;
   for (const Array& array : content.arrays) chunks.push_back(packed(array));

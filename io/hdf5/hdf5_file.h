@@ -25,6 +25,8 @@ struct Hdf5Content {
 // equal bytes. Throws std::runtime_error if the library fails, as it does for two arrays of the same name.
 Bytes hdf5_image(const Hdf5Content& content);
 
+bool is_hdf5(const std::filesystem::path& file);  // by its first bytes; throws as read_file does
+
 // The inverse, in the order of the names; links are not followed. Throws InputError naming `name` if the
 // image is not such a file.
 Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name);

@@ -8,6 +8,7 @@
 
 #include "cache/artefact_name.h"
 #include "io/file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "io/shapes/shape_file.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/run.h"
@@ -161,6 +162,21 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role, cons
   return written;
 }
 
+// Throws ConfigError where the export would take the place of what is the user's: of a file that is no HDF5,
+// or of one that a shape is read from. extension: of a shape's file; empty for one HDF5 file.
+void require_free(const fs::path& to, const std::string& extension, const Inputs& inputs) {
+  std::error_code none;
+  const bool one_file = extension.empty();
+  if (one_file && fs::is_regular_file(to, none) && fs::file_size(to, none) > 0 && !is_hdf5(to))
+    throw ConfigError(fmt::format("--to {}: is there, and no HDF5 file; choose another", to.string()));
+  for (const Family& family : inputs.units.families()) {
+    const DatasetItem& item = item_of(family.source);
+    if (fs::equivalent(one_file ? to : to / (item.name + extension), item.mesh, none))
+      throw ConfigError(
+          fmt::format("--to {}: {} is read from there; choose another", to.string(), item.name));
+  }
+}
+
 ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
                       const std::atomic<bool>& stop) {
   const ReportFormat summary = format_of(options.summary, false, "--summary");
@@ -178,6 +194,7 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
                   options.pictures ? Pictures::computed
                   : one_file       ? Pictures::cached
                                    : Pictures::none);
+  if (!maps) require_free(arguments.to, one_file ? "" : "." + options.format, session.setup.inputs);
   const StageNames stages =
       maps ? StageNames() : selected_stages(options.stages, session.setup.project.rules);
   const OrderlyEnd orderly;

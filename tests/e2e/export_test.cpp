@@ -200,6 +200,41 @@ TEST(Export, AFullDiskIsOneErrorAndLeavesNothing) {
   EXPECT_THAT(files_in(toy / "exports"), testing::IsEmpty());
 }
 
+TEST(Export, TakesThePlaceOfNoFileOfTheUser) {
+  const Workspace toy(kMeshesOnly);
+  toy.write("thesis.txt", "years of work");
+  const auto complaint = [&](const fs::path& to, const std::string& format) {
+    const Outcome ended = toy.salbench("export", {"--to", to.string(), "--format", format});
+    EXPECT_EQ(ended.status, 2) << ended.err;
+    return ended.err;
+  };
+  EXPECT_THAT(complaint(toy / "thesis.txt", "h5"), HasSubstr("is there, and no HDF5 file; choose another"));
+  EXPECT_THAT(complaint(toy.config(), "h5"), HasSubstr("no HDF5 file"));
+  EXPECT_EQ(read_file(toy / "thesis.txt"), "years of work");
+  toy.write("empty.h5", "");
+  EXPECT_EQ(toy.salbench("export", {"--to", (toy / "empty.h5").string()}).status, 0);
+  EXPECT_EQ(toy.salbench("export", {"--to", (toy / "empty.h5").string()}).status, 0) << "of an earlier call";
+}
+
+TEST(Export, TakesThePlaceOfNoShapeThatItReads) {
+  const Workspace toy(kMeshesOnly);
+  const Outcome shapes = toy.salbench("export", {"--to", (toy / "ply").string(), "--format", "ply"});
+  ASSERT_EQ(shapes.status, 0) << shapes.err;
+  const fs::path first = fs::directory_iterator(toy / "ply")->path();
+  const std::string before = read_file(first);
+  toy.configure("dataset: {scans: false, layout: folder, participants: simulated}\nmodels: {PS: }\n");
+  for (const fs::path& to : {toy / "ply", toy / "ply/.", toy / "link"}) {
+    fs::remove(toy / "link");
+    fs::create_symlink(toy / "ply", toy / "link");
+    const Outcome again =
+        run_process({SALBENCH_PROGRAM, "export", toy.config().string(), "--data", (toy / "ply").string(),
+                     "--cache", toy.cache().string(), "--to", to.string(), "--format", "ply"});
+    EXPECT_EQ(again.status, 2) << again.err;
+    EXPECT_THAT(again.err, HasSubstr("is read from there; choose another"));
+  }
+  EXPECT_EQ(read_file(first), before);
+}
+
 TEST(Export, SaysWhatItCannotDo) {
   const Workspace toy;
   const auto complaint = [&](const std::vector<std::string>& further) {
