@@ -10,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
 
+import pandas
 import toy
 from toy import card, everything
 
@@ -132,23 +133,67 @@ class Board(unittest.TestCase):
         self.submissions("G1", "G2")
         self.toy.with_card("G0.zip", card("SEEN", overlap="[2, 5]"))
         done = self.rank()
-        self.assertEqual(self.toy.verdicts()["G0.zip"], "beside")
+        self.assertEqual(self.toy.verdicts()["G0.zip"], "beside: it has seen 2 of 6 items, more than 10 %")
         self.assertNotIn("SEEN", {row["model"] for name in ("ranking", "leaders", "compact", "history", "significance") for row in self.toy.table(name)
                                   if "model" in row} | {row.get("leaders") for row in self.toy.table("leaders")})
-        self.assertEqual({row["n"] for row in self.toy.table("ranking")} | {row["n"] for row in self.toy.table("overlap")}, {"4"})
+        self.assertEqual(({row["n"] for row in self.toy.table("ranking")}, {row["n"] for row in self.toy.table("overlap")}), ({"6"}, {"4"}),
+                         "beside: over what it has not seen itself")
         self.assertEqual({row["model"] for row in self.toy.table("overlap")}, {"SEEN"})
-        page = self.toy.page()
-        for said in ("are too few to name who leads: at least 6 are needed", "The ranking is over 4 of 6 items", "SEEN 2", "beside: it has seen 2 items"):
-            self.assertIn(said, page)
-        self.assertIn("4 of 6 items", done.stdout)
-        self.assertFalse(any(row["metric"] for row in self.toy.table("leaders")), "too few are left")
-        self.assertNotIn("<strong>", page.split("<tbody>")[1].split("</tbody>")[0])
+        for said in ("Beside the ranking of 6 of 6 items", "SEEN 2", "beside: it has seen 2 of 6 items"):
+            self.assertIn(said, self.toy.page())
+        self.assertIn("6 of 6 items", done.stdout)
+        self.assertEqual(self.about("Items "), {"Items ranked over": "6 of 6", "Items left out": "0, which ranked models have seen",
+                                                "Items seen by models beside": "2, which cost the others nothing"})
 
-    def test_a_model_that_has_seen_all(self):
-        self.toy.with_card("all.zip", card("SEEN", overlap="[1, 2, 3, 4, 5, 6]"))
+    def about(self, begin):
+        return {row["what"]: row["is"] for row in self.toy.table("about") if row["what"].startswith(begin)}
+
+    def test_what_costs_the_others_nothing(self):
+        """Ranks, tables and pages of the others are the same bytes, whatever a further submission declares or lacks."""
+        self.submissions("G1", "G2")
         self.rank()
-        self.assertIn("No item is left that no model has seen", self.toy.page())
-        self.assertEqual(self.toy.table("ranking"), [])
+        before = everything(self.toy.site)
+        by_model = {"data/results.csv", "data/mean_histograms_meshes.csv"}  # with rows, or a last column, of SEEN
+        may_change = {"index.html", "submissions.html", "data/about.csv", "data/overlap.csv", "data/submissions.csv"}
+        of_all = "[1, 2, 3, 4, 5, 6]"
+        for file, change, verdict in (
+                ("all", {"card.yaml": card("SEEN", overlap=of_all)}, "beside: it has seen 6 of 6 items"),
+                ("one", {"card.yaml": card("SEEN", overlap="[1]")}, "beside: it has seen 1 of 6 items"),
+                ("later", {"card.yaml": card("SEEN", "2999-12-31", overlap="[1, 1, 4]")}, "beside: it has seen 2 of 6 items"),
+                ("missing", {"card.yaml": card("SEEN"), "maps/3.npy": None}, "refused: has no map of 1 of 6 items"),
+                ("nothing", {"card.yaml": card("SEEN"), "maps/3.npy": b""}, "refused: maps/3.npy"),
+                ("name", {"card.yaml": card("SEEN", overlap="[1, 7]")}, "refused: card.yaml: test_overlap has")):
+            with self.subTest(file):
+                self.toy.spoil(f"z_{file}.zip", lambda entries, change=change: [
+                    entries.pop(name) if data is None else entries.update({name: data.encode() if isinstance(data, str) else data})
+                    for name, data in change.items()])
+                self.rank(1 if verdict.startswith("refused") else 0)
+                self.assertIn(verdict, self.toy.verdicts()[f"z_{file}.zip"])
+                after = everything(self.toy.site)
+                self.assertEqual([name for name in before if name not in may_change | by_model and after[name] != before[name]], [])
+                for name in by_model:
+                    kept = [line for line in after[name].splitlines() if b",SEEN," not in line]
+                    self.assertEqual([line for line, own in zip(kept, before[name].splitlines(), strict=True) if not line.startswith(own)], [])
+            (self.toy.submissions / f"z_{file}.zip").unlink()
+
+    def test_whose_overlap_counts(self):
+        """A model is ranked if it has seen at most a tenth of the items; they are left out for all."""
+        expected = SimpleNamespace(items=tuple(map(str, range(1, 21))))
+        for overlaps, left_out, beside in (({"A": "1"}, {"1"}, []), ({"A": "1 2"}, {"1", "2"}, []), ({"A": "1 2 2 1"}, {"1", "2"}, []),
+                                           ({"A": "1 2 3"}, set(), ["A"]), ({"A": "1 2", "B": "2 3"}, {"1", "2", "3"}, []),
+                                           ({"A": "1", "B": "2 3 4 5"}, {"1"}, ["B"]), ({"A": "", "B": ""}, set(), [])):
+            with self.subTest(overlaps):
+                entries = [board.Entry(Path(f"{name}.zip"), Card(name, test_overlap=tuple(seen.split())), refused="") for name, seen in overlaps.items()]
+                entries.append(board.Entry(Path("refused.zip"), Card("R", test_overlap=("9",)), refused="damaged"))
+                overlap = board.Overlap.of(entries, expected)
+                self.assertEqual((overlap.left_out, [entry.card.name for entry in entries if entry.status == "beside"]), (left_out, beside))
+                self.assertEqual(overlap.ranked_over, f"{20 - len(left_out)} of 20")
+                self.assertEqual(len(overlap.sentences()), bool(left_out) + bool(beside))
+
+    def test_no_item_is_left(self):
+        with mock.patch.object(board, "MOST_SEEN", 100):
+            overlap = board.Overlap.of([board.Entry(Path("a.zip"), Card("A", test_overlap=("1", "2")), refused="")], SimpleNamespace(items=("1", "2")))
+        self.assertEqual((overlap.ranked_over, overlap.beside), ("0 of 2", {}))
 
     def test_what_the_front_page_names(self):
         self.toy.with_card("later.zip", card("LATER", "2026-03-01", url="https://example.org/model"))
@@ -249,6 +294,18 @@ class Board(unittest.TestCase):
         failures = [("1", "scores.A", "overflow\nand its traceback"), ("no ground truth", "map.B", "of no matter")]
         self.assertEqual(board._refuse_failed(entries, SimpleNamespace(failures=failures), SimpleNamespace(points={"1": 5})), {"A"})
         self.assertEqual([entry.refused for entry in entries], ["1: overflow", ""])
+
+    def test_a_model_without_a_score_that_others_have_is_refused(self):
+        entries = [board.Entry(Path(f"{name}.zip"), Card(name=name), refused="") for name in "AB"]
+        rows = [("meshes", item, "", model, 1.0) for item in "12" for model in ("A", "B", "RS")] + [("meshes", "3", "", "HS", 1.0)]
+        frame = pandas.DataFrame(rows, columns=["dataset", "item", "view", "model", "cc"])
+        metrics = (SimpleNamespace(name="cc"),)
+        self.assertEqual(board._refuse_undefined(entries, SimpleNamespace(frame=frame, metrics=metrics)), set())
+        frame.loc[frame["item"] == "1", "cc"] = float("nan")  # of the shape, not of a map
+        self.assertEqual(board._refuse_undefined(entries, SimpleNamespace(frame=frame, metrics=metrics)), set())
+        frame.loc[(frame["item"] == "2") & (frame["model"] == "B"), "cc"] = float("nan")
+        self.assertEqual(board._refuse_undefined(entries, SimpleNamespace(frame=frame, metrics=metrics)), {"B"})
+        self.assertEqual([entry.refused for entry in entries], ["", "2: its map has no cc, and those of others have"])
 
     def test_submit_says_what_is_missing_and_writes_nothing(self):
         mine = self.toy.maps("M", 1)

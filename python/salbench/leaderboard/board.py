@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a leaderboard says: every submission checked, those that pass scored in one run, as a run scores maps, and conclusions from their scores.
 
-Models are compared on the items that none of them was trained on. A model that has seen some stands beside the ranking.
+Models are compared on the items that no ranked model was trained on. A model that has seen more than a few stands beside the ranking, so that
+what it declares takes no item from the others.
 """
 
 import csv
@@ -20,12 +21,14 @@ from salbench.conclusions import compact, csv_file, folders, leaders, tables, ta
 from salbench._errors import InputError
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
+from salbench.conclusions.units import Scores
 from salbench.leaderboard import submission
 from salbench.leaderboard.archive import Refused
 from salbench.leaderboard.submission import Expected, Submission
 from salbench.leaderboard.texts import Card, shown
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
+MOST_SEEN = 10  # percent of the items: what one ranked model may take from all
 OTHER_SCORES = "the scores that it came with are others than those computed here"
 Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; commands.py
 
@@ -39,6 +42,7 @@ class Entry:
     program: str = ""
     refused: str = "was not checked"  # why; empty: it was not
     remark: str = ""
+    beside: str = ""  # why it is not ranked; empty: it is
 
     @property
     def name(self) -> str:
@@ -47,7 +51,12 @@ class Entry:
 
     @property
     def status(self) -> str:
-        return "refused" if self.refused else "beside" if self.card.test_overlap else "ranked"
+        return "refused" if self.refused else "beside" if self.beside else "ranked"
+
+    @property
+    def seen(self) -> set[str]:
+        """Items that it was trained or tuned on."""
+        return set(self.card.test_overlap)
 
 
 @dataclass(frozen=True)
@@ -56,8 +65,8 @@ class Board:
 
     entries: list[Entry]
     facts: dict[str, str]  # what the ranking is of, by its label
-    study: Study  # of the models that are ranked, on the items that no model has seen
-    beside: pandas.DataFrame  # the others, on the same items
+    study: Study  # of the models that are ranked, on the items that none of them has seen
+    beside: pandas.DataFrame  # the others, on those of the same items that they have not seen
     leaders: list[LevelLeaders]
     sentences: list[str]
     protocol: str
@@ -133,21 +142,60 @@ def model_of(submitted: Submission) -> tuple[str, Model]:
 def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
     """Scores what passed, and draws the conclusions. name: of the configuration."""
     results = run(functions=[model_of(one) for one in submitted])
-    if failed := _refuse_failed(entries, results, expected):
+    source = folders.read_run(results.folder)
+    if failed := _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores):
         return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name)
     _compare_scores(entries, submitted, results.folder / "results.csv")
-    source = folders.read_run(results.folder)
-    seen = {item for entry in entries if not entry.refused for item in entry.card.test_overlap}
-    beside = [entry.card.name for entry in entries if entry.status == "beside"]
-    study = _part(source.study, seen, lambda models: ~models.isin(beside))
+    overlap = Overlap.of(entries, expected)
+    study = _part(source.study, overlap.left_out, lambda models: ~models.isin(list(overlap.beside)))
     found = [_or_too_few(level) for level in leaders.find_leaders(study)]
-    sentences = [level.sentence for level in found] or ["No item is left that no model has seen: none can be ranked."]
-    if seen:
-        sentences.append(_left_out(entries, seen, expected))
-    board = Board(entries, _facts(entries, expected, record_of(results), study, seen, name), study,
-                  compact.compact(_part(source.study, seen, lambda models: models.isin(beside))).assign(rank=pandas.NA, group="", best=0), found, sentences, expected.protocol, {}, source.remarks)
+    sentences = [level.sentence for level in found] or ["No item is left that no ranked model has seen: none can be ranked."]
+    board = Board(entries, _facts(entries, expected, record_of(results), study, overlap, name), study, _beside(source.study, overlap), found,
+                  sentences + overlap.sentences(), expected.protocol, {}, source.remarks)
     board.tables.update(_tables(board, results))
     return board, results
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """Items that models were trained or tuned on."""
+
+    items: int  # of the data set
+    ranked: dict[str, set[str]]  # what each ranked model has seen, if anything
+    beside: dict[str, set[str]]
+
+    @classmethod
+    def of(cls, entries: list[Entry], expected: Expected) -> "Overlap":
+        n = len(expected.items)
+        for entry in entries:
+            too_many = 100 * len(entry.seen) > MOST_SEEN * n
+            entry.beside = f"it has seen {len(entry.seen)} of {n} items, more than {MOST_SEEN} %" if too_many else ""
+        ranked, beside = ({entry.card.name: entry.seen for entry in entries if entry.status == status and entry.seen} for status in ("ranked", "beside"))
+        return cls(n, ranked, beside)
+
+    @property
+    def left_out(self) -> set[str]:
+        """Of the ranking, for all."""
+        return set().union(*self.ranked.values())
+
+    @property
+    def ranked_over(self) -> str:
+        return f"{self.items - len(self.left_out)} of {self.items}"
+
+    def sentences(self) -> list[str]:
+        """None where no model has seen any."""
+        said = []
+        if self.ranked:
+            said.append(f"The ranking is over {self.ranked_over} items: {len(self.left_out)} are left out, which ranked models have seen: "
+                        f"{_counts(self.ranked)}.")
+        if self.beside:
+            said.append(f"Beside the ranking of {self.ranked_over} items, and never named as leading, stand models that have seen more than {MOST_SEEN} % "
+                        f"of the items: {_counts(self.beside)}. None is left out for their sake.")
+        return said
+
+
+def _counts(seen: dict[str, set[str]]) -> str:
+    return ", ".join(f"{model} {len(items)}" for model, items in seen.items())
 
 
 def _refuse_failed(entries: list[Entry], results: Any, expected: Expected) -> set[str]:
@@ -159,6 +207,19 @@ def _refuse_failed(entries: list[Entry], results: Any, expected: Expected) -> se
                 entry.refused = f"{item}: {cause.splitlines()[0]}"
                 failed.add(entry.card.name)
     return failed
+
+
+def _refuse_undefined(entries: list[Entry], scores: Scores) -> set[str]:
+    """A score that one map alone has not would take the shape from all others, too. Their names."""
+    refused = set()
+    for metric in scores.metrics:
+        table = scores.frame.set_index(["dataset", "item", "view", "model"])[metric.name].unstack("model").drop(columns="HS", errors="ignore")
+        scored = table.notna()
+        for entry in entries:
+            if not entry.refused and entry.card.name in scored and (lost := scored.index[scored.any(axis=1) & ~scored[entry.card.name]]).size:
+                entry.refused = f"{lost[0][1]}: its map has no {metric.name}, and those of others have"
+                refused.add(entry.card.name)
+    return refused
 
 
 def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path: Path) -> None:
@@ -179,8 +240,15 @@ def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path:
             entry.remark = "" if theirs == [columns, *own.get(entry.card.name, [])] else OTHER_SCORES
 
 
+def _beside(study: Study, overlap: Overlap) -> pandas.DataFrame:
+    """Rows of compact.csv of the models beside the ranking: each over the ranked items that it has not seen itself."""
+    parts = [compact.compact(_part(study, overlap.left_out | seen, lambda models: models == model)) for model, seen in overlap.beside.items()]
+    empty = compact.compact(_part(study, overlap.left_out, lambda models: models != models))
+    return pandas.concat([empty, *parts], ignore_index=True).assign(rank=pandas.NA, group="", best=0)
+
+
 def _part(study: Study, seen: set[str], chosen: Callable[[Any], Any]) -> Study:
-    """The items that no model has seen, of some models."""
+    """The items but those seen, of some models."""
     def unseen(frame: pandas.DataFrame | None) -> pandas.DataFrame | None:
         return None if frame is None else frame[~frame["item"].isin(seen)]
 
@@ -199,13 +267,7 @@ def _or_too_few(level: LevelLeaders) -> LevelLeaders:
                    f"{FEWEST_UNITS} are needed.")
 
 
-def _left_out(entries: list[Entry], seen: set[str], expected: Expected) -> str:
-    counts = ", ".join(f"{entry.card.name} {len(set(entry.card.test_overlap))}" for entry in entries if entry.status == "beside")
-    return (f"The ranking is over {len(expected.items) - len(seen)} of {len(expected.items)} items, those that no model has seen. Beside it, and "
-            f"never named as leading, stand models that have seen some: {counts}.")
-
-
-def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], study: Study, seen: set[str], name: str) -> dict[str, str]:
+def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], study: Study, overlap: Overlap, name: str) -> dict[str, str]:
     dates = [entry.card.date for entry in entries if not entry.refused and entry.card.date]
     data = record["data_set"]
     return {"Data set": f"{name}, layout {data['layout']}: {len(expected.items)} items with ground truth, {len(expected.points)} shapes",
@@ -215,7 +277,9 @@ def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], stu
             "Program": record["program"],
             "Date": f"{max(dates)}, of the newest submission" if dates else "no submission has one",
             "Unit of inference": study.unit,
-            "Items ranked over": f"{len(expected.items) - len(seen)} of {len(expected.items)}"}
+            "Items ranked over": overlap.ranked_over,
+            "Items left out": f"{len(overlap.left_out)}, which ranked models have seen",
+            "Items seen by models beside": f"{len(set().union(*overlap.beside.values()))}, which cost the others nothing"}
 
 
 # --- tables ----------------------------------------------------------------------------------------------------------------------------------------
@@ -227,7 +291,7 @@ def plain(cell: str) -> str:
 
 
 def submissions(entries: list[Entry]) -> list[dict[str, str]]:
-    return [{"file": entry.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused, "remark": entry.remark,
+    return [{"file": entry.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused or entry.beside, "remark": entry.remark,
              "date": entry.card.date, "citation": entry.card.citation, "licence": entry.card.licence, "training_data": entry.card.training_data,
              "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.program} for entry in entries]
 

@@ -92,8 +92,9 @@ def named(board: Board, model: str) -> Cell:
     entry = next((entry for entry in board.of_status("ranked", "beside") if entry.card.name == model), None)
     if entry is None:
         return Cell(model, after=role(model))
-    seen = len(set(entry.card.test_overlap))
-    said = [f"beside: it has seen {seen} items" if seen else "", entry.remark]
+    n = len(entry.seen)
+    seen = f"beside: {entry.beside}" if entry.beside else f"it has seen {n} item{'s' * (n > 1)}, left out for all" if n else ""
+    said = [seen, entry.remark]
     return Cell(model, href=f"models/{model}.html", below="; ".join(filter(None, said)))
 
 
@@ -174,7 +175,7 @@ def history(board: Board) -> list[Any]:
 
 def submissions(board: Board, entries: list[Entry]) -> list[Any]:
     rows = [[Cell(entry.name), Cell(entry.card.name) if entry.refused else named(board, entry.card.name), Cell(entry.status),
-             Cell(entry.refused or entry.remark)] for entry in entries]
+             Cell("; ".join(filter(None, (entry.refused or entry.beside, entry.remark))))] for entry in entries]
     return [Table("submissions", "Submissions, and why some were refused.", ["File", "Model", "Status", "Reason or remark"], rows, [False] * 4)]
 
 
