@@ -204,6 +204,14 @@ DataIdentity identity_of(const Inputs& inputs) {
   return identity;
 }
 
+std::string digest_of_splits(const Dataset& dataset) {
+  std::vector<std::string> lines;
+  for (const DatasetItem& item : dataset.items)
+    if (!item.split.empty()) lines.push_back(fmt::format("{},{}\n", item.name, item.split));
+  std::ranges::sort(lines);
+  return lines.empty() ? "" : xxh128(fmt::format("{}", fmt::join(lines, ""))).hex();
+}
+
 std::vector<std::string> split_list(const std::string& list) {
   std::vector<std::string> parts;
   std::size_t begin = 0;
@@ -247,6 +255,7 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
                    const std::string& split, Others others) {
   std::vector<std::string> errors;
   if (choice.all() || choice.is_scored()) errors = errors_of_split(dataset, split);
+  std::string splits = digest_of_splits(dataset);
   Dataset whole = dataset;
   select_items(dataset, choice, split);
   std::set<std::string> chosen;
@@ -278,7 +287,8 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           std::make_shared<FileColumn>(std::move(truths)),
           dataset.importer,
           shard,
-          dataset.remark};
+          dataset.remark,
+          std::move(splits)};
 }
 
 }  // namespace salbench

@@ -35,6 +35,7 @@ struct Inputs {
   DataImporter importer = {};
   std::optional<Shard> shard = {};  // the units are this share of the data set
   std::string remark = {};          // on the ground truth, repeated in every table; empty: none
+  std::string splits = {};          // digest of which item is in which split; empty: none is in one
 
   // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;
@@ -94,6 +95,10 @@ struct DataIdentity {
   Digest digest;          // of the items' names and of all bytes that are read of them
 };
 DataIdentity identity_of(const Inputs& inputs);
+
+// What xxh128sum prints of lines "ITEM,SPLIT" in the order of their bytes, of all items that are in a split:
+// wherever that is written. Empty if none is.
+std::string digest_of_splits(const Dataset& dataset);
 
 std::vector<std::string> split_list(const std::string& list);  // at commas, without blanks and empty parts
 

@@ -183,10 +183,10 @@ std::string run_yaml(const RunRecord& record) {
   const DataIdentity data = identity_of(inputs);
   const std::size_t clouds = inputs.count(kClouds);
   yaml += fmt::format(
-      "data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}, participants: {}}}\n",
+      "data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}, {}participants: {}}}\n",
       yaml_quoted(config.data), yaml_scalar(inputs.layout), inputs.count(kMeshes),
       clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex(),
-      participants_text(inputs));
+      inputs.splits.empty() ? "" : fmt::format("splits: {}, ", inputs.splits), participants_text(inputs));
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
   yaml += cache_lines(record);

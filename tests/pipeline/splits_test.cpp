@@ -48,6 +48,25 @@ TEST_F(WithSplits, ATableNamesTheSplitOfEachItem) {
   EXPECT_THAT(run_splits("splits: {file: splits.csv}\n", "train"), ElementsAre("ant:train", "cat:train"));
 }
 
+// The digest is of which item is in which split: order, remarks and form of what says so play no part, and
+// neither does the choice of items.
+TEST_F(WithSplits, SplitsHaveADigest) {
+  const auto digest = [&](const std::string& splits, const std::string& chosen = "''") {
+    run_splits(splits, chosen);
+    return toy_->inputs.splits;
+  };
+  data_.write("splits.csv", "item,split\nbee,test\nant,train\neel,val\ncat,train\n");
+  const std::string first = digest("splits: {file: splits.csv}\n");
+  EXPECT_EQ(first, xxh128("ant,train\nbee,test\ncat,train\neel,val\n").hex()) << "as xxh128sum prints it";
+  EXPECT_EQ(digest("splits: {file: splits.csv}\n", "train"), first);
+  EXPECT_EQ(digest("splits: {items: {train: [cat, ant], val: [eel], test: [bee]}}\n"), first);
+  data_.write("splits.csv", "split,item\ntrain,ant\nval,eel\ntrain,cat\ntest,bee\n");
+  EXPECT_EQ(digest("splits: {file: splits.csv}\n"), first);
+  data_.write("splits.csv", "item,split\nbee,test\nant,train\neel,val\ncat,test\n");
+  EXPECT_NE(digest("splits: {file: splits.csv}\n"), first);
+  EXPECT_EQ(digest(""), "");
+}
+
 TEST_F(WithSplits, ASplitTakesWhatIsInAnotherToo) {
   data_.write("paths.txt", "ant\nbee\ncat\ndog\neel\n");
   const std::string splits = "splits: {list: paths.txt, shares: {train: 40%, train+test: 20%, test: 40%}}\n";
