@@ -87,11 +87,13 @@ def archives_in(folder: str, may_be_none: bool) -> list[Entry]:
 def expected_of(results: Any, protocol: str) -> Expected:
     """From a run over the data set without submissions."""
     table = csv_file.read_csv(results.folder / "results.csv", {"n_points"})
-    names = [f"{item}_{view}" if view else item for item, view in zip(table.column("item"), table.column("view"))]
+    items, data = table.column("item"), record_of(results)["data_set"]
+    names = [f"{item}_{view}" if view else item for item, view in zip(items, table.column("view"))]
     points = dict(zip(names, map(int, table.number_column("n_points"))))
     if not points:
         raise InputError("no item has ground truth that it could be scored by")
-    return Expected(protocol, record_of(results)["data_set"]["digest"], points, tuple(dict.fromkeys(table.column("item"))))
+    split_of = dict(zip(items, table.column("split"))) if "split" in table.columns else {}
+    return Expected(protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of)
 
 
 def record_of(results: Any) -> dict[str, Any]:
@@ -293,7 +295,7 @@ def plain(cell: str) -> str:
 def submissions(entries: list[Entry]) -> list[dict[str, str]]:
     return [{"file": entry.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused or entry.beside, "remark": entry.remark,
              "date": entry.card.date, "citation": entry.card.citation, "licence": entry.card.licence, "training_data": entry.card.training_data,
-             "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.program} for entry in entries]
+             "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.program, "trained_on": ", ".join(entry.card.trained_on)} for entry in entries]
 
 
 _HISTORY = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.text("date", "of the submission"), tables.text("file", "name of the archive"),

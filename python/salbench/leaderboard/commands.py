@@ -14,7 +14,7 @@ from salbench._errors import InputError, StorageError
 from salbench._files import read_file, replace_file
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
-from salbench.leaderboard import board, folder, site, submission, texts
+from salbench.leaderboard import board, folder, site, submission, texts, training
 from salbench.leaderboard.archive import Refused
 from salbench.leaderboard.texts import Manifest
 
@@ -95,19 +95,22 @@ def submit(given: argparse.Namespace) -> int:
         card = texts.read_card(card_text, str(card_file))
     except Refused as reason:
         raise InputError(str(reason)) from None
+    names = None
+    if len(card.trained_on) == 1:
+        names = read_file(Path(given.mine, card.trained_on[0]), training.LONGEST_LIST, "leave out all but the names")
     with _core.ScratchFolder() as name:
         session = _Session(given, Path(name))
         results = session.run(maps={card.name: given.mine})
         status = _failed(results)
         if status == ALL_DONE:
-            _write_checked(Path(given.to), results, card_text, card.name, Path(name))
+            _write_checked(Path(given.to), results, card_text, card.name, Path(name), names)
         document = {"to": None if status else given.to, "model": card.name, **summary_of(results)}
     text = "" if status else f"{given.to} can be handed in: it was checked as salbench leaderboard checks it\n"
     report(given, "submit", document, text)
     return status
 
 
-def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch: Path) -> None:
+def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch: Path, names: bytes | None) -> None:
     """What is written is read as a maintainer reads it: a file that would be refused does not stay."""
     expected = board.expected_of(results, results._run.protocol)
     record = board.record_of(results)
@@ -115,9 +118,10 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
     maps = results.maps(model)
     manifest = Manifest(program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
                         configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
-                        stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items()])
+                        stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items()],
+                        trained_on="" if names is None else _core.digest(names))
     made = scratch / "made.zip"
-    data = submission.archive_of(card, manifest, expected.protocol, scores, maps)
+    data = submission.archive_of(card, manifest, expected.protocol, scores, maps, names)
     try:
         made.write_bytes(data)
         submission.read(made, expected, scratch / "maps")

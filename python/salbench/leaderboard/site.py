@@ -182,7 +182,7 @@ def submissions(board: Board, entries: list[Entry]) -> list[Any]:
 def card_rows(entry: Entry) -> dict[str, str]:
     card = entry.card
     rows = {"File": entry.name, "Date": card.date, "Citation": card.citation, "Licence": card.licence, "Training data": card.training_data,
-            "Overlap with the test items": card.overlap, "Page": card.url, "Written by, as it says": f"salbench {entry.program}" if entry.program else "", "Remark": entry.remark}
+            "Trained on": ", ".join(card.trained_on), "Overlap with the test items": card.overlap, "Page": card.url, "Written by, as it says": f"salbench {entry.program}" if entry.program else "", "Remark": entry.remark}
     return {label: text for label, text in rows.items() if text}
 
 

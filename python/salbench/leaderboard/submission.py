@@ -13,7 +13,7 @@ import resource
 import subprocess
 import sys
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ from salbench._files import read_file
 from salbench._npy import header_of
 from salbench._processes import PYTHON, end_with_parent, interrupts_held, leave_interrupts_to_parent
 from salbench._types import NDArray
-from salbench.leaderboard import texts
+from salbench.leaderboard import texts, training
 from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
 from salbench.leaderboard.texts import Card, Manifest
 
@@ -34,7 +34,7 @@ _MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumP
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _LONGEST_HEAD = 1 << 26  # what the process sends before the maps
 _NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
-_SENT = ("submission.yaml", "card.yaml", "results.csv")  # by the process that reads
+_SENT = ("submission.yaml", "card.yaml", "results.csv", training.LIST)  # by the process that reads
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import worker; worker()"
 
 
@@ -46,26 +46,31 @@ class Expected:
     data: str  # digest of names, shapes and ground truth
     points: Mapping[str, int]  # of each shape with ground truth, by its name
     items: tuple[str, ...]  # that shapes are of: the meshes or point clouds
+    layout: str = ""
+    splits: str = ""  # digest of which item is in which
+    split_of: Mapping[str, str] = field(default_factory=dict)  # by item, where it is in one
 
     @property
     def most_bytes(self) -> int:
-        """What a submission can need, unpacked: four texts, and per shape a map with its header and a row of scores."""
+        """What a submission can need, unpacked: four texts, a list, and per shape a map with its header and a row of scores."""
         header, row = 1024, 4096
-        return len(_NAMES) * texts.LONGEST_TEXT + sum(8 * n + header + row for n in self.points.values())
+        return len(_NAMES) * texts.LONGEST_TEXT + training.LONGEST_LIST + sum(8 * n + header + row for n in self.points.values())
 
 
 @dataclass(frozen=True)
 class Submission:
-    card: Card
+    card: Card  # with the items that its list of training shapes has, and the digest of that
     program: str  # version that wrote it
     results: str  # results.csv as it came
     digest: str  # of the maps
     maps: Mapping[str, NDArray[np.float64]]  # by the name of the shape, from the scratch file
 
 
-def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Mapping[str, NDArray[np.float64]]) -> bytes:
+def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Mapping[str, NDArray[np.float64]],
+               trained_on: bytes | None = None) -> bytes:
     named = zip(_NAMES, (manifest.text().encode(), card, configuration.encode(), results))
-    return zip_of([*named, *((f"maps/{item}.npy", npy_of(values)) for item, values in sorted(maps.items(), key=lambda row: os.fsencode(row[0])))])
+    listed = [] if trained_on is None else [(training.LIST, trained_on)]
+    return zip_of([*named, *listed, *((f"maps/{item}.npy", npy_of(values)) for item, values in sorted(maps.items(), key=lambda row: os.fsencode(row[0])))])
 
 
 def npy_of(values: NDArray[np.float64]) -> bytes:
@@ -122,10 +127,10 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
 
 
 def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
-    files = read_zip(data, len(expected.points) + len(_NAMES) + 1, expected.most_bytes)
+    files = read_zip(data, len(expected.points) + len(_NAMES) + 2, expected.most_bytes)
     maps = {name: files.pop(name) for name in list(files) if name.startswith("maps/") and name.endswith(".npy")}
     for name in files:
-        if name not in _NAMES:
+        if name not in (*_NAMES, training.LIST):
             raise Refused(f"the file {quoted(name)} is no part of a submission")
     for name in _NAMES:
         if name not in files:
@@ -138,6 +143,7 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
     for item in card.test_overlap:
         if item not in expected.items:
             raise Refused(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
+    training.seen(card, files.get(training.LIST), manifest.trained_on, expected)
     found = {}
     for name, content in maps.items():
         item = name[len("maps/"):-len(".npy")]
@@ -164,7 +170,7 @@ def worker() -> None:
     try:
         data = read_file(given["path"], expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
         _, _, files, maps = _checked(data, expected)
-        head = {name: files[name].decode("utf-8", "surrogateescape") for name in _SENT} | {"maps": list(maps)}
+        head = {name: files[name].decode("utf-8", "surrogateescape") for name in _SENT if name in files} | {"maps": list(maps)}
     except Refused as reason:
         head = {"refused": str(reason)}
     except InputError as error:  # the file, whose name the table has
@@ -227,4 +233,8 @@ def _received(said: dict[str, Any], scratch: Path, begin: int, expected: Expecte
     ends = np.cumsum([0, *(expected.points[item] for item in items)])
     maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
     card, manifest = texts.read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
+    names = said[training.LIST].encode("utf-8", "surrogateescape") if training.LIST in said else None
+    seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
+    card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
+                   trained_on=(*card.trained_on, manifest.trained_on) if names is not None else card.trained_on)
     return Submission(card, manifest.program, str(said["results.csv"]), _core.digest(values.tobytes()), maps)

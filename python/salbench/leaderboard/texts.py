@@ -21,8 +21,8 @@ from salbench.leaderboard.archive import Refused, quoted
 LONGEST_TEXT = 1 << 16  # of a YAML file
 _LONGEST_LINE = 2000  # bytes
 FORMAT = "salbench submission 1"
-FREE = ("date", "url")  # keys of a card that may be left out
-_LISTS = ("test_overlap", "stages")  # keys whose value may be one
+FREE = ("date", "url", "trained_on")  # keys of a card that may be left out
+_LISTS = ("test_overlap", "trained_on", "stages")  # keys whose value may be one
 _NO_LINE = {"Cc": "a control character", "Cs": "a surrogate, which is no character", "Zl": "a line separator", "Zp": "a paragraph separator"}
 _VERSION = re.compile(r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?")
 
@@ -38,6 +38,7 @@ class Card:
     test_overlap: tuple[str, ...] = ()  # items of the data set that the model was trained or tuned on
     date: str = ""
     url: str = ""
+    trained_on: tuple[str, ...] = ()  # a file of names; or layout, split, and digest of the splits
 
     @property
     def overlap(self) -> str:
@@ -56,9 +57,10 @@ class Manifest:
     data: str = ""
     maps: int | str = 0
     stages: Sequence[str] = ()
+    trained_on: str = ""  # digest of the list of training shapes; not written where there is none
 
     def text(self) -> str:
-        return "".join(f"{key}: {json.dumps(value)}\n" for key, value in vars(self).items())
+        return "".join(f"{key}: {json.dumps(value)}\n" for key, value in vars(self).items() if value or key != "trained_on")
 
 
 def line(text: Any, what: str) -> str:
@@ -96,7 +98,18 @@ def read_card(text: bytes, name: str) -> Card:
     if isinstance(overlap, str) and overlap != "none":
         raise Refused(f"{name}: test_overlap is {quoted(overlap)}; write none, or a list of the items of this data set that the model was trained "
                       "or tuned on, such as [12, 52]")
-    return Card(**values, test_overlap=() if overlap == "none" else tuple(overlap))
+    trained_on = values.pop("trained_on", "")
+    return Card(**values, test_overlap=() if overlap == "none" else tuple(overlap), trained_on=_trained_on(trained_on, name))
+
+
+def _trained_on(given: str | list[str], name: str) -> tuple[str, ...]:
+    """What the key says, if it can be used."""
+    if isinstance(given, list) and len(given) == 3 and all(given):
+        return tuple(given)
+    if isinstance(given, list) or given in (".", "..") or "/" in given:
+        raise Refused(f"{name}: trained_on is {quoted(str(given))}; name a file beside the card with the names of the training shapes, or write "
+                      "[LAYOUT, SPLIT, DIGEST] for a split of this data set, with data_set: splits of run.yaml")
+    return (given,) if given not in ("", "none") else ()
 
 
 def _is_date(text: str) -> bool:

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Overlap from lists: a card names a file of the shapes that its model was trained on, or a split of the data set by the digest of its splits."""
+
+from __future__ import annotations
+
+import os
+import re
+import unicodedata
+from typing import TYPE_CHECKING
+
+from salbench import _core
+from salbench.leaderboard.archive import Refused, quoted
+from salbench.leaderboard.texts import Card
+
+if TYPE_CHECKING:
+    from salbench.leaderboard.submission import Expected
+
+LIST = "trained_on.txt"  # the file, in an archive
+LONGEST_LIST = 1 << 20  # bytes
+
+
+def seen(card: Card, names: bytes | None, digest: str, expected: Expected) -> set[str]:
+    """Items that were trained on, as the list has them. names: what is in the file; digest: what it should have. Throws Refused."""
+    if names is not None and len(card.trained_on) != 1:
+        raise Refused(f"has {LIST}, and card.yaml names no file of training shapes")
+    if not card.trained_on:
+        return set()
+    if len(card.trained_on) > 1:
+        return _in_split(card, expected)
+    if names is None:
+        raise Refused(f"has no {LIST}, the file {quoted(card.trained_on[0])} of card.yaml")
+    if _core.digest(names) != digest:
+        raise Refused(f"{LIST} is not what submission.yaml has the digest of")
+    return _named(names, expected)
+
+
+def _in_split(card: Card, expected: Expected) -> set[str]:
+    layout, split, digest = card.trained_on
+    if layout != expected.layout:
+        raise Refused(f"card.yaml: trained_on has a split of {quoted(layout)}, and this data set is {expected.layout}; name a file with its shapes")
+    if digest != expected.splits:
+        raise Refused(f"card.yaml: trained_on has splits with the digest {quoted(digest)}, and this data set has {expected.splits or 'none'}")
+    return {item for item, of in expected.split_of.items() if split in of.split("+")}
+
+
+def _named(names: bytes, expected: Expected) -> set[str]:
+    """A line has a name or a path first; its extension, letters' case and what is in further columns play no part. A scan or view is of its item."""
+    item_of = {_folded(item): item for item in expected.items}
+    of_view = {_folded(shape): item_of.get(_folded(shape.rpartition("_")[0]), "") for shape in expected.points}
+    found, any_name = set(), False
+    for line in names.decode("utf-8", "surrogateescape").splitlines():
+        path = re.split(r"[,;\t]", line.removeprefix("\ufeff"))[0].strip(' "')
+        if not path or path.startswith("#"):
+            continue
+        any_name, name = True, re.split(r"[/\\]", path)[-1]
+        for known in map(_folded, (name, os.path.splitext(name)[0])):
+            found.add(item_of.get(known, "") or of_view.get(known, ""))
+    if not any_name:
+        raise Refused(f"{LIST} has no name; leave trained_on out, or write none")
+    return found - {""}
+
+
+def _folded(name: str) -> str:
+    return unicodedata.normalize("NFC", name).casefold()
