@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import os
@@ -14,12 +15,12 @@ import numpy as np
 
 from salbench import _command_line as command_line
 from salbench import _core
-from salbench.datasets import described, sets
+from salbench.datasets import copies, described, sets
 from salbench.datasets._layout import number_text
 from salbench.datasets._patterns import natural_order
 from salbench.datasets._sizes import odd_sizes
 from salbench.datasets._workers import ask_all
-from salbench.datasets.records import Item, Listing
+from salbench.datasets.records import InputError, Item, Listing
 
 _MOST_NAMED = 10  # problems, and unused files
 _UNKNOWN = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan, "participants": 0,
@@ -61,7 +62,9 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
     for facts in items:
         facts["diagonal"] *= listing.scale
     problems = [f"{facts['name']}: {facts['problem']}" for facts in items if facts["problem"]] + notes
-    return {"layout": name, "shapes": len({facts["shape"] for facts in items}), "positives": listing.positives, "scale": listing.scale,
+    in_splits = b"".join(sorted(os.fsencode(f"{item.name},{item.split}\n") for item in listing.items if item.split))
+    return {"layout": name, "shapes": len({facts["shape"] for facts in items}),
+            "splits_digest": _core.xxh128(in_splits) if in_splits else "", "positives": listing.positives, "scale": listing.scale,
             "items": items, "unused": _unused(root, listing), "problems": problems}
 
 
@@ -93,11 +96,21 @@ def _unused(root: str, listing: Listing) -> list[str]:
 def command(arguments: Sequence[str], summary: str) -> int:
     parser = command_line.Parser("inspect", summary, "LAYOUT")
     sets.add_data_arguments(parser)
+    parser.add_argument("--against", metavar="LAYOUT2", help="also name shapes that are near copies of some of this data set (in --against-data), or "
+                        "of the same one: whatever their names, scale, pose and meshing")
+    parser.add_argument("--against-data", metavar="DIR", help="folder of that data set (default: that of --data)")
     parser.add_report()
     given = parser.parsed(arguments)
-    found = inspected(*sets.given_data("inspect", given))
-    command_line.report(given, "inspect", _document(found), _text(found))
-    return command_line.SOME_FAILED if any(facts["problem"] for facts in found["items"]) else command_line.ALL_DONE
+    layout, root = sets.given_data("inspect", given)
+    if given.against_data and not given.against:
+        raise InputError("inspect: --against-data names a folder without a layout: give --against LAYOUT2")
+    other = sets.given_data("inspect", argparse.Namespace(layout=given.against, data=given.against_data or root)) if given.against else None
+    found = inspected(layout, root)
+    compared = copies.compared((layout, root), other) if other else None
+    text = _text(found) + (copies.text(given.against, compared) if compared else "")
+    command_line.report(given, "inspect", _document(found) | copies.document(given.against, compared), text)
+    failed = any(facts["problem"] for facts in found["items"]) or (compared and compared.problems)
+    return command_line.SOME_FAILED if failed else command_line.ALL_DONE
 
 
 def _counts(found: dict[str, Any], key: str) -> list[tuple[str, int]]:
@@ -115,7 +128,7 @@ def _document(found: dict[str, Any]) -> dict[str, Any]:
     order = ("name", "shape", "view", "split", "class", "kind", "points", "faces", "diagonal", "has_truth", "seen", "of_camera", "low", "high",
              "participants", "picks", "remark", "problem")
     counts = {key: [{"name": name, "items": count} for name, count in _counts(found, key[:-1])] for key in ("splits", "views")}
-    return {"layout": found["layout"], "shapes": found["shapes"], "positives": found["positives"], "scale": _number(found["scale"]),
+    return {"layout": found["layout"], "shapes": found["shapes"], "splits_digest": found["splits_digest"], "positives": found["positives"], "scale": _number(found["scale"]),
             "items": [{key: facts[key] for key in order} for facts in items], **counts, "unused_files": len(found["unused"]),
             "unused": found["unused"][:_MOST_NAMED], "n_problems": len(found["problems"]), "problems": found["problems"][:_MOST_NAMED]}
 
@@ -125,6 +138,8 @@ def _text(found: dict[str, Any]) -> str:
     lines = [("layout", found["layout"]), ("items", f"{len(items)} of {found['shapes']} shapes")]
     for topic, key in (("splits", "split"), ("views", "view")):
         lines.append((topic, ", ".join(f"{name} {count}" for name, count in _counts(found, key)) or "none"))
+    if found["splits_digest"]:
+        lines.append(("digest", f"{found['splits_digest']}, of the splits"))
     if found["positives"] != "picks":
         lines.append(("picks", found["positives"]))
     if of_camera := sum(facts["of_camera"] for facts in items):

@@ -7,6 +7,7 @@ the input, one line, to OUT.error; then OUT is printed on a line of its own. Req
 item     layout, root, item (of a listing)     image of the one form
 shape    layout, root, items of one shape      the same with all views; problems of those that are left out in OUT.error, a line each
 facts    layout, root, item                    JSON: what `salbench inspect` tells of it
+signature layout, root, item                   what it is compared with other shapes by, as float64
 rewrite  path                                  image of the one form, from a file that another program wrote
 values   path                                  image with the array `values`: the only data set of numbers, or that called "saliency"
 maps     path                                  JSON: names of all data sets of numbers
@@ -66,6 +67,13 @@ def facts(request: dict[str, Any]) -> bytes:
     return json.dumps(facts_of(request["layout"], request["root"], Item.from_json(request["item"]))).encode()
 
 
+def signature(request: dict[str, Any]) -> bytes:
+    from salbench.datasets import copies, sets
+
+    asked = replace(Item.from_json(request["item"]), problem="", truth=False)
+    return copies.signature(sets.read(request["layout"], request["root"], asked)).tobytes()
+
+
 def rewrite(request: dict[str, Any]) -> bytes:
     from salbench.datasets import one_form
 
@@ -93,7 +101,7 @@ def one_map(request: dict[str, Any]) -> bytes:
 
 
 ANSWERS: dict[str, Callable[[dict[str, Any]], bytes | tuple[bytes | None, list[str]]]] = {
-    "item": item, "shape": shape, "facts": facts, "rewrite": rewrite, "values": values, "maps": maps, "map": one_map,
+    "item": item, "shape": shape, "facts": facts, "signature": signature, "rewrite": rewrite, "values": values, "maps": maps, "map": one_map,
 }
 
 

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Near copies among the shapes of two data sets, whatever their names, scale, pose and meshing: `salbench inspect A --against B`.
+
+Two distributions stand for a shape: the distance between two points of its surface (D2 [osada2002]) and that of a point from the centroid, both
+over the mean of the first. Two shapes are as far apart as the farther pair of distributions, by the mean difference of quantiles (Wasserstein's
+distance). Copies are named, not judged: docs/data_sets.md has what was measured, and what this cannot tell.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from salbench.datasets import sets
+from salbench.datasets._workers import ask_all
+from salbench.datasets.records import Floats, Form, InputError, Item
+
+WITHIN = 0.005  # meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07 classes at least 0.007
+_PAIRS = 1 << 17
+_LEVELS = (np.arange(256) + 0.5) / 256  # of the quantiles
+_NEIGHBOURS = 12  # of a point of a cloud; the disc that holds them is the area it stands for
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What a comparison found. Pairs are shapes of the first set and of the second, with their distance."""
+
+    shapes: int  # of the second
+    near: list[tuple[str, str, float]]
+    next: tuple[str, str, float] | None  # the nearest of all other pairs
+    problems: list[str]  # shapes that could not be compared
+
+
+def signature(form: Form) -> Floats:
+    """Quantiles of both distributions, a row each."""
+    points = form.points - form.points.mean(axis=0)
+    size = float(np.abs(points).max())
+    if not size > 0:
+        raise InputError("all points are at one place: nothing to compare")
+    points = points / size  # squares neither overflow nor vanish
+    draw = np.random.Generator(np.random.PCG64(2016)).random
+    samples = _of_cloud(points, draw) if form.faces is None else _of_mesh(points, form.faces, draw)
+    between = np.linalg.norm(samples[:_PAIRS] - samples[_PAIRS:], axis=1)
+    from_centre = np.linalg.norm(samples - samples.mean(axis=0), axis=1)
+    quantiles: Floats = np.stack([np.quantile(between, _LEVELS), np.quantile(from_centre, _LEVELS)]) / between.mean()
+    return quantiles
+
+
+def _of_mesh(points: Floats, faces: Any, draw: Any) -> Floats:
+    """Points of the surface, uniform by area."""
+    a, b, c = (points[faces[:, corner]] for corner in range(3))
+    face = _chosen(np.linalg.norm(np.cross(b - a, c - a), axis=1), draw)
+    u, v = np.sqrt(draw((2 * _PAIRS, 1))), draw((2 * _PAIRS, 1))
+    samples: Floats = (1 - u) * a[face] + u * (1 - v) * b[face] + u * v * c[face]
+    return samples
+
+
+def _of_cloud(points: Floats, draw: Any) -> Floats:
+    """Points of the cloud, as often as the area that they stand for asks for: clouds are seldom sampled evenly."""
+    from scipy.spatial import cKDTree
+
+    points = np.unique(points, axis=0)
+    k = min(_NEIGHBOURS, len(points) - 1)
+    radius = cKDTree(points).query(points, k + 1)[0][:, -1]
+    samples: Floats = points[_chosen(radius**2, draw)]
+    return samples
+
+
+def _chosen(areas: Floats, draw: Any) -> Any:
+    total = np.cumsum(areas)
+    return np.searchsorted(total, draw(2 * _PAIRS) * total[-1], side="right").clip(max=len(areas) - 1)
+
+
+def compared(first: tuple[str, str], second: tuple[str, str]) -> Compared:
+    """Layout and folder of both. A shape is not compared with itself, nor a pair of one set twice."""
+    problems: dict[str, None] = {}  # each once
+    (ours, files, values), (theirs, other_files, others) = (_signatures(*side, problems) for side in (first, second))
+    near: list[tuple[str, str, float]] = []
+    next_pair: tuple[str, str, float] | None = None
+    for place, (name, file, own) in enumerate(zip(ours, files, values)):
+        distances = np.abs(others - own).mean(axis=-1).max(axis=-1)
+        distances[[other == file for other in other_files]] = np.inf
+        if files == other_files:
+            distances[:place] = np.inf
+        near += [(name, theirs[k], float(distances[k])) for k in np.flatnonzero(distances <= WITHIN)]
+        distances[distances <= WITHIN] = np.inf
+        k = int(np.argmin(distances)) if len(distances) else -1
+        if k >= 0 and distances[k] < (next_pair[2] if next_pair else np.inf):
+            next_pair = name, theirs[k], float(distances[k])
+    return Compared(len(theirs), sorted(near, key=lambda pair: pair[2]), next_pair, [*problems])
+
+
+def _signatures(layout: str, root: str, problems: dict[str, None]) -> tuple[list[str], list[str], Floats]:
+    """Of each shape that can be read: name, file, signature. Views of one are one."""
+    name, listing = sets.listed(layout, os.path.normpath(root))
+    shapes: dict[str, Item] = {}
+    for item in listing.items:
+        shapes.setdefault(item.shape or item.name, item)
+    items = list(shapes.values())
+    found: dict[int, Floats] = {}
+
+    def take(number: int, made: bytes | None, said: list[str]) -> None:
+        if made is None:
+            problems[f"{[*shapes][number]}: {said[0] if said else 'cannot be read'}"] = None
+        else:
+            found[number] = np.frombuffer(made).reshape(2, -1)
+
+    archive = layout if layout != sets.AUTOMATIC else name
+    if not ask_all([{"do": "signature", "layout": archive, "root": root, "item": item.to_json()} for item in items], take):
+        raise KeyboardInterrupt
+    numbers = sorted(found)
+    values = np.array([found[number] for number in numbers]).reshape(-1, 2, len(_LEVELS))
+    return [[*shapes][number] for number in numbers], [os.path.realpath(sets.shape_file(items[number])) for number in numbers], values
+
+
+def document(layout: str, found: Compared | None) -> dict[str, Any]:
+    """Keys of the document of `salbench inspect`; found: None, where nothing was asked for."""
+    def pairs(some: list[tuple[str, str, float]]) -> list[dict[str, str]]:
+        return [{"shape": own, "other": other, "distance": f"{distance:.4f}"} for own, other, distance in some]
+
+    near, others = (found.near, [found.next] if found.next else []) if found else ([], [])
+    return {"against": layout if found else "", "against_shapes": found.shapes if found else 0, "within": str(WITHIN), "near_copies": pairs(near),
+            "next": pairs(others), "not_compared": found.problems if found else []}
+
+
+def text(layout: str, found: Compared) -> str:
+    """For people."""
+    n = len(found.near)
+    lines = [f"{n} near cop{'y' if n == 1 else 'ies'} among the {found.shapes} shapes of {layout}, by distances of points, at most {WITHIN} apart{':' * bool(n)}",
+             *(f"  {own} is {other}, {distance:.4f}" for own, other, distance in found.near)]
+    if found.next:
+        lines.append("nearest of all others: {} and {}, {:.4f}".format(*found.next))
+    if found.problems:
+        lines += [f"{len(found.problems)} not compared:", *(f"  {problem}" for problem in found.problems)]
+    return "\n".join(lines) + "\n"
