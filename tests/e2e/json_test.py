@@ -171,8 +171,13 @@ class JsonTest(unittest.TestCase):
         data = self.folder / "views"
         for name in ("off", "maps"):
             (data / name).mkdir(parents=True)
+        mesh = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 {}\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+        others = self.folder / "others"
+        others.mkdir()
+        for name, text in (("same", mesh.format(1)), ("higher", mesh.format(9)), ("broken", "OFF\n1 2\n")):
+            (others / f"{name}.off").write_text(text)
         for name in ("cat", "dog"):
-            (data / f"off/{name}.off").write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+            (data / f"off/{name}.off").write_text(mesh.format(1))
             (data / f"maps/{name}_1.txt").write_text("1\n2\n-1\n4.5\n")
         (data / "maps/dog_2.txt").write_text("1\n2\n3\n")
         (data / "readme.txt").write_text("")
@@ -181,7 +186,8 @@ class JsonTest(unittest.TestCase):
                        "values: {unseen: -1}\nsplits: {items: {train: [cat], test: [dog]}}\n")
         said = []
         for further in ([], ["--format", "json"]):
-            done = subprocess.run([PROGRAM, "inspect", own, "--data", data, *further], capture_output=True)
+            done = subprocess.run([PROGRAM, "inspect", own, "--data", data, "--against", "folder", "--against-data", others, *further],
+                                  capture_output=True)
             self.assertEqual((done.returncode, done.stderr), (1, b""))
             said.append(done.stdout.decode("utf-8"))
         document = json.loads(said[1])
@@ -195,6 +201,9 @@ class JsonTest(unittest.TestCase):
         (problem,) = document["problems"]
         self.assertIn("maps/dog_2.txt:3: the file has 3 values, but the mesh has 4 vertices", problem)
         self.assertIn(f"\n1 problems:\n  {problem}\n", said[0])
+        self.assertEqual([(copy["shape"], copy["other"], copy["distance"]) for copy in document["near_copies"]],
+                         [("cat", "same", "0.0000"), ("dog", "same", "0.0000")])
+        self.assertIn("\n  cat is same, 0.0000\n", said[0])
         done = subprocess.run([PROGRAM, "import", own, "--data", data, "--to", self.folder / "one_form", "--quiet", "--format", "json"],
                               capture_output=True)
         self.assertEqual(done.returncode, 1)
