@@ -168,6 +168,7 @@ class Overlap:
 
     @classmethod
     def of(cls, entries: list[Entry], expected: Expected) -> "Overlap":
+        """Says of each entry whether it stands beside, and why."""
         n = len(expected.items)
         for entry in entries:
             too_many = 100 * len(entry.seen) > MOST_SEEN * n
