@@ -190,10 +190,11 @@ class Board(unittest.TestCase):
                 self.assertEqual(overlap.ranked_over, f"{20 - len(left_out)} of 20")
                 self.assertEqual(len(overlap.sentences()), bool(left_out) + bool(beside))
 
-    def test_no_item_is_left(self):
-        with mock.patch.object(board, "MOST_SEEN", 100):
-            overlap = board.Overlap.of([board.Entry(Path("a.zip"), Card("A", test_overlap=("1", "2")), refused="")], SimpleNamespace(items=("1", "2")))
-        self.assertEqual((overlap.ranked_over, overlap.beside), ("0 of 2", {}))
+    def test_a_model_that_has_seen_all_and_no_other(self):
+        self.toy.with_card("G0.zip", card("SEEN", overlap="[1, 2, 3, 4, 5, 6]"))
+        self.rank()
+        self.assertIn("no model has scores but references", self.toy.page())
+        self.assertEqual((self.toy.table("ranking"), self.toy.table("overlap")), ([], []))
 
     def test_what_the_front_page_names(self):
         self.toy.with_card("later.zip", card("LATER", "2026-03-01", url="https://example.org/model"))
